@@ -1,0 +1,293 @@
+#include "core/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "core/units.h"
+
+namespace underbody::core {
+
+const Column* Table::find(std::string_view name) const {
+    for (const auto& column : columns_) {
+        if (column.name == name) {
+            return &column;
+        }
+    }
+    return nullptr;
+}
+
+namespace {
+std::vector<std::string> names_of(const std::vector<Column>& columns) {
+    std::vector<std::string> names;
+    for (const auto& column : columns) {
+        names.push_back(column.name);
+    }
+    return names;
+}
+}  // namespace
+
+const std::vector<double>& Table::numbers(std::string_view name) const {
+    const Column* column = find(name);
+    if (column == nullptr) {
+        throw InputError("missing", "there is no column '" + std::string(name) + "'", {source, {}, {}, {}},
+                         did_you_mean(std::string(name), names_of(columns_)));
+    }
+    if (column->is_text()) {
+        throw InputError("unit", "column '" + std::string(name) + "' has no unit, so it holds text", {source, {}, {}, {}},
+                         "write its unit in the header: '" + std::string(name) + " [unit]', [1] for a pure number");
+    }
+    return column->numbers;
+}
+
+const std::vector<std::string>& Table::text(std::string_view name) const {
+    const Column* column = find(name);
+    if (column == nullptr || !column->is_text()) {
+        throw InputError("missing", "there is no text column '" + std::string(name) + "'", {source, {}, {}, {}},
+                         did_you_mean(std::string(name), names_of(columns_)));
+    }
+    return column->text;
+}
+
+void Table::check_new(const std::string& name, std::size_t size) {
+    if (find(name) != nullptr) {
+        throw InputError("duplicate", "column '" + name + "' occurs twice", {source, {}, {}, {}});
+    }
+    if (!columns_.empty() && size != rows_) {
+        throw std::logic_error("Table: column '" + name + "' has " + std::to_string(size) + " rows, the table " +
+                               std::to_string(rows_));
+    }
+    rows_ = size;
+}
+
+void Table::add_numbers(std::string name, std::string si_unit, std::vector<double> values, std::string written_unit) {
+    check_new(name, values.size());
+    Column column;
+    column.name = std::move(name);
+    column.unit = std::move(si_unit);
+    column.written_unit = written_unit.empty() ? column.unit : std::move(written_unit);
+    column.numbers = std::move(values);
+    columns_.push_back(std::move(column));
+}
+
+void Table::add_text(std::string name, std::vector<std::string> values) {
+    check_new(name, values.size());
+    Column column;
+    column.name = std::move(name);
+    column.text = std::move(values);
+    columns_.push_back(std::move(column));
+}
+
+Place Table::place(std::size_t row, std::string_view name) const {
+    Place place;
+    place.file = source;
+    if (const std::int64_t line = line_of_row(row); line > 0) {
+        place.line = line;
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            if (columns_[i].name == name) {
+                place.column = static_cast<std::int64_t>(i) + 1;
+            }
+        }
+    }
+    return place;
+}
+
+Table Table::selected(const std::vector<std::size_t>& rows) const {
+    Table result;
+    result.source = source;
+    result.comments = comments;
+    result.rows_ = rows.size();
+    for (const auto& column : columns_) {
+        Column part{column.name, column.unit, column.written_unit, {}, {}};
+        for (const std::size_t row : rows) {
+            if (column.is_text()) {
+                part.text.push_back(column.text.at(row));
+            } else {
+                part.numbers.push_back(column.numbers.at(row));
+            }
+        }
+        result.columns_.push_back(std::move(part));
+    }
+    for (const std::size_t row : rows) {
+        result.lines_.push_back(line_of_row(row));
+    }
+    return result;
+}
+
+namespace {
+
+/// One header cell, `name [unit]` or `name`.
+struct Heading {
+    std::string name;
+    std::string unit;
+    Conversion to_si;
+    std::string si;
+};
+
+Heading read_heading(std::string_view cell, const Place& place) {
+    Heading heading;
+    const std::string_view text = trimmed(cell);
+    const std::size_t open = text.find('[');
+    if (open == std::string_view::npos) {
+        heading.name = std::string(text);
+        if (find_quantity(heading.name) != nullptr) {
+            throw InputError("unit", "column '" + heading.name + "' has no unit", place,
+                             "write '" + heading.name + " [" + find_quantity(heading.name)->unit + "]'");
+        }
+    } else {
+        if (text.back() != ']') {
+            throw InputError("parse", "'" + std::string(text) + "' is not of the form 'name [unit]'", place);
+        }
+        heading.name = std::string(trimmed(text.substr(0, open)));
+        heading.unit = std::string(trimmed(text.substr(open + 1, text.size() - open - 2)));
+        if (heading.unit.empty()) {
+            throw InputError("unit", "column '" + heading.name + "' has an empty unit", place,
+                             "a pure number has [1]; a column of text has no brackets");
+        }
+    }
+    if (heading.name.empty()) {
+        throw InputError("parse", "a column has no name", place);
+    }
+    if (heading.unit.empty()) {
+        return heading;
+    }
+    constexpr std::string_view sigma_ending = "_sigma";
+    std::string base = heading.name;
+    const bool is_sigma = base.size() > sigma_ending.size() && base.ends_with(sigma_ending);
+    if (is_sigma) {
+        base.resize(base.size() - sigma_ending.size());
+    }
+    const QuantityName* quantity = find_quantity(base);
+    heading.si = quantity != nullptr ? quantity->unit : si_unit(heading.unit, place);
+    heading.to_si = conversion(heading.unit, heading.si, place);
+    if (is_sigma) {
+        heading.to_si.offset = 0;  // a difference of temperatures has no zero point
+    }
+    return heading;
+}
+
+}  // namespace
+
+Table read_csv(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    return read_csv(file.bytes(), path.string());
+}
+
+Table read_csv(std::string_view bytes, const std::string& source) {
+    Table table;
+    table.source = source;
+    if (bytes.starts_with("\xEF\xBB\xBF")) {
+        bytes.remove_prefix(3);
+    }
+    std::vector<Heading> headings;
+    std::int64_t line_number = 0;
+    std::size_t begin = 0;
+    while (begin < bytes.size()) {
+        const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
+        const std::string_view line = trimmed(bytes.substr(begin, end - begin));
+        begin = end + 1;
+        ++line_number;
+        if (line.empty()) {
+            continue;
+        }
+        if (line.front() == '#') {
+            table.comments.emplace_back(trimmed(line.substr(1)));
+            continue;
+        }
+        const auto cells = split(line, ',');
+        if (headings.empty()) {
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                const Place place{source, line_number, static_cast<std::int64_t>(i) + 1, {}};
+                headings.push_back(read_heading(cells[i], place));
+                Column column{headings.back().name, headings.back().si, headings.back().unit, {}, {}};
+                if (table.find(column.name) != nullptr) {
+                    throw InputError("duplicate", "column '" + column.name + "' occurs twice", place);
+                }
+                table.columns_.push_back(std::move(column));
+            }
+            continue;
+        }
+        if (cells.size() != headings.size()) {
+            throw InputError("ragged",
+                             "this line has " + std::to_string(cells.size()) + " fields, the header " +
+                                 std::to_string(headings.size()),
+                             {source, line_number, static_cast<std::int64_t>(std::min(cells.size(), headings.size())) + 1, {}},
+                             "numbers use '.' as decimal point; a missing value is an empty field");
+        }
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            Column& column = table.columns_[i];
+            const std::string_view cell = trimmed(cells[i]);
+            if (column.is_text()) {
+                column.text.emplace_back(cell);
+                continue;
+            }
+            if (cell.empty()) {
+                column.numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+                continue;
+            }
+            const auto value = parse_number(cell);
+            const Place place{source, line_number, static_cast<std::int64_t>(i) + 1, {}};
+            if (!value) {
+                throw InputError("parse", "column '" + column.name + "': '" + std::string(cell) + "' is not a number", place);
+            }
+            if (!std::isfinite(*value)) {
+                throw InputError("range", "column '" + column.name + "': '" + std::string(cell) + "' is not finite", place,
+                                 "leave the field empty for a missing value");
+            }
+            column.numbers.push_back(headings[i].to_si(*value));
+        }
+        table.lines_.push_back(line_number);
+        ++table.rows_;
+    }
+    if (headings.empty()) {
+        throw InputError("empty", "the table is empty: there is no header line", {source, {}, {}, {}},
+                         "the first line names the columns: 'gap [mm], lift_force [N]'");
+    }
+    if (table.rows_ == 0) {
+        throw InputError("empty", "the table has a header but no rows", {source, {}, {}, {}});
+    }
+    return table;
+}
+
+std::string write_csv(const Table& table) {
+    std::string text;
+    for (const auto& comment : table.comments) {
+        text += "# " + comment + "\n";
+    }
+    std::vector<Conversion> conversions;
+    bool first = true;
+    for (const auto& column : table.columns()) {
+        text += (first ? "" : ", ") + column.name;
+        first = false;
+        conversions.emplace_back();
+        if (!column.is_text()) {
+            text += " [" + column.written_unit + "]";
+            conversions.back() = conversion(column.unit, column.written_unit);
+            if (column.name.ends_with("_sigma")) {
+                conversions.back().offset = 0;
+            }
+        }
+    }
+    text += "\n";
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+        for (std::size_t i = 0; i < table.columns().size(); ++i) {
+            const Column& column = table.columns()[i];
+            text += i == 0 ? "" : ", ";
+            if (column.is_text()) {
+                text += column.text[row];
+            } else if (std::isfinite(column.numbers[row])) {
+                text += format_number(conversions[i](column.numbers[row]));
+            }
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+void write_csv(const std::filesystem::path& path, const Table& table) { write_file(path, write_csv(table)); }
+
+}  // namespace underbody::core

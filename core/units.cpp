@@ -1,0 +1,317 @@
+#include "core/units.h"
+
+#include <udunits2.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "core/text.h"
+
+namespace underbody::core {
+
+namespace {
+
+/// UDUNITS-2 keeps global state and is not thread-safe: one mutex, and every answer is remembered.
+class UnitSystem {
+public:
+    static UnitSystem& instance() {
+        static UnitSystem system;
+        return system;
+    }
+
+    const ut_unit* find(std::string_view text) {
+        const std::string key = spelled(text);
+        const auto known = units_.find(key);
+        if (known != units_.end()) {
+            return known->second.get();
+        }
+        ut_unit* unit = ut_parse(system_, key.c_str(), UT_UTF8);
+        return units_.emplace(key, Owned(unit)).first->second.get();
+    }
+
+    std::mutex& mutex() { return mutex_; }
+    [[nodiscard]] ut_system* raw() const { return system_; }
+
+    /// Names of units near to a mistyped one, for the hint of an error.
+    static const std::vector<std::string>& common() {
+        static const std::vector<std::string> names = {
+            "m",   "mm",  "cm",  "km",  "inch", "ft",   "kg",  "g",    "s",   "ms",    "min", "h",  "N",   "mN",
+            "kN",  "gf",  "Pa",  "kPa", "MPa",  "bar",  "atm", "psi",  "deg", "rad",   "Hz",  "K",  "degC", "V",
+            "m/s", "mm/s", "km/h", "kg/m^3", "m^2/s", "Pa s", "N m", "N s/m", "m^3/s", "mL/s", "1", "%", "J", "W"};
+        return names;
+    }
+
+private:
+    struct Free {
+        void operator()(ut_unit* unit) const { ut_free(unit); }
+    };
+    using Owned = std::unique_ptr<ut_unit, Free>;
+
+    UnitSystem() {
+        ut_set_error_message_handler(ut_ignore);
+        system_ = ut_read_xml(nullptr);
+        if (system_ == nullptr) {
+            throw SystemError("unit", "the unit database of UDUNITS-2 cannot be read", {},
+                              "install the Debian package libudunits2-data");
+        }
+    }
+
+    /// What people write and UDUNITS does not read.
+    static std::string spelled(std::string_view text) {
+        std::string key(trimmed(text));
+        if (key.empty() || key == "-") {
+            return "1";
+        }
+        if (key == "deg") {
+            return "degree";
+        }
+        if (key == "C" ) {
+            // The coulomb for UDUNITS; CFD-Post writes "[ C ]" for degrees Celsius. Importers say degC themselves.
+            return "C";
+        }
+        if (key == "degC" || key == "°C") {
+            return "celsius";
+        }
+        return key;
+    }
+
+    ut_system* system_ = nullptr;
+    std::map<std::string, Owned> units_;
+    std::mutex mutex_;
+};
+
+[[noreturn]] void unknown_unit(std::string_view unit, const Place& place) {
+    throw InputError("unit", "unknown unit '" + std::string(unit) + "'", place,
+                     did_you_mean(std::string(unit), UnitSystem::common()));
+}
+
+struct ConverterFree {
+    void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+
+}  // namespace
+
+bool is_unit(std::string_view unit) {
+    auto& system = UnitSystem::instance();
+    const std::lock_guard lock(system.mutex());
+    return system.find(unit) != nullptr;
+}
+
+bool same_dimension(std::string_view unit_a, std::string_view unit_b) {
+    auto& system = UnitSystem::instance();
+    const std::lock_guard lock(system.mutex());
+    const ut_unit* a = system.find(unit_a);
+    const ut_unit* b = system.find(unit_b);
+    return a != nullptr && b != nullptr && ut_are_convertible(a, b) != 0;
+}
+
+Conversion conversion(std::string_view from, std::string_view to, const Place& place) {
+    auto& system = UnitSystem::instance();
+    const std::lock_guard lock(system.mutex());
+    const ut_unit* a = system.find(from);
+    const ut_unit* b = system.find(to);
+    if (a == nullptr) {
+        unknown_unit(from, place);
+    }
+    if (b == nullptr) {
+        unknown_unit(to, place);
+    }
+    // UDUNITS converts between reciprocal units (s and Hz); nobody means that in a file.
+    std::unique_ptr<cv_converter, ConverterFree> converter;
+    if (ut_are_convertible(a, b) != 0) {
+        converter.reset(ut_get_converter(const_cast<ut_unit*>(a), const_cast<ut_unit*>(b)));
+    }
+    if (!converter) {
+        throw InputError("unit",
+                         "unit '" + std::string(from) + "' has another dimension than '" + std::string(to) + "'",
+                         place, "give the value in " + std::string(to) + " or a unit of the same dimension");
+    }
+    const double at_zero = cv_convert_double(converter.get(), 0.0);
+    const double at_one = cv_convert_double(converter.get(), 1.0);
+    const double at_two = cv_convert_double(converter.get(), 2.0);
+    if (std::abs((at_two - at_one) - (at_one - at_zero)) > 1e-9 * (std::abs(at_two) + std::abs(at_one))) {
+        throw InputError("unit", "'" + std::string(from) + "' is not proportional to '" + std::string(to) + "'", place);
+    }
+    return at_zero == 0 ? Conversion{at_one, 0} : Conversion{at_one - at_zero, at_zero};
+}
+
+double convert(double value, std::string_view from, std::string_view to, const Place& place) {
+    return conversion(from, to, place)(value);
+}
+
+std::string si_unit(std::string_view unit, const Place& place) {
+    static const std::vector<std::string> named = {
+        "1",       "m",       "m^2",     "m^3",   "kg",      "s",       "rad",         "K",        "V",       "A",
+        "m/s",     "m/s^2",   "rad/s",   "Hz",    "N",       "Pa",      "N m",         "W",        "kg/m^3",  "m^2/s",
+        "Pa s",    "m^3/s",   "kg/s",    "N/m",   "N s/m",   "N s^2/m^2", "kg m^2",    "N m/rad",  "N m s",   "W/m^2",
+        "m^2/s^2", "m^2/s^3", "J/kg",    "J/kg/K", "W/m/K",  "rad/s^2", "1/m"};
+    if (!is_unit(unit)) {
+        unknown_unit(unit, place);
+    }
+    for (const auto& candidate : named) {
+        if (same_dimension(unit, candidate)) {
+            // m^2/s^2 and J/kg, N m and J are one dimension to UDUNITS: the first listed names it.
+            return (candidate == "1" && same_dimension(unit, "rad") && !same_dimension("1", "rad")) ? "rad" : candidate;
+        }
+    }
+    auto& system = UnitSystem::instance();
+    const std::lock_guard lock(system.mutex());
+    std::array<char, 256> buffer{};
+    const ut_unit* found = system.find(unit);
+    std::unique_ptr<ut_unit, void (*)(ut_unit*)> pure(ut_clone(found), ut_free);
+    if (ut_format(pure.get(), buffer.data(), buffer.size(), UT_ASCII | UT_DEFINITION) < 0) {
+        return std::string(unit);
+    }
+    // Drop the scale that UT_DEFINITION puts before the base units ("1000 kg.m-3").
+    std::string text(buffer.data());
+    const std::size_t blank = text.find(' ');
+    if (blank != std::string::npos && parse_number(text.substr(0, blank))) {
+        text = text.substr(blank + 1);
+    }
+    return text;
+}
+
+Quantity parse_quantity(std::string_view text, const Place& place) {
+    const std::string_view whole = trimmed(text);
+    std::size_t end = 0;
+    while (end < whole.size()) {
+        const char c = whole[end];
+        const bool exponent_sign = (c == '+' || c == '-') && end > 0 && (whole[end - 1] == 'e' || whole[end - 1] == 'E');
+        const bool leading_sign = (c == '+' || c == '-') && end == 0;
+        const bool exponent = (c == 'e' || c == 'E') && end > 0 && end + 1 < whole.size() &&
+                              (whole[end + 1] == '+' || whole[end + 1] == '-' || (whole[end + 1] >= '0' && whole[end + 1] <= '9'));
+        if ((c >= '0' && c <= '9') || c == '.' || exponent_sign || leading_sign || exponent) {
+            ++end;
+        } else {
+            break;
+        }
+    }
+    const auto number = parse_number(whole.substr(0, end));
+    if (!number) {
+        throw InputError("parse", "'" + std::string(text) + "' is not a number with a unit", place,
+                         "write a number, a blank and a unit, such as '5 mm'");
+    }
+    const std::string unit(trimmed(whole.substr(end)));
+    if (!unit.empty() && !is_unit(unit)) {
+        unknown_unit(unit, place);
+    }
+    return {*number, unit};
+}
+
+double parse_in(std::string_view text, std::string_view unit_si, const Place& place) {
+    const Quantity quantity = parse_quantity(text, place);
+    const double value = quantity.unit.empty() ? quantity.value : convert(quantity.value, quantity.unit, unit_si, place);
+    if (!std::isfinite(value)) {
+        throw InputError("range", "'" + std::string(text) + "' is not finite", place);
+    }
+    return value;
+}
+
+const std::vector<QuantityName>& quantity_names() {
+    static const std::vector<QuantityName> names = {
+        {"time", "s", "time", "t"},
+        {"gap", "m", "height of the base centre over the ground, positive up", "h"},
+        {"pitch", "rad", "pitch angle, positive nose up", "pitch"},
+        {"speed", "m/s", "forward speed through the water", "U"},
+        {"heave_velocity", "m/s", "dh/dt, positive up", "dh/dt"},
+        {"pitch_rate", "rad/s", "rate of pitch, positive nose up", "q"},
+        {"lift_force", "N", "vertical force, positive up (repulsion)", "lift"},
+        {"drag_force", "N", "force against the motion, positive when it slows", "drag"},
+        {"side_force", "N", "lateral force, positive to starboard", "side force"},
+        {"pitch_moment", "N m", "pitch moment, positive nose up", "pitch moment"},
+        {"roll_moment", "N m", "roll moment, positive starboard down", "roll moment"},
+        {"yaw_moment", "N m", "yaw moment, positive bow to starboard", "yaw moment"},
+        {"jet_voltage", "V", "voltage of the jet pump", "V"},
+        {"jet_flow", "m^3/s", "volume flow of the jet", "q"},
+        {"input_force", "N", "control force, positive up", "u"},
+        {"temperature", "K", "temperature of the water", "T"},
+        {"depth", "m", "depth below the free surface, positive down", "depth"},
+        {"approach_direction", "1", "+1 when the set point was approached upward, -1 downward", "direction"},
+    };
+    return names;
+}
+
+const QuantityName* find_quantity(std::string_view name) {
+    for (const auto& quantity : quantity_names()) {
+        if (quantity.name == name) {
+            return &quantity;
+        }
+    }
+    return nullptr;
+}
+
+namespace {
+const QuantityName& known_name(const std::string& name, const std::vector<QuantityName>& extra) {
+    for (const auto& quantity : extra) {
+        if (quantity.name == name) {
+            return quantity;
+        }
+    }
+    if (const QuantityName* found = find_quantity(name)) {
+        return *found;
+    }
+    std::vector<std::string> known;
+    for (const auto& quantity : extra) {
+        known.push_back(quantity.name);
+    }
+    for (const auto& quantity : quantity_names()) {
+        known.push_back(quantity.name);
+    }
+    throw UsageError("name", "unknown quantity '" + name + "'", {}, did_you_mean(name, known));
+}
+
+std::vector<std::pair<std::string, std::string>> pairs_of(std::string_view text, const std::string& example) {
+    std::vector<std::pair<std::string, std::string>> pairs;
+    for (const auto part : split(text, ',')) {
+        const std::size_t equal = part.find('=');
+        if (equal == std::string_view::npos) {
+            throw UsageError("parse", "'" + std::string(part) + "' is not of the form name=value", {},
+                             "write a list such as " + example);
+        }
+        pairs.emplace_back(trimmed(part.substr(0, equal)), trimmed(part.substr(equal + 1)));
+    }
+    return pairs;
+}
+
+/// Values of an option: a mistake in them is a mistake of the command line.
+double option_value(const std::string& text, const QuantityName& quantity) {
+    try {
+        return parse_in(text, quantity.unit);
+    } catch (const InputError& error) {
+        throw UsageError(error.kind(), quantity.name + ": " + error.message(), {}, error.hint());
+    }
+}
+}  // namespace
+
+std::vector<NamedValue> parse_assignments(std::string_view text, const std::vector<QuantityName>& extra) {
+    std::vector<NamedValue> values;
+    for (const auto& [name, value] : pairs_of(text, "gap=5mm,speed=0.5")) {
+        values.push_back({name, option_value(value, known_name(name, extra))});
+    }
+    return values;
+}
+
+std::vector<NamedRange> parse_ranges(std::string_view text, const std::vector<QuantityName>& extra) {
+    std::vector<NamedRange> ranges;
+    for (const auto& [name, value] : pairs_of(text, "gap=0:1,heave_velocity=-0.1:0.1")) {
+        const QuantityName& quantity = known_name(name, extra);
+        const std::size_t colon = value.find(':');
+        if (colon == std::string::npos) {
+            throw UsageError("parse", "'" + value + "' is not a range", {}, "write LOWER:UPPER, such as gap=0:1");
+        }
+        const NamedRange range{name, option_value(value.substr(0, colon), quantity),
+                               option_value(value.substr(colon + 1), quantity)};
+        if (!(range.lower < range.upper)) {
+            throw UsageError("range", "the range of '" + name + "' has its ends swapped or equal: " + value, {},
+                             "write the lower end first");
+        }
+        ranges.push_back(range);
+    }
+    return ranges;
+}
+
+}  // namespace underbody::core

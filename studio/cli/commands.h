@@ -1,0 +1,20 @@
+// The commands, one file each; a new command is one file and one line here.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace underbody::studio {
+
+class Shell;
+
+using AddCommand = void (*)(CLI::App& app, Shell& shell);
+
+#define UNDERBODY_COMMANDS(X)
+
+#define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
+UNDERBODY_COMMANDS(UNDERBODY_DECLARE)
+#undef UNDERBODY_DECLARE
+
+}  // namespace underbody::studio

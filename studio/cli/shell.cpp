@@ -1,0 +1,190 @@
+#include "studio/cli/shell.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/parallel.h"
+
+namespace underbody::studio {
+
+namespace {
+
+core::Progress* watched = nullptr;
+
+extern "C" void on_interrupt(int) {
+    if (watched != nullptr) {
+        if (watched->cancelled()) {
+            std::_Exit(cancelled);  // the second Ctrl-C does not wait
+        }
+        watched->cancel();
+    }
+}
+
+/// A bar on a terminal, at most ten times a second.
+class Bar {
+public:
+    void operator()(double fraction, const std::string& what) {
+        const std::lock_guard lock(mutex_);
+        const auto now = std::chrono::steady_clock::now();
+        if (now - last_ < std::chrono::milliseconds(100) && fraction < 1) {
+            return;
+        }
+        last_ = now;
+        std::fprintf(stderr, "\r\033[K%3.0f%% %s", 100 * fraction, what.substr(0, 70).c_str());
+        if (fraction >= 1) {
+            std::fprintf(stderr, "\r\033[K");
+        }
+    }
+
+private:
+    std::mutex mutex_;
+    std::chrono::steady_clock::time_point last_;
+};
+
+core::Progress::Listener listener() {
+    if (::isatty(2) == 0) {
+        return {};
+    }
+    auto bar = std::make_shared<Bar>();
+    return [bar](double fraction, const std::string& what) { (*bar)(fraction, what); };
+}
+
+}  // namespace
+
+Shell::Shell() : progress_(listener()) {}
+
+void Shell::on(CLI::App* command, std::function<int()> action) {
+    command->callback([this, action = std::move(action)] { action_ = action; });
+}
+
+void Shell::print_json(const nlohmann::json& document) {
+    // NaN has no place in JSON: nlohmann writes null for it.
+    std::cout << document.dump(2) << '\n';
+}
+
+void Shell::print(const std::string& text) {
+    if (!json) {
+        std::cout << text << '\n';
+    }
+}
+
+void Shell::warn(const std::string& text) { std::cerr << "underbody: warning: " << text << '\n'; }
+
+void Shell::info(const std::string& text) {
+    if (!quiet) {
+        std::cerr << "underbody: " << text << '\n';
+    }
+}
+
+void Shell::detail(const std::string& text) {
+    if (verbose) {
+        std::cerr << "underbody: " << text << '\n';
+    }
+}
+
+void Shell::show(const core::Problems& problems) {
+    for (const auto& problem : problems) {
+        const std::string where = problem.place.text();
+        const std::string text = where.empty() ? problem.message : where + ": " + problem.message;
+        if (problem.severity == core::Problem::Severity::note) {
+            detail(text);
+        } else {
+            warn(text);
+        }
+    }
+}
+
+void Shell::report(const core::Error& error, const char* what) {
+    std::cerr << "underbody: " << what << ": " << error.what() << '\n';
+    if (!json) {
+        return;
+    }
+    nlohmann::json detail = {{"kind", error.kind()}, {"message", error.message()}, {"hint", error.hint()}};
+    const core::Place& place = error.place();
+    if (!place.file.empty()) {
+        detail["file"] = place.file;
+    }
+    if (place.line) {
+        detail["line"] = *place.line;
+    }
+    if (place.column) {
+        detail["column"] = *place.column;
+    }
+    if (place.byte) {
+        detail["byte"] = *place.byte;
+    }
+    print_json({{"error", detail}});
+}
+
+int Shell::run_action() {
+    try {
+        core::set_threads(threads);
+        return action_ ? action_() : done;
+    } catch (const core::Cancelled& error) {
+        report(error, "stopped");
+        return cancelled;
+    } catch (const core::UsageError& error) {
+        report(error, "wrong use");
+        return wrong_usage;
+    } catch (const core::InputError& error) {
+        report(error, "error");
+        return wrong_input;
+    } catch (const core::Error& error) {
+        report(error, "error");
+        return wrong_input;
+    } catch (const std::bad_alloc&) {
+        report(core::SystemError("memory", "not enough memory"), "error");
+        return wrong_input;
+    } catch (const std::exception& error) {
+        report(core::Error("defect", error.what(), {},
+                           "this is a defect of underbody, not of your input: please report it with the command line"),
+               "defect");
+        return defect;
+    }
+}
+
+int Shell::run(CLI::App& app, int argc, const char* const* argv) {
+    watched = &progress_;
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+            return app.exit(error, std::cout, std::cerr);  // --help, --version
+        }
+        std::string hint = "underbody --help";
+        std::vector<std::string> commands;
+        for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+            commands.push_back(command->get_name());
+        }
+        for (const auto* command : app.get_subcommands()) {
+            hint = "underbody " + command->get_name() + " --help";
+        }
+        if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+            const std::string near = core::nearest_name(argv[1], commands);
+            if (!near.empty()) {
+                hint = "did you mean 'underbody " + near + "'?";
+            }
+        }
+        report(core::UsageError("usage", error.what(), {}, hint), "wrong use");
+        return wrong_usage;
+    }
+    const int code = run_action();
+    std::cout.flush();
+    if (!std::cout && code == done) {
+        report(core::SystemError("write", "the output could not be written"), "error");
+        return wrong_input;
+    }
+    return code;
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,55 @@
+// What every command shares: output, errors, exit codes, progress, cancelling.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/error.h"
+#include "core/progress.h"
+
+namespace CLI {
+class App;
+}
+
+namespace underbody::studio {
+
+enum ExitCode { done = 0, defect = 1, wrong_usage = 2, wrong_input = 3, check_failed = 4, cancelled = 130 };
+
+class Shell {
+public:
+    Shell();
+
+    bool json = false;
+    bool quiet = false;
+    bool verbose = false;
+    int threads = 0;
+
+    /// Runs `action` when the sub-command was chosen; its result is the exit code.
+    void on(CLI::App* command, std::function<int()> action);
+
+    /// One JSON document on stdout.
+    void print_json(const nlohmann::json& document);
+    /// Text on stdout (nothing with --json).
+    void print(const std::string& text);
+    /// To stderr. `info` is silent with --quiet, `detail` speaks with --verbose only.
+    void warn(const std::string& text);
+    void info(const std::string& text);
+    void detail(const std::string& text);
+    /// Problems of a reader, as warnings.
+    void show(const core::Problems& problems);
+
+    /// Draws a bar on stderr when it is a terminal; Ctrl-C cancels it.
+    core::Progress& progress() { return progress_; }
+
+    /// Parses, runs, turns exceptions into exit codes and messages.
+    int run(CLI::App& app, int argc, const char* const* argv);
+
+private:
+    int run_action();
+    void report(const core::Error& error, const char* what);
+    std::function<int()> action_;
+    core::Progress progress_;
+};
+
+}  // namespace underbody::studio

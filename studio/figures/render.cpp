@@ -1,0 +1,1 @@
+#include "studio/figures/render.h"

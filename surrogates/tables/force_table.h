@@ -1,0 +1,80 @@
+// Force against gap, pitch, speed, jet: a table that knows its range and its error.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/table.h"
+
+namespace underbody::tables {
+
+inline constexpr std::size_t max_axes = 4;
+
+struct TableAxis {
+    std::string name;  ///< a quantity name: gap, pitch, speed, jet_voltage, ...
+    std::string unit;  ///< SI
+    double lower = 0;
+    double upper = 0;
+    std::vector<double> points;  ///< distinct set points, ascending
+};
+
+/// What happens outside the points of an axis.
+enum class RangePolicy {
+    clamp,        ///< hold the end value, slope zero, flagged (default)
+    refuse,       ///< throw core::InputError
+    extrapolate,  ///< go on with the end slope, with growing error, flagged
+};
+
+struct Evaluation {
+    double value = 0;
+    double sigma = 0;                          ///< one standard deviation; 0 when the table has none
+    std::array<double, max_axes> slope{};      ///< d value / d axis, SI
+    std::array<double, max_axes> beyond{};     ///< how far outside each axis, SI, signed; 0 inside
+    bool outside = false;
+};
+
+struct FitOptions {
+    enum class Kind { automatic, interpolation, gaussian_process } kind = Kind::automatic;
+    RangePolicy range = RangePolicy::clamp;
+    std::vector<std::string> axes;  ///< columns to use as axes; empty: every known set-point column that varies
+};
+
+/// A fitted surrogate of one quantity. Immutable, cheap to copy, safe to use from many threads.
+class ForceTable {
+public:
+    /// Fits the column `quantity` (SI; its errors from `quantity`_sigma when present).
+    /// Throws core::InputError with line and column: unknown quantity, one row, duplicate set points that disagree,
+    /// points on a line in two axes, non-positive sigma, ...
+    static ForceTable fit(const core::Table& table, const std::string& quantity, const FitOptions& options = {});
+    static ForceTable read(const std::filesystem::path& path, const std::string& quantity, const FitOptions& options = {});
+
+    [[nodiscard]] const std::string& quantity() const;
+    [[nodiscard]] const std::string& unit() const;
+    [[nodiscard]] const std::vector<TableAxis>& axes() const;
+    [[nodiscard]] const std::string& kind() const;    ///< "monotone cubic", "bicubic", "gaussian process", ...
+    [[nodiscard]] const std::string& source() const;  ///< the file it came from
+    /// Remarks of the fit for the user: choices made, kinks, duplicates merged.
+    [[nodiscard]] const core::Problems& remarks() const;
+    /// The points it was fitted to (SI).
+    [[nodiscard]] const core::Table& points() const;
+
+    /// `point` in SI, one value per axis, in the order of axes().
+    [[nodiscard]] Evaluation at(std::span<const double> point) const;
+    /// The hot path: clamped value and slopes (`slope` has one entry per axis), no error, no allocation, never throws.
+    [[nodiscard]] double value(const double* point, double* slope = nullptr) const noexcept;
+
+    /// Another table whose values are drawn from this one's error (correlated along the axes), for probability maps.
+    [[nodiscard]] ForceTable drawn(std::uint64_t seed) const;
+
+    struct Impl;
+    explicit ForceTable(std::shared_ptr<const Impl> impl);
+
+private:
+    std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace underbody::tables
