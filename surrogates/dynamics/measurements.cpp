@@ -1,0 +1,171 @@
+#include "surrogates/dynamics/measurements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/text.h"
+#include "core/toml.h"
+#include "core/units.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+std::map<std::string, double> read_quantities(const core::TomlTable& table, const char* what) {
+    std::map<std::string, double> values;
+    for (const std::string& key : table.keys()) {
+        const core::QuantityName* quantity = core::find_quantity(key);
+        if (quantity == nullptr) {
+            std::vector<std::string> known;
+            for (const core::QuantityName& name : core::quantity_names()) {
+                known.push_back(name.name);
+            }
+            throw core::InputError("name", std::string(what) + " of an unknown quantity '" + key + "'", table.place(key),
+                                   core::did_you_mean(key, known));
+        }
+        values[key] = table.quantity(key, quantity->unit);
+    }
+    return values;
+}
+
+/// A standard deviation is a difference: "0.1 degC" is 0.1 K, not 273.25 K.
+std::map<std::string, double> read_noise(const core::TomlTable& table) {
+    std::map<std::string, double> noise = read_quantities(table, "noise");
+    for (auto& [name, sigma] : noise) {
+        if (table.is_string(name)) {
+            const core::Quantity written = core::parse_quantity(table.string(name), table.place(name));
+            if (!written.unit.empty()) {
+                const core::QuantityName* quantity = core::find_quantity(name);
+                sigma = written.value * core::conversion(written.unit, quantity->unit, table.place(name)).scale;
+            }
+        }
+        if (!(sigma > 0)) {
+            throw core::InputError("range", "the noise of " + name + " is " + core::format_number(sigma, 6) + ", not positive",
+                                   table.place(name), "leave the line out and the noise is estimated from the data");
+        }
+    }
+    return noise;
+}
+
+void check_time_series(const MeasuredRun& run) {
+    const core::Place whole{run.table.source, {}, {}, {}};
+    for (const char* needed : {"time", "gap"}) {
+        if (run.table.find(needed) == nullptr) {
+            throw core::InputError("missing", std::string("a time series needs the column ") + needed, whole,
+                                   "kind = \"static\" is for set points without motion");
+        }
+    }
+    const std::vector<double>& time = run.table.numbers("time");
+    if (time.size() < 3) {
+        throw core::InputError("range", "a time series of " + std::to_string(time.size()) + " rows", whole,
+                               "at least three rows are needed, some thousands are usual");
+    }
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        if (std::isnan(time[i])) {
+            throw core::InputError("missing", "a row without time", run.table.place(i, "time"),
+                                   "leave the whole row out: gaps in time are fine");
+        }
+        if (i > 0 && time[i] <= time[i - 1]) {
+            throw core::InputError("order",
+                                   std::string("time ") + (time[i] == time[i - 1] ? "stands still" : "runs backwards") + " from " +
+                                       core::format_number(time[i - 1], 9) + " s to " + core::format_number(time[i], 9) + " s",
+                                   run.table.place(i, "time"),
+                                   "if the logger started anew here, make two runs of the file; the other runs can be used as they are");
+        }
+    }
+}
+
+void check_static(const MeasuredRun& run) {
+    for (const std::string& channel : force_channels()) {
+        if (run.table.find(channel) != nullptr) {
+            return;
+        }
+    }
+    throw core::InputError("missing", "a static set needs a measured force or moment", core::Place{run.table.source, {}, {}, {}},
+                           "columns such as lift_force [N], drag_force [N], pitch_moment [N m]");
+}
+
+}  // namespace
+
+std::vector<double> MeasuredRun::values(const std::string& quantity) const {
+    const core::Column* column = table.find(quantity);
+    if (column != nullptr && !column->is_text()) {
+        return column->numbers;
+    }
+    const auto condition = conditions.find(quantity);
+    if (condition != conditions.end()) {
+        return std::vector<double>(table.rows(), condition->second);
+    }
+    return {};
+}
+
+bool MeasuredRun::has(const std::string& quantity) const {
+    const core::Column* column = table.find(quantity);
+    return (column != nullptr && !column->is_text()) || conditions.count(quantity) > 0;
+}
+
+std::optional<double> Measurements::declared_noise(const std::string& channel) const {
+    const auto found = noise.find(channel);
+    return found == noise.end() ? std::nullopt : std::optional<double>(found->second);
+}
+
+bool Measurements::all_have(const std::string& quantity) const {
+    return std::all_of(runs.begin(), runs.end(), [&](const MeasuredRun& run) { return run.has(quantity); });
+}
+
+const std::vector<std::string>& force_channels() {
+    static const std::vector<std::string> names{"lift_force",   "drag_force",  "side_force",
+                                                "pitch_moment", "roll_moment", "yaw_moment"};
+    return names;
+}
+
+Measurements read_measurements(const std::filesystem::path& folder) {
+    std::filesystem::path file = folder;
+    if (std::filesystem::is_directory(folder)) {
+        file = folder / "dataset.toml";
+        if (!std::filesystem::exists(file)) {
+            throw core::InputError("missing", "no dataset.toml in this folder", core::Place{folder.string(), {}, {}, {}},
+                                   "a data set is a folder with dataset.toml, which names its runs");
+        }
+    }
+    const core::TomlTable root = core::read_toml(file);
+    Measurements data;
+    data.folder = file.parent_path();
+    data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady : MeasurementKind::time_series;
+    data.title = root.string_or("title", {});
+    data.noise = read_noise(root.table_or_empty("noise"));
+    const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
+    std::set<std::string> names;
+    for (const core::TomlTable& entry : root.tables("run")) {
+        MeasuredRun run;
+        run.file = entry.file("file");
+        run.name = run.file.stem().string();
+        for (int copy = 2; !names.insert(run.name).second; ++copy) {
+            run.name = run.file.stem().string() + "-" + std::to_string(copy);
+        }
+        for (const MeasuredRun& other : data.runs) {
+            if (std::filesystem::weakly_canonical(other.file) == std::filesystem::weakly_canonical(run.file)) {
+                throw core::InputError("duplicate", "the run " + run.file.string() + " is named twice", entry.place("file"),
+                                       "a run counted twice makes everything look twice as certain");
+            }
+        }
+        run.conditions = conditions;
+        for (const auto& [name, value] : read_quantities(entry.table_or_empty("conditions"), "condition")) {
+            run.conditions[name] = value;
+        }
+        const std::string use = entry.choice("use", {"train", "test"}, "automatic");
+        run.use = use == "train" ? RunUse::train : use == "test" ? RunUse::test : RunUse::automatic;
+        run.table = core::read_csv(run.file);
+        data.kind == MeasurementKind::steady ? check_static(run) : check_time_series(run);
+        data.runs.push_back(std::move(run));
+    }
+    root.finish();
+    if (data.runs.empty()) {
+        throw core::InputError("missing", "a data set without a run", core::Place{file.string(), {}, {}, {}},
+                               "name each file: [[run]] file = \"run-01.csv\"");
+    }
+    return data;
+}
+
+}  // namespace underbody::dynamics
