@@ -1,0 +1,174 @@
+// A study: a folder with `study.toml`, the CFD files of its cases, models and measurements, and a store of results.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/figure.h"
+#include "core/progress.h"
+#include "core/table.h"
+
+namespace underbody::cases {
+
+/// Conditions of a case or a selection: numbers in SI, and words ("variant" = "ellipse").
+struct Conditions {
+    std::vector<std::pair<std::string, double>> numbers;
+    std::vector<std::pair<std::string, std::string>> texts;
+
+    [[nodiscard]] std::optional<double> number(const std::string& name) const;
+    [[nodiscard]] std::optional<std::string> text(const std::string& name) const;
+    /// True if every condition of `wanted` holds here (numbers to 1e-9 relative).
+    [[nodiscard]] bool satisfies(const Conditions& wanted) const;
+    /// "ellipse, gap 5 mm, pitch 0 deg" for people.
+    [[nodiscard]] std::string label() const;
+};
+
+/// One CFD case of the study.
+struct Case {
+    std::string name;  ///< file name without folder and ending; unique in the study
+    std::filesystem::path file;
+    Conditions conditions;
+    std::vector<std::string> zones;  ///< patterns of the zones that are the body; empty: all walls
+};
+
+/// [[body]]
+struct BodySpec {
+    std::string name;
+    std::filesystem::path shape;  ///< SHAPE.toml
+};
+
+/// [[picture]]: views of some cases.
+struct PictureSpec {
+    std::string name;
+    Conditions where;
+    std::string array = "pressure";
+    std::vector<std::string> views;  ///< "bottom", "top", "side", "front", "iso"
+};
+
+/// [[mesh_uncertainty]]: cases that differ in their mesh only.
+struct MeshSpec {
+    std::string name;
+    Conditions where;                 ///< selects the group
+    std::string column = "mesh";      ///< the word that tells the meshes apart
+    std::vector<std::pair<std::string, double>> cells;  ///< cells of each mesh
+    std::vector<std::string> quantities;
+};
+
+/// [[table]]: a force table made of cases.
+struct TableSpec {
+    std::string name;
+    std::string quantity;            ///< lift_force, ...
+    std::vector<std::string> axes;   ///< gap, pitch, ...
+    Conditions where;
+    double relative_sigma = 0;       ///< of the value, when no mesh study covers the table
+    std::string mesh_uncertainty;    ///< name of the [[mesh_uncertainty]] whose relative error the points carry
+    std::optional<double> net_weight;  ///< N: equilibria are found for it
+    double virtual_mass = 0;           ///< kg, for frequency and kick
+    std::vector<std::string> exports;  ///< formats
+};
+
+/// [[region]]
+struct RegionSpec {
+    std::string name;
+    std::filesystem::path model;
+    std::string axes;       ///< as on the command line: "gap=1mm:100mm,heave_velocity=-0.1:0.1"
+    double duration = 60;   ///< s
+    int columns = 400;
+    int rows = 400;
+};
+
+/// [[measurement]]
+struct MeasurementSpec {
+    std::string name;
+    std::filesystem::path model;
+    std::filesystem::path data;
+    bool discover = false;  ///< close the loop, not only the residual
+};
+
+/// [[verify]]: a table of the solver's own forces, one row a case.
+struct VerifySpec {
+    std::filesystem::path table;
+    std::vector<std::string> quantities;
+    double tolerance = 0.01;  ///< of the force's size
+};
+
+/// What `study.toml` says, checked. Immutable.
+class Study {
+public:
+    /// `folder` holds study.toml (or is its path). Throws core::InputError: file, line, column, hint.
+    static Study open(const std::filesystem::path& folder);
+
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    std::string title;
+    std::string summary;
+    std::string origin;  ///< where the data come from, printed in the report
+    std::string forward = "+x";
+    std::string up = "+z";
+    std::string symmetry;        ///< "" or an axis: half models
+    Conditions reference;        ///< density, length, width, height, speed for coefficients
+    std::string reference_point = "base_centre";  ///< or "x,y,z"
+    std::vector<Case> cases;
+    std::vector<BodySpec> bodies;
+    std::vector<PictureSpec> pictures;
+    std::vector<MeshSpec> mesh_uncertainties;
+    std::vector<TableSpec> tables;
+    std::vector<RegionSpec> regions;
+    std::vector<MeasurementSpec> measurements;
+    std::vector<VerifySpec> verifications;
+    std::vector<std::string> comparisons;  ///< names of tables laid over each other, by variant
+
+    [[nodiscard]] std::vector<const Case*> select(const Conditions& where) const;
+    [[nodiscard]] const TableSpec* find_table(const std::string& name) const;
+
+private:
+    std::filesystem::path folder_;
+};
+
+/// Draws a figure to PNG bytes; given by the program, so that this library needs no window system.
+using FigureRenderer = std::function<std::string(const core::Figure&)>;
+
+struct RunOptions {
+    std::filesystem::path store;   ///< SQLite file; empty: STUDY/.underbody/store.sqlite
+    std::filesystem::path report;  ///< HTML file; empty: STUDY/report/index.html
+    FigureRenderer renderer;       ///< without one the report has no plots
+    bool pictures = true;          ///< 3D pictures (need Xvfb)
+};
+
+/// How far a step came.
+struct StepResult {
+    std::string kind;   ///< "loads", "table", "region", ...
+    std::string name;
+    bool reused = false;
+    std::string error;  ///< empty: done
+};
+
+/// Everything a run made, for the report, the desktop and JSON.
+struct StudyResults {
+    std::vector<StepResult> steps;
+    core::Table loads;                       ///< one row a case: conditions, forces, moments, closure
+    std::vector<std::pair<std::string, std::string>> documents;  ///< "table/NAME" -> JSON text, "region/NAME" -> ...
+    std::vector<std::pair<std::string, std::string>> pictures;   ///< "picture/NAME" -> PNG bytes
+    std::filesystem::path report;
+    std::size_t computed = 0;
+    std::size_t reused = 0;
+    std::size_t failed = 0;
+
+    [[nodiscard]] const std::string* document(const std::string& key) const;
+    [[nodiscard]] const std::string* picture(const std::string& key) const;
+};
+
+/// Runs what changed, reuses the rest, writes the report. A failed case does not stop the others: it is in `steps`.
+StudyResults run_study(const Study& study, const RunOptions& options, core::Progress& progress = core::Progress::none());
+
+/// Only what the store holds already (nothing is computed): for opening a study in the desktop.
+StudyResults stored_results(const Study& study, const RunOptions& options);
+
+void to_json(nlohmann::json& json, const StudyResults& results);
+
+}  // namespace underbody::cases

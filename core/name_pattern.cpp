@@ -1,0 +1,161 @@
+#include "core/name_pattern.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/text.h"
+#include "core/units.h"
+
+namespace underbody::core {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Part = NamePattern::Part;
+
+Part braced(const std::string& inside, const std::string& pattern) {
+    const std::size_t colon = inside.find(':');
+    Part part;
+    part.value = std::string(trimmed(inside.substr(0, colon)));
+    part.kind = colon == std::string::npos ? Part::Kind::text : Part::Kind::number;
+    if (part.value.empty()) {
+        throw UsageError("parse", "a brace without a name in the pattern '" + pattern + "'");
+    }
+    if (part.kind == Part::Kind::text) {
+        if (const QuantityName* quantity = find_quantity(part.value); quantity != nullptr) {
+            throw UsageError("unit", "{" + part.value + "} in the pattern has no unit", {},
+                             "write {" + part.value + ":" + quantity->unit + "} or the unit that the names use");
+        }
+        return part;
+    }
+    part.unit = std::string(trimmed(inside.substr(colon + 1)));
+    try {
+        const QuantityName* quantity = find_quantity(part.value);
+        conversion(part.unit, quantity != nullptr ? quantity->unit : si_unit(part.unit));
+    } catch (const InputError& error) {
+        throw UsageError(error.kind(), "{" + inside + "}: " + error.message(), {}, error.hint());
+    }
+    return part;
+}
+
+std::vector<Part> parts_of(const std::string& pattern) {
+    std::vector<Part> parts;
+    const auto literal = [&parts](char c) {
+        if (parts.empty() || parts.back().kind != Part::Kind::literal) {
+            parts.push_back({Part::Kind::literal, {}, {}});
+        }
+        parts.back().value += c;
+    };
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+        if (pattern[i] == '{') {
+            const std::size_t close = pattern.find('}', i);
+            if (close == std::string::npos) {
+                throw UsageError("parse", "a brace is not closed in the pattern '" + pattern + "'");
+            }
+            parts.push_back(braced(pattern.substr(i + 1, close - i - 1), pattern));
+            i = close;
+        } else if (pattern[i] == '*') {
+            parts.push_back({Part::Kind::any, {}, {}});
+        } else if (pattern[i] == '?') {
+            parts.push_back({Part::Kind::one, {}, {}});
+        } else {
+            literal(pattern[i]);
+        }
+    }
+    return parts;
+}
+
+bool match_from(const std::vector<Part>& parts, std::size_t index, std::string_view rest, NamePattern::Match& found) {
+    if (index == parts.size()) {
+        return rest.empty();
+    }
+    const Part& part = parts[index];
+    if (part.kind == Part::Kind::literal) {
+        return rest.starts_with(part.value) && match_from(parts, index + 1, rest.substr(part.value.size()), found);
+    }
+    if (part.kind == Part::Kind::one) {
+        return !rest.empty() && rest.front() != '/' && match_from(parts, index + 1, rest.substr(1), found);
+    }
+    const std::size_t shortest = part.kind == Part::Kind::any ? 0 : 1;
+    for (std::size_t length = shortest; length <= rest.size(); ++length) {
+        const std::string_view piece = rest.substr(0, length);
+        if (piece.find('/') != std::string_view::npos) {
+            return false;
+        }
+        std::optional<double> number;
+        if (part.kind == Part::Kind::number) {
+            number = parse_number(piece);
+            if (!number || piece.find_first_not_of("0123456789.+-eE") != std::string_view::npos) {
+                continue;
+            }
+        }
+        if (!match_from(parts, index + 1, rest.substr(length), found)) {
+            continue;
+        }
+        if (part.kind == Part::Kind::number) {
+            const QuantityName* quantity = find_quantity(part.value);
+            found.numbers.emplace_back(
+                part.value, convert(*number, part.unit, quantity != nullptr ? quantity->unit : si_unit(part.unit)));
+        } else if (part.kind == Part::Kind::text) {
+            found.texts.emplace_back(part.value, std::string(piece));
+        }
+        return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+NamePattern::NamePattern(std::string pattern) : pattern_(std::move(pattern)), parts_(parts_of(pattern_)) {
+    std::set<std::string> names;
+    for (const auto& part : parts_) {
+        if ((part.kind == Part::Kind::text || part.kind == Part::Kind::number) && !names.insert(part.value).second) {
+            throw UsageError("duplicate", "{" + part.value + "} occurs twice in the pattern '" + pattern_ + "'");
+        }
+    }
+}
+
+bool NamePattern::is_pattern(const std::string& text) { return text.find_first_of("{*?") != std::string::npos; }
+
+std::optional<NamePattern::Match> NamePattern::match(const std::string& text) const {
+    Match found;
+    if (!match_from(parts_, 0, text, found)) {
+        return std::nullopt;
+    }
+    // The recursion collects from the back.
+    std::reverse(found.numbers.begin(), found.numbers.end());
+    std::reverse(found.texts.begin(), found.texts.end());
+    return found;
+}
+
+std::vector<NamePattern::Found> NamePattern::files(const fs::path& root) const {
+    // Walk from the last folder that stands before the first brace or star.
+    const std::size_t first = pattern_.find_first_of("{*?");
+    const std::size_t slash = first == std::string::npos ? pattern_.rfind('/') : pattern_.rfind('/', first);
+    const bool absolute = !pattern_.empty() && pattern_.front() == '/';
+    const std::string fixed = slash == std::string::npos ? std::string() : pattern_.substr(0, slash);
+    const fs::path start = absolute ? fs::path(fixed.empty() ? "/" : fixed) : root / fixed;
+    const auto depth = std::count(pattern_.begin() + static_cast<std::ptrdiff_t>(slash == std::string::npos ? 0 : slash + 1),
+                                  pattern_.end(), '/');
+    std::vector<Found> found;
+    std::error_code error;
+    for (auto entry = fs::recursive_directory_iterator(start, fs::directory_options::skip_permission_denied, error);
+         !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+        if (entry->is_directory(error)) {
+            if (entry.depth() >= depth) {
+                entry.disable_recursion_pending();
+            }
+            continue;
+        }
+        const std::string below = entry->path().lexically_relative(start).generic_string();
+        const std::string name = fixed.empty() ? (absolute ? "/" + below : below) : fixed + "/" + below;
+        if (auto match_found = match(name)) {
+            found.push_back({entry->path().lexically_normal(), std::move(*match_found)});
+        }
+    }
+    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.path < b.path; });
+    return found;
+}
+
+}  // namespace underbody::core
