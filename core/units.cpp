@@ -1,8 +1,10 @@
 #include "core/units.h"
 
+#include <locale.h>
 #include <udunits2.h>
 
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -14,6 +16,23 @@
 namespace underbody::core {
 
 namespace {
+
+/// UDUNITS-2 reads numbers, those of its own database too, by the thread's locale: a comma country would get feet of
+/// no length. Everything it does happens in the C locale.
+class InPlainLocale {
+public:
+    InPlainLocale() : plain_(::newlocale(LC_ALL_MASK, "C", nullptr)), before_(::uselocale(plain_)) {}
+    ~InPlainLocale() {
+        ::uselocale(before_);
+        ::freelocale(plain_);
+    }
+    InPlainLocale(const InPlainLocale&) = delete;
+    InPlainLocale& operator=(const InPlainLocale&) = delete;
+
+private:
+    locale_t plain_;
+    locale_t before_;
+};
 
 /// UDUNITS-2 keeps global state and is not thread-safe: one mutex, and every answer is remembered.
 class UnitSystem {
@@ -29,8 +48,16 @@ public:
         if (known != units_.end()) {
             return known->second.get();
         }
-        ut_unit* unit = ut_parse(system_, key.c_str(), UT_UTF8);
+        const InPlainLocale plain;
+        ut_unit* unit = has_factor(key) ? nullptr : ut_parse(system_, key.c_str(), UT_UTF8);
         return units_.emplace(key, Owned(unit)).first->second.get();
+    }
+
+    /// True if both units measure the same thing. (UDUNITS also converts s to Hz; nobody means that in a file.)
+    static bool same_dimension(const ut_unit* a, const ut_unit* b) {
+        const Owned quotient(ut_divide(const_cast<ut_unit*>(a), const_cast<ut_unit*>(b)));
+        return quotient && ut_is_dimensionless(quotient.get()) != 0 &&
+               ut_are_convertible(const_cast<ut_unit*>(a), const_cast<ut_unit*>(b)) != 0;
     }
 
     std::mutex& mutex() { return mutex_; }
@@ -52,12 +79,28 @@ private:
     using Owned = std::unique_ptr<ut_unit, Free>;
 
     UnitSystem() {
+        const InPlainLocale plain;
         ut_set_error_message_handler(ut_ignore);
         system_ = ut_read_xml(nullptr);
         if (system_ == nullptr) {
             throw SystemError("unit", "the unit database of UDUNITS-2 cannot be read", {},
                               "install the Debian package libudunits2-data");
         }
+    }
+
+    /// UDUNITS reads "m 3" as three metres; in a file that is a slip of the pen. Exponents and "1/s" stay allowed.
+    static bool has_factor(const std::string& key) {
+        const auto digit = [&key](std::size_t i) { return i < key.size() && std::isdigit(static_cast<unsigned char>(key[i])) != 0; };
+        if (digit(0) && !(key[0] == '1' && !digit(1) && (key.size() == 1 || key[1] != '.'))) {
+            return true;
+        }
+        for (std::size_t i = 1; i < key.size(); ++i) {
+            const bool after_break = key[i - 1] == ' ' || key[i - 1] == '*' || key[i - 1] == '/' || key[i - 1] == '(';
+            if (digit(i) && after_break) {
+                return true;
+            }
+        }
+        return false;
     }
 
     /// What people write and UDUNITS does not read.
@@ -68,10 +111,6 @@ private:
         }
         if (key == "deg") {
             return "degree";
-        }
-        if (key == "C" ) {
-            // The coulomb for UDUNITS; CFD-Post writes "[ C ]" for degrees Celsius. Importers say degC themselves.
-            return "C";
         }
         if (key == "degC" || key == "°C") {
             return "celsius";
@@ -106,7 +145,7 @@ bool same_dimension(std::string_view unit_a, std::string_view unit_b) {
     const std::lock_guard lock(system.mutex());
     const ut_unit* a = system.find(unit_a);
     const ut_unit* b = system.find(unit_b);
-    return a != nullptr && b != nullptr && ut_are_convertible(a, b) != 0;
+    return a != nullptr && b != nullptr && UnitSystem::same_dimension(a, b);
 }
 
 Conversion conversion(std::string_view from, std::string_view to, const Place& place) {
@@ -120,9 +159,8 @@ Conversion conversion(std::string_view from, std::string_view to, const Place& p
     if (b == nullptr) {
         unknown_unit(to, place);
     }
-    // UDUNITS converts between reciprocal units (s and Hz); nobody means that in a file.
     std::unique_ptr<cv_converter, ConverterFree> converter;
-    if (ut_are_convertible(a, b) != 0) {
+    if (UnitSystem::same_dimension(a, b)) {
         converter.reset(ut_get_converter(const_cast<ut_unit*>(a), const_cast<ut_unit*>(b)));
     }
     if (!converter) {
@@ -145,22 +183,31 @@ double convert(double value, std::string_view from, std::string_view to, const P
 
 std::string si_unit(std::string_view unit, const Place& place) {
     static const std::vector<std::string> named = {
-        "1",       "m",       "m^2",     "m^3",   "kg",      "s",       "rad",         "K",        "V",       "A",
-        "m/s",     "m/s^2",   "rad/s",   "Hz",    "N",       "Pa",      "N m",         "W",        "kg/m^3",  "m^2/s",
-        "Pa s",    "m^3/s",   "kg/s",    "N/m",   "N s/m",   "N s^2/m^2", "kg m^2",    "N m/rad",  "N m s",   "W/m^2",
-        "m^2/s^2", "m^2/s^3", "J/kg",    "J/kg/K", "W/m/K",  "rad/s^2", "1/m"};
+        "1",       "m",       "m^2",     "m^3",   "kg",      "s",       "K",        "V",       "A",
+        "m/s",     "m/s^2",   "Hz",    "N",       "Pa",      "N m",         "W",        "kg/m^3",  "m^2/s",
+        "Pa s",    "m^3/s",   "kg/s",    "N/m",   "N s/m",   "N s^2/m^2", "kg m^2",    "N m s",   "W/m^2",
+        "m^2/s^2", "m^2/s^3", "J/kg",    "J/kg/K", "W/m/K";
     if (!is_unit(unit)) {
         unknown_unit(unit, place);
+    }
+    // The radian is a pure number to UDUNITS; people who write degrees want to see it.
+    if (unit.find("rad") != std::string_view::npos || unit.find("deg") != std::string_view::npos) {
+        for (const char* candidate : {"rad", "rad/s", "rad/s^2", "N m/rad"}) {
+            if (same_dimension(unit, candidate)) {
+                return candidate;
+            }
+        }
     }
     for (const auto& candidate : named) {
         if (same_dimension(unit, candidate)) {
             // m^2/s^2 and J/kg, N m and J are one dimension to UDUNITS: the first listed names it.
-            return (candidate == "1" && same_dimension(unit, "rad") && !same_dimension("1", "rad")) ? "rad" : candidate;
+            return candidate;
         }
     }
     auto& system = UnitSystem::instance();
     const std::lock_guard lock(system.mutex());
     std::array<char, 256> buffer{};
+    const InPlainLocale plain;
     const ut_unit* found = system.find(unit);
     std::unique_ptr<ut_unit, void (*)(ut_unit*)> pure(ut_clone(found), ut_free);
     if (ut_format(pure.get(), buffer.data(), buffer.size(), UT_ASCII | UT_DEFINITION) < 0) {

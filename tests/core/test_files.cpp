@@ -1,0 +1,163 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <fstream>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/name_pattern.h"
+#include "core/parallel.h"
+#include "core/random.h"
+
+namespace underbody::core {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+std::size_t entries(const fs::path& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(Files, AreWrittenWhole) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "deep" / "table.csv";
+    write_file(path, "first");
+    write_file(path, "second");
+    EXPECT_EQ(read_file(path), "second");
+    EXPECT_EQ(entries(path.parent_path()), 1U) << "no temporary file may stay behind";
+}
+
+TEST(Files, AFailedWriteLeavesTheOldFileAndNothingElse) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "table.csv";
+    write_file(path, "old");
+    // A limit on file size stands in for a full disk: write(2) fails with EFBIG as it would with ENOSPC.
+    struct rlimit old_limit {};
+    ::getrlimit(RLIMIT_FSIZE, &old_limit);
+    struct rlimit small = old_limit;
+    small.rlim_cur = 1000;
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    EXPECT_THROW(write_file(path, std::string(100000, 'x')), SystemError);
+    ::setrlimit(RLIMIT_FSIZE, &old_limit);
+    EXPECT_EQ(read_file(path), "old");
+    EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(Files, APendingFileThatIsNotCommittedDisappears) {
+    const TemporaryFolder folder;
+    {
+        PendingFile pending(folder.path() / "a.vtu");
+        EXPECT_EQ(pending.path().extension(), ".vtu");
+        std::ofstream(pending.path()) << "half";
+    }
+    EXPECT_EQ(entries(folder.path()), 0U);
+}
+
+TEST(Files, MissingFilesAreNamedWithTheNearestOne) {
+    const TemporaryFolder folder;
+    write_file(folder.path() / "lift.csv", "x");
+    try {
+        MappedFile file(folder.path() / "litf.csv");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("litf.csv"));
+        EXPECT_THAT(error.hint(), HasSubstr("'lift.csv'"));
+    }
+    EXPECT_THROW(MappedFile file(folder.path()), InputError);
+    write_file(folder.path() / "empty", "");
+    EXPECT_TRUE(MappedFile(folder.path() / "empty").bytes().empty());
+}
+
+TEST(Hash, KeysDifferWithContentAndWithItsDivision) {
+    // XXH3-128 of the empty input, from the published test vectors of xxHash.
+    EXPECT_EQ(content_hash(""), "99aa06d3014798d86001c324468d497f");
+    EXPECT_NE(content_hash("a"), content_hash("b"));
+    EXPECT_NE(Hasher().add("ab").add("c").digest(), Hasher().add("a").add("bc").digest());
+    EXPECT_EQ(Hasher().add("ab").add(1.5).digest(), Hasher().add("ab").add(1.5).digest());
+    EXPECT_NE(Hasher().add(0.0).digest(), Hasher().add(-0.0).digest());
+}
+
+TEST(Errors, SayPlaceMessageAndHint) {
+    const InputError error("unit", "unknown unit 'mmm'", {"a.csv", 3, 2, {}}, "did you mean 'mm'?");
+    EXPECT_STREQ(error.what(), "a.csv:3:2: unknown unit 'mmm'\n  hint: did you mean 'mm'?");
+    EXPECT_EQ((Place{"a.cas", {}, {}, 4096}.text()), "a.cas (byte 4096)");
+    EXPECT_EQ(did_you_mean("hieght", {"height", "width"}), "did you mean 'height'?");
+    EXPECT_EQ(did_you_mean("zzz", {"height", "width"}), "known: height, width");
+}
+
+TEST(NamePattern, TakesConditionsFromNames) {
+    const NamePattern pattern("fields/{variant}-h{gap:mm}-p{pitch:deg}.csv");
+    const auto match = pattern.match("fields/ellipse_front-h1.5-p-2.csv");
+    ASSERT_TRUE(match.has_value());
+    EXPECT_EQ(match->texts.at(0).second, "ellipse_front");
+    EXPECT_EQ(match->numbers.at(0).first, "gap");
+    EXPECT_DOUBLE_EQ(match->numbers.at(0).second, 0.0015);
+    EXPECT_NEAR(match->numbers.at(1).second, -0.0349065850, 1e-9);
+    EXPECT_FALSE(pattern.match("fields/ellipse-h5-p0-coarse.csv").has_value());
+    EXPECT_FALSE(pattern.match("fields/deeper/ellipse-h5-p0.csv").has_value());
+    EXPECT_THROW(NamePattern("{gap}.csv"), UsageError);
+    EXPECT_THROW(NamePattern("{gap:s}.csv"), UsageError);
+    EXPECT_THROW(NamePattern("{variant.csv"), UsageError);
+    EXPECT_THROW(NamePattern("{a}-{a}.csv"), UsageError);
+}
+
+TEST(NamePattern, FindsFilesInFolders) {
+    const TemporaryFolder folder;
+    for (const char* name : {"x/a-h1.csv", "x/a-h2.csv", "y/b-h1.csv", "x/deep/a-h3.csv", "x/a-hx.csv"}) {
+        write_file(folder.path() / name, "1");
+    }
+    EXPECT_EQ(NamePattern("x/{v}-h{gap:mm}.csv").files(folder.path()).size(), 2U);
+    EXPECT_EQ(NamePattern("{d}/{v}-h{gap:mm}.csv").files(folder.path()).size(), 3U);
+    EXPECT_EQ(NamePattern(folder.path().string() + "/x/*.csv").files().size(), 3U);
+    EXPECT_TRUE(NamePattern("none/*.csv").files(folder.path()).empty());
+}
+
+TEST(Parallel, CoversEveryIndexOnceAndRethrows) {
+    std::vector<std::atomic<int>> seen(10001);
+    parallel_blocks(seen.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            ++seen[i];
+        }
+    });
+    for (const auto& count : seen) {
+        ASSERT_EQ(count.load(), 1);
+    }
+    EXPECT_THROW(parallel_for(100, [](std::size_t i) {
+                     if (i == 57) {
+                         throw InputError("range", "57");
+                     }
+                 }),
+                 InputError);
+    Progress progress;
+    progress.cancel();
+    EXPECT_THROW(parallel_for(100, [](std::size_t) {}, progress), Cancelled);
+}
+
+TEST(Random, HasTheMomentsOfItsDistributionsAndIsReproducible) {
+    Random random(1);
+    double sum = 0;
+    double squares = 0;
+    double uniform_sum = 0;
+    constexpr int count = 200000;
+    for (int i = 0; i < count; ++i) {
+        const double x = random.normal();
+        sum += x;
+        squares += x * x;
+        uniform_sum += random.uniform();
+    }
+    EXPECT_NEAR(sum / count, 0, 4 / std::sqrt(count));
+    EXPECT_NEAR(squares / count, 1, 4 * std::sqrt(2.0 / count));
+    EXPECT_NEAR(uniform_sum / count, 0.5, 4 * std::sqrt(1.0 / 12 / count));
+    EXPECT_EQ(Random(3, 5).bits(), Random(3, 5).bits());
+    EXPECT_NE(Random(3, 5).bits(), Random(3, 6).bits());
+}
+
+}  // namespace
+}  // namespace underbody::core

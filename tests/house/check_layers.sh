@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Fails on an include that points upward in the house (design.md: a folder uses only folders above it in the list),
+# on Qt or the command line inside a library, and on a heavy header in a public header.
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
+bad=0
+forbid() {  # forbid FOLDER 'REGEX' WHY
+    local hits
+    hits=$(grep -rnE --include='*.h' --include='*.cpp' "^#include [\"<]($2)" "$1" 2>/dev/null)
+    if [ -n "$hits" ]; then
+        printf '%s may not include this (%s):\n%s\n' "$1" "$3" "$hits"
+        bad=1
+    fi
+}
+upward='a folder uses only folders above it'
+forbid core 'geometry/|postproc/|surrogates/|cases/|studio/|tests/' "$upward"
+forbid geometry 'postproc/|surrogates/|cases/|studio/|tests/' "$upward"
+forbid postproc 'geometry/|surrogates/|cases/|studio/|tests/' "$upward"
+forbid surrogates/tables 'geometry/|postproc/|surrogates/dynamics|surrogates/estimator|surrogates/discovery|cases/|studio/|tests/' "$upward"
+forbid surrogates/dynamics 'geometry/|postproc/|surrogates/estimator|surrogates/discovery|cases/|studio/|tests/' "$upward"
+forbid surrogates/estimator 'geometry/|postproc/|surrogates/discovery|cases/|studio/|tests/' "$upward"
+forbid surrogates/discovery 'geometry/|postproc/|cases/|studio/|tests/' "$upward"
+forbid cases 'studio/|tests/' "$upward"
+for library in core geometry postproc surrogates cases; do
+    forbid "$library" 'Q[A-Z][A-Za-z]+|qcustomplot|CLI/|spdlog/' 'libraries know nothing of Qt or the command line'
+done
+for room in core geometry postproc surrogates cases; do
+    hits=$(grep -rnE --include='*.h' '^#include <(CGAL/|OpenMesh/|toml\+\+/|nlohmann/json\.hpp|openturns|sundials|ceres/|H5|SQLiteCpp)' "$room" 2>/dev/null)
+    if [ -n "$hits" ]; then
+        printf 'heavy libraries stop at a door, not in a header of %s:\n%s\n' "$room" "$hits"
+        bad=1
+    fi
+done
+hits=$(grep -rnE --include='*.h' '^#include <vtk' core geometry surrogates cases 2>/dev/null)
+if [ -n "$hits" ]; then
+    printf 'VTK types live in postproc and studio:\n%s\n' "$hits"
+    bad=1
+fi
+exit $bad
