@@ -186,7 +186,7 @@ std::string si_unit(std::string_view unit, const Place& place) {
         "1",       "m",       "m^2",     "m^3",   "kg",      "s",       "K",        "V",       "A",
         "m/s",     "m/s^2",   "Hz",    "N",       "Pa",      "N m",         "W",        "kg/m^3",  "m^2/s",
         "Pa s",    "m^3/s",   "kg/s",    "N/m",   "N s/m",   "N s^2/m^2", "kg m^2",    "N m s",   "W/m^2",
-        "m^2/s^2", "m^2/s^3", "J/kg",    "J/kg/K", "W/m/K";
+        "m^2/s^2", "m^2/s^3", "J/kg",    "J/kg/K", "W/m/K",  "1/m"};
     if (!is_unit(unit)) {
         unknown_unit(unit, place);
     }
