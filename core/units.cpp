@@ -105,17 +105,25 @@ private:
 
     /// What people write and UDUNITS does not read.
     static std::string spelled(std::string_view text) {
-        std::string key(trimmed(text));
+        const std::string key(trimmed(text));
         if (key.empty() || key == "-") {
             return "1";
         }
-        if (key == "deg") {
-            return "degree";
+        // "deg" within products too: deg/s, N m/deg.
+        std::string result;
+        for (std::size_t i = 0; i < key.size();) {
+            std::size_t end = i;
+            while (end < key.size() && std::isalpha(static_cast<unsigned char>(key[end])) != 0) {
+                ++end;
+            }
+            const std::string word = key.substr(i, end - i);
+            result += word == "deg" ? "degree" : word;
+            if (end < key.size()) {
+                result += key[end];
+            }
+            i = end + 1;
         }
-        if (key == "degC" || key == "°C") {
-            return "celsius";
-        }
-        return key;
+        return result;
     }
 
     ut_system* system_ = nullptr;
