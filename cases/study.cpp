@@ -1,0 +1,312 @@
+#include "cases/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "core/name_pattern.h"
+#include "core/text.h"
+#include "core/toml.h"
+#include "core/units.h"
+
+namespace underbody::cases {
+
+namespace fs = std::filesystem;
+using core::TomlTable;
+
+std::optional<double> Conditions::number(const std::string& name) const {
+    for (const auto& [key, value] : numbers) {
+        if (key == name) {
+            return value;
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> Conditions::text(const std::string& name) const {
+    for (const auto& [key, value] : texts) {
+        if (key == name) {
+            return value;
+        }
+    }
+    return std::nullopt;
+}
+
+bool Conditions::satisfies(const Conditions& wanted) const {
+    for (const auto& [name, value] : wanted.numbers) {
+        const auto mine = number(name);
+        if (!mine || std::abs(*mine - value) > 1e-9 * std::max(std::abs(*mine), std::abs(value)) + 1e-15) {
+            return false;
+        }
+    }
+    return std::all_of(wanted.texts.begin(), wanted.texts.end(),
+                       [this](const auto& wish) { return text(wish.first) == wish.second; });
+}
+
+std::string Conditions::label() const {
+    std::string result;
+    for (const auto& [name, value] : texts) {
+        result += (result.empty() ? "" : ", ") + value;
+    }
+    static const std::map<std::string, std::string> shown_units = {{"gap", "mm"}, {"pitch", "deg"}};
+    for (const auto& [name, value] : numbers) {
+        const auto* quantity = core::find_quantity(name);
+        const std::string si = quantity != nullptr ? quantity->unit : "1";
+        const auto shown = shown_units.find(name);
+        const std::string unit = shown != shown_units.end() ? shown->second : si;
+        result += (result.empty() ? "" : ", ") + name + " " + core::format_number(core::convert(value, si, unit), 4) +
+                  (unit == "1" ? "" : " " + unit);
+    }
+    return result;
+}
+
+namespace {
+
+/// `{ variant = "ellipse", gap = "5 mm" }`: known quantities with units, other words as they are.
+Conditions read_conditions(const TomlTable& table) {
+    Conditions conditions;
+    for (const auto& key : table.keys()) {
+        if (const auto* quantity = core::find_quantity(key)) {
+            conditions.numbers.emplace_back(key, table.quantity(key, quantity->unit));
+        } else if (table.is_string(key)) {
+            conditions.texts.emplace_back(key, table.string(key));
+        } else {
+            conditions.numbers.emplace_back(key, table.quantity(key, "1"));
+        }
+    }
+    return conditions;
+}
+
+std::string stem_of(const fs::path& file) {
+    std::string name = file.filename().string();
+    for (const char* ending : {".gz", ".h5"}) {
+        if (name.ends_with(ending)) {
+            name.resize(name.size() - std::string_view(ending).size());
+        }
+    }
+    return fs::path(name).stem().string();
+}
+
+void add_cases(Study& study, const TomlTable& table) {
+    const std::string pattern = table.string("files");
+    const Conditions held = read_conditions(table.table_or_empty("conditions"));
+    const std::vector<std::string> zones = table.strings("zones");
+    std::vector<core::NamePattern::Found> found;
+    try {
+        found = core::NamePattern(pattern).files(study.folder());
+    } catch (const core::UsageError& error) {
+        throw core::InputError(error.kind(), error.message(), table.place("files"), error.hint());
+    }
+    if (found.empty()) {
+        throw core::InputError("missing", "no file fits '" + pattern + "'", table.place("files"),
+                               "the pattern is relative to " + study.folder().string());
+    }
+    for (auto& item : found) {
+        Case entry;
+        entry.name = stem_of(item.path);
+        entry.file = item.path;
+        entry.conditions = held;
+        entry.zones = zones;
+        for (auto& number : item.match.numbers) {
+            std::erase_if(entry.conditions.numbers, [&](const auto& old) { return old.first == number.first; });
+            entry.conditions.numbers.push_back(number);
+        }
+        for (auto& text : item.match.texts) {
+            std::erase_if(entry.conditions.texts, [&](const auto& old) { return old.first == text.first; });
+            entry.conditions.texts.push_back(text);
+        }
+        const auto same = std::find_if(study.cases.begin(), study.cases.end(),
+                                       [&](const Case& other) { return other.file == entry.file || other.name == entry.name; });
+        if (same != study.cases.end()) {
+            throw core::InputError("duplicate",
+                                   "the case '" + entry.name + "' occurs twice: " + same->file.string() + " and " + entry.file.string(),
+                                   table.place("files"), "make the patterns exclude each other");
+        }
+        study.cases.push_back(std::move(entry));
+    }
+}
+
+/// Names must be unique and fit for file names, because documents and exports carry them.
+std::string unique_name(const TomlTable& table, std::set<std::string>& taken) {
+    const std::string name = table.string("name");
+    if (name.empty() || name.find_first_of("/\\\n\t\"<>") != std::string::npos || name.front() == '.') {
+        throw core::InputError("name", "'" + name + "' cannot be a name", table.place("name"), "use letters, digits, blanks, - and _");
+    }
+    if (!taken.insert(name).second) {
+        throw core::InputError("duplicate", "the name '" + name + "' occurs twice", table.place("name"));
+    }
+    return name;
+}
+
+MeshSpec read_mesh(const TomlTable& table, std::set<std::string>& taken) {
+    MeshSpec mesh;
+    mesh.name = unique_name(table, taken);
+    mesh.where = read_conditions(table.table_or_empty("where"));
+    mesh.column = table.string_or("column", "mesh");
+    mesh.quantities = table.strings("quantities");
+    const TomlTable cells = table.table("cells");
+    for (const auto& key : cells.keys()) {
+        mesh.cells.emplace_back(key, cells.quantity(key, "1"));
+    }
+    if (mesh.cells.size() < 2) {
+        throw core::InputError("range", table.path_of("cells") + " names fewer than two meshes", table.place("cells"));
+    }
+    return mesh;
+}
+
+TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const Study& study) {
+    TableSpec spec;
+    spec.name = unique_name(table, taken);
+    std::vector<std::string> quantities;
+    for (const auto& quantity : core::quantity_names()) {
+        if (quantity.name.ends_with("_force") || quantity.name.ends_with("_moment")) {
+            quantities.push_back(quantity.name);
+        }
+    }
+    spec.quantity = table.choice("quantity", quantities);
+    spec.axes = table.strings("axes");
+    spec.where = read_conditions(table.table_or_empty("where"));
+    spec.relative_sigma = table.quantity_or("relative_sigma", "1", 0);
+    spec.mesh_uncertainty = table.string_or("mesh_uncertainty", "");
+    spec.net_weight = table.find_quantity("net_weight", "N");
+    spec.virtual_mass = table.quantity_or("virtual_mass", "kg", 0);
+    spec.exports = table.strings("exports");
+    if (spec.axes.empty()) {
+        throw core::InputError("missing", "'" + table.path_of("axes") + "' is missing", table.place(), "axes = [\"gap\"]");
+    }
+    if (study.select(spec.where).empty()) {
+        throw core::InputError("missing", "no case fits 'where' of the table '" + spec.name + "'", table.place("where"),
+                               "underbody study list shows the cases and their conditions");
+    }
+    if (!spec.mesh_uncertainty.empty()) {
+        std::vector<std::string> known;
+        for (const auto& mesh : study.mesh_uncertainties) {
+            known.push_back(mesh.name);
+        }
+        if (std::find(known.begin(), known.end(), spec.mesh_uncertainty) == known.end()) {
+            throw core::InputError("name", "there is no [[mesh_uncertainty]] named '" + spec.mesh_uncertainty + "'",
+                                   table.place("mesh_uncertainty"), core::did_you_mean(spec.mesh_uncertainty, known));
+        }
+    }
+    return spec;
+}
+
+void read_frame(Study& study, const TomlTable& root) {
+    const TomlTable frame = root.table_or_empty("frame");
+    const std::vector<std::string> directions = {"+x", "-x", "+y", "-y", "+z", "-z"};
+    study.forward = frame.choice("forward", directions, "+x");
+    study.up = frame.choice("up", directions, "+z");
+    study.symmetry = frame.choice("symmetry", {"", "x", "y", "z"}, "");
+    study.reference_point = frame.string_or("moments_about", "base_centre");
+    if (study.forward.back() == study.up.back()) {
+        throw core::InputError("range", "forward and up lie along one axis", frame.place("up"));
+    }
+    const TomlTable reference = root.table_or_empty("reference");
+    for (const auto& [name, unit] : {std::pair{"length", "m"}, {"width", "m"}, {"height", "m"}, {"density", "kg/m^3"}, {"speed", "m/s"}}) {
+        if (const auto value = reference.find_quantity(name, unit)) {
+            study.reference.numbers.emplace_back(name, *value);
+        }
+    }
+}
+
+}  // namespace
+
+Study Study::open(const fs::path& path) {
+    const fs::path file = fs::is_directory(path) ? path / "study.toml" : path;
+    if (!fs::exists(file)) {
+        throw core::InputError("missing", fs::exists(path) ? "there is no study.toml in this folder" : "there is no such folder",
+                               {path.string(), {}, {}, {}}, "a study is a folder with a study.toml; see cases/evie");
+    }
+    const TomlTable root = core::read_toml(file);
+    Study study;
+    study.folder_ = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    study.title = root.string("title");
+    study.summary = root.string_or("summary", "");
+    study.origin = root.string_or("origin", "");
+    read_frame(study, root);
+    for (const auto& table : root.tables("case")) {
+        add_cases(study, table);
+    }
+    std::sort(study.cases.begin(), study.cases.end(), [](const Case& a, const Case& b) { return a.file < b.file; });
+    std::set<std::string> bodies;
+    for (const auto& table : root.tables("body")) {
+        study.bodies.push_back({unique_name(table, bodies), table.file("shape")});
+    }
+    std::set<std::string> pictures;
+    for (const auto& table : root.tables("picture")) {
+        PictureSpec spec;
+        spec.name = unique_name(table, pictures);
+        spec.where = read_conditions(table.table_or_empty("where"));
+        spec.array = table.string_or("array", "pressure");
+        spec.views = table.strings("views");
+        study.pictures.push_back(std::move(spec));
+    }
+    std::set<std::string> meshes;
+    for (const auto& table : root.tables("mesh_uncertainty")) {
+        study.mesh_uncertainties.push_back(read_mesh(table, meshes));
+    }
+    std::set<std::string> tables;
+    for (const auto& table : root.tables("table")) {
+        study.tables.push_back(read_table(table, tables, study));
+    }
+    std::set<std::string> regions;
+    for (const auto& table : root.tables("region")) {
+        RegionSpec spec;
+        spec.name = unique_name(table, regions);
+        spec.model = table.file("model");
+        spec.axes = table.string("axes");
+        spec.duration = table.quantity_or("for", "s", 60);
+        spec.columns = static_cast<int>(table.integer_or("columns", 400));
+        spec.rows = static_cast<int>(table.integer_or("rows", 400));
+        study.regions.push_back(std::move(spec));
+    }
+    std::set<std::string> measurements;
+    for (const auto& table : root.tables("measurement")) {
+        MeasurementSpec spec;
+        spec.name = unique_name(table, measurements);
+        spec.model = table.file("model");
+        spec.data = table.file("data");
+        spec.discover = table.boolean_or("discover", false);
+        study.measurements.push_back(std::move(spec));
+    }
+    for (const auto& table : root.tables("verify")) {
+        VerifySpec spec;
+        spec.table = table.file("table");
+        spec.quantities = table.strings("quantities");
+        spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
+        study.verifications.push_back(std::move(spec));
+    }
+    study.comparisons = root.strings("compare");
+    for (const auto& name : study.comparisons) {
+        if (study.find_table(name) == nullptr) {
+            std::vector<std::string> known(tables.begin(), tables.end());
+            throw core::InputError("name", "compare: there is no [[table]] named '" + name + "'", root.place("compare"),
+                                   core::did_you_mean(name, known));
+        }
+    }
+    root.finish();
+    return study;
+}
+
+std::vector<const Case*> Study::select(const Conditions& where) const {
+    std::vector<const Case*> chosen;
+    for (const auto& entry : cases) {
+        if (entry.conditions.satisfies(where)) {
+            chosen.push_back(&entry);
+        }
+    }
+    return chosen;
+}
+
+const TableSpec* Study::find_table(const std::string& name) const {
+    for (const auto& table : tables) {
+        if (table.name == name) {
+            return &table;
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace underbody::cases
