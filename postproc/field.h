@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -79,6 +80,8 @@ struct ReadOptions {
     std::vector<std::string> zones;         ///< patterns (* ?); empty: all
     bool surfaces_only = false;             ///< leave volumes out, for loads
     std::filesystem::path companion;        ///< the mesh of a results file, when it cannot be found by name
+    /// Units that the file does not say: original column or variable name -> unit ("Pressure" -> "Pa").
+    std::vector<std::pair<std::string, std::string>> units;
 };
 
 /// Reads any known file, found by its content. Throws core::InputError (file, line or byte) when it is damaged or unknown.
@@ -93,7 +96,17 @@ struct CanonicalName {
 };
 CanonicalName canonical_name(const std::string& original);
 
+/// "velocity_y" -> {"velocity", 1} for canonical vectors; nothing for anything else. Importers of formats that
+/// store components apart join them to one array of three components.
+struct VectorComponent {
+    std::string vector;
+    int index = 0;
+};
+std::optional<VectorComponent> vector_component(const std::string& canonical);
+
 /// Does `name` fit a pattern with * and ? (without case)?
 bool matches(const std::string& pattern, const std::string& name);
+/// Does it fit any of them? No patterns: everything fits.
+bool matches_any(const std::vector<std::string>& patterns, const std::string& name);
 
 }  // namespace underbody::postproc

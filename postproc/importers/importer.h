@@ -19,4 +19,7 @@ struct Importer {
 /// All importers, most specific first.
 const std::vector<Importer>& importers();
 
+/// The one that recognises the file (or folder); nullptr when none does.
+const Importer* importer_for(const std::filesystem::path& path);
+
 }  // namespace underbody::postproc

@@ -1,0 +1,122 @@
+#include "postproc/field.h"
+
+#include <array>
+#include <fstream>
+
+#include "postproc/importers/importer.h"
+
+namespace underbody::postproc {
+
+namespace fs = std::filesystem;
+
+std::string to_string(ZoneKind kind) {
+    switch (kind) {
+        case ZoneKind::wall: return "wall";
+        case ZoneKind::inlet: return "inlet";
+        case ZoneKind::outlet: return "outlet";
+        case ZoneKind::symmetry: return "symmetry";
+        case ZoneKind::periodic: return "periodic";
+        case ZoneKind::interface: return "interface";
+        case ZoneKind::interior: return "interior";
+        case ZoneKind::farfield: return "farfield";
+        case ZoneKind::fluid: return "fluid";
+        case ZoneKind::solid: return "solid";
+        case ZoneKind::line: return "line";
+        case ZoneKind::points: return "points";
+        case ZoneKind::other: return "other";
+        case ZoneKind::unknown: break;
+    }
+    return "unknown";
+}
+
+std::string to_string(Location location) {
+    switch (location) {
+        case Location::nodes: return "nodes";
+        case Location::faces: return "faces";
+        case Location::cells: break;
+    }
+    return "cells";
+}
+
+const ArrayInfo* Zone::find(const std::string& array) const {
+    for (const auto& info : arrays) {
+        if (info.name == array) {
+            return &info;
+        }
+    }
+    return nullptr;
+}
+
+const Zone* Field::find(const std::string& zone) const {
+    for (const auto& candidate : zones) {
+        if (candidate.name == zone) {
+            return &candidate;
+        }
+    }
+    return nullptr;
+}
+
+namespace {
+
+std::string head_of(const fs::path& path) {
+    constexpr std::size_t most = 64 * 1024;
+    std::ifstream file(path, std::ios::binary);
+    std::string head(most, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(most));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    return head;
+}
+
+std::string known_formats() {
+    std::string text;
+    for (const auto& importer : importers()) {
+        text += (text.empty() ? "" : ", ") + importer.format;
+    }
+    return text;
+}
+
+}  // namespace
+
+const Importer* importer_for(const fs::path& path) {
+    const bool folder = fs::is_directory(path);
+    const std::string head = folder ? std::string() : head_of(path);
+    for (const auto& importer : importers()) {
+        if (importer.recognises(head, path)) {
+            return &importer;
+        }
+    }
+    return nullptr;
+}
+
+Field read_field(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
+    const core::Place place{path.string(), {}, {}, {}};
+    std::error_code error;
+    const auto status = fs::status(path, error);
+    if (!fs::exists(status)) {
+        std::vector<std::string> names;
+        const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+        for (const auto& entry : fs::directory_iterator(folder, error)) {
+            names.push_back(entry.path().filename().string());
+        }
+        const std::string near = core::nearest_name(path.filename().string(), names);
+        throw core::InputError("file", "there is no such file", place, near.empty() ? "" : "did you mean '" + near + "'?");
+    }
+    if (fs::is_regular_file(status)) {
+        if (fs::file_size(path, error) == 0) {
+            throw core::InputError("format", "the file is empty", place);
+        }
+        if (!std::ifstream(path, std::ios::binary)) {
+            throw core::InputError("file", "the file cannot be read", place, "check its permissions");
+        }
+    }
+    const Importer* importer = importer_for(path);
+    if (importer == nullptr) {
+        throw core::InputError("format", "no importer knows this content", place, "known formats: " + known_formats());
+    }
+    progress.report(0, "reading " + path.filename().string());
+    Field field = importer->read(path, options, progress);
+    progress.report(1, "read " + path.filename().string());
+    return field;
+}
+
+}  // namespace underbody::postproc

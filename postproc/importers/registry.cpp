@@ -1,0 +1,20 @@
+// The list of formats. A new one is one file beside this and one line here; the most specific come first.
+#include "postproc/importers/importer.h"
+
+#define UNDERBODY_IMPORTERS(X) \
+    X(cfd_post_csv)
+
+namespace underbody::postproc {
+
+#define UNDERBODY_DECLARE(name) Importer name##_importer();
+UNDERBODY_IMPORTERS(UNDERBODY_DECLARE)
+#undef UNDERBODY_DECLARE
+
+const std::vector<Importer>& importers() {
+#define UNDERBODY_LIST(name) name##_importer(),
+    static const std::vector<Importer> all = {UNDERBODY_IMPORTERS(UNDERBODY_LIST)};
+#undef UNDERBODY_LIST
+    return all;
+}
+
+}  // namespace underbody::postproc
