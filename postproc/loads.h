@@ -1,0 +1,131 @@
+// Forces and moments that a field exerts on a body, in one pass over its faces.
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "postproc/field.h"
+
+namespace underbody::postproc {
+
+using Vector = std::array<double, 3>;
+
+/// How the axes of a file lie to the vehicle: unit vectors of the file's frame.
+/// "+x", "-z", "x": an axis of the file. Throws core::UsageError for anything else.
+Vector axis_from(const std::string& text);
+
+/// Lengths and flow that coefficients refer to. Coefficients come out only when density and speed are known.
+struct LoadsReferences {
+    std::optional<double> density;  ///< kg/m^3; default: the field's own
+    std::optional<double> speed;    ///< m/s
+    std::optional<double> length;   ///< m; default: the extent of the body along forward (the result says which)
+    std::optional<double> width;    ///< m
+    std::optional<double> height;   ///< m
+};
+
+/// Which side of the faces the fluid is on.
+enum class FluidSide {
+    automatic,  ///< as the importer knows it; where the file does not say, settled from the shape (the result says how)
+    as_in_file, ///< right-hand normals point into the fluid
+    reversed,   ///< right-hand normals point out of the fluid
+};
+
+struct LoadsOptions {
+    std::vector<std::string> zones;         ///< patterns with * and ?; empty: all walls, or all surfaces with pressure where the file knows no walls
+    std::optional<Vector> reference;        ///< m, file axes: where moments are taken; default: the centre of the base
+    std::string base = "*base*";            ///< pattern of the zone whose centre is the default reference
+    Vector forward = {1, 0, 0};             ///< file axes
+    Vector up = {0, 0, 1};
+    /// Half model: the plane's normal axis ("x", "y", "z"), optionally with its place ("y=0.1"). Empty: whole model.
+    std::string symmetry;
+    FluidSide fluid = FluidSide::automatic;
+    double reference_pressure = 0;          ///< Pa, taken from all pressures
+    LoadsReferences references;
+    int stations = 0;                       ///< more than 0: running integral along the body in so many steps
+    bool accept_problems = false;           ///< go on although the importer found errors (zero-area faces ...)
+};
+
+/// A force and its moment about a named point, file axes.
+struct Wrench {
+    Vector force{};   ///< N
+    Vector moment{};  ///< N m, about LoadsResult::reference
+};
+
+/// The vehicle's sense (interfaces.md section 1): lift up, drag against the motion, side to starboard,
+/// pitch nose up, roll starboard down, yaw bow to starboard; moments about LoadsResult::reference.
+struct NamedLoads {
+    double lift_force = 0;
+    double drag_force = 0;
+    double side_force = 0;
+    double pitch_moment = 0;
+    double roll_moment = 0;
+    double yaw_moment = 0;
+};
+
+struct ZoneLoads {
+    std::string name;
+    std::size_t faces = 0;
+    double area = 0;           ///< m^2 (both halves of a half model)
+    Vector area_vector{};      ///< m^2, out of the body
+    Wrench pressure;
+    Wrench viscous;
+    bool turned = false;       ///< its faces looked the other way in the file
+};
+
+/// Running integral from the tail to the nose: what the part of the body behind `position` carries.
+struct LoadsStation {
+    double position = 0;  ///< m, along forward from the reference point
+    NamedLoads behind;
+};
+
+struct LoadsCoefficients {
+    double lift = 0;          ///< lift / (1/2 rho v^2 pi/4 length width)
+    double drag = 0;          ///< drag / (1/2 rho v^2 pi/4 width height)
+    double pitch_moment = 0;  ///< moment / (1/2 rho v^2 pi/4 length width length)
+    double density = 0, speed = 0, length = 0, width = 0, height = 0;
+    std::string lengths_from;  ///< "given" or "bounding box"
+};
+
+struct LoadsResult {
+    std::string file;
+    Wrench total;
+    Wrench pressure;
+    Wrench viscous;
+    Vector reference{};
+    std::string reference_from;          ///< "given", "centre of the base (zone 'base')", ...
+    NamedLoads named;                    ///< of the total
+    NamedLoads named_pressure;
+    NamedLoads named_viscous;
+    std::vector<ZoneLoads> zones;
+    double area = 0;                     ///< m^2
+    double closure = 0;                  ///< size of the summed area vector over the area: 0 for a closed surface
+    Vector force_per_reference_pascal{}; ///< N/Pa: what 1 Pa added to every pressure would add to the force
+    std::string values_from;             ///< "faces", "nodes", "cells", or "faces, nodes" when zones differ
+    std::string orientation;             ///< how it is known which way the faces look
+    std::optional<Vector> centre_of_pressure;  ///< m, on the forward line through the reference; none without lift
+    std::optional<LoadsCoefficients> coefficients;
+    std::vector<LoadsStation> stations;
+    core::Problems problems;             ///< open surface, no wall shear, orientation not settled, ...
+};
+
+/// Integrates pressure and wall shear. Node values are taken bilinear over quads and linear over triangles and the
+/// fans of larger polygons, and integrated exactly (force and moment); face values are constant over their face.
+/// Deterministic whatever the number of threads. Throws core::InputError: no zone fits, a zone without faces or
+/// pressure, a value that is missing, an importer's error (unless accepted), a half model on both sides of its plane.
+LoadsResult loads(const Field& field, const LoadsOptions& options = {}, core::Progress& progress = core::Progress::none());
+
+/// Keys of interfaces.md section 7.
+void to_json(nlohmann::json& json, const LoadsResult& result);
+
+/// Every quantity of a result that goes into a table, with its SI unit: lift_force, drag_force, ..., closure.
+struct LoadsColumn {
+    std::string name;
+    std::string unit;
+    double value = 0;
+};
+std::vector<LoadsColumn> table_row(const LoadsResult& result);
+
+}  // namespace underbody::postproc
