@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/table.h"
@@ -38,7 +39,12 @@ struct Evaluation {
 };
 
 struct FitOptions {
-    enum class Kind { automatic, interpolation, gaussian_process } kind = Kind::automatic;
+    enum class Kind {
+        automatic,         ///< the better of the two below by leave-one-out score, said in remarks()
+        interpolation,     ///< monotone: exact at the points, C1, never leaves the range of the points around it; full grids only
+        gaussian_process,  ///< scattered or gridded points with errors
+        spline,            ///< not-a-knot cubic spline: exact, C2, may overshoot; full grids only
+    } kind = Kind::automatic;
     RangePolicy range = RangePolicy::clamp;
     std::vector<std::string> axes;  ///< columns to use as axes; empty: every known set-point column that varies
 };
@@ -67,11 +73,19 @@ public:
     /// The hot path: clamped value and slopes (`slope` has one entry per axis), no error, no allocation, never throws.
     [[nodiscard]] double value(const double* point, double* slope = nullptr) const noexcept;
 
+    /// Grid lines of the piecewise cubic that value() evaluates along an axis: between two of them it is one cubic. For
+    /// interpolated tables these are the axis's points.
+    [[nodiscard]] const std::vector<double>& knots(std::size_t axis) const;
+    /// Columns of the points that held one value throughout (name, SI value): the conditions the table was made under.
+    [[nodiscard]] const std::vector<std::pair<std::string, double>>& conditions() const;
+    [[nodiscard]] RangePolicy range() const;
+
     /// Another table whose values are drawn from this one's error (correlated along the axes), for probability maps.
     [[nodiscard]] ForceTable drawn(std::uint64_t seed) const;
 
     struct Impl;
     explicit ForceTable(std::shared_ptr<const Impl> impl);
+    [[nodiscard]] const Impl& impl() const { return *impl_; }
 
 private:
     std::shared_ptr<const Impl> impl_;

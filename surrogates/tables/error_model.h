@@ -1,0 +1,43 @@
+// The variance of a table between and beyond its points.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "surrogates/tables/grid.h"
+
+namespace underbody::tables {
+
+/// Variance on a tensor grid: multilinear between the nodes, plus, for interpolated tables, the interpolation error that
+/// rises from zero at the points to its cell's value in the middle: sum over axes of cell^2 (4 t (1 - t))^2.
+class ErrorModel {
+public:
+    ErrorModel() = default;
+    /// `node_variance` on the grid `points`, last axis fastest.
+    ErrorModel(std::vector<std::vector<double>> points, std::vector<double> node_variance);
+
+    /// One number a cell along axis k: the standard error of the interpolation in the middle of the cell.
+    void set_cell_error(std::size_t k, std::vector<double> error);
+    /// How fast the standard deviation grows beyond the ends of axis k, per SI unit of the axis.
+    void set_growth(std::size_t k, double per_unit) { growth_[k] = per_unit; }
+
+    /// Zero everywhere?
+    [[nodiscard]] bool empty() const { return variance_.empty(); }
+    /// Standard deviation at a point; `beyond` (one entry per axis) is how far it lies outside.
+    [[nodiscard]] double sigma(const double* point, const double* beyond) const noexcept;
+
+    [[nodiscard]] const std::vector<GridAxis>& axes() const { return axes_; }
+    [[nodiscard]] const std::vector<double>& variance() const { return variance_; }
+    [[nodiscard]] const std::vector<double>& cell_error(std::size_t k) const { return cell_error_[k]; }
+    [[nodiscard]] double growth(std::size_t k) const { return growth_[k]; }
+
+private:
+    std::vector<GridAxis> axes_;
+    std::vector<double> variance_;
+    std::array<std::vector<double>, CubicGrid::max_axes> cell_error_;
+    std::array<double, CubicGrid::max_axes> growth_{};
+};
+
+}  // namespace underbody::tables

@@ -1,0 +1,21 @@
+// From clean points to a table. For the files of this room only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/set_points.h"
+
+namespace underbody::tables {
+
+/// Chooses and fits; throws core::InputError when the kind asked for cannot take the points.
+std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options);
+
+/// Exact interpolation of a full grid.
+std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, const FitOptions& options);
+
+/// The table with its values moved by one draw from its error.
+std::shared_ptr<const ForceTable::Impl> drawn_from(const ForceTable::Impl& table, std::uint64_t seed);
+
+}  // namespace underbody::tables

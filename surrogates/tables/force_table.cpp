@@ -1,0 +1,73 @@
+#include "surrogates/tables/force_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/random.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/tables/fit.h"
+#include "surrogates/tables/force_table_impl.h"
+#include "surrogates/tables/set_points.h"
+
+namespace underbody::tables {
+
+using core::InputError;
+
+ForceTable::ForceTable(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+
+const std::string& ForceTable::quantity() const { return impl_->quantity; }
+const std::string& ForceTable::unit() const { return impl_->unit; }
+const std::vector<TableAxis>& ForceTable::axes() const { return impl_->axes; }
+const std::string& ForceTable::kind() const { return impl_->kind; }
+const std::string& ForceTable::source() const { return impl_->source; }
+const core::Problems& ForceTable::remarks() const { return impl_->remarks; }
+const core::Table& ForceTable::points() const { return impl_->points; }
+const std::vector<double>& ForceTable::knots(std::size_t axis) const { return impl_->surface.axis(axis).points(); }
+const std::vector<std::pair<std::string, double>>& ForceTable::conditions() const { return impl_->constants; }
+RangePolicy ForceTable::range() const { return impl_->range; }
+
+ForceTable ForceTable::read(const std::filesystem::path& path, const std::string& quantity, const FitOptions& options) {
+    return fit(core::read_csv(path), quantity, options);
+}
+
+ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity, const FitOptions& options) {
+    return ForceTable(fit_points(set_points(table, quantity, options), options));
+}
+
+double ForceTable::value(const double* point, double* slope) const noexcept { return impl_->surface.value(point, slope); }
+
+Evaluation ForceTable::at(std::span<const double> point) const {
+    const Impl& t = *impl_;
+    const std::size_t n = t.axes.size();
+    if (point.size() != n) {
+        throw InputError("axis", "this table has " + std::to_string(n) + " axes, the point " + std::to_string(point.size()));
+    }
+    Evaluation result;
+    for (std::size_t k = 0; k < n; ++k) {
+        const TableAxis& axis = t.axes[k];
+        if (std::isnan(point[k])) {
+            throw InputError("range", axis.name + " is not a number");
+        }
+        result.beyond[k] = point[k] < axis.lower ? point[k] - axis.lower : point[k] > axis.upper ? point[k] - axis.upper : 0;
+        if (result.beyond[k] == 0) {
+            continue;
+        }
+        result.outside = true;
+        if (t.range == RangePolicy::refuse) {
+            throw InputError("range",
+                             axis.name + " " + core::format_number(point[k], 6) + " " + axis.unit + " is outside the table, which covers " +
+                                 core::format_number(axis.lower, 6) + " to " + core::format_number(axis.upper, 6) + " " + axis.unit,
+                             {t.source, {}, {}, {}}, "let it hold its end values (clamp) or extrapolate");
+        }
+    }
+    result.value = t.range == RangePolicy::extrapolate ? t.surface.continued(point.data(), result.slope.data())
+                                                       : t.surface.value(point.data(), result.slope.data());
+    result.sigma = t.error.sigma(point.data(), result.beyond.data());
+    return result;
+}
+
+ForceTable ForceTable::drawn(std::uint64_t seed) const { return ForceTable(drawn_from(*impl_, seed)); }
+
+}  // namespace underbody::tables

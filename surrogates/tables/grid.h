@@ -1,0 +1,113 @@
+// Piecewise cubic functions on tensor grids of one to four axes: constant-time look-up of value and slopes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace underbody::tables {
+
+/// How the slopes at the points are chosen.
+enum class SlopeRule {
+    monotone,   ///< fourth-order where the data are smooth, limited so that nothing overshoots (Fritsch and Carlson 1980; Hyman 1983)
+    not_a_knot  ///< of the cubic spline with not-a-knot ends (C2; may overshoot)
+};
+
+/// Ascending points with an index of uniform buckets: the cell of a coordinate in constant time.
+class GridAxis {
+public:
+    GridAxis() = default;
+    explicit GridAxis(std::vector<double> points);
+
+    [[nodiscard]] const std::vector<double>& points() const { return x_; }
+    [[nodiscard]] std::size_t size() const { return x_.size(); }
+    [[nodiscard]] double lower() const { return x_.front(); }
+    [[nodiscard]] double upper() const { return x_.back(); }
+
+    /// Cell of a coordinate inside [lower, upper]; 0 .. size()-2.
+    [[nodiscard]] std::size_t cell(double x) const noexcept {
+        const auto bucket = static_cast<std::size_t>((x - lower_) * per_unit_);
+        std::size_t i = first_[bucket < last_bucket_ ? bucket : last_bucket_];
+        while (x >= stop_[i]) {
+            ++i;
+        }
+        return i;
+    }
+
+private:
+    std::vector<double> x_;
+    std::vector<double> stop_;  ///< upper end of each cell; infinite for the last
+    std::vector<std::uint32_t> first_;
+    std::size_t last_bucket_ = 0;
+    double lower_ = 0;
+    double per_unit_ = 0;
+};
+
+/// Slopes at the points of one line of data, d value / d x. At least two points.
+void line_slopes(SlopeRule rule, std::span<const double> x, std::span<const double> value, std::span<double> slope);
+
+/// C1 piecewise cubic in each axis (Hermite data at the nodes: value, slopes, cross slopes).
+/// With the monotone rule the Bezier net of every cell lies between its smallest and largest corner, so that the
+/// function nowhere leaves the range of the corners of its cell.
+class CubicGrid {
+public:
+    static constexpr std::size_t max_axes = 4;
+
+    CubicGrid() = default;
+    /// `values` with the last axis fastest.
+    CubicGrid(std::vector<std::vector<double>> points, std::span<const double> values, SlopeRule rule);
+
+    [[nodiscard]] std::size_t dimensions() const { return axes_.size(); }
+    [[nodiscard]] const GridAxis& axis(std::size_t k) const { return axes_[k]; }
+    [[nodiscard]] std::size_t nodes() const { return nodes_.size() >> axes_.size(); }
+    /// Hermite data of all nodes (last axis fastest), 2^dimensions numbers a node: entry m is the derivative once along
+    /// every axis k whose bit k is set in m.
+    [[nodiscard]] const std::vector<double>& hermite() const { return nodes_; }
+
+    /// Value at a point, held at the ends of each axis (slope 0 beyond); `slope` may be null. NaN in, NaN out.
+    double value(const double* point, double* slope) const noexcept;
+    /// The same with the function continued along its end slopes beyond the axes.
+    double continued(const double* point, double* slope) const noexcept;
+
+    /// Where a coordinate lies: cell, distance from its lower end, and whether it had to be held.
+    struct Spot {
+        std::size_t cell = 0;
+        double offset = 0;
+        bool held = false;
+    };
+    [[nodiscard]] Spot spot(std::size_t k, double x) const noexcept {
+        const GridAxis& a = axes_[k];
+        Spot s;
+        if (!(x >= a.lower())) {
+            s.held = true;
+            s.offset = x < a.lower() ? 0 : x - x;  // NaN stays NaN
+            return s;
+        }
+        if (x > a.upper()) {
+            s.held = true;
+            s.cell = a.size() - 2;
+            s.offset = a.upper() - a.points()[s.cell];
+            return s;
+        }
+        s.cell = a.cell(x);
+        s.offset = x - a.points()[s.cell];
+        return s;
+    }
+
+private:
+    void limit_cross_slopes();
+    void limit_node(std::size_t node, std::span<const std::size_t> index);
+    void build_cells();
+    double from_nodes(const Spot* spots, double* slope) const noexcept;
+    double from_cells_1(const Spot& s, double* slope) const noexcept;
+    double from_cells_2(const Spot* s, double* slope) const noexcept;
+
+    std::vector<GridAxis> axes_;
+    std::array<std::size_t, max_axes> stride_{};  ///< in nodes
+    std::vector<double> nodes_;
+    std::vector<double> cells_;  ///< polynomial coefficients a cell for one (4) and two axes (16)
+};
+
+}  // namespace underbody::tables

@@ -1,0 +1,42 @@
+// From a table of measured or computed points to clean data for a fit: which columns are axes, which rows count,
+// what repeats, and whether the points fill a grid.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/table.h"
+#include "surrogates/tables/force_table.h"
+
+namespace underbody::tables {
+
+/// Points of one quantity, ready to be fitted. All SI; repeated set points are merged.
+struct SetPoints {
+    std::string quantity;
+    std::string unit;
+    std::vector<TableAxis> axes;
+    std::vector<std::vector<double>> x;  ///< [row][axis]
+    std::vector<double> value;           ///< [row]
+    std::vector<double> sigma;           ///< [row]; empty when the table states no errors
+    std::vector<std::size_t> row;        ///< row of the table that each came from (the first of those merged)
+    bool full_grid = false;              ///< every combination of the axes' points occurs exactly once
+    std::string missing;                 ///< not a grid, but nearly one: which set points lack
+    std::vector<std::size_t> order;      ///< full grid: order[i] is the row at grid node i (last axis fastest)
+    /// Columns of the table that hold one value throughout: the conditions of the table (name, SI value).
+    std::vector<std::pair<std::string, double>> constants;
+    core::Table table;                   ///< the rows that were used
+    core::Problems remarks;
+
+    [[nodiscard]] bool has_sigma() const { return !sigma.empty(); }
+};
+
+/// Throws core::InputError with file, line and column: unknown quantity, one point, an axis without spread, set points
+/// that repeat and disagree, sigma zero or negative or missing, missing set points, no axis at all, more than max_axes.
+SetPoints set_points(const core::Table& table, const std::string& quantity, const FitOptions& options);
+
+/// Names that can be axes of a table: set points and states, not forces.
+const std::vector<std::string>& axis_names();
+
+}  // namespace underbody::tables

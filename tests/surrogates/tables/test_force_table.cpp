@@ -1,0 +1,308 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/grid.h"
+#include "tests/surrogates/tables/tables_support.h"
+
+namespace underbody {
+namespace {
+
+using core::InputError;
+using tables::FitOptions;
+using tables::ForceTable;
+using test::csv;
+using ::testing::HasSubstr;
+
+ForceTable monotone(const core::Table& table, const std::string& quantity = "lift_force") {
+    FitOptions options;
+    options.kind = FitOptions::Kind::interpolation;
+    return ForceTable::fit(table, quantity, options);
+}
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(ForceTable, SplineOfRefAMatchesTheOracles) {
+    const ForceTable table = test::ref_a_spline();
+    const double at[] = {.005, .065, .155, .275, .75};
+    const double expected[] = {-0.0021467003, -0.014388284, -0.0010682339, 0.015453207, 0.01457831};
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_NEAR(table.value(&at[i]), expected[i], 1e-8) << at[i];
+    }
+    const double slope_at[] = {0, .1, .25};
+    const double slopes[] = {-0.44735064, 0.14001682, 0.093303695};
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(table.at({&slope_at[i], 1}).slope[0], slopes[i], 1e-6) << slope_at[i];
+    }
+}
+
+TEST(ForceTable, GoesThroughItsPointsAndNeverLeavesTheRangeOfItsCell) {
+    core::Random random(20260101);
+    for (int trial = 0; trial < 100; ++trial) {
+        std::vector<double> x, y;
+        double at = random.uniform();
+        const std::size_t n = 2 + random.below(12);
+        for (std::size_t i = 0; i < n; ++i) {
+            x.push_back(at);
+            y.push_back(random.below(3) == 0 && i > 0 ? y.back() : random.normal());
+            at += std::exp(random.uniform(-6, 1));
+        }
+        core::Table data;
+        data.add_numbers("gap", "m", x);
+        data.add_numbers("lift_force", "N", y);
+        const ForceTable table = monotone(data);
+        for (std::size_t i = 0; i < n; ++i) {
+            ASSERT_NEAR(table.value(&x[i]), y[i], 1e-14 * std::abs(y[i]) + 1e-15);
+        }
+        for (std::size_t i = 0; i + 1 < n; ++i) {
+            double last = y[i];
+            for (int j = 0; j <= 50; ++j) {
+                const double u = x[i] + (x[i + 1] - x[i]) * j / 50;
+                const double v = table.value(&u);
+                ASSERT_LE(v, std::max(y[i], y[i + 1]) + 1e-13);
+                ASSERT_GE(v, std::min(y[i], y[i + 1]) - 1e-13);
+                ASSERT_GE((v - last) * (y[i + 1] - y[i]), -1e-13) << "not monotone";
+                last = v;
+            }
+        }
+    }
+}
+
+TEST(ForceTable, OfTwoAxesNeverLeavesTheRangeOfTheCornersOfItsCell) {
+    core::Random random(7);
+    for (int trial = 0; trial < 60; ++trial) {
+        std::vector<double> x, y;
+        double a = 0, b = -1;
+        for (std::size_t i = 0, n = 2 + random.below(5); i < n; ++i) {
+            x.push_back(a);
+            a += std::exp(random.uniform(-4, 0));
+        }
+        for (std::size_t i = 0, n = 2 + random.below(5); i < n; ++i) {
+            y.push_back(b);
+            b += std::exp(random.uniform(-4, 0));
+        }
+        std::vector<double> z;
+        const auto data = test::grid_table(x, y, [&](double, double) {
+            z.push_back(random.below(3) == 0 ? 0 : random.normal());
+            return z.back();
+        });
+        const ForceTable table = monotone(data);
+        const std::size_t columns = y.size();
+        for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+            for (std::size_t j = 0; j + 1 < columns; ++j) {
+                const auto [low, high] = std::minmax({z[i * columns + j], z[i * columns + j + 1], z[(i + 1) * columns + j], z[(i + 1) * columns + j + 1]});
+                for (int k = 0; k < 144; ++k) {
+                    const double p[2] = {x[i] + (x[i + 1] - x[i]) * (k % 12) / 11, y[j] + (y[j + 1] - y[j]) * (k / 12) / 11.0};
+                    const double v = table.value(p);
+                    ASSERT_LE(v, high + 1e-12);
+                    ASSERT_GE(v, low - 1e-12);
+                }
+                const double corner[2] = {x[i], y[j]};
+                ASSERT_NEAR(table.value(corner), z[i * columns + j], 1e-14);
+            }
+        }
+    }
+}
+
+TEST(ForceTable, ConvergesWithTheFourthOrderOnSmoothMonotoneData) {
+    const auto error = [](int n) {
+        std::vector<double> x, y;
+        for (int i = 0; i <= n; ++i) {
+            x.push_back(0.5 + 2.0 * i / n);
+            y.push_back(std::exp(-x.back()));
+        }
+        core::Table data;
+        data.add_numbers("gap", "m", x);
+        data.add_numbers("lift_force", "N", y);
+        const ForceTable table = monotone(data);
+        double worst = 0;
+        for (int i = 0; i <= 1000; ++i) {
+            const double u = 0.5 + 2.0 * i / 1000;
+            worst = std::max(worst, std::abs(table.value(&u) - std::exp(-u)));
+        }
+        return worst;
+    };
+    EXPECT_GT(std::log2(error(16) / error(32)), 3.7);
+    EXPECT_GT(std::log2(error(32) / error(64)), 3.8);
+    const auto error2 = [](int n) {
+        std::vector<double> x;
+        for (int i = 0; i <= n; ++i) {
+            x.push_back(0.5 + 2.0 * i / n);
+        }
+        const ForceTable table = monotone(test::grid_table(x, x, [](double a, double b) { return std::exp(-a - 0.7 * b) + a + b; }));
+        double worst = 0;
+        for (int i = 0; i < 10000; ++i) {
+            const double p[2] = {0.5 + 0.02 * (i % 100), 0.5 + 0.02 * (i / 100)};
+            worst = std::max(worst, std::abs(table.value(p) - std::exp(-p[0] - 0.7 * p[1]) - p[0] - p[1]));
+        }
+        return worst;
+    };
+    EXPECT_GT(std::log2(error2(16) / error2(32)), 3.5);
+}
+
+TEST(ForceTable, GivesSlopesThatAreTheDerivativesOfItsValue) {
+    const std::vector<double> x = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05};
+    const std::vector<double> y = {-0.07, -0.03, 0.0, 0.03, 0.07};
+    for (const auto kind : {FitOptions::Kind::interpolation, FitOptions::Kind::spline}) {
+        FitOptions options;
+        options.kind = kind;
+        const ForceTable table = ForceTable::fit(
+            test::grid_table(x, y, [](double h, double p) { return 0.3 + 0.001 / h * std::cos(20 * p) + 5 * p + std::sin(80 * h); }), "lift_force", options);
+        core::Random random(3);
+        for (int i = 0; i < 500; ++i) {
+            double p[2] = {random.uniform(0.001, 0.05), random.uniform(-0.07, 0.07)};
+            double slope[2];
+            (void)table.value(p, slope);
+            for (int k = 0; k < 2; ++k) {
+                const double step = k == 0 ? 1e-7 : 1e-6;
+                double a[2] = {p[0], p[1]}, b[2] = {p[0], p[1]};
+                a[k] -= step;
+                b[k] += step;
+                if (a[k] < table.axes()[k].lower || b[k] > table.axes()[k].upper) {
+                    continue;
+                }
+                const double difference = (table.value(b) - table.value(a)) / (2 * step);
+                EXPECT_NEAR(slope[k], difference, 2e-3 * (1 + std::abs(difference)));
+            }
+        }
+    }
+}
+
+TEST(ForceTable, EvaluatesThreeAndFourAxesLikeTheProductOfItsFactors) {
+    // A sum of cubics in each axis and their products is in the span of the spline: it must come back exactly.
+    const auto f = [](const double* p) {
+        const double a = 1 + p[0] - 2 * p[0] * p[0] * p[0];
+        const double b = 2 - p[1] + p[1] * p[1];
+        const double c = 1 + 0.5 * p[2] - p[2] * p[2] * p[2];
+        const double d = 1 - 0.3 * p[3];
+        return a * b * c * d;
+    };
+    const std::vector<double> x[4] = {{0, .3, .5, .8, 1}, {-1, -.4, .2, 1}, {0, .25, .5, .75, 1}, {0, .5, 1, 2}};
+    std::vector<double> values;
+    double p[4];
+    for (const double a : x[0]) {
+        for (const double b : x[1]) {
+            for (const double c : x[2]) {
+                for (const double d : x[3]) {
+                    p[0] = a, p[1] = b, p[2] = c, p[3] = d;
+                    values.push_back(f(p));
+                }
+            }
+        }
+    }
+    const tables::CubicGrid grid({x[0], x[1], x[2], x[3]}, values, tables::SlopeRule::not_a_knot);
+    core::Random random(11);
+    for (int i = 0; i < 300; ++i) {
+        for (int k = 0; k < 4; ++k) {
+            p[k] = random.uniform(x[k].front(), x[k].back());
+        }
+        double slope[4];
+        EXPECT_NEAR(grid.value(p, slope), f(p), 1e-12);
+        for (int k = 0; k < 4; ++k) {
+            double a[4] = {p[0], p[1], p[2], p[3]}, b[4] = {p[0], p[1], p[2], p[3]};
+            a[k] -= 1e-6;
+            b[k] += 1e-6;
+            EXPECT_NEAR(slope[k], (f(b) - f(a)) / 2e-6, 1e-7);
+        }
+    }
+}
+
+TEST(ForceTable, HoldsItsEndValueOutsideItsRangeAndSaysByHowMuch) {
+    const ForceTable table = monotone(csv("gap [mm], lift_force [N]\n1, 3\n2, 2\n4, 1\n"));
+    const double below = 0.0005, above = 0.0055;
+    const auto low = table.at({&below, 1});
+    EXPECT_TRUE(low.outside);
+    EXPECT_DOUBLE_EQ(low.value, 3);
+    EXPECT_DOUBLE_EQ(low.slope[0], 0);
+    EXPECT_NEAR(low.beyond[0], -0.0005, 1e-15);
+    EXPECT_GT(low.sigma, 0);
+    const auto high = table.at({&above, 1});
+    EXPECT_NEAR(high.value, 1, 1e-14);
+    EXPECT_NEAR(high.beyond[0], 0.0015, 1e-15);
+    const double inside = 0.003;
+    EXPECT_FALSE(table.at({&inside, 1}).outside);
+    const double nothing = std::nan("");
+    EXPECT_TRUE(std::isnan(table.value(&nothing)));
+}
+
+TEST(ForceTable, RefusesOrExtrapolatesWhenToldTo) {
+    FitOptions options;
+    options.kind = FitOptions::Kind::interpolation;
+    options.range = tables::RangePolicy::refuse;
+    const auto data = csv("gap [mm], lift_force [N]\n1, 3\n2, 2\n4, 1\n");
+    const double above = 0.005, further = 0.008;
+    const auto refusing = ForceTable::fit(data, "lift_force", options);
+    EXPECT_THAT(message_of([&] { (void)refusing.at({&above, 1}); }), HasSubstr("outside the table"));
+    options.range = tables::RangePolicy::extrapolate;
+    const auto going_on = ForceTable::fit(data, "lift_force", options);
+    const double end = 0.004;
+    const auto at_end = going_on.at({&end, 1});
+    const auto beyond = going_on.at({&above, 1});
+    EXPECT_NEAR(beyond.value, at_end.value + 0.001 * at_end.slope[0], 1e-12);
+    EXPECT_TRUE(beyond.outside);
+    EXPECT_GT(going_on.at({&further, 1}).sigma, beyond.sigma);
+}
+
+TEST(ForceTable, CarriesTheErrorsOfItsPoints) {
+    const ForceTable table = monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 3, 0.1\n2, 2, 0.2\n3, 1, 0.1\n4, 0, 0.1\n"));
+    const double at = 0.002;
+    EXPECT_NEAR(table.at({&at, 1}).sigma, 0.2, 1e-12);
+    const auto drawn = table.drawn(5);
+    EXPECT_NE(drawn.value(&at), table.value(&at));
+    EXPECT_EQ(drawn.value(&at), table.drawn(5).value(&at));
+    double sum = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        sum += std::pow(table.drawn(seed).value(&at) - 2, 2);
+    }
+    EXPECT_NEAR(std::sqrt(sum / 400), 0.2, 0.03);
+}
+
+TEST(ForceTable, FindsItsAxesAndConditions) {
+    const auto data = csv("gap [mm], pitch [deg], speed [m/s], lift_force [N]\n1,0,0.5,1\n2,0,0.5,2\n2,1,0.5,4\n1,1,0.5,3\n");
+    const ForceTable table = monotone(data);
+    ASSERT_EQ(table.axes().size(), 2u);
+    EXPECT_EQ(table.axes()[0].name, "gap");
+    EXPECT_EQ(table.axes()[1].name, "pitch");
+    ASSERT_EQ(table.conditions().size(), 1u);
+    EXPECT_EQ(table.conditions()[0].first, "speed");
+    const double at[2] = {0.002, 0};
+    EXPECT_DOUBLE_EQ(table.value(at), 2);
+}
+
+TEST(ForceTable, SaysWhatIsWrongWithItsPoints) {
+    const auto error_of = [](const std::string& text, const std::string& quantity = "lift_force") {
+        return message_of([&] { monotone(csv(text), quantity); });
+    };
+    EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n"), HasSubstr("one point only"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n2, 3\n", "lift_forze"), HasSubstr("lift_force"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n2, 3\n1, 2.5\n"), HasSubstr("made.csv:4"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n2, 3\n1, 2.5\n"), HasSubstr("occurs twice"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n2, 3, 0\n"), HasSubstr("made.csv:3:3"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n2, 3, -1\n"), HasSubstr("positive"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n1, 2\n"), HasSubstr("no axis"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n , 3\n2, 1\n"), HasSubstr("made.csv:3:1"));
+    EXPECT_THAT(error_of("gap [mm], pitch [deg], lift_force [N]\n1, 0, 1\n1, 1, 2\n2, 0, 3\n"), HasSubstr("gap 2 mm, pitch 1 deg"));
+}
+
+TEST(ForceTable, MergesRepeatsThatAgree) {
+    const ForceTable table = monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n1, 2.1, 0.1\n2, 3, 0.1\n"));
+    const double at = 0.001;
+    EXPECT_NEAR(table.value(&at), 2.05, 1e-12);
+    EXPECT_NEAR(table.at({&at, 1}).sigma, 0.1 / std::sqrt(2), 1e-12);
+    EXPECT_FALSE(table.remarks().empty());
+}
+
+}  // namespace
+}  // namespace underbody
