@@ -42,7 +42,9 @@ struct Conditions {
     double& operator[](Channel channel) { return value[static_cast<std::size_t>(channel)]; }
     double operator[](Channel channel) const { return value[static_cast<std::size_t>(channel)]; }
     [[nodiscard]] bool has(Channel channel) const { return !std::isnan((*this)[channel]); }
-    [[nodiscard]] double get(Channel channel, double fallback) const { return has(channel) ? (*this)[channel] : fallback; }
+    [[nodiscard]] double get(Channel channel, double fallback) const {
+        return has(channel) ? (*this)[channel] : fallback;
+    }
     /// Throws core::InputError with the nearest name when the name is not a channel.
     void set(std::string_view name, double value_si);
     /// Where this has no value, the one of `fallback`.

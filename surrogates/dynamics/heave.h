@@ -24,90 +24,138 @@ struct InputSignals {
     Conditions held;              ///< over the whole run
 };
 
-/// The model's heave equation with all its effects, ready to run. Immutable after `prepare`, safe to use from many threads.
+/// The Basset kernel 1/sqrt(t) as a sum of exponentials: error below 0.5 % from 20 ms to 200 s; what is faster acts as
+/// mass.
+inline constexpr std::size_t history_states = 8;
+struct HistoryKernel {
+    double rate[history_states];    ///< 1/s
+    double weight[history_states];  ///< s^-1/2
+    double mass;                    ///< s^1/2: kernel that is faster than the last rate, times history gives kg
+};
+const HistoryKernel& history_kernel();
+
+/// What a moment brings from outside.
+struct HeaveMoment {
+    double t = 0;
+    double input = 0;                   ///< N, as it reaches the body
+    const double* factors = nullptr;    ///< one per varying source
+    const double* channels = nullptr;   ///< channel_count values, for tables over other channels
+};
+
+/// The model's heave equation with all its effects, ready to run. Safe to use from many threads while nobody changes
+/// it.
 class HeavePlant {
 public:
-    /// Throws core::InputError: no lift source and no net weight is fine; a table that needs a channel nobody gives is not;
-    /// virtual mass that is not positive.
-    HeavePlant(const Model& model, const Conditions& held = {});
+    /// `varying`: channels that a run will supply as signals (their sources are not folded into one curve).
+    /// Throws core::InputError: a table that needs a channel nobody gives; virtual mass that is not positive.
+    explicit HeavePlant(const Model& model, const Conditions& held = {}, const std::vector<Channel>& varying = {});
 
-    HeaveTerms terms;  ///< may be changed between runs (discovery's inner loop); call refresh() after changing sources
+    HeaveTerms terms;  ///< numbers may be changed between runs (discovery's inner loop); after sources or corrections:
+                       ///< refresh()
 
-    /// F(t,h,w) with inputs of the moment, M dw/dt = F - 1/2 M' w^2.
-    [[nodiscard]] double acceleration(double t, double h, double w, double input, double lift_scale = 1) const;
-    /// Static lift at this gap with held channels, N (includes roughness).
-    [[nodiscard]] double lift(double h) const;
-    [[nodiscard]] double drag(double w) const;
-    [[nodiscard]] double inertia(double h, double& slope) const;
-    /// True when forces do not depend on time once inputs are constant.
-    [[nodiscard]] bool autonomous() const;
-    /// Folds sources with constant scales into one curve.
+    /// Folds the sources whose scales and axes are constant into one curve, and corrections of one variable into
+    /// curves.
     void refresh();
 
-    /// The folded lift curve (constant scales), and whether that is all the lift there is.
+    using Moment = HeaveMoment;
+    /// Lift of the tables at this gap, N (includes roughness).
+    [[nodiscard]] double lift(double h, const Moment& moment = {}) const;
+    /// Resistance of the water and everything else that follows the velocity, N, sign of w. Without history.
+    [[nodiscard]] double resistance(double h, double w) const;
+    /// M(h) without the history's share, and its slope dM/dh.
+    [[nodiscard]] double inertia(double h, double& slope) const;
+    /// dw/dt. `memory`: history_states states y_i with y_i' = -rate_i (y_i + w), or nullptr.
+    [[nodiscard]] double acceleration(double h, double w, const Moment& moment, const double* memory = nullptr) const;
+    /// Force at rest and with nothing from outside: all that depends on the gap alone, N.
+    [[nodiscard]] double static_force(double h) const { return static_force(h, Moment{}); }
+    [[nodiscard]] double static_force(double h, const Moment& moment) const;
+    /// True when forces depend on gap and velocity alone once inputs are held.
+    [[nodiscard]] bool autonomous() const;
+
+    /// Sum of the constant sources (without roughness); `single_curve`: that is all the lift there is.
     [[nodiscard]] const Curve& lift_curve() const { return folded_; }
-    [[nodiscard]] bool single_curve() const { return single_; }
+    [[nodiscard]] bool single_curve() const { return varying_.empty(); }
     [[nodiscard]] const Conditions& held() const { return held_; }
+    [[nodiscard]] double contact_gap() const { return terms.contact_gap; }
 
 private:
     friend class HeaveRun;
     Curve folded_;
-    bool single_ = true;
-    std::vector<std::size_t> varying_;  ///< sources whose scales or axes vary
+    Curve gap_correction_, velocity_correction_;
+    std::vector<std::size_t> varying_;            ///< indices of sources that vary
+    std::vector<std::size_t> table_corrections_;  ///< indices of corrections over other variables
+    std::vector<Channel> varying_channels_;
+    bool needs_channels_ = false;
     Conditions held_;
+    [[nodiscard]] double varying_lift(double h, const Moment& moment) const;
+    [[nodiscard]] double table_corrections(double h, double w, const Moment& moment) const;
 };
 
-/// A recorded run made ready for one plant: inputs transformed (delay, dead zone, gain, lag) and resampled to a fixed step.
+/// A recorded run made ready for one plant: inputs transformed (delay, dead zone, gain, lag) and resampled to a fixed
+/// step. Make a new one when the plant's sources or input transforms change; other numbers of the plant may change
+/// freely.
 class HeaveRun {
 public:
     /// Steps are at most `max_step` and divide each recorded interval evenly.
+    /// Throws core::InputError when a signal was not announced to the plant as varying.
     HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double max_step = 0.02);
 
     [[nodiscard]] std::size_t samples() const { return time_.size(); }
     [[nodiscard]] const std::vector<double>& time() const { return time_; }
 
-    /// RK4 from sample `first` to sample `last` (indices of the input's time base), starting in (gap, heave_velocity).
-    /// Writes the true gap and velocity at the samples first..last, sizes last - first + 1 (`velocity` may be empty).
-    /// Contact: the body stops at the contact gap (restitution) and leaves when the force lifts it.
-    /// History (Basset) starts with the fluid at rest in the body's frame. Never throws; NaN out means the run blew up.
+    /// RK4 from sample `first` to sample `last` (indices of the input's time base), starting in (gap, velocity).
+    /// Writes the true gap and velocity at the samples first..last, last - first + 1 of them (`velocity_out` may be
+    /// empty). Contact: the body stops at the contact gap (restitution) and leaves when the force lifts it. History
+    /// (Basset) starts with the fluid moving with the body. Never throws; NaN out means the run blew up.
     void simulate(const HeavePlant& plant, std::size_t first, std::size_t last, double gap, double velocity,
                   std::span<double> gap_out, std::span<double> velocity_out) const;
-    /// What the gap sensor would read, from true gaps on the same samples (delay by linear interpolation, bias).
-    void sensor(const HeavePlant& plant, std::size_t first, std::span<const double> true_gap, std::span<double> reading) const;
+    /// What the gap sensor would read, from true gaps at the samples first, first + 1, ... (delay by linear
+    /// interpolation, bias).
+    void sensor(const HeavePlant& plant, std::size_t first, std::span<const double> true_gap,
+                std::span<double> reading) const;
+    /// The input force as it reaches the body, at sample i.
+    [[nodiscard]] double input(std::size_t sample) const { return input_[start_[sample]]; }
+    /// What the outside brings at sample i.
+    [[nodiscard]] HeavePlant::Moment moment(std::size_t sample) const {
+        return moment_at(start_[sample], time_[sample]);
+    }
+    /// The same between samples: everything linear in time.
+    void moment(double t, HeavePlant::Moment& out, std::vector<double>& buffer) const;
 
 private:
+    [[nodiscard]] HeavePlant::Moment moment_at(std::size_t half, double t) const;
     std::vector<double> time_;
-    std::vector<std::size_t> start_;      ///< sample -> first half-step index
-    std::vector<double> step_;            ///< per sample interval
-    std::vector<double> input_;           ///< transformed input force at half steps
-    std::vector<std::vector<double>> scale_;  ///< per varying source: factor at half steps
-    std::vector<std::vector<double>> channel_;  ///< per channel used by tables, at half steps
-    std::vector<int> channel_index_;
+    std::vector<std::size_t> start_;  ///< sample -> index of its half step
+    std::vector<double> half_time_;
+    std::vector<double> input_;     ///< per half step
+    std::vector<double> factors_;   ///< per half step and varying source
+    std::vector<double> channels_;  ///< per half step: channel_count values; empty when nobody needs them
+    std::size_t factor_count_ = 0;
 };
 
 /// A trajectory by CVODE with events.
 struct TrajectoryOptions {
-    double duration = 60;          ///< s
-    double output_step = 0;        ///< 0: the integrator's own steps
-    double tolerance = 1e-9;       ///< relative; absolute scaled by 1e-3 m, 1e-3 m/s
+    double duration = 60;     ///< s
+    double output_step = 0;   ///< 0: the integrator's own steps
+    double tolerance = 1e-9;  ///< relative; absolute scaled by 1e-3 m, 1e-3 m/s
     bool stop_at_contact = false;
     bool stop_at_equilibrium = false;
-    double escape_gap = 0;         ///< stop above this gap; 0: never
-    double settle_speed = 1e-6;    ///< m/s, with |acceleration| small: equilibrium reached
+    double escape_gap = 0;       ///< stop above this gap; 0: never
+    double settle_speed = 1e-6;  ///< m/s, with |acceleration| small: equilibrium reached
 };
 
 struct TrajectoryEvent {
     double time = 0;
-    std::string kind;   ///< contact, lift_off, escape, equilibrium
+    std::string kind;  ///< contact, lift_off, escape, equilibrium
     double gap = 0;
     double velocity = 0;
 };
 
 struct Trajectory {
-    std::vector<double> time, gap, heave_velocity, lift_force, drag_force, input_force;
-    std::vector<bool> outside;   ///< a table was asked beyond its range there
+    std::vector<double> time, gap, heave_velocity, lift_force, heave_drag, input_force;
+    std::vector<bool> outside;  ///< a table was asked beyond its range there
     std::vector<TrajectoryEvent> events;
-    std::string end;             ///< "time", "contact", "escape", "equilibrium"
+    std::string end;  ///< "time", "contact", "escape", "equilibrium"
     core::Problems remarks;
 };
 
@@ -117,13 +165,13 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
 
 /// An equilibrium of the free heave motion (inputs as held).
 struct HeaveEquilibrium {
-    std::string name;       ///< "A", "B", ... for attractors from the ground up; "U1", ... for unstable ones
+    std::string name;  ///< "A", "B", ... for attractors from the ground up; "U1", ... for unstable ones
     double gap = 0;
     bool stable = false;
-    double stiffness = 0;   ///< -dF/dh, N/m
-    double frequency = 0;   ///< rad/s, sqrt(k/M), 0 when unstable
+    double stiffness = 0;  ///< -dF/dh, N/m
+    double frequency = 0;  ///< rad/s, sqrt(k/M), 0 when unstable
     double damping_ratio = 0;
-    double growth = 0;      ///< 1/s of an unstable one
+    double growth = 0;  ///< 1/s of an unstable one
 };
 std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant);
 

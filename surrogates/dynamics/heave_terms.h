@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "surrogates/dynamics/channels.h"
+#include "surrogates/dynamics/mixed_drag.h"
 #include "surrogates/tables/force_table.h"
 
 namespace underbody::dynamics {
@@ -68,9 +70,9 @@ private:
 
 /// A source of lift: curve(gap) times the power laws of its scales, or a table of several varying channels.
 struct HeaveSource {
-    Curve curve;                             ///< used when `table` is empty
-    std::vector<tables::ForceTable> table;   ///< none or one: its axes vary with time beside the gap
-    std::vector<Channel> axes;               ///< of `table`
+    Curve curve;                            ///< used when `table` is empty
+    std::vector<tables::ForceTable> table;  ///< none or one: its axes vary with time beside the gap
+    std::vector<Channel> axes;              ///< of `table`
     struct Scale {
         Channel channel;
         double reference = 1;
@@ -79,36 +81,37 @@ struct HeaveSource {
         double held = 0;  ///< value of the channel when nobody supplies it
     };
     std::vector<Scale> scales;
-    double gain = 1;
+    double factor = 1;
 };
 
 /// M(h) dw/dt + 1/2 M'(h) w^2 = F(t, h, w), dh/dt = w   (Lagrange: kinetic energy 1/2 M(h) w^2)
 ///   M = mass + sum of growth L/(h + L)
-///   F = -net_weight + lift(h, channels) + input - drag(w - current) + constant - friction sgn(w) - (linear + linear_film/h^3) w
+///   F = -net_weight + lift(h, channels) + input - drag(w - current) + constant - friction sgn(w) - (linear +
+///   linear_film/h^3) w
 ///       - quadratic w|w| - stiffness (h - reference) + amplitude sin(2 pi f t + phase) + corrections + history
 struct HeaveTerms {
-    double mass = 1;                 ///< virtual mass, kg, far from the ground
+    double mass = 1;  ///< virtual mass, kg, far from the ground
     struct Growth {
-        double mass = 0;             ///< kg, at the ground
-        double length = 1;           ///< m
+        double mass = 0;    ///< kg, at the ground
+        double length = 1;  ///< m
     };
     std::vector<Growth> growth;
-    Curve added_mass;                ///< kg over gap, replaces the constant when not empty (mass then excludes it)
+    Curve added_mass;  ///< kg over gap, replaces the constant when not empty (mass then excludes it)
 
     std::vector<HeaveSource> sources;
 
-    double constant = 0;             ///< N, up; holds -net_weight and constant_force
-    double linear = 0;               ///< N s/m on w - current (declared drag)
-    double quadratic = 0;            ///< N s^2/m^2 on w - current
-    bool mixed = false;              ///< mixed law instead of linear + quadratic (drag.h)
-    double mixed_data[8] = {};
-    double current = 0;              ///< m/s, water that rises with it
-    double extra_linear = 0;         ///< linear_damping: on w itself, N s/m
+    double constant = 0;   ///< N, up; holds -net_weight and constant_force
+    double linear = 0;     ///< N s/m on w - current (declared drag)
+    double quadratic = 0;  ///< N s^2/m^2 on w - current
+    bool mixed = false;    ///< mixed law instead of linear + quadratic (drag.h)
+    MixedDrag mixed_law;
+    double current = 0;       ///< m/s, water that rises with it
+    double extra_linear = 0;  ///< linear_damping: on w itself, N s/m
     double extra_quadratic = 0;
-    double friction = 0;             ///< N, against the motion: friction w/sqrt(w^2 + width^2)
-    double friction_width = 1e-4;    ///< m/s
-    double film = 0;                 ///< N s m^2: -film w/h^3
-    double stiffness = 0;            ///< N/m: -stiffness (h - stiffness_gap)
+    double friction = 0;           ///< N, against the motion: friction w/sqrt(w^2 + width^2)
+    double friction_width = 1e-4;  ///< m/s
+    double film = 0;               ///< N s m^2: -film w/h^3
+    double stiffness = 0;          ///< N/m: -stiffness (h - stiffness_gap)
     double stiffness_gap = 0;
     struct Wave {
         double amplitude = 0, frequency = 0, phase = 0;
@@ -120,7 +123,7 @@ struct HeaveTerms {
         std::vector<Channel> axes;
     };
     std::vector<Correction> corrections;  ///< unknown
-    double history = 0;              ///< N s^1/2 s/m: -history * integral of w'(s)/sqrt(t - s) ds
+    double history = 0;                   ///< N s^1/2 s/m: -history * integral of w'(s)/sqrt(t - s) ds
     /// Anything else a new effect brings: called each step; keep it cheap.
     using Extra = double (*)(const double* parameters, double t, double h, double w);
     struct ExtraTerm {
@@ -129,18 +132,19 @@ struct HeaveTerms {
     };
     std::vector<ExtraTerm> extras;
 
-    // What happens to the recorded input on its way to the body: delay, dead zone, gain, first-order lag, in this order.
-    double input_delay = 0;          ///< s
-    double input_dead_zone = 0;      ///< N
+    // What happens to the recorded input on its way to the body: delay, dead zone, gain, first-order lag, in this
+    // order.
+    double input_delay = 0;      ///< s
+    double input_dead_zone = 0;  ///< N
     double input_gain = 1;
-    double input_lag = 0;            ///< s, time constant
+    double input_lag = 0;  ///< s, time constant
 
     // What the sensor makes of the gap: reading(t) = gap(t - delay) + bias.
-    double sensor_bias = 0;          ///< m
-    double sensor_delay = 0;         ///< s
+    double sensor_bias = 0;   ///< m
+    double sensor_delay = 0;  ///< s
 
-    double contact_gap = 0;          ///< the body touches the ground there
-    double restitution = 0;          ///< 0: stays until the force lifts it off
+    double contact_gap = 0;                   ///< the body touches the ground there
+    double restitution = 0;                   ///< 0: stays until the force lifts it off
     double table_lower = 0, table_upper = 0;  ///< gaps that every table covers; outside they hold end values
 };
 

@@ -19,26 +19,26 @@ using Vector3 = std::array<double, 3>;
 
 /// Body frame: x forward, y starboard, z down, origin at the centre of gravity. SI. NaN: not declared.
 struct Vehicle {
-    double mass = 0;                 ///< required
+    double mass = 0;  ///< required
     double added_mass_surge = 0, added_mass_sway = 0, added_mass_heave = 0;
     std::optional<tables::ForceTable> added_mass_heave_table;  ///< over gap; replaces the constant
     std::string added_mass_heave_file;
     double roll_inertia, pitch_inertia, yaw_inertia;
     double added_inertia_roll = 0, added_inertia_pitch = 0, added_inertia_yaw = 0;
-    double net_weight = 0;           ///< N, weight less buoyancy, positive sinks
+    double net_weight = 0;  ///< N, weight less buoyancy, positive sinks
     double length, width, height;
-    double buoyancy_height = 0;      ///< centre of buoyancy above the centre of gravity, m (L_b)
-    double base_depth;               ///< base below the centre of gravity, m (L_nw)
+    double buoyancy_height = 0;  ///< centre of buoyancy above the centre of gravity, m (L_b)
+    double base_depth;           ///< base below the centre of gravity, m (L_nw)
     double base_half_length, base_half_width;
-    double drag_height = 0;          ///< centre of surge drag above the centre of gravity, m (L_cgw): nose-up moment
+    double drag_height = 0;  ///< centre of surge drag above the centre of gravity, m (L_cgw): nose-up moment
     Vehicle();
 };
 
 struct Environment {
-    double density = 998;                ///< kg/m^3
-    double kinematic_viscosity = 1e-6;   ///< m^2/s
-    double temperature = 293.15;         ///< K
-    double gravity = 9.80665;            ///< m/s^2
+    double density = 998;               ///< kg/m^3
+    double kinematic_viscosity = 1e-6;  ///< m^2/s
+    double temperature = 293.15;        ///< K
+    double gravity = 9.80665;           ///< m/s^2
 };
 
 /// Resistance with the sign of the velocity: F(w) w >= 0, subtracted from the equation of motion.
@@ -50,7 +50,8 @@ struct DragLaw {
     double length = 0.152;  ///< m, of the Reynolds number of the mixed law
 };
 
-/// force = gain * table(axes) * product of (max(0, |x| - dead_band) sgn x / (reference - dead_band))^exponent over its scales
+/// force = factor * table(axes) * product of (max(0, |x| - dead_band) sgn x / (reference - dead_band))^exponent over
+/// its scales
 struct ForceScale {
     Channel channel = Channel::speed;
     double reference = 1;
@@ -63,9 +64,9 @@ struct ForceSource {
     std::string table_file;            ///< as written in the model
     std::filesystem::path table_path;  ///< where it is
     tables::ForceTable table;
-    std::vector<Channel> axes;         ///< channels of table.axes(), in their order
+    std::vector<Channel> axes;  ///< channels of table.axes(), in their order
     std::vector<ForceScale> scales;
-    double gain = 1;
+    double factor = 1;
 };
 
 /// A thruster. `direction` is that of the thrust ON the vehicle, unit length.
@@ -73,13 +74,13 @@ struct Jet {
     std::string name;
     Vector3 position{};
     Vector3 direction{};
-    double minimum = 0;   ///< N
-    double maximum = 0;   ///< N
-    double lag = 0;       ///< s, time constant of its thrust
+    double minimum = 0;  ///< N
+    double maximum = 0;  ///< N
+    double lag = 0;      ///< s, time constant of its thrust
 };
 
 struct ContactLaw {
-    double gap;                ///< the body touches at this gap, m; NaN: 0, or the lower end of tables that reach below 0
+    double gap;  ///< the body touches at this gap, m; NaN: 0, or the lower end of tables that reach below 0
     double restitution = 0;
     double friction = 0;       ///< kinetic, Coulomb
     double slip_speed = 1e-3;  ///< m/s, of the smooth slip law
@@ -93,7 +94,7 @@ struct Coupling {
         sheltered,  ///< the jet's part is weakened by the cross-flow: times 1/(1 + (speed/limit_speed)^2)
     };
     Kind kind = Kind::sum;
-    double limit_speed = 1;    ///< m/s
+    double limit_speed = 1;  ///< m/s
 };
 
 struct Lineage {
@@ -102,7 +103,8 @@ struct Lineage {
 
 /// A declared number by its dotted name, for `declared_parameter`, variants and help.
 struct DeclaredParameter {
-    std::string name;   ///< "vehicle.mass", "drag.heave.quadratic", "force.1.gain", "force.1.scale.speed.exponent", ...
+    std::string
+        name;  ///< "vehicle.mass", "drag.heave.quadratic", "force.1.factor", "force.1.scale.speed.exponent", ...
     std::string unit;
     double value = 0;
     double lower = 0, upper = 0;  ///< what a reader accepts
@@ -111,8 +113,8 @@ struct DeclaredParameter {
 };
 
 struct Model {
-    std::string name;             ///< file name, for messages
-    std::filesystem::path file;   ///< where it was read; empty for one made in memory
+    std::string name;            ///< file name, for messages
+    std::filesystem::path file;  ///< where it was read; empty for one made in memory
     Vehicle vehicle;
     Environment environment;
     DragLaw drag_surge, drag_sway, drag_heave, drag_pitch, drag_yaw;
@@ -120,10 +122,10 @@ struct Model {
     std::vector<Jet> jets;
     ContactLaw contact;
     Coupling coupling;
-    Conditions conditions;        ///< [conditions]: held values where nothing else is said
+    Conditions conditions;  ///< [conditions]: held values where nothing else is said
     std::vector<EffectUse> effects;
     Lineage lineage;
-    core::Problems remarks;       ///< what the user should know: defaults taken, unusual values
+    core::Problems remarks;  ///< what the user should know: defaults taken, unusual values
 
     /// The text it was read from, without its [[effect]] and [lineage] parts.
     std::string base_text;
@@ -154,19 +156,21 @@ Model read_model_text(std::string_view text, const std::string& source, const st
 /// its tables copied beside it (same relative names where they lie below the model, else by file name).
 void write_model(const Model& model, const std::filesystem::path& file);
 
-/// A measured quantity (lift_force, drag_force, side_force, pitch_moment, ...) at a set point: sum of the model's sources of that
-/// quantity, with its static effects. `outside` becomes true when a table was asked beyond its range.
-/// Throws core::InputError when the set point lacks a channel that a table or scale needs and the model holds no value for it
-/// (a scale without value counts as at its reference).
-double static_value(const Model& model, const std::string& quantity, const Conditions& set_point, bool* outside = nullptr);
+/// A measured quantity (lift_force, drag_force, side_force, pitch_moment, ...) at a set point: sum of the model's
+/// sources of that quantity, with its static effects. `outside` becomes true when a table was asked beyond its range.
+/// Throws core::InputError when the set point lacks a channel that a table or scale needs and the model holds no value
+/// for it (a scale without value counts as at its reference).
+double static_value(const Model& model, const std::string& quantity, const Conditions& set_point,
+                    bool* outside = nullptr);
 
-/// The same, compiled once for many points: no look-up by name, declared_parameter already carried out.
+/// Sum of the model's sources of that quantity alone, without effects.
+double sum_of_sources(const Model& model, const std::string& quantity, const Conditions& seen, bool* outside = nullptr);
+
+/// static_value, compiled once for many points: no look-up by name, declared_parameter already carried out.
 class StaticModel {
 public:
     StaticModel(const Model& model, const std::string& quantity);
     double operator()(const Conditions& set_point, bool* outside = nullptr) const;
-    /// Sum of the sources alone, without effects.
-    double sources(const Conditions& seen, bool* outside = nullptr) const;
 
 private:
     Model model_;

@@ -20,45 +20,45 @@ struct Model;
 /// One number of an effect.
 struct EffectParameter {
     std::string name;
-    std::string unit;        ///< SI; "parameter" for declared_parameter's value, which has the unit of what it corrects
-    double lower = 0;        ///< hard bounds, SI: a model file outside them is refused
+    std::string unit;  ///< SI; "parameter" for declared_parameter's value, which has the unit of what it corrects
+    double lower = 0;  ///< hard bounds, SI: a model file outside them is refused
     double upper = 0;
-    double typical = 1;      ///< a plausible size on a vehicle of this kind, > 0: scale of a search, width of a prior
-    double neutral = 0;      ///< the value at which the effect vanishes (or, for a shape parameter, its default)
-    bool shape = false;      ///< true: says where or how fast, not how much; may be left out of a model file
-    std::string meaning;     ///< one line, with the sign
+    double typical = 1;   ///< a plausible size on a vehicle of this kind, > 0: scale of a search, width of a prior
+    double neutral = 0;   ///< the value at which the effect vanishes (or, for a shape parameter, its default)
+    bool shape = false;   ///< true: says where or how fast, not how much; may be left out of a model file
+    std::string meaning;  ///< one line, with the sign
 };
 
 enum class SeenIn { time_series, static_set, both };
 
 /// Everything about a kind of effect that is not a number of one use of it.
 struct EffectInfo {
-    std::string name;                         ///< as in model.toml and discovery.json
-    std::string title;                        ///< for people
-    std::string formula;                      ///< plain text, with the signs of interfaces.md
+    std::string name;     ///< as in model.toml and discovery.json
+    std::string title;    ///< for people
+    std::string formula;  ///< plain text, with the signs of interfaces.md
     SeenIn seen_in = SeenIn::time_series;
-    std::vector<std::string> depends_on;      ///< quantity names
+    std::vector<std::string> depends_on;  ///< quantity names
     std::vector<EffectParameter> parameters;
-    std::string source;                       ///< author, year, equation, or "definition"
-    bool takes_quantity = false;              ///< may name one measured quantity (`quantity = "lift_force"`); else all of them
-    bool takes_table = false;                 ///< needs a table of corrections (unknown)
-    bool takes_parameter = false;             ///< names a declared parameter of the model (declared_parameter)
+    std::string source;            ///< author, year, equation, or "definition"
+    bool takes_quantity = false;   ///< may name one measured quantity (`quantity = "lift_force"`); else all of them
+    bool takes_table = false;      ///< needs a table of corrections (unknown)
+    bool takes_parameter = false;  ///< names a declared parameter of the model (declared_parameter)
 };
 
 /// One use of an effect in a model.
 struct EffectUse {
     std::string name;
-    std::vector<double> values;   ///< one per EffectInfo::parameters, SI
-    std::vector<double> sigmas;   ///< one standard deviation each; 0 when unknown
-    std::string quantity;         ///< which measured quantity it changes; empty: every one it can
-    std::string parameter;        ///< declared_parameter only: dotted name, e.g. "vehicle.mass"
+    std::vector<double> values;               ///< one per EffectInfo::parameters, SI
+    std::vector<double> sigmas;               ///< one standard deviation each; 0 when unknown
+    std::string quantity;                     ///< which measured quantity it changes; empty: every one it can
+    std::string parameter;                    ///< declared_parameter only: dotted name, e.g. "vehicle.mass"
     std::optional<tables::ForceTable> table;  ///< unknown only: the correction, N, over named variables
-    std::string table_file;       ///< where `table` came from or will be written, relative to the model
+    std::string table_file;                   ///< where `table` came from or will be written, relative to the model
 };
 
 /// A set point of a static measurement on its way through a model.
 struct StaticPoint {
-    Conditions conditions;        ///< as the model shall see them
+    Conditions conditions;  ///< as the model shall see them
     const Model* model = nullptr;
 };
 
@@ -73,8 +73,8 @@ public:
     virtual void add_to(HeaveTerms& terms, const EffectUse& use, const Model& model) const;
     /// Static: changes the conditions before the model's forces are looked up (gap_offset, current, ...).
     virtual void before(StaticPoint& point, const EffectUse& use) const;
-    /// Static: the value of `quantity` after the model's forces were summed. `set_point` is as measured, `seen` as changed
-    /// by all `before`s.
+    /// Static: the value of `quantity` after the model's forces were summed. `set_point` is as measured, `seen` as
+    /// changed by all `before`s.
     [[nodiscard]] virtual double after(const std::string& quantity, double value, const StaticPoint& seen,
                                        const Conditions& set_point, const EffectUse& use) const;
 

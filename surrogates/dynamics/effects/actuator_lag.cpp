@@ -1,0 +1,34 @@
+// time_constant du/dt = u_recorded - u
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"actuator_lag",
+                                    "first-order lag of the actuator",
+                                    "time_constant du/dt = u_recorded - u",
+                                    SeenIn::time_series,
+                                    {"input_force", "time"},
+                                    {{"time_constant", "s", 0, 60, 0.3, 0, false, "63 % of a step are there after it"}},
+                                    "definition"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.input_lag += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& actuator_lag_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,34 @@
+// (M + mass) dw/dt
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"added_mass",
+                                    "added mass",
+                                    "(M + mass) dw/dt",
+                                    SeenIn::time_series,
+                                    {"heave_acceleration"},
+                                    {{"mass", "kg", -50, 500, 0.5, 0, false, "added to the declared virtual mass"}},
+                                    "definition"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.mass += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& added_mass_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

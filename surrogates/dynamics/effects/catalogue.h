@@ -1,0 +1,46 @@
+// The kinds of effects, in the order of the catalogue.
+#pragma once
+
+#include "surrogates/dynamics/effects/effect.h"
+
+#define UNDERBODY_EFFECTS(X)    \
+    X(constant_force)           \
+    X(coulomb_friction)         \
+    X(linear_damping)           \
+    X(quadratic_damping)        \
+    X(squeeze_film_damping)     \
+    X(added_mass)               \
+    X(gap_dependent_added_mass) \
+    X(tether_stiffness)         \
+    X(ambient_heave_current)    \
+    X(periodic_disturbance)     \
+    X(input_gain)               \
+    X(input_dead_zone)          \
+    X(input_delay)              \
+    X(actuator_lag)             \
+    X(gap_sensor_bias)          \
+    X(gap_sensor_delay)         \
+    X(surface_roughness)        \
+    X(history_force)            \
+    X(gap_offset)               \
+    X(force_bias)               \
+    X(sensor_gain)              \
+    X(drift)                    \
+    X(speed_exponent)           \
+    X(current)                  \
+    X(temperature)              \
+    X(strut_buoyancy)           \
+    X(cable_buoyancy)           \
+    X(guide_friction)           \
+    X(pump_curve)               \
+    X(pitch_misalignment)       \
+    X(declared_parameter)       \
+    X(unknown)
+
+namespace underbody::dynamics {
+
+#define UNDERBODY_DECLARE_EFFECT(name) const Effect& name##_effect();
+UNDERBODY_EFFECTS(UNDERBODY_DECLARE_EFFECT)
+#undef UNDERBODY_DECLARE_EFFECT
+
+}  // namespace underbody::dynamics

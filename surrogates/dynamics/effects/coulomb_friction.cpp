@@ -1,0 +1,34 @@
+// F = -force w/sqrt(w^2 + (0.1 mm/s)^2)
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"coulomb_friction",
+                                    "Coulomb friction",
+                                    "F = -force w/sqrt(w^2 + (0.1 mm/s)^2)",
+                                    SeenIn::time_series,
+                                    {"heave_velocity"},
+                                    {{"force", "N", 0, 100, 0.01, 0, false, "against the motion"}},
+                                    "Coulomb; the step smoothed over 0.1 mm/s"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.friction += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& coulomb_friction_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,33 @@
+// speed through the water = speed + velocity
+#include "surrogates/dynamics/effects/catalogue.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"current",
+                                    "water that moves along x",
+                                    "speed through the water = speed + velocity",
+                                    SeenIn::static_set,
+                                    {"speed"},
+                                    {{"velocity", "m/s", -5, 5, 0.02, 0, false, "adds to the speed through the water"}},
+                                    "definition"};
+        return the;
+    }
+
+    void before(StaticPoint& point, const EffectUse& use) const override {
+        point.conditions[Channel::speed] += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& current_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,35 @@
+// M(h) = M + mass length/(h + length), with its Lagrangian term 1/2 M(h)' w^2
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"gap_dependent_added_mass",
+                                    "added mass that grows toward the ground",
+                                    "M(h) = M + mass length/(h + length), with its Lagrangian term 1/2 M(h)' w^2",
+                                    SeenIn::time_series,
+                                    {"gap", "heave_acceleration"},
+                                    {{"mass", "kg", -20, 1000.0, 1, 0, false, "extra virtual mass at the ground"},
+                                     {"length", "m", 0.0001, 2, 0.05, 0.05, true, "gap at which half of it is left"}},
+                                    "thin-gap limit rho G/h: Lamb 1932; kinetic energy 1/2 M(h) w^2"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.growth.push_back({use.values[0], use.values[1]});
+    }
+};
+
+}  // namespace
+
+const Effect& gap_dependent_added_mass_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

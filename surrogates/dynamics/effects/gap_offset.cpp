@@ -1,0 +1,34 @@
+// h = set gap + offset
+#include "surrogates/dynamics/effects/catalogue.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{
+            "gap_offset",
+            "offset of the set gaps",
+            "h = set gap + offset",
+            SeenIn::static_set,
+            {"gap"},
+            {{"offset", "m", -0.1, 0.1, 0.0005, 0, false, "the true gap is larger than the set one"}},
+            "definition"};
+        return the;
+    }
+
+    void before(StaticPoint& point, const EffectUse& use) const override {
+        point.conditions[Channel::gap] += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& gap_offset_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,34 @@
+// reading(t) = h(t - delay)
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"gap_sensor_delay",
+                                    "delay of the gap sensor",
+                                    "reading(t) = h(t - delay)",
+                                    SeenIn::time_series,
+                                    {"gap", "time"},
+                                    {{"delay", "s", 0, 30, 0.1, 0, false, "the reading comes later than the gap"}},
+                                    "definition"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.sensor_delay += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& gap_sensor_delay_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,40 @@
+// F = -area sqrt(rho mu/pi) * integral of w'(s)/sqrt(t - s) ds
+#include <cmath>
+
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/model.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"history_force",
+                                    "history force (Basset)",
+                                    "F = -area sqrt(rho mu/pi) * integral of w'(s)/sqrt(t - s) ds",
+                                    SeenIn::time_series,
+                                    {"time", "heave_acceleration"},
+                                    {{"area", "m^2", 0, 10000.0, 1, 0, false,
+                                      "wetted area of a plate that would have it; 6 pi R^2 for a sphere of radius R"}},
+                                    "Basset 1888; Stokes layer over a plate"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& model) const override {
+        const double rho = model.environment.density;
+        const double mu = rho * model.environment.kinematic_viscosity;
+        terms.history += use.values[0] * std::sqrt(rho * mu / 3.14159265358979323846);
+    }
+};
+
+}  // namespace
+
+const Effect& history_force_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,34 @@
+// u(t) = u_recorded(t - delay)
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"input_delay",
+                                    "delay of the actuator",
+                                    "u(t) = u_recorded(t - delay)",
+                                    SeenIn::time_series,
+                                    {"input_force", "time"},
+                                    {{"delay", "s", 0, 30, 0.2, 0, false, "the force comes later than recorded"}},
+                                    "definition"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.input_delay += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& input_delay_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,34 @@
+// F = -coefficient (w - water velocity)
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"linear_damping",
+                                    "linear damping missing from the drag law",
+                                    "F = -coefficient (w - water velocity)",
+                                    SeenIn::time_series,
+                                    {"heave_velocity"},
+                                    {{"coefficient", "N s/m", -100, 10000.0, 0.2, 0, false, "resistance positive"}},
+                                    "definition"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.extra_linear += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& linear_damping_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

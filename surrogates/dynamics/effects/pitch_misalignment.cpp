@@ -1,0 +1,56 @@
+// pitch + angle where tables have a pitch axis; else the load cell leans: lift cos + drag sin, drag cos - lift sin
+#include <algorithm>
+#include <cmath>
+
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/model.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"pitch_misalignment",
+                                    "body mounted at an angle",
+                                    "pitch + angle where tables have a pitch axis; else the load cell leans: lift cos "
+                                    "+ drag sin, drag cos - lift sin",
+                                    SeenIn::static_set,
+                                    {"pitch", "lift_force", "drag_force"},
+                                    {{"angle", "rad", -0.6, 0.6, 0.01, 0, false, "nose up"}},
+                                    "rotation of the balance axes"};
+        return the;
+    }
+
+    void before(StaticPoint& point, const EffectUse& use) const override {
+        point.conditions[Channel::pitch] = point.conditions.get(Channel::pitch, 0) + use.values[0];
+    }
+
+    [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& seen,
+                               const Conditions& /*set_point*/, const EffectUse& use) const override {
+        for (const ForceSource& source : seen.model->forces) {
+            if (source.quantity == quantity &&
+                std::find(source.axes.begin(), source.axes.end(), Channel::pitch) != source.axes.end()) {
+                return value;
+            }
+        }
+        const double c = std::cos(use.values[0]), s = std::sin(use.values[0]);
+        if (quantity == "lift_force") {
+            return value * c + sum_of_sources(*seen.model, "drag_force", seen.conditions) * s;
+        }
+        if (quantity == "drag_force") {
+            return value * c - sum_of_sources(*seen.model, "lift_force", seen.conditions) * s;
+        }
+        return value;
+    }
+};
+
+}  // namespace
+
+const Effect& pitch_misalignment_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

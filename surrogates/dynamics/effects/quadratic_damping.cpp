@@ -1,0 +1,35 @@
+// F = -coefficient (w - water velocity) |w - water velocity|
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{
+            "quadratic_damping",
+            "quadratic damping missing from the drag law",
+            "F = -coefficient (w - water velocity) |w - water velocity|",
+            SeenIn::time_series,
+            {"heave_velocity"},
+            {{"coefficient", "N s^2/m^2", -1000.0, 100000.0, 3, 0, false, "resistance positive"}},
+            "definition"};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.extra_quadratic += use.values[0];
+    }
+};
+
+}  // namespace
+
+const Effect& quadratic_damping_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

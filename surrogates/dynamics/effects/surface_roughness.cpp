@@ -1,0 +1,49 @@
+// lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{
+            "surface_roughness",
+            "roughness of the surface",
+            "lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length",
+            SeenIn::both,
+            {"gap"},
+            {{"near", "1", -0.9, 5, 0.2, 0, false, "suction deeper by this fraction at small gaps"},
+             {"far", "1", -5, 1, 0.2, 0, false, "weaker by this fraction at large gaps"},
+             {"length", "m", 0.0001, 5, 0.1, 0.1, true, "gap between the two"}},
+            "shape after the load-cell tests of the thesis, chapter 5: deeper near dip, weaker far field",
+            true};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        terms.rough_near = use.values[0];
+        terms.rough_far = use.values[1];
+        terms.rough_length = use.values[2];
+    }
+
+    [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& seen,
+                               const Conditions& /*set_point*/, const EffectUse& use) const override {
+        if (use.quantity.empty() ? quantity != "lift_force" : use.quantity != quantity) {
+            return value;
+        }
+        const double x = seen.conditions.get(Channel::gap, 0) / use.values[2];
+        return value * (1 + (use.values[0] - use.values[1] * x * x) / (1 + x * x));
+    }
+};
+
+}  // namespace
+
+const Effect& surface_roughness_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,60 @@
+// force + table(its variables)
+#include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+class Kind final : public Effect {
+public:
+    [[nodiscard]] const EffectInfo& info() const override {
+        static const EffectInfo the{"unknown",
+                                    "a smooth correction by a table",
+                                    "force + table(its variables)",
+                                    SeenIn::both,
+                                    {},
+                                    {},
+                                    "measured residual",
+                                    true,
+                                    true};
+        return the;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        if (!use.table) {
+            return;
+        }
+        HeaveTerms::Correction correction{*use.table, {}};
+        for (const tables::TableAxis& axis : use.table->axes()) {
+            Channel channel{};
+            find_channel(axis.name, channel);
+            correction.axes.push_back(channel);
+        }
+        terms.corrections.push_back(std::move(correction));
+    }
+
+    [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& /*seen*/,
+                               const Conditions& set_point, const EffectUse& use) const override {
+        if (!use.table || (use.quantity.empty() ? quantity != use.table->quantity() : use.quantity != quantity)) {
+            return value;
+        }
+        double point[tables::max_axes] = {};
+        std::size_t i = 0;
+        for (const tables::TableAxis& axis : use.table->axes()) {
+            Channel channel{};
+            find_channel(axis.name, channel);
+            point[i++] = set_point.get(channel, 0);
+        }
+        return value + use.table->value(point);
+    }
+};
+
+}  // namespace
+
+const Effect& unknown_effect() {
+    static const Kind kind;
+    return kind;
+}
+
+}  // namespace underbody::dynamics
