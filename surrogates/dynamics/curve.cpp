@@ -213,7 +213,7 @@ Curve Curve::along(const tables::ForceTable& table, std::size_t axis, std::span<
         }
         return value;
     };
-    std::vector<double> x = along.points;
+    std::vector<double> x = table.knots(axis);
     if (x.empty() || x.front() > along.lower) {
         x.insert(x.begin(), along.lower);
     }

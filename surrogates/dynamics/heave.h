@@ -1,12 +1,12 @@
 // Heave: one degree of freedom over recorded or given inputs.
 #pragma once
 
-#include <functional>
-#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/figure.h"
 #include "core/progress.h"
 #include "surrogates/dynamics/heave_terms.h"
 #include "surrogates/dynamics/model.h"
@@ -37,9 +37,9 @@ const HistoryKernel& history_kernel();
 /// What a moment brings from outside.
 struct HeaveMoment {
     double t = 0;
-    double input = 0;                   ///< N, as it reaches the body
-    const double* factors = nullptr;    ///< one per varying source
-    const double* channels = nullptr;   ///< channel_count values, for tables over other channels
+    double input = 0;                  ///< N, as it reaches the body
+    const double* factors = nullptr;   ///< one per varying source
+    const double* channels = nullptr;  ///< channel_count values, for tables over other channels
 };
 
 /// The model's heave equation with all its effects, ready to run. Safe to use from many threads while nobody changes
@@ -137,18 +137,19 @@ private:
 struct TrajectoryOptions {
     double duration = 60;     ///< s
     double output_step = 0;   ///< 0: the integrator's own steps
-    double tolerance = 1e-9;  ///< relative; absolute scaled by 1e-3 m, 1e-3 m/s
+    double tolerance = 1e-9;  ///< relative; absolute: times 1 mm and 1 mm/s
     bool stop_at_contact = false;
     bool stop_at_equilibrium = false;
-    double escape_gap = 0;       ///< stop above this gap; 0: never
-    double settle_speed = 1e-6;  ///< m/s, with |acceleration| small: equilibrium reached
+    double escape_gap = 0;  ///< stop above this gap; 0: never
+    double settle_speed =
+        1e-6;  ///< m/s: at equilibrium when slower, and the force too small to exceed it within a second
 };
 
 struct TrajectoryEvent {
     double time = 0;
     std::string kind;  ///< contact, lift_off, escape, equilibrium
     double gap = 0;
-    double velocity = 0;
+    double velocity = 0;  ///< just before
 };
 
 struct Trajectory {
@@ -157,11 +158,20 @@ struct Trajectory {
     std::vector<TrajectoryEvent> events;
     std::string end;  ///< "time", "contact", "escape", "equilibrium"
     core::Problems remarks;
+    [[nodiscard]] core::Table table() const;
 };
 
+/// The motion from (gap, heave_velocity). `inputs` may be empty (no signals, no times): everything held.
 /// Throws core::InputError for a start inside the ground; core::Error (kind "integration") when CVODE gives up.
 Trajectory simulate(const Model& model, double gap, double heave_velocity, const InputSignals& inputs,
                     const TrajectoryOptions& options, core::Progress& progress = core::Progress::none());
+
+/// A plant for a run with these inputs: what varies in them is not folded.
+HeavePlant plant_for(const Model& model, const InputSignals& inputs);
+
+/// Gap and velocity against time with events and equilibria.
+core::Figure trajectory_figure(const Trajectory& trajectory, const std::vector<struct HeaveEquilibrium>& equilibria);
+void to_json(nlohmann::json& json, const Trajectory& trajectory);
 
 /// An equilibrium of the free heave motion (inputs as held).
 struct HeaveEquilibrium {
