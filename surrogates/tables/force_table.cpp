@@ -68,6 +68,15 @@ Evaluation ForceTable::at(std::span<const double> point) const {
     return result;
 }
 
+double ForceTable::sigma(const double* point) const noexcept {
+    std::array<double, max_axes> beyond{};
+    for (std::size_t k = 0; k < impl_->axes.size(); ++k) {
+        const TableAxis& axis = impl_->axes[k];
+        beyond[k] = point[k] < axis.lower ? point[k] - axis.lower : point[k] > axis.upper ? point[k] - axis.upper : 0;
+    }
+    return impl_->error.sigma(point, beyond.data());
+}
+
 ForceTable ForceTable::drawn(std::uint64_t seed) const { return ForceTable(drawn_from(*impl_, seed)); }
 
 }  // namespace underbody::tables

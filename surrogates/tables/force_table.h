@@ -73,6 +73,8 @@ public:
     /// The hot path: clamped value and slopes (`slope` has one entry per axis), no error, no allocation, never throws.
     [[nodiscard]] double value(const double* point, double* slope = nullptr) const noexcept;
 
+    /// One standard deviation at a point; grows beyond the range whatever the policy. Never throws.
+    [[nodiscard]] double sigma(const double* point) const noexcept;
     /// Grid lines of the piecewise cubic that value() evaluates along an axis: between two of them it is one cubic. For
     /// interpolated tables these are the axis's points.
     [[nodiscard]] const std::vector<double>& knots(std::size_t axis) const;

@@ -1,0 +1,42 @@
+// Pictures of tables as core::Figure values: curves with error bands, points and equilibria; maps for two axes.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/figure.h"
+#include "surrogates/tables/equilibria.h"
+#include "surrogates/tables/force_table.h"
+
+namespace underbody::tables {
+
+struct FigureOptions {
+    std::string axis;                 ///< along which; empty: gap, or the first
+    Held held;                        ///< the other axes, SI; those that are missing take 0 (pitch) or the middle of their range
+    std::optional<EquilibriumOptions> equilibria;  ///< draws the net weight and the equilibria
+    std::string title;
+    bool logarithmic = false;         ///< the axis (positive values only)
+    int samples = 400;
+};
+
+/// The curve along one axis with its band of two standard deviations, the points that lie on it, and the equilibria.
+core::Figure curve_figure(const ForceTable& table, const FigureOptions& options = {});
+/// One curve for each value of a second axis (its points, at most nine).
+core::Figure family_figure(const ForceTable& table, const std::string& axis, const std::string& family, const FigureOptions& options = {});
+/// Colours over two axes, with the points; other axes held.
+core::Figure map_figure(const ForceTable& table, const std::string& x_axis, const std::string& y_axis, const FigureOptions& options = {});
+/// Several tables of one quantity over each other, with names.
+core::Figure comparison_figure(const std::vector<std::pair<std::string, ForceTable>>& tables, const FigureOptions& options = {});
+/// The one to show first: a map for two and more axes, a curve for one.
+core::Figure figure(const ForceTable& table, const FigureOptions& options = {});
+
+/// Unit that people read this quantity in here: the one its column was written in, else the SI unit.
+std::string shown_unit(const ForceTable& table, const std::string& quantity);
+
+/// Evaluation and table as JSON (SI).
+void to_json(nlohmann::json& json, const ForceTable& table);
+nlohmann::json to_json(const ForceTable& table, const std::vector<double>& point, const Evaluation& evaluation);
+
+}  // namespace underbody::tables

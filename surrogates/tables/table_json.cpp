@@ -1,0 +1,50 @@
+// Tables and their values as JSON.
+#include <nlohmann/json.hpp>
+
+#include "surrogates/tables/figures.h"
+
+namespace underbody::tables {
+
+namespace {
+std::string policy_name(RangePolicy policy) {
+    return policy == RangePolicy::clamp ? "clamp" : policy == RangePolicy::refuse ? "refuse" : "extrapolate";
+}
+}  // namespace
+
+void to_json(nlohmann::json& json, const ForceTable& table) {
+    json = nlohmann::json{{"quantity", table.quantity()}, {"unit", table.unit()},
+                          {"kind", table.kind()},         {"source", table.source()},
+                          {"points", table.points().rows()}, {"range_policy", policy_name(table.range())}};
+    json["axes"] = nlohmann::json::array();
+    for (std::size_t k = 0; k < table.axes().size(); ++k) {
+        const TableAxis& axis = table.axes()[k];
+        json["axes"].push_back({{"name", axis.name},
+                                {"unit", axis.unit},
+                                {"lower", axis.lower},
+                                {"upper", axis.upper},
+                                {"set_points", axis.points.size()},
+                                {"grid_lines", table.knots(k).size()}});
+    }
+    json["conditions"] = nlohmann::json::object();
+    for (const auto& [name, value] : table.conditions()) {
+        json["conditions"][name] = value;
+    }
+    json["remarks"] = nlohmann::json::array();
+    for (const auto& remark : table.remarks()) {
+        json["remarks"].push_back(remark.message);
+    }
+}
+
+nlohmann::json to_json(const ForceTable& table, const std::vector<double>& point, const Evaluation& evaluation) {
+    nlohmann::json json{{"quantity", table.quantity()}, {"unit", table.unit()},           {"value", evaluation.value},
+                        {"sigma", evaluation.sigma},    {"outside", evaluation.outside}, {"kind", table.kind()}};
+    for (std::size_t k = 0; k < point.size(); ++k) {
+        const std::string& name = table.axes()[k].name;
+        json["at"][name] = point[k];
+        json["slope"][name] = evaluation.slope[k];
+        json["beyond"][name] = evaluation.beyond[k];
+    }
+    return json;
+}
+
+}  // namespace underbody::tables
