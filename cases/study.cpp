@@ -193,13 +193,35 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const
     return spec;
 }
 
+void check_tables(const Study& study, const TomlTable& table, const char* key, const std::vector<std::string>& names) {
+    std::vector<std::string> known;
+    for (const auto& spec : study.tables) {
+        known.push_back(spec.name);
+    }
+    for (const auto& name : names) {
+        if (study.find_table(name) == nullptr) {
+            throw core::InputError("name", table.path_of(key) + ": there is no [[table]] named '" + name + "'", table.place(key),
+                                   core::did_you_mean(name, known));
+        }
+    }
+}
+
 void read_frame(Study& study, const TomlTable& root) {
     const TomlTable frame = root.table_or_empty("frame");
     const std::vector<std::string> directions = {"+x", "-x", "+y", "-y", "+z", "-z"};
     study.forward = frame.choice("forward", directions, "+x");
     study.up = frame.choice("up", directions, "+z");
     study.symmetry = frame.choice("symmetry", {"", "x", "y", "z"}, "");
-    study.reference_point = frame.string_or("moments_about", "base_centre");
+    if (frame.has("moments_about") && !frame.is_string("moments_about")) {
+        const auto point = frame.quantities("moments_about", "m");
+        if (point.size() != 3) {
+            throw core::InputError("range", "frame.moments_about needs three coordinates", frame.place("moments_about"),
+                                   "moments_about = [\"0 m\", \"0 m\", \"5 mm\"], or \"base_centre\"");
+        }
+        study.moments_about = std::array<double, 3>{point[0], point[1], point[2]};
+    } else {
+        (void)frame.choice("moments_about", {"base_centre"}, "base_centre");
+    }
     if (study.forward.back() == study.up.back()) {
         throw core::InputError("range", "forward and up lie along one axis", frame.place("up"));
     }
@@ -256,6 +278,8 @@ Study Study::open(const fs::path& path) {
         RegionSpec spec;
         spec.name = unique_name(table, regions);
         spec.model = table.file("model");
+        spec.forces = table.strings("forces");
+        check_tables(study, table, "forces", spec.forces);
         spec.axes = table.string("axes");
         spec.duration = table.quantity_or("for", "s", 60);
         spec.columns = static_cast<int>(table.integer_or("columns", 400));
@@ -278,13 +302,10 @@ Study Study::open(const fs::path& path) {
         spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
         study.verifications.push_back(std::move(spec));
     }
-    study.comparisons = root.strings("compare");
-    for (const auto& name : study.comparisons) {
-        if (study.find_table(name) == nullptr) {
-            std::vector<std::string> known(tables.begin(), tables.end());
-            throw core::InputError("name", "compare: there is no [[table]] named '" + name + "'", root.place("compare"),
-                                   core::did_you_mean(name, known));
-        }
+    std::set<std::string> comparisons;
+    for (const auto& table : root.tables("compare")) {
+        study.comparisons.push_back({unique_name(table, comparisons), table.strings("tables")});
+        check_tables(study, table, "tables", study.comparisons.back().tables);
     }
     root.finish();
     return study;

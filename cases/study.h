@@ -1,6 +1,7 @@
 // A study: a folder with `study.toml`, the CFD files of its cases, models and measurements, and a store of results.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -66,8 +67,8 @@ struct TableSpec {
     std::string quantity;            ///< lift_force, ...
     std::vector<std::string> axes;   ///< gap, pitch, ...
     Conditions where;
-    double relative_sigma = 0;       ///< of the value, when no mesh study covers the table
-    std::string mesh_uncertainty;    ///< name of the [[mesh_uncertainty]] whose relative error the points carry
+    double relative_sigma = 0;       ///< of the value, added in squares
+    std::string mesh_uncertainty;    ///< name of the [[mesh_uncertainty]] whose standard uncertainty the points carry
     std::optional<double> net_weight;  ///< N: equilibria are found for it
     double virtual_mass = 0;           ///< kg, for frequency and kick
     std::vector<std::string> exports;  ///< formats
@@ -77,6 +78,7 @@ struct TableSpec {
 struct RegionSpec {
     std::string name;
     std::filesystem::path model;
+    std::vector<std::string> forces;  ///< names of [[table]]: added to the model as force sources, scaled with speed squared
     std::string axes;       ///< as on the command line: "gap=1mm:100mm,heave_velocity=-0.1:0.1"
     double duration = 60;   ///< s
     int columns = 400;
@@ -89,6 +91,12 @@ struct MeasurementSpec {
     std::filesystem::path model;
     std::filesystem::path data;
     bool discover = false;  ///< close the loop, not only the residual
+};
+
+/// [[compare]]: tables over one axis, laid over each other.
+struct CompareSpec {
+    std::string name;
+    std::vector<std::string> tables;
 };
 
 /// [[verify]]: a table of the solver's own forces, one row a case.
@@ -112,7 +120,7 @@ public:
     std::string up = "+z";
     std::string symmetry;        ///< "" or an axis: half models
     Conditions reference;        ///< density, length, width, height, speed for coefficients
-    std::string reference_point = "base_centre";  ///< or "x,y,z"
+    std::optional<std::array<double, 3>> moments_about;  ///< m, file axes; none: the centre of the base
     std::vector<Case> cases;
     std::vector<BodySpec> bodies;
     std::vector<PictureSpec> pictures;
@@ -121,7 +129,7 @@ public:
     std::vector<RegionSpec> regions;
     std::vector<MeasurementSpec> measurements;
     std::vector<VerifySpec> verifications;
-    std::vector<std::string> comparisons;  ///< names of tables laid over each other, by variant
+    std::vector<CompareSpec> comparisons;
 
     [[nodiscard]] std::vector<const Case*> select(const Conditions& where) const;
     [[nodiscard]] const TableSpec* find_table(const std::string& name) const;
@@ -138,6 +146,7 @@ struct RunOptions {
     std::filesystem::path report;  ///< HTML file; empty: STUDY/report/index.html
     FigureRenderer renderer;       ///< without one the report has no plots
     bool pictures = true;          ///< 3D pictures (need Xvfb)
+    bool write_report = true;      ///< also exports and models, beside it
 };
 
 /// How far a step came.
@@ -168,6 +177,11 @@ StudyResults run_study(const Study& study, const RunOptions& options, core::Prog
 
 /// Only what the store holds already (nothing is computed): for opening a study in the desktop.
 StudyResults stored_results(const Study& study, const RunOptions& options);
+
+/// The points of a [[table]]: its axes and its quantity with `QUANTITY_sigma`, one row a case that fits, from
+/// `results.loads`. The sigma is the standard uncertainty of the mesh study the table names and the relative error
+/// it states, added in squares. Throws core::InputError when no loads are there.
+core::Table table_points(const TableSpec& spec, const StudyResults& results);
 
 void to_json(nlohmann::json& json, const StudyResults& results);
 

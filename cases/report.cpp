@@ -1,0 +1,389 @@
+// The report: one self-contained page that a person wants to read, from the documents of the steps.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cases/code_version.h"
+#include "cases/engine.h"
+#include "core/html.h"
+#include "core/text.h"
+#include "core/units.h"
+
+namespace underbody::cases {
+
+namespace {
+
+using core::HtmlPage;
+using nlohmann::json;
+
+std::string shown(double value, const std::string& from, const std::string& to, int digits = 3) {
+    return std::isfinite(value) ? core::format_number(core::convert(value, from, to), digits) : "-";
+}
+
+double number_in(const json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_number() ? found->get<double>() : std::nan("");
+}
+
+std::string text_in(const json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+std::string percent(double fraction, int digits = 3) { return core::format_number(100 * fraction, digits) + " %"; }
+
+class Report {
+public:
+    explicit Report(Engine& engine) : engine_(engine), page_(engine.study.title, engine.study.origin) {}
+
+    std::string make() {
+        if (!engine_.study.summary.empty()) {
+            page_.paragraph(engine_.study.summary);
+        }
+        key_figures();
+        failures();
+        bodies();
+        fields();
+        tables();
+        comparisons();
+        regions();
+        measurements();
+        trust();
+        loads();
+        provenance();
+        return page_.text();
+    }
+
+private:
+    std::optional<json> document(const std::string& key) const {
+        const auto* text = engine_.results.document(key);
+        return text != nullptr ? std::optional<json>(json::parse(*text)) : std::nullopt;
+    }
+
+    std::optional<HtmlPage::Picture> figure(const std::string& name) const {
+        const auto* png = engine_.results.picture("figure/" + name);
+        const auto head = document("figure/" + name);
+        if (png == nullptr || !head) {
+            return std::nullopt;
+        }
+        return HtmlPage::Picture{*png, text_in(*head, "caption"), text_in(*head, "title")};
+    }
+
+    void show_figure(const std::string& name) {
+        if (const auto picture = figure(name)) {
+            page_.picture(*picture);
+        }
+    }
+
+    void key_figures() {
+        std::vector<HtmlPage::Fact> facts;
+        facts.push_back({std::to_string(engine_.results.loads.rows()), "CFD cases"});
+        for (const auto& spec : engine_.study.verifications) {
+            if (const auto check = document("verify/" + spec.table.filename().string())) {
+                facts.push_back({percent(number_in(*check, "worst"), 2), "largest difference from the solver's own force"});
+            }
+        }
+        for (const auto& spec : engine_.study.tables) {
+            const auto table = document("table/" + spec.name);
+            if (!table || !spec.net_weight) {
+                continue;
+            }
+            std::string gaps;
+            for (const auto& point : table->value("equilibria", json::array())) {
+                if (point.value("stable", false)) {
+                    gaps += (gaps.empty() ? "" : ", ") + shown(number_in(point, "gap"), "m", "mm", 2) + " mm";
+                }
+            }
+            facts.push_back({gaps.empty() ? "none" : gaps, "stable gaps by '" + spec.name + "' at a net weight of " +
+                                                               shown(*spec.net_weight, "N", "N", 3) + " N"});
+        }
+        for (const auto& spec : engine_.study.measurements) {
+            if (const auto found = document("discovery/" + spec.name)) {
+                std::string names;
+                for (const auto& effect : found->value("effects", json::array())) {
+                    names += (names.empty() ? "" : ", ") + text_in(effect, "name");
+                }
+                facts.push_back({names.empty() ? text_in(*found, "verdict") : names, "missing in the model of '" + spec.name + "'"});
+            }
+        }
+        page_.facts(facts);
+    }
+
+    void failures() {
+        for (const auto& step : engine_.results.steps) {
+            if (!step.error.empty()) {
+                page_.warning("Not done: " + step.kind + " '" + step.name + "': " + step.error);
+            }
+        }
+    }
+
+    void bodies() {
+        if (engine_.study.bodies.empty()) {
+            return;
+        }
+        page_.section("The body");
+        std::vector<std::vector<std::string>> rows;
+        std::vector<HtmlPage::Picture> pictures;
+        for (const auto& spec : engine_.study.bodies) {
+            if (const auto body = document("body/" + spec.name)) {
+                const double volume = number_in(*body, "volume");
+                rows.push_back({spec.name, shown(volume, "m^3", "L", 4), shown(number_in(*body, "area"), "m^2", "cm^2", 4),
+                                shown(number_in(*body, "buoyancy"), "N", "N", 4), body->value("watertight", false) ? "yes" : "no"});
+            }
+            if (const auto* png = engine_.results.picture("body/" + spec.name)) {
+                pictures.push_back({*png, spec.name, "the body " + spec.name});
+            }
+        }
+        page_.pictures(pictures);
+        page_.table({"body", "volume (L)", "surface (cm²)", "buoyancy (N)", "watertight"}, rows);
+    }
+
+    void fields() {
+        std::vector<HtmlPage::Picture> pictures;
+        for (const auto& spec : engine_.study.pictures) {
+            for (const auto& view : spec.views) {
+                const std::string key = "picture/" + spec.name + "/" + view;
+                const auto head = document(key);
+                if (const auto* png = engine_.results.picture(key); png != nullptr && head) {
+                    pictures.push_back({*png, text_in(*head, "caption"), spec.name});
+                }
+            }
+        }
+        if (!pictures.empty()) {
+            page_.section("The flow on the surface");
+            page_.pictures(pictures);
+        }
+    }
+
+    void equilibria(const json& table, double net_weight) {
+        std::vector<std::vector<std::string>> rows;
+        for (const auto& point : table.value("equilibria", json::array())) {
+            const double sigma = number_in(point, "sigma");
+            rows.push_back({shown(number_in(point, "gap"), "m", "mm"), std::isfinite(sigma) && sigma > 0 ? shown(sigma, "m", "mm", 2) : "-",
+                            point.value("stable", false) ? "stable" : "unstable", shown(number_in(point, "stiffness"), "N/m", "N/m"),
+                            shown(number_in(point, "frequency"), "Hz", "Hz"),
+                            shown(number_in(point, "kick_velocity"), "m/s", "mm/s")});
+        }
+        if (rows.empty()) {
+            page_.paragraph("At a net weight of " + shown(net_weight, "N", "N") + " N the lift balances it nowhere in the range.");
+            return;
+        }
+        page_.table({"gap (mm)", "± (mm)", "", "stiffness (N/m)", "frequency (Hz)", "largest kick survived (mm/s)"}, rows,
+                    "Where lift balances a net weight of " + shown(net_weight, "N", "N") +
+                        " N. The kick is the upward or downward velocity from which the body still comes back.");
+    }
+
+    void tables() {
+        if (engine_.study.tables.empty()) {
+            return;
+        }
+        page_.section("Force tables and equilibria");
+        for (const auto& spec : engine_.study.tables) {
+            const auto table = document("table/" + spec.name);
+            if (!table) {
+                continue;
+            }
+            page_.subsection(spec.name);
+            show_figure("table/" + spec.name);
+            if (spec.net_weight) {
+                equilibria(*table, *spec.net_weight);
+            }
+            std::vector<std::string> remarks;
+            for (const auto& remark : table->value("remarks", json::array())) {
+                remarks.push_back(remark.get<std::string>());
+            }
+            if (!remarks.empty()) {
+                page_.list(remarks);
+            }
+            for (const auto& file : table->value("exports", json::array())) {
+                page_.link(file.at("file").get<std::string>(), "Controller table (" + text_in(file, "format") + "): " + text_in(file, "file"));
+            }
+        }
+    }
+
+    void comparisons() {
+        if (engine_.study.comparisons.empty()) {
+            return;
+        }
+        page_.section("Underbodies compared");
+        for (const auto& spec : engine_.study.comparisons) {
+            show_figure("compare/" + spec.name);
+            if (const auto found = document("compare/" + spec.name)) {
+                std::vector<std::vector<std::string>> rows;
+                for (const auto& row : found->value("rows", json::array())) {
+                    rows.push_back({text_in(row, "measure"), text_in(row, "table"), text_in(row, "text")});
+                }
+                page_.table({"measure", "best", "value"}, rows);
+                for (const auto& remark : found->value("remarks", json::array())) {
+                    page_.paragraph(remark.get<std::string>());
+                }
+            }
+        }
+    }
+
+    void regions() {
+        if (engine_.study.regions.empty()) {
+            return;
+        }
+        page_.section("Where it comes back from");
+        for (const auto& spec : engine_.study.regions) {
+            show_figure("region/" + spec.name);
+            if (const auto region = document("region/" + spec.name)) {
+                std::vector<std::vector<std::string>> rows;
+                for (const auto& entry : region->value("classes", json::array())) {
+                    rows.push_back({text_in(entry, "name"), text_in(entry, "kind"), percent(number_in(entry, "fraction"))});
+                }
+                page_.table({"end of the motion", "kind", "share of the starts"}, rows,
+                            std::to_string(spec.columns) + " x " + std::to_string(spec.rows) + " starts, " +
+                                core::format_number(spec.duration, 3) + " s of motion each.");
+                page_.link("models/" + spec.name + "/model.toml", "The model as a file for underbody simulate and region");
+            }
+        }
+    }
+
+    void measurements() {
+        if (engine_.study.measurements.empty()) {
+            return;
+        }
+        page_.section("Measured runs against the model");
+        for (const auto& spec : engine_.study.measurements) {
+            page_.subsection(spec.name);
+            if (const auto residual = document("residual/" + spec.name)) {
+                for (const auto& line : residual->value("sentences", json::array())) {
+                    page_.paragraph(line.get<std::string>());
+                }
+            }
+            std::vector<HtmlPage::Picture> pictures;
+            for (int i = 0; i < 8; ++i) {
+                if (const auto picture = figure("residual/" + spec.name + "/" + std::to_string(i))) {
+                    pictures.push_back(*picture);
+                }
+            }
+            page_.pictures(pictures);
+            if (const auto found = document("discovery/" + spec.name)) {
+                discovery(*found);
+            }
+        }
+    }
+
+    void discovery(const json& found) {
+        if (found.contains("sentence")) {
+            page_.paragraph(text_in(found, "sentence"));
+        }
+        std::vector<std::vector<std::string>> rows;
+        for (const auto& effect : found.value("effects", json::array())) {
+            std::string parameters;
+            const json values = effect.value("parameters", json::object());
+            for (const auto& [name, value] : values.items()) {
+                parameters += (parameters.empty() ? "" : ", ") + name + " = " + core::format_number(number_in(value, "value"), 3) +
+                              " ± " + core::format_number(number_in(value, "sigma"), 2) + " " + text_in(value, "unit");
+            }
+            rows.push_back({text_in(effect, "name"), parameters, core::format_number(number_in(effect, "probability"), 2)});
+        }
+        if (!rows.empty()) {
+            page_.table({"effect the model lacks", "parameters", "probability"}, rows);
+        }
+        if (const auto error = found.find("error"); error != found.end() && error->contains("before")) {
+            const auto& before = error->at("before");
+            const auto& after = error->at("after");
+            page_.table({"", "error", "95 % interval", "unit"},
+                        {{"before", core::format_number(number_in(before, "rmse"), 3),
+                          core::format_number(number_in(before, "low"), 3) + " to " + core::format_number(number_in(before, "high"), 3),
+                          text_in(*error, "unit")},
+                         {"after", core::format_number(number_in(after, "rmse"), 3),
+                          core::format_number(number_in(after, "low"), 3) + " to " + core::format_number(number_in(after, "high"), 3),
+                          text_in(*error, "unit")}},
+                        "Error of the prediction of the " + text_in(*error, "channel") + " on runs that nothing was fitted to.");
+        }
+    }
+
+    void trust() {
+        page_.section("How far to trust the numbers");
+        for (const auto& spec : engine_.study.verifications) {
+            if (const auto check = document("verify/" + spec.table.filename().string())) {
+                page_.paragraph("Our loads against the solver's own (" + spec.table.filename().string() + "): " +
+                                std::to_string(check->at("rows").size()) + " forces, the worst differs by " +
+                                percent(number_in(*check, "worst")) + " of the force's size (" + text_in(*check, "worst_case") +
+                                "); allowed " + percent(number_in(*check, "tolerance")) + ", beyond it " +
+                                std::to_string(check->value("failed", 0)) + ".");
+            }
+        }
+        std::vector<std::vector<std::string>> rows;
+        for (const auto& spec : engine_.study.mesh_uncertainties) {
+            const auto mesh = document("mesh/" + spec.name);
+            if (!mesh) {
+                continue;
+            }
+            for (const auto& [quantity, found] : mesh->at("quantities").items()) {
+                std::string values;
+                for (const auto& value : found.at("values")) {
+                    values += (values.empty() ? "" : ", ") + core::format_number(value.get<double>(), 3);
+                }
+                rows.push_back({spec.name, quantity, values, text_in(found, "verdict"),
+                                core::format_number(number_in(found, "standard_uncertainty"), 2)});
+            }
+        }
+        if (!rows.empty()) {
+            page_.table({"cases", "quantity", "coarse to fine", "convergence", "standard uncertainty"}, rows,
+                        "Mesh uncertainty, by the grid convergence index (Celik et al. 2008). Forces in N, moments in N m.");
+            for (const auto& spec : engine_.study.mesh_uncertainties) {
+                show_figure("mesh/" + spec.name);
+            }
+        }
+        page_.paragraph("Lift is that of steady RANS on a moving ground. Film models below a millimetre, the jet's voltage law and "
+                        "separate estimates of lift and drag are uncertain in ways no mesh study shows.");
+    }
+
+    void loads() {
+        const core::Table& table = engine_.results.loads;
+        if (table.rows() == 0) {
+            return;
+        }
+        page_.section("Loads of all cases");
+        const auto column = [&](const char* name, std::size_t row, const char* from, const char* to) {
+            const auto* found = table.find(name);
+            return found == nullptr || found->is_text() ? std::string("-") : shown(found->numbers[row], from, to, 4);
+        };
+        std::vector<std::vector<std::string>> rows;
+        for (std::size_t row = 0; row < table.rows(); ++row) {
+            rows.push_back({table.text("case")[row], column("gap", row, "m", "mm"), column("pitch", row, "rad", "deg"),
+                            column("speed", row, "m/s", "m/s"), column("lift_force", row, "N", "N"),
+                            column("drag_force", row, "N", "N"), column("pitch_moment", row, "N m", "mN m"),
+                            column("closure", row, "1", "1")});
+        }
+        page_.folded_table(std::to_string(rows.size()) + " cases",
+                           {"case", "gap (mm)", "pitch (deg)", "speed (m/s)", "lift (N)", "drag (N)", "pitch moment (mN m)", "closure"}, rows);
+        page_.paragraph("Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
+                        "Closure is the size of the summed area vector over the area: 0 for a closed surface.");
+    }
+
+    void provenance() {
+        page_.section("How this was made");
+        std::vector<std::vector<std::string>> rows;
+        for (const auto& [room, version] : code_versions()) {
+            rows.push_back({room, version.substr(0, 12)});
+        }
+        page_.paragraph("By Underbody from study.toml in " + std::filesystem::weakly_canonical(engine_.study.folder()).string() +
+                        ". Every result is keyed by the content of the files it came from and by the code that made it.");
+        page_.folded_table("Versions of the code, by room", {"room", "sources"}, rows);
+        std::vector<std::vector<std::string>> files;
+        for (const auto& entry : engine_.study.cases) {
+            files.push_back({entry.file.lexically_relative(engine_.study.folder()).string(), entry.conditions.label(),
+                             engine_.hash_of(entry.file).substr(0, 12)});
+        }
+        page_.folded_table("Files of the cases", {"file", "conditions", "content"}, files);
+    }
+
+    Engine& engine_;
+    HtmlPage page_;
+};
+
+}  // namespace
+
+void write_report(Engine& engine) {
+    if (engine.options.write_report) {
+        Engine::write_if_changed(engine.report_file(), Report(engine).make());
+    }
+}
+
+}  // namespace underbody::cases

@@ -1,0 +1,46 @@
+// The bodies of the study: surface, mass, picture.
+#include <nlohmann/json.hpp>
+
+#include "cases/engine.h"
+#include "geometry/body_shape.h"
+#include "geometry/body_surface.h"
+#include "geometry/mass_properties.h"
+#include "geometry/placement.h"
+#include "postproc/views.h"
+
+namespace underbody::cases {
+
+namespace {
+
+std::string compute_body(Engine& engine, const BodySpec& spec) {
+    const auto shape = geometry::read_shape(spec.shape);
+    const auto mesh = geometry::make_surface(shape, {}, engine.progress);
+    const auto mass = geometry::mass_properties(mesh);
+    nlohmann::json document;
+    geometry::to_json(document, mass);
+    document["buoyancy"] = mass.buoyancy(engine.study.reference.number("density").value_or(geometry::default_water_density));
+    document["watertight"] = geometry::is_watertight(mesh);
+    document["patches"] = nlohmann::json::array();
+    for (const auto& patch : geometry::patches(mesh)) {
+        document["patches"].push_back({{"name", patch.name}, {"area", patch.area}, {"faces", patch.faces}});
+    }
+    return document.dump();
+}
+
+}  // namespace
+
+void run_bodies(Engine& engine) {
+    for (const auto& spec : engine.study.bodies) {
+        try {
+            Key key("body", {"geometry"});
+            key.add(engine.hash_of(spec.shape)).add(engine.study.reference);
+            if (const auto made = engine.make("body", spec.name, key, [&] { return compute_body(engine, spec); })) {
+                engine.add_document("body/" + spec.name, *made);
+            }
+        } catch (const core::InputError& error) {
+            engine.fail("body", spec.name, error.what());
+        }
+    }
+}
+
+}  // namespace underbody::cases

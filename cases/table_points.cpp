@@ -1,0 +1,86 @@
+// The points of a force table out of the loads of the cases.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cases/study.h"
+#include "core/units.h"
+
+namespace underbody::cases {
+
+namespace {
+
+/// The standard uncertainty that the mesh study found for the quantity; 0 when none is named.
+double mesh_sigma(const TableSpec& spec, const StudyResults& results) {
+    if (spec.mesh_uncertainty.empty()) {
+        return 0;
+    }
+    const std::string* document = results.document("mesh/" + spec.mesh_uncertainty);
+    if (document == nullptr) {
+        throw core::InputError("missing", "the mesh uncertainty '" + spec.mesh_uncertainty + "' that the table '" + spec.name +
+                                              "' names was not found", {}, "see why its step failed");
+    }
+    const auto json = nlohmann::json::parse(*document);
+    const auto& quantities = json.at("quantities");
+    if (!quantities.contains(spec.quantity)) {
+        throw core::InputError("missing", "the mesh uncertainty '" + spec.mesh_uncertainty + "' does not cover " + spec.quantity,
+                               {}, "add it to its list of quantities");
+    }
+    return quantities.at(spec.quantity).at("standard_uncertainty").get<double>();
+}
+
+bool row_fits(const core::Table& loads, std::size_t row, const Conditions& where) {
+    Conditions mine;
+    for (const auto& [name, value] : where.numbers) {
+        if (const auto* column = loads.find(name); column != nullptr && !column->is_text()) {
+            mine.numbers.emplace_back(name, column->numbers[row]);
+        }
+    }
+    for (const auto& [name, value] : where.texts) {
+        if (const auto* column = loads.find(name); column != nullptr && column->is_text()) {
+            mine.texts.emplace_back(name, column->text[row]);
+        }
+    }
+    return mine.satisfies(where);
+}
+
+}  // namespace
+
+core::Table table_points(const TableSpec& spec, const StudyResults& results) {
+    const core::Table& loads = results.loads;
+    if (loads.rows() == 0) {
+        throw core::InputError("missing", "there are no loads yet", {}, "run the study first: underbody study run");
+    }
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < loads.rows(); ++row) {
+        if (row_fits(loads, row, spec.where)) {
+            rows.push_back(row);
+        }
+    }
+    if (rows.empty()) {
+        throw core::InputError("missing", "no case with loads fits the table '" + spec.name + "'");
+    }
+    const core::Table chosen = loads.selected(rows);
+    core::Table points;
+    points.source = "table '" + spec.name + "'";
+    for (const auto& axis : spec.axes) {
+        const auto* column = chosen.find(axis);
+        points.add_numbers(axis, column != nullptr ? column->unit : "1", chosen.numbers(axis),
+                           column != nullptr ? column->written_unit : "");
+    }
+    const auto* quantity = core::find_quantity(spec.quantity);
+    const std::string unit = quantity != nullptr ? quantity->unit : "1";
+    const auto& values = chosen.numbers(spec.quantity);
+    points.add_numbers(spec.quantity, unit, values);
+    const double mesh = mesh_sigma(spec, results);
+    if (mesh > 0 || spec.relative_sigma > 0) {
+        std::vector<double> sigma;
+        for (const double value : values) {
+            sigma.push_back(std::hypot(mesh, spec.relative_sigma * value));
+        }
+        points.add_numbers(spec.quantity + "_sigma", unit, std::move(sigma));
+    }
+    points.add_text("case", chosen.text("case"));
+    return points;
+}
+
+}  // namespace underbody::cases
