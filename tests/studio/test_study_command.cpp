@@ -1,0 +1,186 @@
+// `underbody study` as a user meets it: first run, second run, wrong input, and what a crash may not do.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "tests/support/small_study.h"
+#include "tests/support/support.h"
+
+namespace underbody::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class StudyCommand : public testing::Test {
+protected:
+    core::TemporaryFolder scratch;
+    fs::path study = scratch.path() / "cube";
+    void SetUp() override { write_small_study(study); }
+    Run run(std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments = {"study", "run", study.string(), "--no-pictures", "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_underbody(arguments);
+    }
+};
+
+TEST_F(StudyCommand, TurnsFieldsIntoLoadsTableEquilibriaMapExportAndReport) {
+    const Run first = run();
+    ASSERT_EQ(first.exit_code, 0) << first.errors;
+    const json results = json::parse(first.output);
+    EXPECT_EQ(results.at("failed"), 0);
+    EXPECT_EQ(results.at("reused"), 0);
+    // The lift of a linear pressure on a cube: gradient times volume.
+    EXPECT_NEAR(results.at("results").at("loads/cube-h2").at("lift_force").get<double>(), 0.5, 1e-9);
+    const json equilibria = results.at("results").at("table/lift").at("equilibria");
+    ASSERT_EQ(equilibria.size(), 1U);
+    EXPECT_NEAR(equilibria[0].at("gap").get<double>(), 0.0035, 1e-9);
+    EXPECT_TRUE(equilibria[0].at("stable").get<bool>());
+    EXPECT_NEAR(equilibria[0].at("stiffness").get<double>(), 100, 1e-6);
+    // A linear spring: sqrt(k/m)/2 pi = sqrt(100/4)/2 pi.
+    EXPECT_NEAR(equilibria[0].at("frequency").get<double>(), 5 / (2 * 3.14159265358979), 1e-6);
+    double total = 0;
+    for (const auto& entry : results.at("results").at("region/map").at("classes")) {
+        total += entry.at("fraction").get<double>();
+    }
+    EXPECT_NEAR(total, 1, 1e-9);
+    EXPECT_EQ(results.at("results").at("verify/forces.csv").at("failed"), 0);
+    const std::string report = core::read_file(study / "report" / "index.html");
+    EXPECT_THAT(report, HasSubstr("a cube"));
+    EXPECT_THAT(report, HasSubstr("data:image/png;base64,"));
+    EXPECT_TRUE(fs::exists(study / "report" / "exports" / "lift.h"));
+    EXPECT_TRUE(fs::exists(study / "report" / "models" / "map" / "model.toml"));
+}
+
+TEST_F(StudyCommand, RecomputesNothingWhenNothingChangedAndOnlyWhatChangedOtherwise) {
+    ASSERT_EQ(run().exit_code, 0);
+    const auto report_time = fs::last_write_time(study / "report" / "index.html");
+    const json again = json::parse(run().output);
+    EXPECT_EQ(again.at("computed"), 0);
+    EXPECT_EQ(fs::last_write_time(study / "report" / "index.html"), report_time) << "an unchanged report is not written again";
+    core::write_file(study / "fields" / "cube-h4.csv", cube_field(0.004, 310));
+    const json changed = json::parse(run().output);
+    std::vector<std::string> loads;
+    for (const auto& step : changed.at("steps")) {
+        if (step.at("kind") == "loads" && !step.at("reused").get<bool>()) {
+            loads.push_back(step.at("name"));
+        }
+    }
+    EXPECT_THAT(loads, testing::ElementsAre("cube-h4"));
+}
+
+TEST_F(StudyCommand, AWrongFileFailsAloneAndIsNamedWithItsLine) {
+    core::write_file(study / "fields" / "cube-h3.csv", core::read_file(study / "fields" / "cube-h3.csv") + "0, 1, 99\n");
+    const Run result = run();
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.errors, HasSubstr("cube-h3.csv:"));
+    const json results = json::parse(result.output);
+    EXPECT_EQ(results.at("failed").get<int>(), 1);
+    EXPECT_TRUE(results.at("results").contains("table/lift")) << "the other cases go on";
+    EXPECT_THAT(core::read_file(study / "report" / "index.html"), HasSubstr("Not done"));
+}
+
+TEST_F(StudyCommand, VerifyEndsWithFourWhenTheSolverDisagrees) {
+    EXPECT_EQ(run_underbody({"study", "verify", study.string()}).exit_code, 0);
+    core::write_file(study / "forces.csv", "gap [mm], lift_force [N], drag_force [N]\n1, 0.7, 0\n");
+    const Run result = run_underbody({"study", "verify", study.string()});
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.output, HasSubstr("cube-h1"));
+}
+
+TEST_F(StudyCommand, AReadOnlyFolderIsToldWithTheWayOut) {
+    if (::geteuid() == 0) {
+        // Root may write anywhere: a file in the place of the folder refuses it too.
+        core::write_file(study / ".underbody", "in the way");
+    } else {
+        ::chmod(study.c_str(), 0500);
+    }
+    const Run result = run();
+    ::chmod(study.c_str(), 0700);
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.errors, HasSubstr("--store"));
+    EXPECT_EQ(run({"--store", (scratch.path() / "s.sqlite").string(), "--report", (scratch.path() / "r.html").string()}).exit_code, 0);
+    EXPECT_TRUE(fs::exists(scratch.path() / "r.html"));
+}
+
+TEST_F(StudyCommand, AKilledRunLosesNothingAndTheNextOneFinishes) {
+    for (int delay = 5; delay < 200; delay = delay * 2) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::dup2(::open("/dev/null", O_WRONLY), 1);
+            ::dup2(::open("/dev/null", O_WRONLY), 2);
+            const std::string program = (program_folder() / "underbody").string();
+            ::execl(program.c_str(), program.c_str(), "study", "run", study.c_str(), "--no-pictures", nullptr);
+            ::_exit(127);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        if (fs::exists(study / "report" / "index.html")) {
+            EXPECT_THAT(core::read_file(study / "report" / "index.html"), testing::EndsWith("</html>\n"));
+        }
+    }
+    const Run result = run();
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(json::parse(result.output).at("failed"), 0);
+}
+
+TEST_F(StudyCommand, CtrlCEndsWithOneHundredAndThirty) {
+    // A map that takes long enough to be interrupted.
+    std::string text = core::read_file(study / "study.toml");
+    text.replace(text.find("columns = 40\nrows = 40"), 22, "columns = 4000\nrows = 4000");
+    core::write_file(study / "study.toml", text);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(::open("/dev/null", O_WRONLY), 1);
+        ::dup2(::open("/dev/null", O_WRONLY), 2);
+        const std::string program = (program_folder() / "underbody").string();
+        ::execl(program.c_str(), program.c_str(), "study", "run", study.c_str(), "--no-pictures", nullptr);
+        ::_exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    ::kill(child, SIGINT);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+}
+
+TEST_F(StudyCommand, AddsCasesOnlyWhenTheStudyStaysRight) {
+    core::write_file(study / "more" / "ball-h2.csv", cube_field(0.002, 1));
+    const std::string before = core::read_file(study / "study.toml");
+    const Run wrong = run_underbody({"study", "add", study.string(), "--files", "none/*.csv"});
+    EXPECT_EQ(wrong.exit_code, 3);
+    EXPECT_EQ(core::read_file(study / "study.toml"), before);
+    const Run right = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5m/s"});
+    EXPECT_EQ(right.exit_code, 0) << right.errors;
+    EXPECT_THAT(run_underbody({"study", "list", study.string()}).output, HasSubstr("ball-h2"));
+}
+
+TEST(CommandLine, TellsWrongUseFromWrongInput) {
+    EXPECT_EQ(run_underbody({}).exit_code, 2);
+    const Run typo = run_underbody({"studdy"});
+    EXPECT_EQ(typo.exit_code, 2);
+    EXPECT_THAT(typo.errors, HasSubstr("'underbody study'"));
+    EXPECT_EQ(run_underbody({"study", "run"}).exit_code, 2);
+    const Run missing = run_underbody({"study", "run", "/no/such/folder", "--json"});
+    EXPECT_EQ(missing.exit_code, 3);
+    EXPECT_TRUE(json::parse(missing.output).contains("error"));
+    EXPECT_EQ(run_underbody({"--help"}).exit_code, 0);
+    EXPECT_EQ(run_underbody({"study", "--help"}).exit_code, 0);
+    EXPECT_THAT(run_underbody({"--version"}).output, HasSubstr("."));
+}
+
+}  // namespace
+}  // namespace underbody::test
