@@ -11,7 +11,12 @@ class Shell;
 
 using AddCommand = void (*)(CLI::App& app, Shell& shell);
 
-#define UNDERBODY_COMMANDS(X)
+#define UNDERBODY_COMMANDS(X) \
+    X(body) \
+    X(info) \
+    X(import) \
+    X(loads) \
+    X(discover)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

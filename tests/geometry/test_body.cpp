@@ -1,0 +1,129 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "geometry/body_shape.h"
+#include "geometry/body_surface.h"
+#include "geometry/mass_properties.h"
+#include "geometry/mesh_file.h"
+#include "geometry/placement.h"
+#include "tests/support/support.h"
+
+namespace underbody::geometry {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+BodyShape evie() { return read_shape(test::source_folder() / "cases/evie/shapes/ellipse.toml"); }
+
+// Volume of an ellipsoid below the top and above a plane `cut` semi-heights below the centre (a sphere's segment,
+// scaled).
+double segment_volume(double a, double b, double c, double cut) {
+    return pi * a * b * c * (2.0 / 3 + cut - cut * cut * cut / 3);
+}
+
+TEST(Body, HasTheVolumeOfItsEllipsoidSegment) {
+    const double exact = segment_volume(0.1016, 0.076, 0.0725, 0.75);
+    double last = 0;
+    for (const std::size_t triangles : {2000u, 8000u, 32000u}) {
+        SurfaceOptions options;
+        options.triangles = triangles;
+        const SurfaceMesh mesh = make_surface(evie(), options);
+        EXPECT_TRUE(is_watertight(mesh));
+        EXPECT_NEAR(static_cast<double>(mesh.triangles.size()), static_cast<double>(triangles),
+                    0.12 * static_cast<double>(triangles));
+        const double error = std::abs(mass_properties(mesh).volume / exact - 1);
+        if (last > 0) {
+            EXPECT_NEAR(std::log2(last / error), 2.0, 0.3) << "error falls with the square of the edge length";
+        }
+        last = error;
+    }
+    EXPECT_LT(last, 6e-4);
+}
+
+TEST(Body, HasTheCentroidAndInertiaOfItsEllipsoidSegment) {
+    SurfaceOptions options;
+    options.triangles = 60000;
+    const MassProperties mass = mass_properties(make_surface(evie(), options));
+    const double a = 0.1016, b = 0.076, c = 0.0725, k = 0.75;
+    // Moments of the unit sphere above z = -k: integrals of pi (1 - z^2) and of pi/4 (1 - z^2)^2.
+    const double m0 = pi * (2.0 / 3 + k - k * k * k / 3);
+    const double m1 = pi / 4 * (1 - k * k) * (1 - k * k);
+    const double m2 = pi * ((1 + k * k * k) / 3 - (1 + std::pow(k, 5)) / 5);
+    const double mx = pi / 4 * ((1 + k) - 2 * (1 + k * k * k) / 3 + (1 + std::pow(k, 5)) / 5);
+    const double abc = a * b * c, zc = c * m1 / m0;
+    EXPECT_NEAR(mass.centroid.z, zc + k * c, 1e-5);
+    EXPECT_NEAR(mass.centroid.x, 0, 1e-6);
+    EXPECT_NEAR(mass.centroid.y, 0, 1e-15);
+    const double xx = abc * a * a * mx, yy = abc * b * b * mx, zz = abc * c * c * m2 - abc * m0 * zc * zc;
+    EXPECT_NEAR(mass.inertia[0][0] / (yy + zz), 1, 1e-3);
+    EXPECT_NEAR(mass.inertia[1][1] / (xx + zz), 1, 1e-3);
+    EXPECT_NEAR(mass.inertia[2][2] / (xx + yy), 1, 1e-3);
+    EXPECT_NEAR(mass.inertia[0][1], 0, 1e-12);
+    EXPECT_NEAR(mass.buoyancy(), 1000 * 9.80665 * abc * m0, 0.02);
+}
+
+TEST(Body, HasAFlatBaseOfTheSizeOfTheCfd) {
+    const SurfaceMesh mesh = make_surface(evie());
+    const SurfaceMesh base = patch_of(mesh, "base");
+    const Box box = bounding_box(base);
+    EXPECT_NEAR(box.upper.x, 0.067202, 1e-6);
+    EXPECT_NEAR(box.upper.y, 0.050269, 2e-5);
+    EXPECT_EQ(box.lower.z, 0);
+    EXPECT_EQ(box.upper.z, 0);
+    for (std::size_t i = 0; i < base.triangles.size(); ++i) {
+        EXPECT_LT(base.area_vector(i).z, 0) << "the water is below the base";
+    }
+}
+
+TEST(Body, RefusesAnUnknownKeyAndNamesTheNearest) {
+    try {
+        parse_shape("[body]\nlength='0.2 m'\nwidth='0.15 m'\nheigth='0.14 m'\nbase_cut=0.7\n");
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("height"));
+    }
+}
+
+TEST(Body, SaysTheNearestAllowedValue) {
+    try {
+        parse_shape("[body]\nlength='203.2 mm'\nwidth='152 mm'\nheight='145 mm'\nbase_cut=1.2\n");
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(error.kind(), "range");
+        EXPECT_THAT(error.what(), testing::HasSubstr("body.base_cut is 1.2"));
+        EXPECT_THAT(error.what(), testing::HasSubstr("at most 0.98"));
+        EXPECT_EQ(error.place().line, 5);
+    }
+}
+
+TEST(Body, IsWrittenAndReadBackEqual) {
+    BodyShape shape = evie();
+    shape.base = BaseKind::rectangle;
+    shape.base_length = 0.08;
+    shape.protrusion = Protrusion{};
+    shape.nozzle = Nozzle{};
+    EXPECT_EQ(parse_shape(write_shape(shape)), shape);
+}
+
+TEST(Placement, KeepsTheGapUnderTheCentreOfTheBase) {
+    const SurfaceMesh body = make_surface(evie());
+    const Placement placement{0.005, 2 * pi / 180, 0};
+    const Clearance clear = clearance(body, placement);
+    // Nose up: the tail end of the base comes down by 67.2 mm sin 2 deg.
+    EXPECT_NEAR(clear.smallest, 0.005 - 0.067202 * std::sin(placement.pitch), 1e-7);
+    EXPECT_LT(clear.where.x, 0);
+    const Vec3 centre = placed(Vec3{}, placement);
+    EXPECT_EQ(centre.z, 0.005);
+    EXPECT_GT(placed(Vec3{0, 1, 0}, {0, 0, 0.1}).z, 0) << "roll is starboard down, so port goes up";
+}
+
+TEST(MeshFile, SaysWhichEndingsItKnows) {
+    EXPECT_THROW(mesh_format_of("body.step"), core::UsageError);
+    EXPECT_EQ(mesh_format_of("BODY.STL"), MeshFormat::stl_binary);
+}
+
+}  // namespace
+}  // namespace underbody::geometry
