@@ -2,7 +2,8 @@
 #include "postproc/importers/importer.h"
 
 #define UNDERBODY_IMPORTERS(X) \
-    X(cfd_post_csv)
+    X(cfd_post_csv) \
+    X(fluent_legacy)
 
 namespace underbody::postproc {
 

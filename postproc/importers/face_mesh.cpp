@@ -1,0 +1,154 @@
+#include "postproc/importers/face_mesh.h"
+
+#include <array>
+#include <string_view>
+#include <unordered_map>
+
+namespace underbody::postproc {
+
+namespace {
+
+struct Code {
+    int code;
+    const char* type;
+};
+
+constexpr std::array codes = {
+    Code{2, "interior"},      Code{3, "wall"},        Code{4, "pressure-inlet"},     Code{5, "pressure-outlet"},
+    Code{7, "symmetry"},      Code{8, "shadow"},      Code{9, "pressure-far-field"}, Code{0xa, "velocity-inlet"},
+    Code{0xc, "periodic"},    Code{0xe, "fan"},       Code{0x14, "mass-flow-inlet"}, Code{0x18, "interface"},
+    Code{0x19, "overset"},    Code{0x1f, "parent"},   Code{0x24, "outflow"},         Code{0x25, "axis"},
+    Code{0x3f0, "interface"}, Code{0x3f4, "periodic"}};
+
+constexpr std::pair<std::string_view, ZoneKind> kinds[] = {
+    {"wall", ZoneKind::wall},
+    {"pressure-inlet", ZoneKind::inlet},
+    {"velocity-inlet", ZoneKind::inlet},
+    {"mass-flow-inlet", ZoneKind::inlet},
+    {"inlet-vent", ZoneKind::inlet},
+    {"intake-fan", ZoneKind::inlet},
+    {"pressure-outlet", ZoneKind::outlet},
+    {"outlet-vent", ZoneKind::outlet},
+    {"exhaust-fan", ZoneKind::outlet},
+    {"mass-flow-outlet", ZoneKind::outlet},
+    {"outflow", ZoneKind::outlet},
+    {"symmetry", ZoneKind::symmetry},
+    {"axis", ZoneKind::symmetry},
+    {"periodic", ZoneKind::periodic},
+    {"shadow", ZoneKind::periodic},
+    {"periodic-shadow", ZoneKind::periodic},
+    {"interface", ZoneKind::interface},
+    {"overset", ZoneKind::interface},
+    {"interior", ZoneKind::interior},
+    {"parent", ZoneKind::interior},
+    {"pressure-far-field", ZoneKind::farfield},
+    {"fluid", ZoneKind::fluid},
+    {"solid", ZoneKind::solid},
+    {"fan", ZoneKind::other},
+    {"porous-jump", ZoneKind::other},
+    {"radiator", ZoneKind::other},
+};
+
+std::string text(std::uint64_t value) { return std::to_string(value); }
+
+[[noreturn]] void refuse(const FaceMesh& mesh, const std::string& what) {
+    throw core::InputError("format", what, {mesh.file, {}, {}, {}}, "the mesh is damaged or incomplete");
+}
+
+std::string zone_words(const FaceMesh& mesh, int zone) {
+    const ZoneLabel* label = mesh.label(zone);
+    return "zone " + std::to_string(zone) + (label != nullptr ? " (" + label->name + ")" : "");
+}
+
+void check_faces(const FaceMesh& mesh, const FaceBlock& block, bool need_cells) {
+    const bool has_c1 = !block.c1.empty();
+    for (std::size_t face = 0; face < block.count; ++face) {
+        const std::uint32_t begin = block.begin_of(face);
+        const std::uint32_t size = block.size_of(face);
+        for (std::uint32_t k = begin; k < begin + size; ++k) {
+            if (block.nodes[k] == 0 || block.nodes[k] > mesh.nodes) {
+                refuse(mesh, "face " + text(block.first + face) + " of " + zone_words(mesh, block.zone) +
+                                 " names node " + text(block.nodes[k]) + ", but there are " + text(mesh.nodes));
+            }
+        }
+        const std::uint32_t c0 = block.c0[face];
+        const std::uint32_t c1 = has_c1 ? block.c1[face] : 0;
+        if (need_cells && (c0 > mesh.cells || c1 > mesh.cells)) {
+            refuse(mesh, "face " + text(block.first + face) + " of " + zone_words(mesh, block.zone) + " names cell " +
+                             text(std::max(c0, c1)) + ", but there are " + text(mesh.cells));
+        }
+    }
+}
+
+}  // namespace
+
+const ZoneLabel* FaceMesh::label(int zone) const {
+    for (const auto& candidate : labels) {
+        if (candidate.id == zone) {
+            return &candidate;
+        }
+    }
+    return nullptr;
+}
+
+std::string type_of_code(int code) {
+    for (const auto& [number, type] : codes) {
+        if (number == code) {
+            return type;
+        }
+    }
+    return "unknown";
+}
+
+ZoneKind kind_of_type(const std::string& type) {
+    for (const auto& [word, kind] : kinds) {
+        if (word == type) {
+            return kind;
+        }
+    }
+    return type.empty() || type == "unknown" ? ZoneKind::unknown : ZoneKind::other;
+}
+
+bool is_inner_code(int code) { return code == 2; }
+bool is_hidden_code(int code) { return code == 0x1f; }
+
+void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress) {
+    constexpr std::uint64_t most = 0x7fffffffULL;
+    if (mesh.dimension != 2 && mesh.dimension != 3) {
+        refuse(mesh, "the file does not say whether the mesh is 2-D or 3-D");
+    }
+    if (mesh.nodes > most || mesh.faces > most || mesh.cells > most) {
+        refuse(mesh, "more than 2^31 nodes, faces or cells: " + text(mesh.nodes) + ", " + text(mesh.faces) + ", " +
+                         text(mesh.cells));
+    }
+    std::uint64_t faces = 0;
+    for (const auto& block : mesh.face_blocks) {
+        faces += block.count;
+        if (block.first == 0 || block.first + block.count - 1 > mesh.faces) {
+            refuse(mesh, "the faces " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
+                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.faces) +
+                             " that the file declares");
+        }
+    }
+    if (!surfaces_only && faces != mesh.faces) {
+        refuse(mesh, "the file declares " + text(mesh.faces) + " faces but its zones hold " + text(faces));
+    }
+    std::uint64_t cells = 0;
+    for (const auto& block : mesh.cell_blocks) {
+        cells += block.count;
+        if (block.first == 0 || block.first + block.count - 1 > mesh.cells) {
+            refuse(mesh, "the cells " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
+                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.cells) +
+                             " that the file declares");
+        }
+    }
+    if (!mesh.cell_blocks.empty() && cells != mesh.cells) {
+        refuse(mesh, "the file declares " + text(mesh.cells) + " cells but its zones hold " + text(cells));
+    }
+    for (const auto& block : mesh.face_blocks) {
+        progress.check();
+        check_faces(mesh, block, true);
+    }
+}
+
+}  // namespace underbody::postproc

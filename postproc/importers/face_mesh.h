@@ -1,0 +1,138 @@
+// A mesh as Fluent stores it: faces with the two cells beside them, and values on zones of faces and cells.
+// The legacy and the HDF5 importer fill it; `field_from` turns it into zones with VTK data.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "postproc/field.h"
+#include "postproc/importers/buffer.h"
+
+namespace underbody::postproc {
+
+/// A range of faces that follow one another, all of one zone. Ids count from 1, over all zones.
+/// The right-hand normal of a face's node order points into c0; in 2-D, (-dy, dx) of n0 -> n1 does.
+struct FaceBlock {
+    int zone = 0;
+    int kind = 0;             ///< Fluent's boundary code: 2 interior, 3 wall, ...
+    std::uint64_t first = 1;  ///< id of the first face
+    std::uint64_t count = 0;
+    std::uint32_t per_face = 0;     ///< nodes per face; 0: they differ, see `offsets`
+    Buffer<std::uint32_t> nodes;    ///< ids from 1
+    Buffer<std::uint32_t> offsets;  ///< count + 1 places in `nodes`, only if per_face is 0
+    Buffer<std::uint32_t> c0, c1;   ///< cell ids from 1; 0: none. c1 may be empty: none anywhere
+
+    [[nodiscard]] std::uint32_t begin_of(std::size_t face) const {
+        return per_face != 0 ? static_cast<std::uint32_t>(face) * per_face : offsets[face];
+    }
+    [[nodiscard]] std::uint32_t size_of(std::size_t face) const {
+        return per_face != 0 ? per_face : offsets[face + 1] - offsets[face];
+    }
+};
+
+struct CellBlock {
+    int zone = 0;
+    std::uint64_t first = 1;
+    std::uint64_t count = 0;
+    int element = 0;  ///< Fluent's code for all its cells: 1 triangle ... 7 polyhedron; 0: mixed or not said
+    Buffer<unsigned char> elements;  ///< codes of mixed cells, may be empty
+    bool parents = false;            ///< the file declares the whole zone hidden (type 32: cells split by adaption)
+};
+
+/// Sections 39/45, or the zone topology of HDF5.
+struct ZoneLabel {
+    int id = 0;
+    std::string type;  ///< "wall", "velocity-inlet", "fluid", ...
+    std::string name;
+};
+
+/// Values of one variable on ids that follow one another within one zone, as the file has them.
+struct ValueBlock {
+    std::string variable;  ///< "SV_P"
+    int zone = 0;          ///< 0: the file does not say, the ids do
+    bool on_cells = false;
+    int phase = 1;  ///< 1: the mixture, or the only one
+    std::uint64_t first = 1;
+    std::uint64_t count = 0;
+    int components = 1;
+    Buffer<double> values;  ///< count x components
+};
+
+struct IdRange {
+    std::uint64_t first = 1;
+    std::uint64_t last = 0;
+};
+
+struct FaceMesh {
+    std::string file;
+    int dimension = 0;
+    std::uint64_t nodes = 0;  ///< how many there are, stored or not
+    std::uint64_t faces = 0;
+    std::uint64_t cells = 0;
+    Buffer<double> points;               ///< 3 per node (z = 0 in 2-D), in `length_unit`
+    std::string length_unit;             ///< as the file says; "" when it does not
+    bool length_unit_known = false;      ///< nobody may say otherwise
+    std::vector<FaceBlock> face_blocks;  ///< only boundary zones when surfaces alone are asked for
+    std::vector<CellBlock> cell_blocks;
+    std::vector<ZoneLabel> labels;
+    std::vector<IdRange> hidden_cells;  ///< parents of adapted cells: their children are the mesh
+    std::vector<IdRange> hidden_faces;
+    /// Faces of mesh interfaces (id ranges) that stand in for the parents they were cut from.
+    std::vector<IdRange> interface_children;
+    std::vector<std::uint32_t> interface_parents;
+
+    [[nodiscard]] const ZoneLabel* label(int zone) const;
+};
+
+struct FluentSettings;
+
+/// Fluent's boundary code or zone type, in words and as a kind.
+std::string type_of_code(int code);
+ZoneKind kind_of_type(const std::string& type);
+
+/// True for the faces inside the mesh and those that only keep its history: no surface is made of them.
+bool is_inner_code(int code);
+bool is_hidden_code(int code);
+
+/// Checks that ranges, node ids and cell ids are consistent; throws InputError that names zone and face.
+void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress);
+
+/// One unstructured block of VTK arrays that cells are built from.
+struct CellArrays {
+    Buffer<unsigned char> types;
+    Buffer<std::int32_t> offsets;         ///< cells + 1
+    Buffer<std::int32_t> connectivity;    ///< node ids from 0
+    Buffer<std::int64_t> face_locations;  ///< per cell, -1 but for polyhedra; empty when there are none
+    Buffer<std::int64_t> face_stream;
+    Buffer<std::uint64_t> ids;   ///< cell id (from 1) of each cell that was built
+    double volume = 0;           ///< by the divergence theorem over the faces (2-D: area)
+    std::uint64_t inverted = 0;  ///< cells whose volume is not positive
+    std::uint64_t open = 0;      ///< cells whose faces do not close
+};
+
+/// The faces of every cell. Built once, used for each zone.
+class CellBuilder {
+public:
+    /// The mesh must have passed `check_mesh` and must outlive this.
+    CellBuilder(const FaceMesh& mesh, core::Progress& progress);
+    /// The cells of one zone; hidden ones and those without faces are left out.
+    [[nodiscard]] CellArrays build(const CellBlock& block, core::Progress& progress) const;
+
+private:
+    const FaceMesh& mesh_;
+    Buffer<std::uint32_t> starts_;      ///< per cell id, into uses_
+    Buffer<std::uint32_t> uses_;        ///< 2 * slot of the face + side
+    std::vector<std::uint32_t> slots_;  ///< slot of the first face of each block
+    std::vector<bool> hidden_cells_;    ///< empty: none
+};
+
+/// Zones with VTK data: one volume per cell zone, one surface per boundary zone (normals into the fluid, also where the
+/// file has them otherwise). Values become canonical: SV_WALL_SHEAR (the wall's force on the fluid) becomes
+/// `wall_shear`, the traction on the body in Pa; components become vectors. The volume by the divergence theorem goes
+/// to `field.metadata`, inverted or open cells to `field.problems`. The mesh's memory is given up on the way.
+Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const FluentSettings& settings,
+                 const ReadOptions& options, core::Progress& progress);
+
+}  // namespace underbody::postproc

@@ -1,0 +1,513 @@
+// A Fluent mesh with its values becomes zones with VTK data.
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkIdTypeArray.h>
+#include <vtkPoints.h>
+#include <vtkTypeInt32Array.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/text.h"
+#include "postproc/importers/face_mesh.h"
+#include "postproc/importers/fluent_settings.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+/// VTK takes the memory over.
+template <typename Array, typename T>
+vtkSmartPointer<Array> given_to_vtk(Buffer<T>&& buffer, int components = 1) {
+    using Value = typename Array::ValueType;
+    static_assert(sizeof(Value) == sizeof(T));
+    auto array = vtkSmartPointer<Array>::New();
+    array->SetNumberOfComponents(components);
+    const auto size = static_cast<vtkIdType>(buffer.size());
+    array->SetArray(reinterpret_cast<Value*>(buffer.release()), size, 0, Array::VTK_DATA_ARRAY_DELETE);
+    return array;
+}
+
+vtkSmartPointer<vtkPoints> points_from(Buffer<double>&& coordinates) {
+    auto points = vtkSmartPointer<vtkPoints>::New();
+    points->SetDataType(VTK_DOUBLE);
+    points->SetData(given_to_vtk<vtkDoubleArray>(std::move(coordinates), 3));
+    return points;
+}
+
+/// The faces or cells of a zone: which ids they have, in order.
+using Ids = Buffer<std::uint64_t>;
+
+/// One variable of one zone, gathered from its blocks.
+struct Gathered {
+    Buffer<double> values;
+    int components = 1;
+    std::uint64_t found = 0;
+};
+
+struct VariableKey {
+    std::string variable;
+    int phase = 1;
+    bool operator<(const VariableKey& o) const { return std::tie(phase, variable) < std::tie(o.phase, o.variable); }
+};
+
+class Assembly {
+public:
+    Assembly(FaceMesh& mesh, std::vector<ValueBlock>& values, const ReadOptions& options, core::Progress& progress)
+        : mesh_(mesh), values_(values), options_(options), progress_(progress) {}
+
+    void add_volumes(Field& field);
+    void add_surfaces(Field& field);
+
+private:
+    struct Element {
+        std::size_t block = 0;
+        std::size_t face = 0;
+        bool flipped = false;
+    };
+
+    [[nodiscard]] Zone named_zone(int id, int code, bool cells) const;
+    [[nodiscard]] Buffer<double> picked_points(Buffer<std::int32_t>& nodes, Buffer<std::int64_t>& stream, bool last);
+    [[nodiscard]] bool is_solid(std::uint32_t cell) const;
+    [[nodiscard]] bool turned(const FaceBlock& block, std::size_t face, bool wall) const;
+    [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall) const;
+    [[nodiscard]] double face_area(const Element& element) const;
+    [[nodiscard]] Gathered gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids) const;
+    void add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on_cells, const std::vector<double>& areas,
+                    core::Problems& problems);
+    void add_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) const;
+    void add_surface(Field& field, int id, const std::vector<std::size_t>& blocks);
+    [[nodiscard]] std::uint64_t hidden_within(const CellBlock& block) const;
+
+    FaceMesh& mesh_;
+    std::vector<ValueBlock>& values_;
+    const ReadOptions& options_;
+    core::Progress& progress_;
+    std::vector<std::int32_t> place_of_node_;
+};
+
+Zone Assembly::named_zone(int id, int code, bool cells) const {
+    Zone zone;
+    zone.id = id;
+    const ZoneLabel* label = mesh_.label(id);
+    zone.original_kind = label != nullptr && !label->type.empty() ? label->type : cells ? "fluid" : type_of_code(code);
+    zone.name = label != nullptr && !label->name.empty() ? label->name : zone.original_kind + "-" + std::to_string(id);
+    zone.kind = kind_of_type(zone.original_kind);
+    return zone;
+}
+
+/// The points that `nodes` (from 0) use, in order of their ids; `nodes` and the polyhedra's `stream` become places
+/// among these. The `last` zone may take the mesh's own.
+Buffer<double> Assembly::picked_points(Buffer<std::int32_t>& nodes, Buffer<std::int64_t>& stream, bool last) {
+    constexpr std::int32_t unused = -1;
+    place_of_node_.resize(mesh_.nodes, unused);
+    std::vector<std::int32_t> used;
+    for (const std::int32_t node : nodes) {
+        if (place_of_node_[static_cast<std::size_t>(node)] == unused) {
+            place_of_node_[static_cast<std::size_t>(node)] = 0;
+            used.push_back(node);
+        }
+    }
+    const bool all = used.size() == mesh_.nodes;
+    if (!all) {
+        std::sort(used.begin(), used.end());
+    }
+    Buffer<double> points;
+    if (all && last) {
+        points = std::move(mesh_.points);
+    } else if (all) {
+        points.grow_to(mesh_.points.size());
+        std::copy(mesh_.points.begin(), mesh_.points.end(), points.begin());
+    } else {
+        points.grow_to(3 * used.size());
+        for (std::size_t i = 0; i < used.size(); ++i) {
+            place_of_node_[static_cast<std::size_t>(used[i])] = static_cast<std::int32_t>(i);
+            std::copy_n(mesh_.points.data() + 3 * static_cast<std::size_t>(used[i]), 3, points.data() + 3 * i);
+        }
+        for (auto& node : nodes) {
+            node = place_of_node_[static_cast<std::size_t>(node)];
+        }
+        for (std::size_t i = 0; i < stream.size();) {
+            for (std::int64_t faces = stream[i++]; faces > 0; --faces) {
+                for (std::int64_t corners = stream[i++]; corners > 0; --corners, ++i) {
+                    stream[i] = place_of_node_[static_cast<std::size_t>(stream[i])];
+                }
+            }
+        }
+    }
+    for (const std::int32_t node : used) {
+        place_of_node_[static_cast<std::size_t>(node)] = unused;
+    }
+    return points;
+}
+
+bool Assembly::is_solid(std::uint32_t cell) const {
+    for (const auto& block : mesh_.cell_blocks) {
+        if (cell >= block.first && cell < block.first + block.count) {
+            const ZoneLabel* label = mesh_.label(block.zone);
+            return label != nullptr && label->type == "solid";
+        }
+    }
+    return false;
+}
+
+/// The stored normal points into c0. Must it be turned to point into the fluid?
+bool Assembly::turned(const FaceBlock& block, std::size_t face, bool wall) const {
+    const std::uint32_t c0 = block.c0[face];
+    const std::uint32_t c1 = block.c1.empty() ? 0 : block.c1[face];
+    if (c0 == 0 || c1 == 0) {
+        return c0 == 0 && c1 != 0;
+    }
+    return wall && is_solid(c0) && !is_solid(c1);
+}
+
+std::vector<Assembly::Element> Assembly::elements_of(const std::vector<std::size_t>& blocks, bool wall) const {
+    std::vector<Element> elements;
+    for (const std::size_t b : blocks) {
+        const FaceBlock& block = mesh_.face_blocks[b];
+        std::vector<IdRange> hidden;
+        for (const auto& range : mesh_.hidden_faces) {
+            if (range.last >= block.first && range.first < block.first + block.count) {
+                hidden.push_back(range);
+            }
+        }
+        const std::uint32_t least = mesh_.dimension == 2 ? 2 : 3;
+        for (std::size_t face = 0; face < block.count; ++face) {
+            const std::uint64_t id = block.first + face;
+            const bool parent = std::any_of(hidden.begin(), hidden.end(),
+                                            [&](const IdRange& r) { return id >= r.first && id <= r.last; });
+            if (!parent && block.size_of(face) >= least) {
+                elements.push_back({b, face, turned(block, face, wall)});
+            }
+        }
+    }
+    return elements;
+}
+
+double Assembly::face_area(const Element& element) const {
+    const FaceBlock& block = mesh_.face_blocks[element.block];
+    const std::uint32_t* nodes = block.nodes.data() + block.begin_of(element.face);
+    const std::uint32_t size = block.size_of(element.face);
+    const auto at = [&](std::uint32_t i) { return mesh_.points.data() + 3 * (static_cast<std::size_t>(nodes[i]) - 1); };
+    if (mesh_.dimension == 2) {
+        return std::hypot(at(1)[0] - at(0)[0], at(1)[1] - at(0)[1]);
+    }
+    std::array<double, 3> sum{};
+    for (std::uint32_t i = 1; i + 1 < size; ++i) {
+        std::array<double, 3> u{};
+        std::array<double, 3> v{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            u[k] = at(i)[k] - at(0)[k];
+            v[k] = at(i + 1)[k] - at(0)[k];
+        }
+        sum[0] += u[1] * v[2] - u[2] * v[1];
+        sum[1] += u[2] * v[0] - u[0] * v[2];
+        sum[2] += u[0] * v[1] - u[1] * v[0];
+    }
+    return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / 2;
+}
+
+Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids) const {
+    Gathered result;
+    if (ids.empty()) {
+        return result;
+    }
+    const std::uint64_t first = ids[0];
+    const std::uint64_t last = ids[ids.size() - 1];
+    for (const auto& block : values_) {
+        const bool ours = block.on_cells == on_cells && block.variable == key.variable && block.phase == key.phase &&
+                          (block.zone == 0 || block.zone == zone) && block.count > 0 && block.first <= last &&
+                          block.first + block.count > first;
+        if (!ours) {
+            continue;
+        }
+        const auto n = static_cast<std::size_t>(block.components);
+        if (result.values.empty()) {
+            result.components = block.components;
+            result.values.grow_to(ids.size() * n);
+            result.values.fill(missing);
+        }
+        if (block.components != result.components) {
+            continue;
+        }
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            if (ids[i] >= block.first && ids[i] < block.first + block.count) {
+                std::copy_n(block.values.data() + (ids[i] - block.first) * n, n, result.values.data() + i * n);
+                ++result.found;
+            }
+        }
+    }
+    return result;
+}
+
+void Assembly::add_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) const {
+    auto array = given_to_vtk<vtkDoubleArray>(std::move(values), info.components);
+    array->SetName(info.name.c_str());
+    data.AddArray(array);
+    zone.arrays.push_back(std::move(info));
+}
+
+/// Traction on the body, out of the force of the wall on the fluid.
+void to_traction(Buffer<double>& forces, int components, const std::vector<double>& areas) {
+    const auto n = static_cast<std::size_t>(components);
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        for (std::size_t k = 0; k < n; ++k) {
+            forces[i * n + k] = areas[i] > 0 ? -forces[i * n + k] / areas[i] : 0;
+        }
+    }
+}
+
+/// Three components out of two, the third 0.
+Buffer<double> widened(const Buffer<double>& values) {
+    Buffer<double> result(values.size() / 2 * 3);
+    for (std::size_t i = 0; i < values.size() / 2; ++i) {
+        result[3 * i] = values[2 * i];
+        result[3 * i + 1] = values[2 * i + 1];
+        result[3 * i + 2] = 0;
+    }
+    return result;
+}
+
+void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on_cells,
+                          const std::vector<double>& areas, core::Problems& problems) {
+    const auto wanted = [&](const std::string& name, const std::string& original) {
+        return options_.arrays.empty() || matches_any(options_.arrays, name) || matches_any(options_.arrays, original);
+    };
+    std::vector<VariableKey> keys;
+    std::set<VariableKey> seen;
+    for (const auto& block : values_) {
+        if (block.on_cells == on_cells && (block.zone == 0 || block.zone == zone.id)) {
+            VariableKey key{block.variable, block.phase};
+            if (seen.insert(key).second) {
+                keys.push_back(std::move(key));
+            }
+        }
+    }
+    struct Joined {
+        ArrayInfo info;
+        Buffer<double> values;
+    };
+    std::vector<Joined> vectors;
+    for (const auto& key : keys) {
+        progress_.check();
+        const std::string phase = key.phase == 1 ? "" : ".phase-" + std::to_string(key.phase);
+        const CanonicalName canonical = canonical_name(key.variable);
+        const auto component = vector_component(canonical.name);
+        std::string name = (component ? component->vector : canonical.name) + phase;
+        const bool shear = canonical.name == "wall_shear_force";
+        if (!wanted(shear ? "wall_shear" + phase : name, key.variable)) {
+            continue;
+        }
+        Gathered found = gather(key, zone.id, on_cells, ids);
+        if (found.found == 0) {
+            continue;
+        }
+        if (found.found < ids.size()) {
+            problems.push_back({core::Problem::Severity::warning,
+                                key.variable + " covers " + std::to_string(found.found) + " of the " +
+                                    std::to_string(ids.size()) + (on_cells ? " cells" : " faces") + " of zone " +
+                                    zone.name + "; the others are not-a-number",
+                                {mesh_.file, {}, {}, {}}});
+        }
+        ArrayInfo info{
+            name, canonical.unit, key.variable, "", on_cells ? Location::cells : Location::faces, found.components};
+        if (component && found.components == 1) {
+            auto joined =
+                std::find_if(vectors.begin(), vectors.end(), [&](const Joined& j) { return j.info.name == name; });
+            if (joined == vectors.end()) {
+                info.components = 3;
+                vectors.push_back({info, Buffer<double>(3 * ids.size())});
+                joined = std::prev(vectors.end());
+                joined->values.fill(0);
+            } else {
+                joined->info.original_name += ", " + key.variable;
+            }
+            for (std::size_t i = 0; i < ids.size(); ++i) {
+                joined->values[3 * i + static_cast<std::size_t>(component->index)] = found.values[i];
+            }
+            continue;
+        }
+        if (found.components == 2 && (shear || vector_component(canonical.name + "_x"))) {
+            found.values = widened(found.values);
+            info.components = 3;
+        }
+        if (shear && !on_cells && areas.size() == ids.size()) {
+            to_traction(found.values, info.components, areas);
+            info.name = "wall_shear" + phase;
+            info.unit = "Pa";
+            info.original_unit = "N";
+        }
+        add_array(zone, data, std::move(info), std::move(found.values));
+    }
+    for (auto& joined : vectors) {
+        add_array(zone, data, std::move(joined.info), std::move(joined.values));
+    }
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> grid_of(CellArrays&& cells, Buffer<double>&& coordinates) {
+    auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    grid->SetPoints(points_from(std::move(coordinates)));
+    vtkNew<vtkCellArray> array;
+    array->SetData(given_to_vtk<vtkTypeInt32Array>(std::move(cells.offsets)),
+                   given_to_vtk<vtkTypeInt32Array>(std::move(cells.connectivity)));
+    const auto types = given_to_vtk<vtkUnsignedCharArray>(std::move(cells.types));
+    if (cells.face_locations.empty()) {
+        grid->SetCells(types, array);
+    } else {
+        grid->SetCells(types, array, given_to_vtk<vtkIdTypeArray>(std::move(cells.face_locations)),
+                       given_to_vtk<vtkIdTypeArray>(std::move(cells.face_stream)));
+    }
+    return grid;
+}
+
+void Assembly::add_volumes(Field& field) {
+    std::vector<const CellBlock*> wanted;
+    for (const auto& block : mesh_.cell_blocks) {
+        if (!block.parents && block.count > 0 && matches_any(options_.zones, named_zone(block.zone, 0, true).name)) {
+            wanted.push_back(&block);
+        }
+    }
+    if (wanted.empty()) {
+        return;
+    }
+    auto builder = std::make_unique<CellBuilder>(mesh_, progress_);
+    const core::Place place{mesh_.file, {}, {}, {}};
+    for (const CellBlock* block : wanted) {
+        const bool last = block == wanted.back();
+        Zone zone = named_zone(block->zone, 0, true);
+        progress_.report(0.7, "building " + zone.name);
+        CellArrays cells = builder->build(*block, progress_);
+        const auto note = [&](std::uint64_t count, const char* what) {
+            if (count > 0) {
+                field.problems.push_back({core::Problem::Severity::warning,
+                                          std::to_string(count) + " cells of zone " + zone.name + what, place});
+            }
+        };
+        note(cells.inverted, " have no positive volume");
+        note(cells.open, " are not closed by their faces");
+        note(block->count - cells.types.size() - hidden_within(*block), " have no faces and are left out");
+        field.metadata.emplace_back((mesh_.dimension == 2 ? "area of " : "volume of ") + zone.name,
+                                    core::format_number(cells.volume));
+        if (last) {
+            builder.reset();
+            mesh_.face_blocks.clear();
+        }
+        const Ids ids = std::move(cells.ids);
+        auto coordinates = picked_points(cells.connectivity, cells.face_stream, last);
+        zone.volume = grid_of(std::move(cells), std::move(coordinates));
+        add_values(zone, ids, *zone.volume->GetCellData(), true, {}, field.problems);
+        field.zones.push_back(std::move(zone));
+    }
+}
+
+void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>& blocks) {
+    Zone zone = named_zone(id, mesh_.face_blocks[blocks.front()].kind, false);
+    if (!matches_any(options_.zones, zone.name)) {
+        return;
+    }
+    const auto elements = elements_of(blocks, zone.kind == ZoneKind::wall);
+    if (elements.empty()) {
+        field.problems.push_back(
+            {core::Problem::Severity::note, "zone " + zone.name + " has no faces", {mesh_.file, {}, {}, {}}});
+        return;
+    }
+    std::size_t corners = 0;
+    for (const auto& element : elements) {
+        corners += mesh_.face_blocks[element.block].size_of(element.face);
+    }
+    Ids ids(elements.size());
+    Buffer<std::int32_t> offsets(elements.size() + 1);
+    Buffer<std::int32_t> connectivity(corners);
+    std::vector<double> areas(elements.size());
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        const auto& [b, face, flipped] = elements[i];
+        const FaceBlock& block = mesh_.face_blocks[b];
+        const std::uint32_t* nodes = block.nodes.data() + block.begin_of(face);
+        const std::uint32_t size = block.size_of(face);
+        ids[i] = block.first + face;
+        areas[i] = face_area(elements[i]);
+        offsets[i] = static_cast<std::int32_t>(at);
+        for (std::uint32_t k = 0; k < size; ++k) {
+            connectivity[at++] = static_cast<std::int32_t>(nodes[flipped ? size - 1 - k : k]) - 1;
+        }
+    }
+    offsets[elements.size()] = static_cast<std::int32_t>(at);
+    Buffer<std::int64_t> no_stream;
+    zone.surface = vtkSmartPointer<vtkPolyData>::New();
+    zone.surface->SetPoints(points_from(picked_points(connectivity, no_stream, false)));
+    vtkNew<vtkCellArray> array;
+    array->SetData(given_to_vtk<vtkTypeInt32Array>(std::move(offsets)),
+                   given_to_vtk<vtkTypeInt32Array>(std::move(connectivity)));
+    if (mesh_.dimension == 2) {
+        zone.surface->SetLines(array);
+    } else {
+        zone.surface->SetPolys(array);
+    }
+    add_values(zone, ids, *zone.surface->GetCellData(), false, areas, field.problems);
+    field.zones.push_back(std::move(zone));
+}
+
+void Assembly::add_surfaces(Field& field) {
+    std::vector<int> order;
+    std::map<int, std::vector<std::size_t>> zones;
+    for (std::size_t b = 0; b < mesh_.face_blocks.size(); ++b) {
+        const FaceBlock& block = mesh_.face_blocks[b];
+        if (is_inner_code(block.kind) || is_hidden_code(block.kind)) {
+            continue;
+        }
+        auto& list = zones[block.zone];
+        if (list.empty()) {
+            order.push_back(block.zone);
+        }
+        list.push_back(b);
+    }
+    for (const int id : order) {
+        progress_.check();
+        add_surface(field, id, zones[id]);
+    }
+}
+
+std::uint64_t Assembly::hidden_within(const CellBlock& block) const {
+    std::uint64_t count = 0;
+    for (const auto& range : mesh_.hidden_cells) {
+        const std::uint64_t first = std::max(range.first, block.first);
+        const std::uint64_t last = std::min(range.last, block.first + block.count - 1);
+        count += last >= first ? last - first + 1 : 0;
+    }
+    return count;
+}
+
+}  // namespace
+
+Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const FluentSettings& settings,
+                 const ReadOptions& options, core::Progress& progress) {
+    Field field;
+    field.files.push_back(mesh.file);
+    field.dimension = mesh.dimension;
+    field.writer = settings.writer;
+    field.metadata.emplace_back("mesh", std::to_string(mesh.nodes) + " nodes, " + std::to_string(mesh.faces) +
+                                            " faces, " + std::to_string(mesh.cells) + " cells");
+    scale_lengths(mesh, options, field);
+    apply_settings(settings, !values.empty(), field);
+    Assembly assembly(mesh, values, options, progress);
+    std::vector<Zone> surfaces;
+    assembly.add_surfaces(field);
+    surfaces.swap(field.zones);
+    if (!options.surfaces_only) {
+        assembly.add_volumes(field);
+    }
+    std::move(surfaces.begin(), surfaces.end(), std::back_inserter(field.zones));
+    return field;
+}
+
+}  // namespace underbody::postproc
