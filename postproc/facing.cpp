@@ -1,0 +1,366 @@
+#include "postproc/facing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+
+namespace underbody::postproc {
+
+namespace {
+
+using Point = std::array<double, 3>;
+
+struct Edge {
+    std::uint32_t zone;
+    Index a, b;
+};
+
+/// Edges with one face, in the way their face runs along them.
+std::vector<Edge> open_edges(const SurfaceArrays& surface, std::uint32_t zone) {
+    // A directed edge is looked for in the other direction; hash keyed by both nodes.
+    const auto key = [](Index a, Index b) { return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b); };
+    std::unordered_map<std::uint64_t, int> seen;
+    seen.reserve(surface.connectivity().size());
+    const auto offsets = surface.offsets();
+    const auto nodes = surface.connectivity();
+    const auto for_edges = [&](auto&& act) {
+        for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
+            for (Index i = offsets[f]; i < offsets[f + 1]; ++i) {
+                const Index a = nodes[static_cast<std::size_t>(i)];
+                const Index b = nodes[static_cast<std::size_t>(i + 1 < offsets[f + 1] ? i + 1 : offsets[f])];
+                if (a != b) {
+                    act(a, b);
+                }
+            }
+        }
+    };
+    for_edges([&](Index a, Index b) { ++seen[key(std::min(a, b), std::max(a, b))]; });
+    std::vector<Edge> edges;
+    for_edges([&](Index a, Index b) {
+        if (seen[key(std::min(a, b), std::max(a, b))] == 1) {
+            edges.push_back({zone, a, b});
+        }
+    });
+    return edges;
+}
+
+/// Numbers places so that points nearer than the tolerance get one number.
+class Places {
+public:
+    explicit Places(double tolerance) : cell_(2 * tolerance), tolerance_(tolerance) {}
+
+    std::int64_t number(const double* x) {
+        for (int corner = 0; corner < 8; ++corner) {
+            const auto found = cells_.find(hash(x, corner));
+            if (found == cells_.end()) {
+                continue;
+            }
+            for (const auto i : found->second) {
+                const Point& p = points_[static_cast<std::size_t>(i)];
+                if (std::hypot(p[0] - x[0], p[1] - x[1], p[2] - x[2]) <= tolerance_) {
+                    return i;
+                }
+            }
+        }
+        const auto next = static_cast<std::int64_t>(points_.size());
+        points_.push_back({x[0], x[1], x[2]});
+        cells_[own(x)].push_back(next);
+        return next;
+    }
+
+private:
+    [[nodiscard]] std::uint64_t of(std::int64_t i, std::int64_t j, std::int64_t k) const {
+        return static_cast<std::uint64_t>(i) * 73856093ULL ^ static_cast<std::uint64_t>(j) * 19349663ULL ^
+               static_cast<std::uint64_t>(k) * 83492791ULL;
+    }
+    [[nodiscard]] std::uint64_t own(const double* x) const {
+        return of(std::llround(std::floor(x[0] / cell_)), std::llround(std::floor(x[1] / cell_)), std::llround(std::floor(x[2] / cell_)));
+    }
+    /// The eight cells nearest to the point: everything within the tolerance lies in one of them.
+    [[nodiscard]] std::uint64_t hash(const double* x, int corner) const {
+        std::array<std::int64_t, 3> i{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double at = x[k] / cell_;
+            const double cell = std::floor(at);
+            const bool lower = at - cell < 0.5;
+            i[k] = std::llround(cell) + (((corner >> k) & 1) != 0 ? (lower ? -1 : 1) : 0);
+        }
+        return of(i[0], i[1], i[2]);
+    }
+
+    double cell_;
+    double tolerance_;
+    std::vector<Point> points_;
+    std::unordered_map<std::uint64_t, std::vector<std::int64_t>> cells_;
+};
+
+/// Zones that were found to belong together, with the sign of each relative to its root.
+class SignedGroups {
+public:
+    explicit SignedGroups(std::size_t count) : parent_(count), sign_(count, 1.0) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+
+    std::pair<std::size_t, double> root(std::size_t i) const {
+        double sign = 1;
+        while (parent_[i] != i) {
+            sign *= sign_[i];
+            i = parent_[i];
+        }
+        return {i, sign};
+    }
+    void join(std::size_t i, std::size_t j, double relative) {
+        const auto [a, sa] = root(i);
+        const auto [b, sb] = root(j);
+        if (a != b) {
+            parent_[b] = a;
+            sign_[b] = relative * sa * sb;
+        }
+    }
+
+private:
+    std::vector<std::size_t> parent_;
+    std::vector<double> sign_;
+};
+
+class Settler {
+public:
+    Settler(const std::vector<FacingZone>& zones, int symmetry, const Point& origin) : zones_(zones), symmetry_(symmetry), origin_(origin) {
+        facing_.signs.assign(zones.size(), 1.0);
+        for (const auto& zone : zones) {
+            area_ += zone.sums.area;
+        }
+    }
+
+    Facing settle() {
+        const auto known = std::count_if(zones_.begin(), zones_.end(), [](const FacingZone& z) { return z.known; });
+        if (known == static_cast<std::ptrdiff_t>(zones_.size())) {
+            facing_.how = "the file says which side the fluid is on";
+        } else if (closes(known > 0)) {
+            facing_.how = known > 0 ? "turned so that the surface closes with the zones that the file vouches for"
+                                    : "the surface closes" + std::string(symmetry_ >= 0 ? " with its mirror image" : "") +
+                                          ": the fluid is outside the volume it encloses";
+        } else {
+            settle_open();
+        }
+        return std::move(facing_);
+    }
+
+private:
+    [[nodiscard]] double openness(const std::vector<double>& signs) const {
+        double square = 0;
+        for (int k = 0; k < 3; ++k) {
+            double sum = 0;
+            for (std::size_t i = 0; k != symmetry_ && i < zones_.size(); ++i) {
+                sum += signs[i] * zones_[i].sums.area_vector[static_cast<std::size_t>(k)];
+            }
+            square += sum * sum;
+        }
+        return area_ > 0 ? std::sqrt(square) / area_ : 0;
+    }
+
+    /// Volume by the axes that close.
+    [[nodiscard]] double volume(const std::vector<double>& signs) const {
+        double sum = 0;
+        for (int k = 0; k < 3; ++k) {
+            for (std::size_t i = 0; k != symmetry_ && i < zones_.size(); ++i) {
+                sum += signs[i] * zones_[i].sums.flux_of_place[static_cast<std::size_t>(k)];
+            }
+        }
+        return sum / (symmetry_ >= 0 ? 2 : 3);
+    }
+
+    /// True when one choice of signs closes the surface and no other comes near it.
+    bool closes(bool anchored) {
+        std::vector<std::size_t> free;
+        for (std::size_t i = 0; i < zones_.size(); ++i) {
+            if (!zones_[i].known) {
+                free.push_back(i);
+            }
+        }
+        if (!anchored) {
+            free.erase(free.begin());  // all turned together is decided by the volume
+        }
+        if (free.size() > 12) {
+            return false;
+        }
+        constexpr double closed = 0.01;
+        double best = std::numeric_limits<double>::infinity();
+        double second = best;
+        std::vector<double> best_signs = facing_.signs;
+        for (std::size_t choice = 0; choice < (std::size_t{1} << free.size()); ++choice) {
+            std::vector<double> signs(zones_.size(), 1.0);
+            for (std::size_t k = 0; k < free.size(); ++k) {
+                signs[free[k]] = ((choice >> k) & 1) != 0 ? -1.0 : 1.0;
+            }
+            const double open = openness(signs);
+            if (open < best) {
+                second = best;
+                best = open;
+                best_signs = signs;
+            } else {
+                second = std::min(second, open);
+            }
+        }
+        if (best > closed || second < 4 * best + 1e-9) {
+            return false;
+        }
+        const double enclosed = volume(best_signs);
+        if (!anchored && std::abs(enclosed) < tiny_volume()) {
+            return false;
+        }
+        if (!anchored && enclosed < 0) {
+            for (auto& sign : best_signs) {
+                sign = -sign;
+            }
+        }
+        facing_.signs = best_signs;
+        return true;
+    }
+
+    [[nodiscard]] double tiny_volume() const { return 1e-6 * std::pow(area_, 1.5); }
+
+    /// Open surfaces: relative signs from shared edges, the sign of each group from the volume toward its own opening.
+    void settle_open() {
+        std::vector<std::vector<Edge>> edges;
+        for (std::size_t i = 0; i < zones_.size(); ++i) {
+            edges.push_back(open_edges(*zones_[i].surface, static_cast<std::uint32_t>(i)));
+        }
+        std::vector<std::vector<Edge>> unmatched;
+        const SignedGroups groups = join_by_edges(edges, unmatched);
+        facing_.how = "zones that share edges agree; the fluid is outside the volume toward the centre of the open edges";
+        for (std::size_t root = 0; root < zones_.size(); ++root) {
+            if (groups.root(root).first == root) {
+                settle_group(groups, root, unmatched);
+            }
+        }
+    }
+
+    SignedGroups join_by_edges(const std::vector<std::vector<Edge>>& edges, std::vector<std::vector<Edge>>& unmatched) const {
+        Places places(1e-6 * size());
+        struct Seen {
+            std::uint32_t zone;
+            std::size_t index;
+            bool forward;
+        };
+        std::unordered_map<std::uint64_t, std::vector<Seen>> by_place;
+        for (std::size_t z = 0; z < edges.size(); ++z) {
+            for (std::size_t e = 0; e < edges[z].size(); ++e) {
+                const double* points = zones_[z].surface->points().data();
+                const auto a = static_cast<std::uint64_t>(places.number(points + 3 * edges[z][e].a));
+                const auto b = static_cast<std::uint64_t>(places.number(points + 3 * edges[z][e].b));
+                by_place[(std::min(a, b) << 32) | std::max(a, b)].push_back({static_cast<std::uint32_t>(z), e, a < b});
+            }
+        }
+        unmatched.assign(edges.size(), {});
+        std::vector<std::vector<double>> votes(edges.size(), std::vector<double>(edges.size(), 0));
+        for (const auto& [key, seen] : by_place) {
+            if (seen.size() == 2 && seen[0].zone != seen[1].zone) {
+                votes[seen[0].zone][seen[1].zone] += seen[0].forward == seen[1].forward ? -1 : 1;
+                votes[seen[1].zone][seen[0].zone] += seen[0].forward == seen[1].forward ? -1 : 1;
+            } else if (seen.size() == 1) {
+                unmatched[seen[0].zone].push_back(edges[seen[0].zone][seen[0].index]);
+            }
+        }
+        SignedGroups groups(edges.size());
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            for (std::size_t j = i + 1; j < edges.size(); ++j) {
+                if (votes[i][j] != 0) {
+                    groups.join(i, j, votes[i][j] > 0 ? 1.0 : -1.0);
+                }
+            }
+        }
+        return groups;
+    }
+
+    void settle_group(const SignedGroups& groups, std::size_t root, const std::vector<std::vector<Edge>>& unmatched) {
+        std::vector<std::size_t> members;
+        double anchored = 0;
+        for (std::size_t i = 0; i < zones_.size(); ++i) {
+            if (groups.root(i).first == root) {
+                members.push_back(i);
+                anchored = anchored == 0 && zones_[i].known ? groups.root(i).second : anchored;
+            }
+        }
+        double sign = anchored;
+        if (sign == 0) {
+            double enclosed = group_volume(groups, members, centre_of_edges(members, unmatched));
+            if (std::abs(enclosed) < tiny_volume() && members.size() < zones_.size()) {
+                enclosed = group_volume(groups, members, centre_of_all());  // a flat part: away from the rest of the body
+            }
+            if (std::abs(enclosed) < tiny_volume()) {
+                facing_.problems.push_back({core::Problem::Severity::warning,
+                                            "which side of zone '" + zones_[members[0]].name +
+                                                "' the fluid is on cannot be told from its shape: the node order of the file was used", {}});
+                enclosed = 1;
+            }
+            sign = enclosed > 0 ? 1.0 : -1.0;
+        }
+        for (const auto i : members) {
+            facing_.signs[i] = zones_[i].known ? 1.0 : sign * groups.root(i).second;
+        }
+    }
+
+    [[nodiscard]] double group_volume(const SignedGroups& groups, const std::vector<std::size_t>& members, const Point& apex) const {
+        double sum = 0;
+        for (const auto i : members) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                sum += groups.root(i).second * (zones_[i].sums.flux_of_place[k] - (apex[k] - origin_[k]) * zones_[i].sums.area_vector[k]);
+            }
+        }
+        return sum / 3;
+    }
+
+    [[nodiscard]] Point centre_of_edges(const std::vector<std::size_t>& members, const std::vector<std::vector<Edge>>& edges) const {
+        Point sum{};
+        double weight = 0;
+        for (const auto i : members) {
+            for (const auto& edge : edges[i]) {
+                const double* a = zones_[i].surface->points().data() + 3 * edge.a;
+                const double* b = zones_[i].surface->points().data() + 3 * edge.b;
+                const double length = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+                weight += length;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    sum[k] += length * 0.5 * (a[k] + b[k]);
+                }
+            }
+        }
+        return weight > 0 ? Point{sum[0] / weight, sum[1] / weight, sum[2] / weight} : origin_;
+    }
+
+    void extent(Point& lower, Point& upper) const {
+        lower.fill(std::numeric_limits<double>::infinity());
+        upper.fill(-std::numeric_limits<double>::infinity());
+        for (const auto& zone : zones_) {
+            for (std::size_t i = 0; i < zone.surface->points().size(); ++i) {
+                lower[i % 3] = std::min(lower[i % 3], zone.surface->points()[i]);
+                upper[i % 3] = std::max(upper[i % 3], zone.surface->points()[i]);
+            }
+        }
+    }
+    [[nodiscard]] Point centre_of_all() const {
+        Point lower, upper;
+        extent(lower, upper);
+        return {0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1]), 0.5 * (lower[2] + upper[2])};
+    }
+    [[nodiscard]] double size() const {
+        Point lower, upper;
+        extent(lower, upper);
+        return std::hypot(upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]);
+    }
+
+    const std::vector<FacingZone>& zones_;
+    int symmetry_;
+    Point origin_;
+    double area_ = 0;
+    Facing facing_;
+};
+
+}  // namespace
+
+Facing settle_facing(const std::vector<FacingZone>& zones, int symmetry, const std::array<double, 3>& origin) {
+    return Settler(zones, symmetry, origin).settle();
+}
+
+}  // namespace underbody::postproc

@@ -1,0 +1,118 @@
+#include "studio/cli/field_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/name_pattern.h"
+#include "core/table.h"
+#include "core/text.h"
+
+namespace underbody::studio {
+
+namespace fs = std::filesystem;
+
+void FieldOptions::add_to(CLI::App& command, bool with_zones) {
+    if (with_zones) {
+        command.add_option("--zones", zones, "zones to take: names, * and ? allowed; several with commas")->delimiter(',');
+    }
+    command.add_option("--length-unit", length_unit, "unit of coordinates that the file does not say (mm, inch ...)");
+    command.add_option("--unit", units, "unit of a variable that the file does not say: \"Pressure=Pa\"");
+    command.add_option("--mesh", mesh, "the mesh or case file that a results file belongs to")->check(CLI::ExistingFile);
+}
+
+postproc::ReadOptions FieldOptions::read_options() const {
+    postproc::ReadOptions options;
+    options.length_unit = length_unit;
+    options.companion = mesh;
+    for (const auto& text : units) {
+        const auto equals = text.rfind('=');
+        if (equals == std::string::npos || equals == 0) {
+            throw core::UsageError("usage", "--unit '" + text + "' is no NAME=UNIT", {}, "for instance --unit \"Pressure=Pa\"");
+        }
+        options.units.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
+    return options;
+}
+
+namespace {
+
+void add_pattern(const std::string& text, Batch& batch) {
+    const core::NamePattern pattern(text);
+    const auto found = pattern.files();
+    if (found.empty()) {
+        throw core::InputError("file", "no file fits the pattern '" + text + "'", {}, "patterns may hold *, ?, {name} and {name:unit}");
+    }
+    for (const auto& [path, match] : found) {
+        batch.files.push_back({path.string(), match.numbers, match.texts});
+    }
+    for (const auto& part : pattern.parts()) {
+        if (part.kind == core::NamePattern::Part::Kind::number) {
+            batch.number_units.emplace_back(part.value, part.unit);
+        }
+    }
+}
+
+void add_row(const core::Table& table, std::size_t row, ConditionedFile& file) {
+    for (const auto& column : table.columns()) {
+        if (column.name == "file") {
+            continue;
+        }
+        if (column.is_text()) {
+            file.texts.emplace_back(column.name, column.text[row]);
+        } else {
+            file.numbers.emplace_back(column.name, column.numbers[row]);
+        }
+    }
+}
+
+/// Conditions of a manifest: for the files that were named, or, when none were, for all that it lists.
+void add_manifest(const std::string& path, Batch& batch) {
+    const core::Table table = core::read_csv(fs::path(path));
+    const auto& names = table.text("file");
+    const bool all = batch.files.empty();
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+        const fs::path listed = fs::path(path).parent_path() / names[row];
+        if (all) {
+            batch.files.push_back({listed.string(), {}, {}});
+            add_row(table, row, batch.files.back());
+            continue;
+        }
+        for (auto& file : batch.files) {
+            std::error_code ignored;
+            if (fs::equivalent(file.path, listed, ignored)) {
+                add_row(table, row, file);
+            }
+        }
+    }
+    for (const auto& column : table.columns()) {
+        if (!column.is_text()) {
+            batch.number_units.emplace_back(column.name, column.written_unit);
+        }
+    }
+    for (const auto& file : batch.files) {
+        if (file.numbers.empty() && file.texts.empty()) {
+            throw core::InputError("missing", "the manifest does not list '" + file.path + "'", {path, {}, {}, {}}, core::did_you_mean(fs::path(file.path).filename().string(), names));
+        }
+    }
+}
+
+}  // namespace
+
+Batch find_files(const std::vector<std::string>& arguments, const std::string& manifest) {
+    Batch batch;
+    for (const auto& argument : arguments) {
+        if (!fs::exists(argument) && core::NamePattern::is_pattern(argument)) {
+            add_pattern(argument, batch);
+        } else {
+            batch.files.push_back({argument, {}, {}});
+        }
+    }
+    if (!manifest.empty()) {
+        add_manifest(manifest, batch);
+    }
+    return batch;
+}
+
+}  // namespace underbody::studio

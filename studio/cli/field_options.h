@@ -1,0 +1,43 @@
+// Options that every command shares that reads CFD files.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "postproc/field.h"
+
+namespace CLI {
+class App;
+}
+
+namespace underbody::studio {
+
+/// --zones, --length-unit, --unit, --mesh.
+struct FieldOptions {
+    std::vector<std::string> zones;
+    std::string length_unit;
+    std::vector<std::string> units;
+    std::string mesh;
+
+    void add_to(CLI::App& command, bool with_zones = true);
+    /// Throws core::UsageError for a --unit without '='.
+    [[nodiscard]] postproc::ReadOptions read_options() const;
+};
+
+/// A file of a batch with the conditions that its name or the manifest gives.
+struct ConditionedFile {
+    std::string path;
+    std::vector<std::pair<std::string, double>> numbers;      ///< SI
+    std::vector<std::pair<std::string, std::string>> texts;
+};
+struct Batch {
+    std::vector<ConditionedFile> files;
+    std::vector<std::pair<std::string, std::string>> number_units;  ///< condition -> unit it was written in
+};
+
+/// Files, shell patterns and name patterns ('{variant}-h{gap:mm}.csv'); `manifest` is a table with a column `file`
+/// whose other columns are conditions (rows are added to the files named, paths are relative to the manifest).
+Batch find_files(const std::vector<std::string>& arguments, const std::string& manifest);
+
+}  // namespace underbody::studio
