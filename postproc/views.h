@@ -1,0 +1,119 @@
+// Pictures of fields and bodies, with or without a display.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/progress.h"
+
+namespace underbody::postproc {
+
+struct Field;
+
+/// A surface to be drawn, as plain values: points in m, faces as triangles, one value per point (or none).
+struct DrawnSurface {
+    std::vector<std::array<double, 3>> points;
+    std::vector<std::array<int, 3>> triangles;
+    std::vector<double> values;                 ///< per point; empty: one colour
+    std::array<double, 3> colour{0.72, 0.75, 0.78};
+    double opacity = 1;
+    bool edges = false;                         ///< draw the triangles' edges
+    bool smooth = true;                         ///< round shading over edges below 30 degrees
+};
+
+/// A line to be drawn: streamlines, traces.
+struct DrawnLine {
+    std::vector<std::array<double, 3>> points;
+    std::vector<double> values;                 ///< per point, by the scene's colour map; empty: one colour
+    std::array<double, 3> colour{0.1, 0.1, 0.1};
+    double width = 2;                           ///< pixels
+};
+
+/// Where the picture is taken from; axes of the drawn points.
+struct Camera {
+    std::array<double, 3> towards{-1, 0.9, -0.55};  ///< direction of looking
+    std::array<double, 3> up{0, 0, 1};
+    bool parallel = true;                           ///< no perspective: lengths can be compared, the scale bar is true
+    double zoom = 1;
+    /// The box to fit (x0, x1, y0, y1, z0, z1); default: everything drawn. Give the same one to compare pictures.
+    std::optional<std::array<double, 6>> box;
+};
+
+enum class ColourMap {
+    viridis,    ///< values from low to high
+    diverging,  ///< blue, white, red (Moreland 2009), centred on zero
+    grey,
+};
+
+struct Scene {
+    std::vector<DrawnSurface> surfaces;
+    std::vector<DrawnLine> lines;
+    std::string title;              ///< what is shown: "pressure on the underbody"
+    std::string subtitle;           ///< the case: "ellipse, gap 5 mm, pitch 0 deg"
+    std::string value_name;         ///< "pressure"; empty: no colour bar
+    std::string value_unit;         ///< "Pa"
+    std::optional<std::pair<double, double>> range;  ///< of the colours; default: of the values
+    ColourMap colours = ColourMap::viridis;
+    Camera camera;
+    int width = 1200;
+    int height = 800;
+    bool scale_bar = true;
+    bool axes = true;               ///< small arrows of the axes' directions
+    std::array<std::string, 3> axis_names{"x", "y", "z"};
+};
+
+/// Draws and returns a PNG file's bytes. Starts its own Xvfb when there is no usable display.
+/// Throws core::SystemError (kind "display") when neither is to be had; never aborts.
+std::string draw_png(const Scene& scene);
+
+/// Ends the process-wide Xvfb that draw_png may have started; called at exit by itself.
+void end_drawing();
+
+// ---- pictures of a case ----
+
+/// How a case's pictures are made.
+struct ViewOptions {
+    std::array<double, 3> forward{1, 0, 0};  ///< file axes
+    std::array<double, 3> up{0, 0, 1};
+    std::string symmetry;                    ///< half model: its plane's normal axis; the mirror image is drawn too
+    std::vector<std::string> zones;          ///< surfaces of the body; empty: walls, or all surfaces with pressure
+    std::string base = "*base*";             ///< zone seen from below
+    std::string case_name;                   ///< for the subtitle; default: the file's name
+    double speed = 0;                        ///< m/s, for pressure coefficients in subtitles; 0: unknown
+    int width = 1200;
+    int height = 800;
+    /// Colour ranges to share between cases, by the array's name.
+    std::vector<std::pair<std::string, std::pair<double, double>>> ranges;
+    /// Box to fit, file axes, to share between cases (see Camera::box).
+    std::optional<std::array<double, 6>> box;
+};
+
+struct View {
+    std::string name;     ///< "pressure-underbody": file name without ending
+    std::string title;
+    std::string caption;  ///< what it shows, from what it was made, its range
+    std::string png;
+    std::pair<double, double> range;  ///< of the colours, SI
+};
+
+/// Everything that this field allows: pressure on the underbody (seen from below) and on the hull; with a volume also
+/// pressure and speed in the symmetry plane, streamlines in the gap, and the profile across the gap.
+/// Throws core::InputError when the field has no surface with a pressure.
+std::vector<View> views(const Field& field, const ViewOptions& options = {}, core::Progress& progress = core::Progress::none());
+
+/// Names that `views` can make of this field.
+std::vector<std::string> possible_views(const Field& field, const ViewOptions& options = {});
+
+/// One of them. Throws core::InputError with the nearest name.
+View view(const Field& field, const std::string& name, const ViewOptions& options = {}, core::Progress& progress = core::Progress::none());
+
+/// `b` minus `a` of an array on the body's surface, on the mesh of `b`; `a`, whatever its mesh, is interpolated there
+/// from its nearest faces. Diverging colours centred on zero. The caption says how far apart the surfaces lie.
+View difference_view(const Field& a, const Field& b, const std::string& array = "pressure", const ViewOptions& options = {},
+                     core::Progress& progress = core::Progress::none());
+
+}  // namespace underbody::postproc
