@@ -16,7 +16,12 @@ using AddCommand = void (*)(CLI::App& app, Shell& shell);
     X(info) \
     X(import) \
     X(loads) \
-    X(discover)
+    X(discover) \
+    X(simulate) \
+    X(predict) \
+    X(region) \
+    X(table) \
+    X(export)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

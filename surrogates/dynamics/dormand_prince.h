@@ -53,17 +53,19 @@ public:
             });
             rate_(t_ + 8.0 / 9 * h, y2.data(), k5.data());
             at([&](std::size_t i) {
-                return 9017.0 / 3168 * k1_[i] - 355.0 / 33 * k2[i] + 46732.0 / 5247 * k3[i] + 49.0 / 176 * k4[i] - 5103.0 / 18656 * k5[i];
+                return 9017.0 / 3168 * k1_[i] - 355.0 / 33 * k2[i] + 46732.0 / 5247 * k3[i] + 49.0 / 176 * k4[i] -
+                       5103.0 / 18656 * k5[i];
             });
             rate_(t_ + h, y2.data(), k6.data());
             for (std::size_t i = 0; i < N; ++i) {
-                next[i] = y_[i] + h * (35.0 / 384 * k1_[i] + 500.0 / 1113 * k3[i] + 125.0 / 192 * k4[i] - 2187.0 / 6784 * k5[i] + 11.0 / 84 * k6[i]);
+                next[i] = y_[i] + h * (35.0 / 384 * k1_[i] + 500.0 / 1113 * k3[i] + 125.0 / 192 * k4[i] -
+                                       2187.0 / 6784 * k5[i] + 11.0 / 84 * k6[i]);
             }
             rate_(t_ + h, next.data(), k7.data());
             double error = 0;
             for (std::size_t i = 0; i < N; ++i) {
-                const double e = h * (71.0 / 57600 * k1_[i] - 71.0 / 16695 * k3[i] + 71.0 / 1920 * k4[i] - 17253.0 / 339200 * k5[i] +
-                                      22.0 / 525 * k6[i] - 1.0 / 40 * k7[i]);
+                const double e = h * (71.0 / 57600 * k1_[i] - 71.0 / 16695 * k3[i] + 71.0 / 1920 * k4[i] -
+                                      17253.0 / 339200 * k5[i] + 22.0 / 525 * k6[i] - 1.0 / 40 * k7[i]);
                 error = std::max(error, std::abs(e) / scale_[i]);
             }
             if (!(error < 1e300)) {
@@ -93,7 +95,8 @@ public:
     [[nodiscard]] double between(double part, std::size_t i) const {
         const double h = t_ - t_before_;
         const double q = 1 - part;
-        return before_[i] * q * q * (1 + 2 * part) + y_[i] * part * part * (3 - 2 * part) + h * part * q * (before_rate_[i] * q - k1_[i] * part);
+        return before_[i] * q * q * (1 + 2 * part) + y_[i] * part * part * (3 - 2 * part) +
+               h * part * q * (before_rate_[i] * q - k1_[i] * part);
     }
 
 private:

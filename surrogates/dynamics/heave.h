@@ -26,7 +26,7 @@ struct InputSignals {
 
 /// The Basset kernel 1/sqrt(t) as a sum of exponentials: error below 0.5 % from 20 ms to 200 s; what is faster acts as
 /// mass.
-inline constexpr std::size_t history_states = 8;
+inline constexpr std::size_t history_states = 10;
 struct HistoryKernel {
     double rate[history_states];    ///< 1/s
     double weight[history_states];  ///< s^-1/2
@@ -58,6 +58,10 @@ public:
     void refresh();
 
     using Moment = HeaveMoment;
+    /// The moment with inputs as held.
+    [[nodiscard]] Moment held_moment(double t = 0) const {
+        return {t, held_.get(Channel::input_force, 0.0), nullptr, nullptr};
+    }
     /// Lift of the tables at this gap, N (includes roughness).
     [[nodiscard]] double lift(double h, const Moment& moment = {}) const;
     /// Resistance of the water and everything else that follows the velocity, N, sign of w. Without history.
@@ -66,8 +70,8 @@ public:
     [[nodiscard]] double inertia(double h, double& slope) const;
     /// dw/dt. `memory`: history_states states y_i with y_i' = -rate_i (y_i + w), or nullptr.
     [[nodiscard]] double acceleration(double h, double w, const Moment& moment, const double* memory = nullptr) const;
-    /// Force at rest and with nothing from outside: all that depends on the gap alone, N.
-    [[nodiscard]] double static_force(double h) const { return static_force(h, Moment{}); }
+    /// Force at rest with inputs held: all that depends on the gap alone, N.
+    [[nodiscard]] double static_force(double h) const { return static_force(h, held_moment()); }
     [[nodiscard]] double static_force(double h, const Moment& moment) const;
     /// True when forces depend on gap and velocity alone once inputs are held.
     [[nodiscard]] bool autonomous() const;

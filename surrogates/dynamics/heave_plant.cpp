@@ -314,11 +314,12 @@ const HistoryKernel& history_kernel() {
         HistoryKernel k{};
         const double spacing = std::log(4.0);
         const double root_pi = std::sqrt(3.14159265358979323846);
-        double rate = 0.003;
+        double rate = 0.003 / 16;
         for (std::size_t i = 0; i < history_states; ++i, rate *= 4) {
             k.rate[i] = rate;
             k.weight[i] = spacing * std::sqrt(rate) / root_pi;
         }
+        k.weight[0] *= 2;  // stands for all that is slower: a geometric sum
         k.mass = 0;
         for (int i = 0; i < 60; ++i, rate *= 4) {
             k.mass += spacing / std::sqrt(rate) / root_pi;
@@ -351,17 +352,25 @@ std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
     for (std::size_t i = 0; i + 1 < grid.size(); ++i) {
         double lo = grid[i], hi = grid[i + 1];
         const double flo = plant.static_force(lo), fhi = plant.static_force(hi);
-        if (flo == 0 || (flo > 0) == (fhi > 0)) {
-            if (flo != 0 || i == 0) {
-                continue;
-            }
+        // A zero on the grid belongs to the interval on its left; stretches without force are no equilibria.
+        const bool crosses = flo != 0 && (fhi == 0 || (flo > 0) != (fhi > 0));
+        if (!crosses && !(i == 0 && flo == 0 && fhi != 0)) {
+            continue;
         }
-        for (int step = 0; step < 100 && flo != 0; ++step) {
+        if (flo == 0) {
+            hi = lo;
+        } else if (fhi == 0) {
+            lo = hi;
+        }
+        for (int step = 0; step < 100 && hi > lo; ++step) {
             const double middle = (lo + hi) / 2;
+            if (middle == lo || middle == hi) {
+                break;
+            }
             ((plant.static_force(middle) > 0) == (flo > 0) ? lo : hi) = middle;
         }
         HeaveEquilibrium e;
-        e.gap = flo == 0 ? lo : (lo + hi) / 2;
+        e.gap = (lo + hi) / 2;
         const double step = 1e-6 * (upper - lower);
         e.stiffness = -(plant.static_force(e.gap + step) - plant.static_force(e.gap - step)) / (2 * step);
         e.stable = e.stiffness > 0;

@@ -95,10 +95,29 @@ ForceSource read_force(const core::TomlTable& table) {
         options.axes = table.strings("axes");
     }
     options.range = tables::RangePolicy::clamp;
+    const std::string fit =
+        table.choice("fit", {"automatic", "interpolation", "spline", "gaussian_process"}, "automatic");
+    using Kind = tables::FitOptions::Kind;
+    options.kind = fit == "spline"             ? Kind::spline
+                   : fit == "gaussian_process" ? Kind::gaussian_process
+                                               : Kind::interpolation;
+    // Full grids are interpolated without overshoot; points that form none get the surrogate that suits scattered
+    // points.
+    const auto fitted = [&] {
+        try {
+            return tables::ForceTable::fit(points, quantity, options);
+        } catch (const core::InputError&) {
+            if (fit != "automatic") {
+                throw;
+            }
+            options.kind = Kind::automatic;
+            return tables::ForceTable::fit(points, quantity, options);
+        }
+    };
     ForceSource source{quantity,
                        table.string("table"),
                        table.file("table"),
-                       tables::ForceTable::fit(points, quantity, options),
+                       fitted(),
                        {},
                        {},
                        table.find_quantity("factor", "1").value_or(1.0)};

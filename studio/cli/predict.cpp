@@ -1,0 +1,81 @@
+// underbody predict: the model against measured runs.
+#include "surrogates/dynamics/predict.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/table.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/commands.h"
+#include "studio/cli/shell.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+namespace {
+
+struct Arguments {
+    std::string model;
+    std::string data;
+    std::string horizon = "2 s";
+    std::string out;
+    std::string plot;
+};
+
+int run(const Arguments& a, Shell& shell) {
+    const dynamics::Model model = dynamics::read_model(a.model);
+    const dynamics::Measurements data = dynamics::read_measurements(a.data);
+    shell.show(data.problems);
+    dynamics::PredictOptions options;
+    options.horizon = core::parse_in(a.horizon, "s");
+    const dynamics::Prediction prediction = dynamics::predict(model, data, options, shell.progress());
+    shell.show(prediction.remarks);
+    if (!a.out.empty()) {
+        core::write_csv(std::filesystem::path(a.out), prediction.table);
+    }
+    if (!a.plot.empty()) {
+        write_picture(dynamics::prediction_figure(prediction), a.plot);
+    }
+    if (shell.json) {
+        nlohmann::json json;
+        dynamics::to_json(json, prediction);
+        shell.print_json(json);
+    }
+    std::string text;
+    for (const dynamics::ChannelError& channel : prediction.channels) {
+        text += channel.name + ": RMSE " + core::format_number(channel.rmse, 4) + " " + channel.unit + " over " +
+                std::to_string(channel.count) + " values";
+        if (channel.in_noise > 0) {
+            text += ", " + core::format_number(channel.in_noise, 3) + " times the " +
+                    (channel.noise_declared ? "declared" : "estimated") + " noise of " +
+                    core::format_number(channel.noise, 3) + " " + channel.unit;
+        }
+        text += "\n";
+    }
+    shell.print(text);
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_predict_command(CLI::App& app, Shell& shell) {
+    CLI::App* command = app.add_subcommand("predict", "the model against measured runs");
+    auto a = std::make_shared<Arguments>();
+    command->add_option("model", a->model, "the model (model.toml)")->required();
+    command->add_option("--data", a->data, "folder of measurements (with dataset.toml)")->required();
+    command->add_option("--horizon", a->horizon, "length of a prediction of a time series (default 2 s)");
+    command->add_option("--out", a->out, "measured and predicted values as a table (CSV)");
+    command->add_option("--plot", a->plot, "a picture (.png, .pdf)");
+    command->footer(
+        "Examples:\n"
+        "  underbody predict model.toml --data runs --out pred.csv --json\n"
+        "  underbody predict found/model.toml --data held-out --horizon 5s --plot pred.png\n"
+        "A static set gives one row a set point. A time series is cut into windows of the horizon; each starts from "
+        "the state that fits\n"
+        "the measurements before it best, and nothing measured later is used.");
+    shell.on(command, [a, &shell] { return run(*a, shell); });
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,226 @@
+// underbody region: where each start ends.
+#include "surrogates/dynamics/region.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/table.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/commands.h"
+#include "studio/cli/shell.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+namespace {
+
+struct Arguments {
+    std::string model;
+    std::string axes = "gap=0:0.5,heave_velocity=-0.1:0.1";
+    std::string grid = "200x200";
+    std::string duration = "60 s";
+    std::string conditions;
+    std::string out;
+    std::string table;
+    std::string starts;
+    std::string escape;
+    std::size_t draws = 0;
+    std::uint64_t seed = 1;
+    bool safe = false;
+    std::vector<std::string> variants;
+};
+
+dynamics::RegionOptions options_of(const Arguments& a) {
+    dynamics::RegionOptions options;
+    options.axes = core::parse_ranges(a.axes);
+    const std::vector<std::string_view> sizes = core::split(a.grid, 'x');
+    const auto columns = core::parse_integer(sizes.front()), rows = core::parse_integer(sizes.back());
+    if (sizes.size() > 2 || !columns || !rows || *columns < 1 || *rows < 1 || *columns > 20000 || *rows > 20000) {
+        throw core::UsageError("range", "--grid '" + a.grid + "' is not two counts", {}, "for instance --grid 400x400");
+    }
+    options.columns = static_cast<std::size_t>(*columns);
+    options.rows = static_cast<std::size_t>(*rows);
+    options.duration = core::parse_in(a.duration, "s");
+    for (const core::NamedValue& value : core::parse_assignments(a.conditions)) {
+        options.held.set(value.name, value.value);
+    }
+    if (!a.escape.empty()) {
+        options.escape_gap = core::parse_in(a.escape, "m");
+    }
+    return options;
+}
+
+std::string percent(double fraction) { return core::format_number(100 * fraction, 4) + " %"; }
+
+void print_classes(Shell& shell, const std::vector<dynamics::EndClass>& classes) {
+    std::string text;
+    for (const dynamics::EndClass& end : classes) {
+        if (end.fraction > 0 || end.kind == dynamics::EndKind::attractor) {
+            text += std::string(dynamics::end_kind_name(end.kind)) +
+                    (end.name == dynamics::end_kind_name(end.kind) ? "" : " " + end.name) +
+                    (std::isnan(end.gap) ? "" : " at " + core::format_number(1e3 * end.gap, 5) + " mm") + ": " +
+                    percent(end.fraction) + "\n";
+        }
+    }
+    shell.print(text);
+}
+
+int run_starts(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
+    const core::Table starts = core::read_csv(std::filesystem::path(a.starts));
+    std::vector<dynamics::EndClass> classes;
+    const core::Table ends = dynamics::ends_of_starts(model, starts, options, classes, shell.progress());
+    if (!a.table.empty()) {
+        core::write_csv(std::filesystem::path(a.table), ends);
+    }
+    if (shell.json) {
+        nlohmann::json json = {{"classes", nlohmann::json::array()}, {"starts", nlohmann::json::array()}};
+        for (const dynamics::EndClass& end : classes) {
+            if (end.fraction > 0) {
+                json["classes"].push_back(
+                    {{"name", end.name}, {"kind", dynamics::end_kind_name(end.kind)}, {"fraction", end.fraction}});
+                if (!std::isnan(end.gap)) {
+                    json["classes"].back()["gap"] = end.gap;
+                }
+            }
+        }
+        for (std::size_t i = 0; i < ends.rows(); ++i) {
+            nlohmann::json row;
+            for (const core::Column& column : ends.columns()) {
+                row[column.name] =
+                    column.is_text() ? nlohmann::json(column.text[i]) : nlohmann::json(column.numbers[i]);
+            }
+            json["starts"].push_back(row);
+        }
+        shell.print_json(json);
+    } else if (a.table.empty()) {
+        shell.print(core::write_csv(ends));
+    } else {
+        print_classes(shell, classes);
+    }
+    return ExitCode::done;
+}
+
+int run_probability(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
+                    Shell& shell) {
+    const dynamics::ProbabilityMap map = dynamics::probability_map(model, options, a.draws, a.seed, shell.progress());
+    shell.show(map.remarks);
+    if (!a.out.empty()) {
+        write_picture(dynamics::probability_figure(map), a.out);
+    }
+    if (shell.json) {
+        nlohmann::json json;
+        dynamics::to_json(json, map);
+        shell.print_json(json);
+    }
+    shell.print("safe area " + percent(map.area_mean) + " +- " + percent(map.area_sigma) + " over " +
+                std::to_string(map.draws) + " draws\n");
+    return ExitCode::done;
+}
+
+int run_variants(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
+                 Shell& shell) {
+    std::vector<dynamics::StabilityRegion> regions{dynamics::stability_region(model, options, shell.progress())};
+    std::vector<std::string> names{a.model};
+    for (const std::string& variant : a.variants) {
+        regions.push_back(dynamics::stability_region(dynamics::read_model(variant), options, shell.progress()));
+        names.push_back(variant);
+    }
+    if (!a.out.empty()) {
+        write_picture(dynamics::region_overlay_figure(regions, names), a.out);
+    }
+    nlohmann::json json = {{"variants", nlohmann::json::array()}};
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        nlohmann::json one;
+        dynamics::to_json(one, regions[i]);
+        one["name"] = names[i];
+        json["variants"].push_back(one);
+        shell.print(names[i] + "\n");
+        print_classes(shell, regions[i].classes);
+    }
+    if (shell.json) {
+        shell.print_json(json);
+    }
+    return ExitCode::done;
+}
+
+int run(const Arguments& a, Shell& shell) {
+    const dynamics::Model model = dynamics::read_model(a.model);
+    const dynamics::RegionOptions options = options_of(a);
+    if (!a.starts.empty()) {
+        return run_starts(a, model, options, shell);
+    }
+    if (a.draws > 0) {
+        return run_probability(a, model, options, shell);
+    }
+    if (!a.variants.empty()) {
+        return run_variants(a, model, options, shell);
+    }
+    const dynamics::StabilityRegion region = dynamics::stability_region(model, options, shell.progress());
+    shell.show(region.remarks);
+    if (!a.out.empty()) {
+        write_picture(dynamics::region_figure(region), a.out);
+    }
+    if (!a.table.empty()) {
+        core::write_csv(std::filesystem::path(a.table), dynamics::region_table(region));
+    }
+    nlohmann::json json;
+    dynamics::to_json(json, region);
+    print_classes(shell, region.classes);
+    if (a.safe) {
+        json["safe_sets"] = nlohmann::json::array();
+        for (const dynamics::EndClass& end : region.classes) {
+            if (end.kind == dynamics::EndKind::attractor) {
+                const dynamics::SafeSet set = dynamics::largest_safe_set(region, end.name);
+                nlohmann::json one;
+                dynamics::to_json(one, set);
+                json["safe_sets"].push_back(one);
+                shell.print("safe about " + end.name + ": ellipse +-" + core::format_number(1e3 * set.ellipse_gap, 4) +
+                            " mm, +-" + core::format_number(1e3 * set.ellipse_velocity, 4) + " mm/s\n");
+            }
+        }
+    }
+    if (shell.json) {
+        shell.print_json(json);
+    }
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_region_command(CLI::App& app, Shell& shell) {
+    CLI::App* command = app.add_subcommand("region", "stability region: for each start, where the motion ends");
+    auto a = std::make_shared<Arguments>();
+    command->add_option("model", a->model, "the model (model.toml)")->required();
+    command->add_option("--axes", a->axes,
+                        "the two axes of starts and their ranges (default gap=0:0.5,heave_velocity=-0.1:0.1)");
+    command->add_option("--grid", a->grid, "starts along the two axes (default 200x200)");
+    command->add_option("--for", a->duration, "time of motion given to each start (default 60 s)");
+    command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
+    command->add_option("--escape", a->escape,
+                        "gap above which the body counts as gone (default: end of the table or of the axis)");
+    command->add_option("--out", a->out, "the map as a picture (.png, .pdf)");
+    command->add_option("--table", a->table, "class and time of every start as a table (CSV)");
+    command->add_option(
+        "--starts", a->starts,
+        "a table of starts (gap, heave_velocity) instead of a grid: one row each with its class and time");
+    command->add_option("--draws", a->draws, "probability map: so many draws of the force tables from their error");
+    command->add_option("--seed", a->seed, "seed of the draws");
+    command->add_option("--with", a->variants, "further models to lay over the first");
+    command->add_flag("--safe", a->safe, "the largest ellipse and box of safe starts about each attractor");
+    command->footer(
+        "Examples:\n"
+        "  underbody region model.toml --axes gap=0:1,heave_velocity=-0.1:0.1 --out region.png\n"
+        "  underbody region model.toml --conditions jet_voltage=8V --grid 400x400 --json\n"
+        "  underbody region model.toml --starts starts.csv --table ends.csv\n"
+        "  underbody region model.toml --draws 100 --out probability.png      the error of the force table as a chance "
+        "to be safe\n"
+        "  underbody region smooth.toml --with rough.toml --out both.png\n"
+        "Classes: each attractor by name (A is nearest the ground), contact, escape, cycle, undecided in the time "
+        "given.");
+    shell.on(command, [a, &shell] { return run(*a, shell); });
+}
+
+}  // namespace underbody::studio
