@@ -1,0 +1,78 @@
+#include "surrogates/discovery/attribution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace underbody::discovery {
+
+std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects) {
+    std::size_t best = hypotheses.size();
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+        if (hypotheses[i].hypothesis.names.size() <= effects &&
+            (best == hypotheses.size() || hypotheses[i].score() - 2 * std::log(hypotheses[i].hypothesis.prior) <
+                                              hypotheses[best].score() - 2 * std::log(hypotheses[best].hypothesis.prior))) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& whole, const SmoothFit& rest,
+                      const Calibration& calibration) {
+    Attribution result;
+    result.chosen = best_hypothesis(hypotheses, 2);
+    if (result.chosen >= hypotheses.size()) {
+        result.verdict = gate_p < calibration.gate ? "unknown" : "none";
+        result.none_probability = result.verdict == "none" ? 1 : 0;
+        result.unknown_probability = 1 - result.none_probability;
+        return result;
+    }
+    const FittedHypothesis& best = hypotheses[result.chosen];
+    // laws of nature differ in form from the catalogue's: a share of what is explained counts as one unit of evidence
+    const double temperature = 1 + calibration.form_share * std::max(0.0, best.explained);
+    std::map<std::vector<std::string>, Attribution::Share> by_names;
+    double total = 0;
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+        const FittedHypothesis& one = hypotheses[i];
+        if (one.hypothesis.names.size() > best.hypothesis.names.size()) {
+            continue;  // a second effect that did not earn its place
+        }
+        const double weight = one.hypothesis.prior * std::exp(-0.5 * (one.score() - best.score()) / temperature);
+        Attribution::Share& share = by_names[one.hypothesis.names];
+        if (weight > share.probability) {
+            share = {i, weight};
+        }
+    }
+    for (const auto& [names, share] : by_names) {
+        total += share.probability;
+    }
+    const double structure = std::max(best.explained, 0.0) + std::max(rest.gain - rest.degrees, 0.0);
+    const double left = structure > 0 ? std::max(rest.gain - rest.degrees, 0.0) / structure : 0;
+    const double whole_share = whole.gain > 0 ? 1 - std::max(best.explained, 0.0) / std::max(whole.gain, best.explained) : 0;
+    const bool unexplained = rest.p < calibration.unknown_p && left > calibration.unknown_share;
+    // a smooth step between the two verdicts: at the limits above the odds are even
+    double unknown = 1 / (1 + std::exp(-12 * (left / calibration.unknown_share - 1)));
+    if (rest.p > calibration.unknown_p) {
+        unknown = std::min(unknown, 0.5 * calibration.unknown_p / rest.p);
+    }
+    (void)whole_share;
+    result.none_probability = gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
+    result.unknown_probability = (1 - result.none_probability) * unknown;
+    for (auto& [names, share] : by_names) {
+        share.probability *= (1 - result.none_probability) * (1 - unknown) / total;
+        result.shares.push_back(share);
+    }
+    std::sort(result.shares.begin(), result.shares.end(), [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    if (gate_p >= calibration.gate) {
+        result.verdict = "none";
+    } else {
+        result.verdict = unexplained ? "unknown" : "effect";
+    }
+    if (!result.shares.empty()) {
+        result.chosen = result.shares.front().hypothesis;
+    }
+    return result;
+}
+
+}  // namespace underbody::discovery

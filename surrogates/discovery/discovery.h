@@ -1,0 +1,134 @@
+// Closing the loop: measured data and a declared model -> what the model lacks, the model with it, the error before and after.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/figure.h"
+#include "core/progress.h"
+#include "core/table.h"
+#include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/measurements.h"
+#include "surrogates/dynamics/model.h"
+
+namespace underbody::discovery {
+
+struct FoundParameter {
+    std::string name;
+    double value = 0;
+    double sigma = 0;   ///< one standard deviation; 0: held at its default
+    std::string unit;
+};
+
+/// One effect of the verdict, or one of its rivals.
+struct FoundEffect {
+    std::string name;                       ///< of the catalogue, "declared_parameter" or "unknown"
+    std::vector<FoundParameter> parameters;
+    std::vector<std::string> depends_on;
+    double probability = 0;
+    std::string evidence;                   ///< a sentence with the figures
+    std::string told_apart_by;              ///< rivals: what would separate it from the verdict
+    double explained = 0;                   ///< fall of -2 log likelihood
+    std::vector<dynamics::EffectUse> uses;  ///< what goes into the model
+};
+
+struct NoiseUsed {
+    double value = 0;
+    std::string unit;
+    std::string from;
+    double estimated = 0;
+};
+
+/// One channel's error on what was held out from every fit and choice.
+struct ErrorChange {
+    std::string channel;
+    std::string unit;
+    double horizon = 0;      ///< s; 0: static
+    ErrorEstimate before;
+    ErrorEstimate after;
+    double noise = 0;        ///< one standard deviation of a reading
+};
+
+/// Smallest effect that would have been seen.
+struct DetectionLimit {
+    std::string name;
+    std::string parameter;
+    double value = 0;
+    std::string unit;
+};
+
+struct EquilibriumPair {
+    std::string name;
+    bool stable = false;
+    double gap_before = 0;   ///< NaN: not there
+    double gap_after = 0;
+};
+
+struct Consequence {
+    std::vector<EquilibriumPair> equilibria;
+    std::map<std::string, double> region_before;  ///< class -> area fraction
+    std::map<std::string, double> region_after;
+    std::string text;
+};
+
+struct Discovery {
+    std::string verdict;                       ///< none, effect, unknown
+    std::string sentence;                      ///< the verdict for people
+    std::vector<FoundEffect> effects;
+    std::vector<FoundEffect> alternatives;
+    double none_probability = 0;
+    std::vector<std::string> depends_on;       ///< of the residual, found without any named effect
+    double gate = 1;                           ///< chance of as much structure when nothing is missing
+    double stability = 0;                      ///< share of resampled runs with the same verdict
+    std::map<std::string, NoiseUsed> noise;
+    std::vector<ErrorChange> error;            ///< the first is the chief one
+    std::string held_out;                      ///< which data the error is from
+    std::vector<DetectionLimit> limits;
+    Consequence consequence;
+    std::string next_experiment;
+    core::Table next_set_points;               ///< as a file the rig can follow; empty: none
+    double next_power = 0;
+    core::Problems problems;
+    dynamics::Model model;                     ///< with the effect added
+    std::vector<core::Figure> figures;
+    double seconds = 0;
+};
+
+struct DiscoverOptions {
+    double horizon = 2;            ///< s, of the windows of the time-series error
+    std::uint64_t seed = 1;
+    bool consequence = true;
+    bool figures = true;
+};
+
+/// The whole loop. Throws core::InputError where nothing can be said; what is doubtful but usable is in `problems`.
+Discovery discover(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options = {},
+                   core::Progress& progress = core::Progress::none());
+
+/// `discovery.json` of interfaces.md section 6.
+nlohmann::json to_json(const Discovery& discovery);
+
+/// PNG bytes of a figure: the drawing library lives above this room.
+using FigureRenderer = std::function<std::string(const core::Figure&)>;
+
+/// One self-contained page.
+std::string report_html(const Discovery& discovery, const dynamics::Model& before, const dynamics::Measurements& data,
+                        const FigureRenderer& renderer);
+
+/// model.toml, discovery.json, report.html and, where there is one, next-experiment.csv.
+void write_discovery(const Discovery& discovery, const dynamics::Model& before, const dynamics::Measurements& data,
+                     const std::filesystem::path& folder, const FigureRenderer& renderer);
+
+// The two pipelines behind discover().
+Discovery discover_static(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+                          core::Progress& progress);
+Discovery discover_time_series(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+                               core::Progress& progress);
+
+}  // namespace underbody::discovery

@@ -1,0 +1,545 @@
+#include "surrogates/discovery/heave_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace underbody::discovery {
+
+namespace {
+
+constexpr double two_pi = 6.283185307179586;
+constexpr double longest_step = 0.05;  ///< s, of the integrator
+
+/// The heave equation as plain numbers, with the slopes that the covariance needs.
+class Equation {
+public:
+    Equation(const HeaveRecord& record, const HeaveExplanation& explanation)
+        : terms_(explanation.terms), curve_(record.plant->lift_curve()), flexible_(explanation.flexible),
+          gain_(explanation.lift_gain * record.lift_factor),
+          rough_(terms_.rough_near != 0 || terms_.rough_far != 0), history_(terms_.history != 0) {
+        for (double& memory : memory_) {
+            memory = 0;
+        }
+    }
+
+    /// Virtual mass and its slope.
+    double inertia(double h, double& slope) const {
+        double mass = terms_.mass;
+        slope = 0;
+        if (!terms_.added_mass.empty()) {
+            mass += terms_.added_mass.value(h, slope);
+        }
+        for (const auto& growth : terms_.growth) {
+            const double base = std::max(h, 0.0) + growth.length;
+            mass += growth.mass * growth.length / base;
+            slope -= growth.mass * growth.length / (base * base);
+        }
+        return mass;
+    }
+
+    double acceleration(double t, double h, double w, double u, double velocity_variance) const {
+        double slope_h = 0;
+        double slope_w = 0;
+        return acceleration(t, h, w, u, velocity_variance, slope_h, slope_w);
+    }
+
+    /// `velocity_variance` blurs the step of Coulomb's law as far as the velocity is unknown (statistical linearisation).
+    double acceleration(double t, double h, double w, double u, double velocity_variance, double& slope_h, double& slope_w) const {
+        double force_h = 0;
+        double lift = curve_.empty() ? 0 : curve_.value(h, force_h);
+        if (rough_) {
+            const double x = h / terms_.rough_length;
+            const double base = 1 + x * x;
+            const double factor = 1 + (terms_.rough_near - terms_.rough_far * x * x) / base;
+            const double factor_slope = -2 * x * (terms_.rough_near + terms_.rough_far) / (base * base) / terms_.rough_length;
+            force_h = force_h * factor + lift * factor_slope;
+            lift *= factor;
+        }
+        force_h *= gain_;
+        double force = terms_.constant + u + gain_ * lift - terms_.stiffness * (h - terms_.stiffness_gap);
+        force_h -= terms_.stiffness;
+        const double relative = w - terms_.current;
+        const double size = std::abs(relative);
+        double force_w = 0;
+        if (terms_.mixed) {
+            force -= terms_.mixed_law(relative);
+            force_w -= (terms_.mixed_law(relative + 1e-6) - terms_.mixed_law(relative - 1e-6)) / 2e-6;
+        } else {
+            force -= (terms_.linear + terms_.quadratic * size) * relative;
+            force_w -= terms_.linear + 2 * terms_.quadratic * size;
+        }
+        force -= (terms_.extra_linear + terms_.extra_quadratic * size) * relative;
+        force_w -= terms_.extra_linear + 2 * terms_.extra_quadratic * size;
+        if (terms_.friction != 0) {
+            const double width = terms_.friction_width * terms_.friction_width + 1.5707963 * velocity_variance;
+            const double root = std::sqrt(w * w + width);
+            force -= terms_.friction * w / root;
+            force_w -= terms_.friction * width / (root * root * root);
+        }
+        if (terms_.film != 0) {
+            const double gap = std::max(h, 2e-4);
+            const double film = terms_.film / (gap * gap * gap);
+            force -= film * w;
+            force_w -= film;
+            force_h += 3 * film * w / gap;
+        }
+        for (const auto& wave : terms_.waves) {
+            force += wave.amplitude * std::sin(two_pi * wave.frequency * t + wave.phase);
+        }
+        for (const auto& extra : terms_.extras) {
+            force += extra.force(extra.parameters, t, h, w);
+        }
+        if (flexible_ != nullptr) {
+            force += (*flexible_)(h, w, t, u);
+        }
+        double mass_slope = 0;
+        double mass = inertia(h, mass_slope);
+        force -= 0.5 * mass_slope * w * w;
+        if (history_) {
+            const dynamics::HistoryKernel& kernel = dynamics::history_kernel();
+            double sum = 0;
+            for (std::size_t i = 0; i < dynamics::history_states; ++i) {
+                sum += kernel.weight[i] * (w + memory_[i]);
+                force_w -= terms_.history * kernel.weight[i];
+            }
+            force -= terms_.history * sum;
+            mass += terms_.history * kernel.mass;
+        }
+        slope_h = (force_h - force / mass * mass_slope) / mass;
+        slope_w = (force_w - mass_slope * w) / mass;
+        return force / mass;
+    }
+
+    void start_history(double w) {
+        for (double& memory : memory_) {
+            memory = -w;
+        }
+    }
+
+    /// One Runge-Kutta step; the memory of the flow follows the mean motion.
+    void advance(double t, double dt, double u0, double u1, double variance, double& h, double& w) {
+        const double um = 0.5 * (u0 + u1);
+        const double a1 = acceleration(t, h, w, u0, variance);
+        const double w2 = w + 0.5 * dt * a1;
+        const double a2 = acceleration(t + 0.5 * dt, h + 0.5 * dt * w, w2, um, variance);
+        const double w3 = w + 0.5 * dt * a2;
+        const double a3 = acceleration(t + 0.5 * dt, h + 0.5 * dt * w2, w3, um, variance);
+        const double w4 = w + dt * a3;
+        const double a4 = acceleration(t + dt, h + dt * w3, w4, u1, variance);
+        const double before = w;
+        h += dt / 6 * (w + 2 * w2 + 2 * w3 + w4);
+        w += dt / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+        if (history_) {
+            const dynamics::HistoryKernel& kernel = dynamics::history_kernel();
+            for (std::size_t i = 0; i < dynamics::history_states; ++i) {
+                // d memory/dt = -rate (memory + w), exact for a velocity held at its mean over the step
+                const double decay = std::exp(-kernel.rate[i] * dt);
+                memory_[i] = memory_[i] * decay - (1 - decay) * 0.5 * (before + w);
+            }
+        }
+    }
+
+private:
+    const dynamics::HeaveTerms& terms_;
+    const dynamics::Curve& curve_;
+    const FlexibleForce* flexible_;
+    double gain_;
+    bool rough_;
+    bool history_;
+    double memory_[dynamics::history_states];
+};
+
+/// Where the motion begins, roughly: a straight line through the first second.
+void first_guess(const HeaveRecord& record, double& h, double& w) {
+    double n = 0, st = 0, sy = 0, stt = 0, sty = 0;
+    const double begin = record.time.front();
+    for (std::size_t k = 0; k < record.time.size() && record.time[k] - begin < 0.6; ++k) {
+        if (std::isfinite(record.gap[k])) {
+            const double t = record.time[k] - begin;
+            n += 1;
+            st += t;
+            sy += record.gap[k];
+            stt += t * t;
+            sty += t * record.gap[k];
+        }
+    }
+    const double determinant = n * stt - st * st;
+    w = determinant > 1e-12 ? (n * sty - st * sy) / determinant : 0;
+    h = n > 0 ? (sy - w * st) / n : 0.1;
+}
+
+/// Three states: gap, velocity, coloured noise of the gap sensor. Symmetric covariance in six numbers.
+struct Covariance {
+    double hh, hw, hn, ww, wn, nn;
+};
+
+}  // namespace
+
+double FlexibleForce::operator()(double h, double w, double t, double u) const {
+    double point[4];
+    double out[128];
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        const double value = variables[v] == Variable::gap              ? h
+                             : variables[v] == Variable::heave_velocity ? w
+                             : variables[v] == Variable::time           ? t
+                                                                        : u;
+        point[v] = std::clamp(value, lower[v], upper[v]);
+    }
+    basis.evaluate(point, out);
+    double sum = 0;
+    for (std::size_t k = 0; k < coefficients.size(); ++k) {
+        sum += coefficients[k] * out[k];
+    }
+    return sum;
+}
+
+void transform_input(const HeaveRecord& record, const dynamics::HeaveTerms& terms, std::vector<double>& input) {
+    const std::vector<double>& time = record.raw_time;
+    const std::vector<double>* source = &record.raw_input;
+    std::vector<double> felt;
+    const auto interpolate = [&](const std::vector<double>& values, double t, std::size_t& at) {
+        if (t <= time.front()) {
+            return values.front();
+        }
+        while (at + 2 < time.size() && time[at + 1] < t) {
+            ++at;
+        }
+        if (t >= time[at + 1]) {
+            return values[at + 1];
+        }
+        return values[at] + (values[at + 1] - values[at]) * (t - time[at]) / (time[at + 1] - time[at]);
+    };
+    double delay = terms.input_delay;
+    if (terms.input_dead_zone != 0 || terms.input_gain != 1 || terms.input_lag > 0) {
+        felt.resize(time.size());
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < time.size(); ++i) {
+            const double u = delay > 0 ? interpolate(record.raw_input, time[i] - delay, at) : record.raw_input[i];
+            felt[i] = terms.input_gain * std::copysign(std::max(0.0, std::abs(u) - terms.input_dead_zone), u);
+        }
+        delay = 0;
+        if (terms.input_lag > 0) {
+            double y = felt.front();
+            double before = felt.front();
+            for (std::size_t i = 1; i < felt.size(); ++i) {
+                // exact for an input that is linear between samples
+                const double a = (time[i] - time[i - 1]) / terms.input_lag;
+                const double decay = std::exp(-a);
+                const double ramp = a > 1e-6 ? (1 - decay) / a : 1 - 0.5 * a;
+                const double now = felt[i];
+                y = y * decay + now - before * decay - (now - before) * ramp;
+                before = now;
+                felt[i] = y;
+            }
+        }
+        source = &felt;
+    }
+    input.resize(record.time.size());
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < input.size(); ++k) {
+        input[k] = interpolate(*source, record.time[k] - delay, at);
+    }
+}
+
+double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
+                          std::vector<double>& innovations) {
+    Equation equation(record, explanation);
+    const dynamics::HeaveTerms& terms = explanation.terms;
+    std::vector<double> input;
+    transform_input(record, terms, input);
+    double h = 0;
+    double w = 0;
+    first_guess(record, h, w);
+    h -= terms.sensor_bias;
+    equation.start_history(w);
+    double n = 0;
+    const double slow = noise.slow * noise.slow;
+    Covariance p{1e-4, 0, 0, 1e-4, 0, slow};
+    const double delay = terms.sensor_delay;
+    double log_determinant = 0;
+    const auto update = [&](double residual, double ch, double cw, double cn, double variance) {
+        const double ph = p.hh * ch + p.hw * cw + p.hn * cn;
+        const double pw = p.hw * ch + p.ww * cw + p.wn * cn;
+        const double pn = p.hn * ch + p.wn * cw + p.nn * cn;
+        const double s = ch * ph + cw * pw + cn * pn + variance;
+        const double gain_h = ph / s;
+        const double gain_w = pw / s;
+        const double gain_n = pn / s;
+        h += gain_h * residual;
+        w += gain_w * residual;
+        n += gain_n * residual;
+        p.hh -= gain_h * ph;
+        p.hw -= gain_h * pw;
+        p.hn -= gain_h * pn;
+        p.ww -= gain_w * pw;
+        p.wn -= gain_w * pn;
+        p.nn -= gain_n * pn;
+        innovations.push_back(residual / std::sqrt(s));
+        log_determinant += std::log(s);
+    };
+    for (std::size_t k = 0; k < record.time.size(); ++k) {
+        if (k > 0) {
+            double rest = record.time[k] - record.time[k - 1];
+            double t = record.time[k - 1];
+            const int parts = static_cast<int>(std::ceil(rest / longest_step));
+            const double dt = rest / parts;
+            for (int part = 0; part < parts; ++part) {
+                const double share = static_cast<double>(part) / parts;
+                const double u0 = input[k - 1] + (input[k] - input[k - 1]) * share;
+                const double u1 = input[k - 1] + (input[k] - input[k - 1]) * (share + 1.0 / parts);
+                double slope_h = 0;
+                double slope_w = 0;
+                const double variance = p.ww;
+                equation.acceleration(t, h, w, u0, variance, slope_h, slope_w);
+                // exp(A dt) to second order, A = [0 1; slope_h slope_w]
+                const double q = 0.5 * dt * dt;
+                const double f11 = 1 + q * slope_h;
+                const double f12 = dt + q * slope_w;
+                const double f21 = dt * slope_h + q * slope_h * slope_w;
+                const double f22 = std::max(0.0, 1 + dt * slope_w + q * (slope_h + slope_w * slope_w));
+                equation.advance(t, dt, u0, u1, variance, h, w);
+                const double phi = std::exp(-dt / noise.slow_time);
+                n *= phi;
+                const Covariance o = p;
+                const double a = f11 * o.hh + f12 * o.hw;
+                const double b = f11 * o.hw + f12 * o.ww;
+                const double c = f21 * o.hh + f22 * o.hw;
+                const double d = f21 * o.hw + f22 * o.ww;
+                p.hh = a * f11 + b * f12 + noise.process * dt * dt * dt / 3;
+                p.hw = a * f21 + b * f22 + noise.process * dt * dt / 2;
+                p.ww = c * f21 + d * f22 + noise.process * dt;
+                p.hn = phi * (f11 * o.hn + f12 * o.wn);
+                p.wn = phi * (f21 * o.hn + f22 * o.wn);
+                p.nn = phi * phi * o.nn + slow * (1 - phi * phi);
+                t += dt;
+            }
+        }
+        if (std::isfinite(record.gap[k])) {
+            double reading = h + terms.sensor_bias + n;
+            double ch = 1;
+            double cw = 0;
+            if (delay > 0) {
+                double slope_h = 0;
+                double slope_w = 0;
+                const double a = equation.acceleration(record.time[k], h, w, input[k], p.ww, slope_h, slope_w);
+                reading += -delay * w + 0.5 * delay * delay * a;
+                ch += 0.5 * delay * delay * slope_h;
+                cw = -delay + 0.5 * delay * delay * slope_w;
+            }
+            const double sigma = noise.gap * record.gap_share[k];
+            update(record.gap[k] - reading, ch, cw, 1, sigma * sigma);
+        } else {
+            innovations.push_back(0);
+        }
+        if (!record.velocity.empty()) {
+            if (std::isfinite(record.velocity[k])) {
+                const double sigma = noise.velocity * record.velocity_share[k];
+                update(record.velocity[k] - w, 0, 1, 0, sigma * sigma);
+            } else {
+                innovations.push_back(0);
+            }
+        }
+    }
+    return log_determinant;
+}
+
+SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
+                              double force_walk) {
+    using Vector = std::array<double, 3>;
+    using Matrix = std::array<double, 9>;
+    Equation equation(record, explanation);
+    std::vector<double> input;
+    transform_input(record, explanation.terms, input);
+    const std::size_t n = record.time.size();
+    std::vector<Vector> predicted(n), filtered(n);
+    std::vector<Matrix> predicted_p(n), filtered_p(n), transition(n);
+    Vector x{};
+    first_guess(record, x[0], x[1]);
+    x[0] -= explanation.terms.sensor_bias;
+    equation.start_history(x[1]);
+    Matrix p{1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e-2};
+    const auto measure = [&](double residual, const Vector& c, double variance) {
+        Vector pc{};
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                pc[i] += p[3 * i + j] * c[j];
+            }
+        }
+        const double s = c[0] * pc[0] + c[1] * pc[1] + c[2] * pc[2] + variance;
+        for (int i = 0; i < 3; ++i) {
+            x[i] += pc[i] / s * residual;
+        }
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                p[3 * i + j] -= pc[i] * pc[j] / s;
+            }
+        }
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+        Matrix f{1, 0, 0, 0, 1, 0, 0, 0, 1};
+        if (k > 0) {
+            const double rest = record.time[k] - record.time[k - 1];
+            const int parts = static_cast<int>(std::ceil(rest / longest_step));
+            const double dt = rest / parts;
+            for (int part = 0; part < parts; ++part) {
+                const double share = static_cast<double>(part) / parts;
+                const double t = record.time[k - 1] + rest * share;
+                const double u0 = input[k - 1] + (input[k] - input[k - 1]) * share + x[2];
+                const double u1 = input[k - 1] + (input[k] - input[k - 1]) * (share + 1.0 / parts) + x[2];
+                double slope_h = 0;
+                double slope_w = 0;
+                double mass_slope = 0;
+                equation.acceleration(t, x[0], x[1], u0, p[4], slope_h, slope_w);
+                const double per_mass = 1 / equation.inertia(x[0], mass_slope);
+                equation.advance(t, dt, u0, u1, p[4], x[0], x[1]);
+                const double q = 0.5 * dt * dt;
+                const Matrix g{1 + q * slope_h,
+                               dt + q * slope_w,
+                               q * per_mass,
+                               dt * slope_h,
+                               std::max(0.0, 1 + dt * slope_w),
+                               dt * per_mass,
+                               0,
+                               0,
+                               1};
+                Matrix gp{}, next{}, gf{};
+                for (int i = 0; i < 3; ++i) {
+                    for (int j = 0; j < 3; ++j) {
+                        for (int l = 0; l < 3; ++l) {
+                            gp[3 * i + j] += g[3 * i + l] * p[3 * l + j];
+                            gf[3 * i + j] += g[3 * i + l] * f[3 * l + j];
+                        }
+                    }
+                }
+                for (int i = 0; i < 3; ++i) {
+                    for (int j = 0; j < 3; ++j) {
+                        for (int l = 0; l < 3; ++l) {
+                            next[3 * i + j] += gp[3 * i + l] * g[3 * j + l];
+                        }
+                    }
+                }
+                p = next;
+                f = gf;
+                p[0] += noise.process * dt * dt * dt / 3;
+                p[1] += noise.process * dt * dt / 2;
+                p[3] = p[1];
+                p[4] += noise.process * dt;
+                p[8] += force_walk * force_walk * dt;
+            }
+        }
+        predicted[k] = x;
+        predicted_p[k] = p;
+        transition[k] = f;
+        if (std::isfinite(record.gap[k])) {
+            const double sigma = noise.gap * record.gap_share[k];
+            measure(record.gap[k] - x[0] - explanation.terms.sensor_bias, {1, 0, 0}, sigma * sigma + noise.slow * noise.slow);
+        }
+        if (!record.velocity.empty() && std::isfinite(record.velocity[k])) {
+            const double sigma = noise.velocity * record.velocity_share[k];
+            measure(record.velocity[k] - x[1], {0, 1, 0}, sigma * sigma);
+        }
+        filtered[k] = x;
+        filtered_p[k] = p;
+    }
+    SmoothedRun run;
+    run.time = record.time;
+    run.gap.resize(n);
+    run.velocity.resize(n);
+    run.force.resize(n);
+    run.force_sigma.resize(n);
+    Vector s = filtered[n - 1];
+    Matrix sp = filtered_p[n - 1];
+    const auto invert = [](const Matrix& m) {
+        Matrix r{};
+        const double det = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+        const double inverse = 1 / det;
+        r[0] = (m[4] * m[8] - m[5] * m[7]) * inverse;
+        r[1] = (m[2] * m[7] - m[1] * m[8]) * inverse;
+        r[2] = (m[1] * m[5] - m[2] * m[4]) * inverse;
+        r[3] = (m[5] * m[6] - m[3] * m[8]) * inverse;
+        r[4] = (m[0] * m[8] - m[2] * m[6]) * inverse;
+        r[5] = (m[2] * m[3] - m[0] * m[5]) * inverse;
+        r[6] = (m[3] * m[7] - m[4] * m[6]) * inverse;
+        r[7] = (m[1] * m[6] - m[0] * m[7]) * inverse;
+        r[8] = (m[0] * m[4] - m[1] * m[3]) * inverse;
+        return r;
+    };
+    for (std::size_t k = n; k-- > 0;) {
+        if (k + 1 < n) {
+            const Matrix inverse = invert(predicted_p[k + 1]);
+            Matrix pf{}, gain{};
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) {
+                    for (int l = 0; l < 3; ++l) {
+                        pf[3 * i + j] += filtered_p[k][3 * i + l] * transition[k + 1][3 * j + l];
+                    }
+                }
+            }
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) {
+                    for (int l = 0; l < 3; ++l) {
+                        gain[3 * i + j] += pf[3 * i + l] * inverse[3 * l + j];
+                    }
+                }
+            }
+            Vector next = filtered[k];
+            Matrix difference{}, gd{}, np = filtered_p[k];
+            for (int i = 0; i < 9; ++i) {
+                difference[i] = sp[i] - predicted_p[k + 1][i];
+            }
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) {
+                    next[i] += gain[3 * i + j] * (s[j] - predicted[k + 1][j]);
+                    for (int l = 0; l < 3; ++l) {
+                        gd[3 * i + j] += gain[3 * i + l] * difference[3 * l + j];
+                    }
+                }
+            }
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) {
+                    for (int l = 0; l < 3; ++l) {
+                        np[3 * i + j] += gd[3 * i + l] * gain[3 * j + l];
+                    }
+                }
+            }
+            s = next;
+            sp = np;
+        }
+        run.gap[k] = s[0];
+        run.velocity[k] = s[1];
+        run.force[k] = s[2];
+        run.force_sigma[k] = std::sqrt(std::max(0.0, sp[8]));
+    }
+    return run;
+}
+
+void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t first,
+              std::size_t last, double gap, double velocity, std::vector<double>& predicted) {
+    Equation equation(record, explanation);
+    equation.start_history(velocity);
+    predicted.clear();
+    double h = gap;
+    double w = velocity;
+    const auto reading = [&](std::size_t k) {
+        double value = h + explanation.terms.sensor_bias;
+        if (explanation.terms.sensor_delay > 0) {
+            const double delay = explanation.terms.sensor_delay;
+            value += -delay * w + 0.5 * delay * delay * equation.acceleration(record.time[k], h, w, input[k], 0);
+        }
+        return value;
+    };
+    predicted.push_back(reading(first));
+    for (std::size_t k = first + 1; k <= last; ++k) {
+        const double rest = record.time[k] - record.time[k - 1];
+        const int parts = static_cast<int>(std::ceil(rest / longest_step));
+        for (int part = 0; part < parts; ++part) {
+            const double share = static_cast<double>(part) / parts;
+            equation.advance(record.time[k - 1] + rest * share, rest / parts, input[k - 1] + (input[k] - input[k - 1]) * share,
+                             input[k - 1] + (input[k] - input[k - 1]) * (share + 1.0 / parts), 0, h, w);
+        }
+        predicted.push_back(reading(k));
+    }
+}
+
+}  // namespace underbody::discovery

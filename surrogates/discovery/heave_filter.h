@@ -1,0 +1,62 @@
+// The declared heave equation inside the experiment: an extended Kalman filter over the recorded input, whose innovations
+// are the residuals that every hypothesis is judged by.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "surrogates/discovery/flexible.h"
+#include "surrogates/discovery/heave_record.h"
+#include "surrogates/dynamics/heave_terms.h"
+
+namespace underbody::discovery {
+
+/// What is random in an experiment. All estimated from the data by maximum likelihood unless declared.
+struct HeaveNoise {
+    double gap = 2e-4;           ///< m, white, of a single reading
+    double velocity = 1e-3;      ///< m/s, white, of a single reading
+    double process = 1e-9;       ///< m^2/s^3, density of white acceleration: the disturbances nobody measured
+    double slow = 0;             ///< m, standard deviation of coloured noise on the gap (first-order)
+    double slow_time = 0.3;      ///< s, its correlation time
+};
+
+/// A smooth force without a law: sum of coefficients times FlexibleBasis functions of gap, velocity, time or input.
+struct FlexibleForce {
+    enum class Variable { gap, heave_velocity, time, input_force };
+    std::vector<Variable> variables;
+    FlexibleBasis basis;
+    std::vector<double> coefficients;   ///< N, one per column
+    /// Holds the force constant beyond what was seen.
+    std::vector<double> lower, upper;
+    [[nodiscard]] double operator()(double h, double w, double t, double u) const;
+};
+
+/// One explanation, ready to run.
+struct HeaveExplanation {
+    dynamics::HeaveTerms terms;          ///< of the model with the hypothesis' effects (its sources are not used)
+    double lift_gain = 1;                ///< further factor on the lift table
+    const FlexibleForce* flexible = nullptr;
+};
+
+/// Recorded input as the body feels it (delay, dead zone, gain, lag), at the record's times.
+void transform_input(const HeaveRecord& record, const dynamics::HeaveTerms& terms, std::vector<double>& input);
+
+/// Runs the filter over one record. Appends the normalised innovations (gap, then velocity when measured, of each step; 0 where
+/// there was no reading, so that the length never changes) and returns sum log S of the readings there were.
+double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
+                          std::vector<double>& innovations);
+
+/// Smoothed states of one record (Rauch, Tung and Striebel 1965), with a residual force that walks at random:
+/// what force must be added to the model for the motion that was seen.
+struct SmoothedRun {
+    std::vector<double> time, gap, velocity, force, force_sigma;
+};
+/// `force_walk` N/sqrt(s): how fast the residual force may change.
+SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
+                              double force_walk);
+
+/// Free run of the explanation from (gap, velocity) at step `first` to step `last`: predicted gap readings.
+void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t first,
+              std::size_t last, double gap, double velocity, std::vector<double>& predicted);
+
+}  // namespace underbody::discovery

@@ -1,0 +1,59 @@
+// What may be missing from a model: one or two effects of the catalogue with their free numbers.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "surrogates/discovery/least_squares.h"
+#include "surrogates/dynamics/measurements.h"
+#include "surrogates/dynamics/model.h"
+
+namespace underbody::discovery {
+
+/// A set of effects whose numbers are to be fitted.
+struct Hypothesis {
+    std::vector<std::string> names;          ///< of the catalogue, sorted, distinct: what a verdict would say
+    std::string form;                        ///< which variant of it ("lift_force only", ...), for the report
+    std::vector<dynamics::EffectUse> uses;   ///< what is added to the model; numbers at their start
+    std::vector<FitParameter> parameters;    ///< free numbers
+    struct Slot {
+        std::size_t use = 0;
+        std::size_t value = 0;
+    };
+    std::vector<Slot> slots;                 ///< where each free number belongs
+    /// Other starts worth trying, each of the length of `parameters` (the first start is parameters[i].start).
+    std::vector<std::vector<double>> starts;
+    std::vector<std::string> depends_on;
+    double prior = 1;                        ///< weight before the data were seen
+
+    /// The uses with these numbers.
+    [[nodiscard]] std::vector<dynamics::EffectUse> with(std::span<const double> p) const;
+    [[nodiscard]] std::string label() const;  ///< "coulomb_friction + input_delay"
+};
+
+/// A hypothesis and the numbers that suit it best.
+struct FittedHypothesis {
+    Hypothesis hypothesis;
+    Fit fit;
+    double cost = 0;      ///< -2 log likelihood
+    double occam = 0;     ///< -2 log of the prior volume that the data leave: what free numbers cost
+    std::vector<double> cost_of_group;  ///< cost by run (or group of set points)
+    double explained = 0;               ///< cost of the model as declared less `cost`
+    std::vector<double> explained_by_group;
+    [[nodiscard]] double score() const { return cost + occam; }
+};
+
+/// The names that a static set with these varying channels and measured quantities can show, each with its variants.
+std::vector<Hypothesis> static_hypotheses(const std::vector<dynamics::Channel>& varying, const std::vector<std::string>& quantities);
+
+/// The names that heave time series can show; `declared` are declared parameters of the model that have no name of their own.
+std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool velocity_measured);
+
+/// Both at once. Parameters of `a` start at `start_a` (fitted), those of `b` where they stand.
+Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b);
+
+/// Prior volume that a fit leaves, as -2 log: sum of log(1 + (typical/sigma)^2) over the principal directions of its curvature.
+double occam_factor(const Hypothesis& hypothesis, const Fit& fit);
+
+}  // namespace underbody::discovery

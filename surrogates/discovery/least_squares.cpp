@@ -1,0 +1,165 @@
+#include "surrogates/discovery/least_squares.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace underbody::discovery {
+
+namespace {
+
+class Solver {
+public:
+    Solver(const std::vector<FitParameter>& parameters, const WhitenedResiduals& residuals, const FitOptions& options)
+        : parameters_(parameters), evaluate_(residuals), options_(options), count_(parameters.size()) {}
+
+    Fit run() {
+        Fit fit;
+        for (const FitParameter& parameter : parameters_) {
+            fit.parameters.push_back(std::clamp(parameter.start, parameter.lower, parameter.upper));
+        }
+        fit.log_determinant = evaluate(fit.parameters, fit.residuals);
+        fit.cost = cost(fit.residuals, fit.log_determinant);
+        double damping = 1e-3;
+        for (int i = 0; i < options_.iterations && count_ > 0; ++i) {
+            linearise(fit);
+            if (!step(fit, damping)) {
+                break;
+            }
+        }
+        if (count_ > 0) {
+            linearise(fit);
+        }
+        spread(fit);
+        fit.evaluations = evaluations_;
+        return fit;
+    }
+
+private:
+    double evaluate(const std::vector<double>& p, std::vector<double>& r) {
+        ++evaluations_;
+        return evaluate_(p, r);
+    }
+
+    static double cost(const std::vector<double>& r, double log_determinant) {
+        double sum = log_determinant;
+        for (const double value : r) {
+            sum += value * value;
+        }
+        return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+    }
+
+    double prior(const std::vector<double>& p) const {
+        double sum = 0;
+        for (std::size_t j = 0; j < count_; ++j) {
+            const double distance = (p[j] - parameters_[j].start) / parameters_[j].typical;
+            sum += options_.ridge * distance * distance;
+        }
+        return sum;
+    }
+
+    /// Normal equations in units of `typical`.
+    void linearise(const Fit& fit) {
+        const Eigen::Index rows = static_cast<Eigen::Index>(fit.residuals.size());
+        const Eigen::Index n = static_cast<Eigen::Index>(count_);
+        jacobian_.resize(rows, n);
+        std::vector<double> moved = fit.parameters;
+        std::vector<double> r;
+        const Eigen::Map<const Eigen::VectorXd> at(fit.residuals.data(), rows);
+        for (std::size_t j = 0; j < count_; ++j) {
+            const FitParameter& parameter = parameters_[j];
+            double h = 1e-3 * parameter.typical;
+            if (fit.parameters[j] + h > parameter.upper) {
+                h = -h;
+            }
+            moved[j] = fit.parameters[j] + h;
+            evaluate(moved, r);
+            moved[j] = fit.parameters[j];
+            const Eigen::Map<const Eigen::VectorXd> there(r.data(), rows);
+            jacobian_.col(static_cast<Eigen::Index>(j)) = (there - at) * (parameter.typical / h);
+        }
+        if (!jacobian_.allFinite()) {
+            jacobian_.setZero();
+        }
+        normal_ = jacobian_.transpose() * jacobian_;
+        gradient_ = jacobian_.transpose() * at;
+        for (std::size_t j = 0; j < count_; ++j) {
+            const Eigen::Index k = static_cast<Eigen::Index>(j);
+            normal_(k, k) += options_.ridge;
+            gradient_(k) += options_.ridge * (fit.parameters[j] - parameters_[j].start) / parameters_[j].typical;
+        }
+    }
+
+    bool step(Fit& fit, double& damping) {
+        const double before = fit.cost + prior(fit.parameters);
+        for (int attempt = 0; attempt < 6; ++attempt) {
+            Eigen::MatrixXd damped = normal_;
+            for (Eigen::Index k = 0; k < damped.rows(); ++k) {
+                damped(k, k) += damping * std::max(normal_(k, k), 1e-12) + 1e-12;
+            }
+            const Eigen::VectorXd move = -damped.ldlt().solve(gradient_);
+            std::vector<double> there = fit.parameters;
+            for (std::size_t j = 0; j < count_; ++j) {
+                const double wanted = there[j] + move(static_cast<Eigen::Index>(j)) * parameters_[j].typical;
+                there[j] = std::clamp(wanted, parameters_[j].lower, parameters_[j].upper);
+            }
+            std::vector<double> r;
+            const double log_determinant = evaluate(there, r);
+            const double reached = cost(r, log_determinant);
+            if (reached + prior(there) < before) {
+                const bool go_on = before - reached - prior(there) > options_.tolerance;
+                fit.parameters = std::move(there);
+                fit.residuals = std::move(r);
+                fit.log_determinant = log_determinant;
+                fit.cost = reached;
+                damping = std::max(damping * 0.1, 1e-9);
+                return go_on;
+            }
+            damping = std::max(damping, 1e-6) * 10;
+        }
+        return false;
+    }
+
+    void spread(Fit& fit) const {
+        fit.covariance.assign(count_ * count_, 0);
+        fit.sigma.assign(count_, std::numeric_limits<double>::infinity());
+        if (count_ == 0) {
+            return;
+        }
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal_);
+        const double largest = eigen.eigenvalues().maxCoeff();
+        Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(normal_.rows(), normal_.cols());
+        for (Eigen::Index k = 0; k < normal_.rows(); ++k) {
+            const double value = std::max(eigen.eigenvalues()(k), 1e-14 * largest + 1e-300);
+            inverse += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() / value;
+        }
+        for (std::size_t i = 0; i < count_; ++i) {
+            for (std::size_t j = 0; j < count_; ++j) {
+                fit.covariance[i * count_ + j] = inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) *
+                                                 parameters_[i].typical * parameters_[j].typical;
+            }
+            fit.sigma[i] = std::sqrt(fit.covariance[i * count_ + i]);
+            const double width = parameters_[i].upper - parameters_[i].lower;
+            fit.at_bound = fit.at_bound || fit.parameters[i] - parameters_[i].lower < 1e-9 * width ||
+                           parameters_[i].upper - fit.parameters[i] < 1e-9 * width;
+        }
+    }
+
+    const std::vector<FitParameter>& parameters_;
+    const WhitenedResiduals& evaluate_;
+    const FitOptions& options_;
+    std::size_t count_;
+    Eigen::MatrixXd jacobian_;
+    Eigen::MatrixXd normal_;
+    Eigen::VectorXd gradient_;
+    int evaluations_ = 0;
+};
+
+}  // namespace
+
+Fit least_squares(const std::vector<FitParameter>& parameters, const WhitenedResiduals& residuals, const FitOptions& options) {
+    return Solver(parameters, residuals, options).run();
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,187 @@
+#include "surrogates/discovery/residual.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/discovery/heave_filter.h"
+#include "surrogates/discovery/static_experiment.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+/// Bins of equal numbers of values. `correlated`: how many neighbouring values tell one story.
+ResidualCurve binned(const std::string& variable, const std::vector<double>& x, const std::vector<double>& y, std::size_t bins,
+                     double correlated) {
+    ResidualCurve curve;
+    curve.variable = variable;
+    const core::QuantityName* quantity = core::find_quantity(variable);
+    curve.unit = quantity != nullptr ? quantity->unit : "1";
+    std::vector<std::size_t> order(x.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+    bins = std::max<std::size_t>(1, std::min(bins, x.size() / 4));
+    for (std::size_t b = 0; b < bins; ++b) {
+        const std::size_t begin = b * x.size() / bins;
+        const std::size_t end = (b + 1) * x.size() / bins;
+        double sum = 0;
+        double square = 0;
+        double place = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+            sum += y[order[k]];
+            square += y[order[k]] * y[order[k]];
+            place += x[order[k]];
+        }
+        const double n = static_cast<double>(end - begin);
+        const double mean_value = sum / n;
+        const double spread = std::sqrt(std::max(0.0, square / n - mean_value * mean_value));
+        curve.centre.push_back(place / n);
+        curve.mean.push_back(mean_value);
+        curve.spread.push_back(spread);
+        curve.mean_sigma.push_back(spread / std::sqrt(std::max(1.0, n / correlated)));
+        curve.count.push_back(end - begin);
+    }
+    return curve;
+}
+
+core::Figure picture(const Residual& residual, const ResidualCurve& curve) {
+    core::Figure figure;
+    const bool gap = curve.variable == "gap";
+    const double factor = gap ? 1000 : 1;
+    figure.title = "Residual force against " + curve.variable;
+    figure.x = {curve.variable, gap ? "mm" : curve.unit, 0, 0, false};
+    figure.y = {"residual force", "mN", 0, 0, false};
+    core::FigureBand band;
+    band.name = "spread";
+    core::FigureCurve mean_curve;
+    mean_curve.name = "mean";
+    mean_curve.colour = core::palette(0);
+    for (std::size_t k = 0; k < curve.centre.size(); ++k) {
+        const double x = factor * curve.centre[k];
+        band.x.push_back(x);
+        band.lower.push_back(1000 * (curve.mean[k] - curve.spread[k]));
+        band.upper.push_back(1000 * (curve.mean[k] + curve.spread[k]));
+        mean_curve.x.push_back(x);
+        mean_curve.y.push_back(1000 * curve.mean[k]);
+    }
+    figure.bands.push_back(std::move(band));
+    figure.curves.push_back(std::move(mean_curve));
+    figure.lines.push_back({false, 0, "", {120, 120, 120, 255}, true});
+    figure.caption = "What must be added to the declared model for the measured " + residual.quantity +
+                     ": mean and spread in bins of equal numbers. Zero: the model says it all.";
+    return figure;
+}
+
+std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamics::Measurements& data, core::Progress& progress) {
+    const HeaveRecords records = prepare_heave_records(model, data);
+    Residual residual;
+    residual.quantity = "lift_force";
+    residual.problems = records.problems;
+    HeaveNoise noise;
+    noise.gap = data.declared_noise("gap").value_or(std::max(records.gap_noise, 1e-7));
+    noise.velocity = data.declared_noise("heave_velocity").value_or(std::max(records.velocity_noise, 1e-7));
+    std::vector<double> gap, velocity, force;
+    double variance = 0;
+    core::FigureCurve over_time;
+    for (const HeaveRecord& record : records.records) {
+        progress.check();
+        HeaveExplanation declared;
+        declared.terms = record.plant->terms;
+        const SmoothedRun run = smooth_with_force(record, declared, noise, 0.004 * record.plant->terms.mass / 4);
+        if (over_time.x.empty()) {
+            over_time.name = record.name;
+            over_time.x = run.time;
+            for (const double f : run.force) {
+                over_time.y.push_back(1000 * f);
+            }
+        }
+        for (std::size_t k = 0; k < run.time.size(); ++k) {
+            gap.push_back(run.gap[k]);
+            velocity.push_back(run.velocity[k]);
+            force.push_back(run.force[k]);
+            variance += run.force_sigma[k] * run.force_sigma[k];
+        }
+    }
+    residual.mean = mean(force);
+    residual.root_mean_square = root_mean_square(force);
+    residual.sigma = std::sqrt(variance / static_cast<double>(force.size()));
+    const double correlated = 2 / record_step;  // the smoothed force changes over seconds
+    residual.curves.push_back(binned("gap", gap, force, 24, correlated));
+    residual.curves.push_back(binned("heave_velocity", velocity, force, 24, correlated));
+    for (const ResidualCurve& curve : residual.curves) {
+        residual.figures.push_back(picture(residual, curve));
+    }
+    core::Figure figure;
+    figure.title = "Residual force over time, " + over_time.name;
+    figure.x = {"time", "s", 0, 0, false};
+    figure.y = {"residual force", "mN", 0, 0, false};
+    figure.caption = "Smoothed with the model inside the loop; one standard deviation of noise that gets through is " +
+                     core::format_number(1000 * residual.sigma, 2) + " mN.";
+    over_time.colour = core::palette(0);
+    figure.curves.push_back(std::move(over_time));
+    residual.figures.push_back(std::move(figure));
+    return {residual};
+}
+
+std::vector<Residual> static_residual(const dynamics::Model& model, const dynamics::Measurements& data) {
+    StaticExperiment experiment(model, data);
+    experiment.estimate_noise();
+    std::vector<Residual> list;
+    for (std::size_t q = 0; q < experiment.quantities().size(); ++q) {
+        Residual residual;
+        residual.quantity = experiment.quantities()[q];
+        residual.problems = experiment.problems();
+        std::vector<double> force;
+        std::vector<const Observation*> own;
+        for (const Observation& one : experiment.observations()) {
+            if (one.quantity == q) {
+                own.push_back(&one);
+                force.push_back(one.value - experiment.predict(one, {}));
+                residual.sigma = experiment.sigma(one);
+            }
+        }
+        residual.mean = mean(force);
+        residual.root_mean_square = root_mean_square(force);
+        for (const dynamics::Channel channel : experiment.varying()) {
+            std::vector<double> x;
+            for (const Observation* one : own) {
+                x.push_back(one->at[channel]);
+            }
+            residual.curves.push_back(binned(dynamics::channel_name(channel), x, force, 12, 1));
+            residual.figures.push_back(picture(residual, residual.curves.back()));
+        }
+        list.push_back(std::move(residual));
+    }
+    return list;
+}
+
+}  // namespace
+
+std::vector<Residual> measured_residual(const dynamics::Model& model, const dynamics::Measurements& data, core::Progress& progress) {
+    return data.kind == dynamics::MeasurementKind::steady ? static_residual(model, data) : heave_residual(model, data, progress);
+}
+
+nlohmann::json to_json(const Residual& residual) {
+    nlohmann::json curves = nlohmann::json::array();
+    for (const ResidualCurve& curve : residual.curves) {
+        curves.push_back({{"variable", curve.variable},
+                          {"unit", curve.unit},
+                          {"centre", curve.centre},
+                          {"mean", curve.mean},
+                          {"spread", curve.spread},
+                          {"mean_sigma", curve.mean_sigma},
+                          {"count", curve.count}});
+    }
+    return {{"quantity", residual.quantity},
+            {"mean", residual.mean},
+            {"rms", residual.root_mean_square},
+            {"sigma", residual.sigma},
+            {"curves", curves}};
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,158 @@
+#include "surrogates/discovery/statistics.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/random.h"
+
+namespace underbody::discovery {
+
+Interval wilson_interval(std::size_t successes, std::size_t trials) {
+    if (trials == 0) {
+        return {0, 1};
+    }
+    const double z = 1.959963984540054;
+    const double n = static_cast<double>(trials);
+    const double p = static_cast<double>(successes) / n;
+    const double centre = (p + z * z / (2 * n)) / (1 + z * z / n);
+    const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+    return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+double quantile(std::vector<double> values, double p) {
+    if (values.empty()) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    std::sort(values.begin(), values.end());
+    const double place = std::clamp(p, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+    const std::size_t below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+
+double robust_sigma(const std::vector<double>& values) {
+    const double middle = median(values);
+    std::vector<double> distances;
+    distances.reserve(values.size());
+    for (const double value : values) {
+        distances.push_back(std::abs(value - middle));
+    }
+    return 1.482602218505602 * median(std::move(distances));
+}
+
+double mean(std::span<const double> values) {
+    double sum = 0;
+    for (const double value : values) {
+        sum += value;
+    }
+    return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+double root_mean_square(std::span<const double> values) {
+    double sum = 0;
+    for (const double value : values) {
+        sum += value * value;
+    }
+    return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double chi_squared_tail(double x, double dof) {
+    if (!(x > 0) || dof <= 0) {
+        return 1;
+    }
+    return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), x));
+}
+
+double f_tail(double x, double dof_above, double dof_below) {
+    if (!(x > 0) || dof_above <= 0 || dof_below <= 0) {
+        return 1;
+    }
+    return boost::math::cdf(boost::math::complement(boost::math::fisher_f(dof_above, dof_below), x));
+}
+
+double chi_squared_limit(double tail, double dof) {
+    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(dof), tail));
+}
+
+double noise_from_second_differences(std::span<const double> values) {
+    std::vector<double> differences;
+    for (std::size_t i = 2; i < values.size(); ++i) {
+        const double difference = values[i] - 2 * values[i - 1] + values[i - 2];
+        if (std::isfinite(difference)) {
+            differences.push_back(difference);
+        }
+    }
+    if (differences.size() < 6) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    // the variance of y[i] - 2 y[i-1] + y[i-2] is (1 + 4 + 1) sigma^2
+    return robust_sigma(differences) / std::sqrt(6.0);
+}
+
+double autocorrelation(std::span<const double> values, std::size_t lag) {
+    const double centre = mean(values);
+    double above = 0;
+    double below = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        below += (values[i] - centre) * (values[i] - centre);
+        if (i >= lag) {
+            above += (values[i] - centre) * (values[i - lag] - centre);
+        }
+    }
+    return below > 0 ? above / below : 0;
+}
+
+ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const std::vector<double>& counts, std::uint64_t seed) {
+    ErrorEstimate estimate;
+    const std::size_t groups = counts.size();
+    double total = 0;
+    double number = 0;
+    for (std::size_t g = 0; g < groups; ++g) {
+        total += sum_of_squares[g];
+        number += counts[g];
+    }
+    if (number <= 0) {
+        return estimate;
+    }
+    estimate.count = static_cast<std::size_t>(number);
+    estimate.rmse = std::sqrt(total / number);
+    estimate.low = estimate.high = estimate.rmse;
+    if (groups < 2) {
+        return estimate;
+    }
+    core::Random random(seed);
+    std::vector<double> logs;
+    for (int draw = 0; draw < 1000; ++draw) {
+        double drawn_total = 0;
+        double drawn_number = 0;
+        for (std::size_t g = 0; g < groups; ++g) {
+            const std::size_t chosen = random.below(groups);
+            drawn_total += sum_of_squares[chosen];
+            drawn_number += counts[chosen];
+        }
+        if (drawn_number > 0 && drawn_total > 0) {
+            logs.push_back(0.5 * std::log(drawn_total / drawn_number));
+        }
+    }
+    if (logs.empty()) {
+        return estimate;
+    }
+    // few groups: the percentile interval is known to be short by sqrt((n-1)/n) and by t over z
+    const double n = static_cast<double>(groups);
+    const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1), 0.025));
+    const double widen = std::sqrt(n / (n - 1)) * t / 1.959963984540054;
+    const double centre = std::log(estimate.rmse);
+    estimate.low = std::exp(centre + widen * (quantile(logs, 0.025) - centre));
+    estimate.high = std::exp(centre + widen * (quantile(logs, 0.975) - centre));
+    estimate.low = std::min(estimate.low, estimate.rmse);
+    estimate.high = std::max(estimate.high, estimate.rmse);
+    return estimate;
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,52 @@
+// Small statistics that discovery and its bench share.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace underbody::discovery {
+
+struct Interval {
+    double low = 0;
+    double high = 0;
+};
+
+/// 95 % interval of a probability of which `successes` of `trials` were seen (Wilson 1927).
+Interval wilson_interval(std::size_t successes, std::size_t trials);
+
+/// The p-quantile (0..1) by linear interpolation between order statistics; NaN for no values.
+double quantile(std::vector<double> values, double p);
+double median(std::vector<double> values);
+/// 1.4826 times the median distance from the median: the standard deviation of normal values, deaf to outliers.
+double robust_sigma(const std::vector<double>& values);
+double mean(std::span<const double> values);
+double root_mean_square(std::span<const double> values);
+
+/// P(X > x) for X chi-squared with `dof` degrees of freedom.
+double chi_squared_tail(double x, double dof);
+/// P(X > x) for X of Fisher's F distribution.
+double f_tail(double x, double dof_above, double dof_below);
+/// The x that a chi-squared variable exceeds with probability `tail`.
+double chi_squared_limit(double tail, double dof);
+
+/// Standard deviation of white noise on a smooth signal sampled at (nearly) equal steps, from second differences with a robust
+/// middle (so that outliers and kinks do not count). Missing values are skipped. NaN when there are fewer than eight values.
+double noise_from_second_differences(std::span<const double> values);
+
+/// Autocorrelation of a series at a lag; 0 when it is constant.
+double autocorrelation(std::span<const double> values, std::size_t lag);
+
+/// Root mean square error over groups (runs) with its 95 % interval from resampling whole groups.
+struct ErrorEstimate {
+    double rmse = 0;
+    double low = 0;
+    double high = 0;
+    std::size_t count = 0;
+};
+/// `sum_of_squares[g]` and `counts[g]` of each group. With fewer than five groups the resampled interval is too narrow and is
+/// widened by the factor of Student's t over the normal. Deterministic by `seed`.
+ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const std::vector<double>& counts, std::uint64_t seed);
+
+}  // namespace underbody::discovery

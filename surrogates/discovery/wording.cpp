@@ -1,0 +1,107 @@
+#include "surrogates/discovery/wording.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+
+namespace underbody::discovery {
+
+std::string list_of(const std::vector<std::string>& names) {
+    if (names.empty()) {
+        return "nothing that was measured";
+    }
+    std::string text = names.front();
+    for (std::size_t i = 1; i < names.size(); ++i) {
+        text += (i + 1 == names.size() ? " and " : ", ") + names[i];
+    }
+    return text;
+}
+
+FoundEffect found_effect(const FittedHypothesis& fitted, double probability) {
+    FoundEffect effect;
+    effect.name = fitted.hypothesis.names.empty() ? "none" : fitted.hypothesis.names.front();
+    effect.depends_on = fitted.hypothesis.depends_on;
+    effect.probability = probability;
+    effect.explained = fitted.explained;
+    effect.uses = fitted.hypothesis.with(fitted.fit.parameters);
+    for (std::size_t j = 0; j < fitted.hypothesis.parameters.size(); ++j) {
+        const Hypothesis::Slot& slot = fitted.hypothesis.slots[j];
+        const dynamics::EffectUse& use = fitted.hypothesis.uses[slot.use];
+        const bool several = std::count_if(fitted.hypothesis.uses.begin(), fitted.hypothesis.uses.end(),
+                                           [&](const auto& other) { return other.name == use.name; }) > 1;
+        const double sigma = std::isfinite(fitted.fit.sigma[j]) ? fitted.fit.sigma[j] : 0;
+        effect.parameters.push_back({several && !use.quantity.empty() ? use.quantity + "." + fitted.hypothesis.parameters[j].name
+                                                                      : fitted.hypothesis.parameters[j].name,
+                                     fitted.fit.parameters[j], sigma, fitted.hypothesis.parameters[j].unit});
+        effect.uses[slot.use].sigmas[slot.value] = sigma;
+    }
+    return effect;
+}
+
+std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHypothesis& fitted) {
+    std::vector<FoundEffect> parts;
+    for (const std::string& name : fitted.hypothesis.names) {
+        FoundEffect part = whole;
+        part.name = name;
+        if (fitted.hypothesis.names.size() > 1) {
+            part.parameters.clear();
+            part.uses.clear();
+            for (std::size_t j = 0; j < fitted.hypothesis.slots.size(); ++j) {
+                if (fitted.hypothesis.uses[fitted.hypothesis.slots[j].use].name == name) {
+                    part.parameters.push_back(whole.parameters[j]);
+                }
+            }
+            for (const dynamics::EffectUse& use : whole.uses) {
+                if (use.name == name) {
+                    part.uses.push_back(use);
+                }
+            }
+            part.depends_on = dynamics::effect(name).info().depends_on;
+        }
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+std::string value_text(const FoundParameter& parameter) {
+    const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
+    return core::format_number(parameter.value, 3) + unit +
+           (parameter.sigma > 0 ? " (+- " + core::format_number(parameter.sigma, 2) + unit + ")" : "");
+}
+
+std::string verdict_sentence(const Discovery& discovery) {
+    const std::string error =
+        discovery.error.empty() || discovery.verdict == "none"
+            ? ""
+            : " On held-out data the error of " + discovery.error.front().channel + " falls from " +
+                  core::format_number(discovery.error.front().before.rmse, 3) + " to " +
+                  core::format_number(discovery.error.front().after.rmse, 3) + " " + discovery.error.front().unit + " (noise " +
+                  core::format_number(discovery.error.front().noise, 3) + " " + discovery.error.front().unit + ").";
+    if (discovery.verdict == "none") {
+        return "Nothing is missing: what the model leaves looks like noise (chance of as much structure in noise: " +
+               core::format_number(discovery.gate, 2) + ").";
+    }
+    if (discovery.verdict == "unknown") {
+        return "Something real is missing that no effect of the catalogue explains; it depends on " +
+               list_of(discovery.depends_on) + ". A smooth correction was put into the model." + error;
+    }
+    std::string text = "The model lacks ";
+    for (std::size_t i = 0; i < discovery.effects.size(); ++i) {
+        const FoundEffect& effect = discovery.effects[i];
+        text += (i == 0 ? "" : " and ") + effect.name;
+        for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
+            text += (k == 0 ? " (" : ", ") + effect.parameters[k].name + " " + value_text(effect.parameters[k]) +
+                    (k + 1 == effect.parameters.size() ? ")" : "");
+        }
+    }
+    text += ", probability " + core::format_number(discovery.effects.front().probability, 2) + ".";
+    for (const FoundEffect& rival : discovery.alternatives) {
+        if (rival.probability > 0.2) {
+            text += " These data cannot well tell it from " + rival.name + " (" + core::format_number(rival.probability, 2) + ").";
+        }
+    }
+    return text + error;
+}
+
+}  // namespace underbody::discovery
