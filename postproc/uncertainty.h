@@ -1,0 +1,78 @@
+// How far a computed load can be trusted: mesh and iteration.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace underbody::postproc {
+
+/// A value on one mesh. Only ratios of sizes matter.
+struct MeshValue {
+    double size = 0;  ///< representative cell size
+    double value = 0;
+};
+
+/// Size of a mesh with so many cells over the same domain: cells^(-1/dimension).
+double mesh_size(double cells, int dimension = 3);
+
+enum class MeshVerdict {
+    same,         ///< all values agree to rounding
+    assumed,      ///< two meshes: the order was assumed, not observed
+    monotone,     ///< differences shrink with the mesh
+    oscillating,  ///< differences change sign and shrink
+    diverging,    ///< differences grow as the mesh gets finer
+};
+std::string to_string(MeshVerdict verdict);
+
+/// Values of one quantity over two meshes or more.
+///
+/// Three meshes: Celik, Ghia, Roache, Freitas, Coleman, Raad (J. Fluids Eng. 130, 078001, 2008), safety factor 1.25,
+/// orders above `formal_order` are not believed in the GCI. Two: Roache's factor 3 at the formal order. More than
+/// three: least squares after Eça and Hoekstra (J. Comput. Phys. 262, 2014, section 3), on all meshes.
+/// Oscillating: the half range of the values is the interval (Stern et al. 2001); diverging: their whole range. Both
+/// are taken as evenly distributed.
+struct MeshUncertainty {
+    MeshVerdict verdict = MeshVerdict::same;
+    double value = 0;                  ///< on the finest mesh
+    double observed_order = 0;         ///< NaN when none can be had
+    double used_order = 0;             ///< what the index was computed with
+    double extrapolated = 0;           ///< value at size zero; the finest value when there is no order
+    double relative_change = 0;        ///< |finest - next| / |finest|
+    double gci_fine = 0;               ///< relative, between the finest two meshes (or the interval over |value|)
+    double gci_coarse = 0;             ///< between the second and third; NaN for two meshes
+    double asymptotic_ratio = 0;       ///< gci_coarse / (r21^p gci_fine): 1 in the asymptotic range; NaN when there is none
+    double expanded_uncertainty = 0;   ///< absolute, about 95 %
+    double standard_uncertainty = 0;   ///< absolute, one standard deviation
+    std::size_t meshes = 0;
+    std::string text;                  ///< one sentence for people
+};
+
+/// `values` in any order. Throws core::InputError: fewer than two meshes, equal sizes, values that are not finite.
+MeshUncertainty mesh_uncertainty(std::span<const MeshValue> values, double formal_order = 2);
+
+/// What the end of a monitor says.
+struct IterationScatter {
+    std::size_t first = 0;             ///< where the settled tail begins (marginal standard error rule, White 1997)
+    std::size_t count = 0;             ///< its length
+    double mean = 0;
+    double deviation = 0;              ///< one standard deviation of the values: of the last one as the result
+    double error_of_mean = 0;          ///< one standard deviation of the mean, by batches (the values are correlated)
+    double drift = 0;                  ///< change over the tail by its straight line
+    double period = 0;                 ///< iterations of the strongest cycle; 0 when there is none
+    bool settled = true;               ///< the drift is lost in the scatter, or both are below 1e-3 of the mean
+    double standard_uncertainty = 0;   ///< deviation and drift together
+    std::string text;
+};
+
+/// `history`: one value an iteration (or a time step). Throws core::InputError: fewer than 8 values, or not finite.
+IterationScatter iteration_scatter(std::span<const double> history);
+
+/// Mesh, iteration and any other independent parts together.
+double combined(std::span<const double> standard_uncertainties);
+
+void to_json(nlohmann::json& json, const MeshUncertainty& result);
+void to_json(nlohmann::json& json, const IterationScatter& result);
+
+}  // namespace underbody::postproc
