@@ -1,0 +1,398 @@
+#include "postproc/uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string percent(double share) { return core::format_number(100 * share, 3) + " %"; }
+
+void check(std::vector<MeshValue>& values) {
+    if (values.size() < 2) {
+        throw core::InputError("range", "a mesh study needs two meshes at least, here " + std::to_string(values.size()));
+    }
+    std::sort(values.begin(), values.end(), [](const MeshValue& a, const MeshValue& b) { return a.size < b.size; });
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!std::isfinite(values[i].value) || !std::isfinite(values[i].size) || !(values[i].size > 0)) {
+            throw core::InputError("range", "mesh sizes must be positive and values finite");
+        }
+        if (i > 0 && !(values[i].size > values[i - 1].size * (1 + 1e-9))) {
+            throw core::InputError("range", "two meshes have the same size", {}, "a mesh study compares one case on different meshes");
+        }
+    }
+}
+
+/// Fixed-point iteration of Celik's equation 3a-c; converges for any refinement that is used.
+double celik_order(double e21, double e32, double r21, double r32) {
+    const double s = e32 / e21 < 0 ? -1 : 1;
+    const double logarithm = std::log(std::abs(e32 / e21));
+    double p = std::abs(logarithm) / std::log(r21);
+    for (int i = 0; i < 200; ++i) {
+        const double top = std::pow(r21, p) - s;
+        const double bottom = std::pow(r32, p) - s;
+        if (!(top > 0) || !(bottom > 0)) {
+            return nan;
+        }
+        const double next = std::abs(logarithm + std::log(top / bottom)) / std::log(r21);
+        if (std::abs(next - p) < 1e-12 * (1 + p)) {
+            return next;
+        }
+        p = 0.5 * (p + next);
+    }
+    return p;
+}
+
+void set_interval(MeshUncertainty& result, double half_width, const std::string& text) {
+    result.expanded_uncertainty = half_width;
+    result.standard_uncertainty = half_width / std::sqrt(3.0);
+    result.gci_fine = result.value != 0 ? half_width / std::abs(result.value) : nan;
+    result.text = text;
+}
+
+double range_of(const std::vector<MeshValue>& values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end(), [](const MeshValue& a, const MeshValue& b) { return a.value < b.value; });
+    return high->value - low->value;
+}
+
+void two_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
+    result.verdict = MeshVerdict::assumed;
+    result.observed_order = nan;
+    result.used_order = formal_order;
+    const double factor = std::pow(v[1].size / v[0].size, formal_order) - 1;
+    result.extrapolated = v[0].value + (v[0].value - v[1].value) / factor;
+    result.expanded_uncertainty = 3 * std::abs(v[0].value - v[1].value) / factor;
+    result.standard_uncertainty = result.expanded_uncertainty / 2;
+    result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
+    result.text = "two meshes: order " + core::format_number(formal_order, 3) + " assumed, safety factor 3, GCI " + percent(result.gci_fine);
+}
+
+void three_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
+    const double e21 = v[1].value - v[0].value;
+    const double e32 = v[2].value - v[1].value;
+    const double r21 = v[1].size / v[0].size;
+    const double r32 = v[2].size / v[1].size;
+    const double range = range_of(v);
+    // With one order the difference over the coarser pair is (r32^p - 1) r21^p / (r21^p - 1) times the finer one: as p
+    // goes to nothing that is ln r32 / ln r21. Less of it means that the finer pair differs more than it should.
+    const bool shrinks = std::abs(e32) * std::log(r21) > std::abs(e21) * std::log(r32);
+    result.observed_order = nan;
+    result.used_order = nan;
+    if (e21 != 0 && e32 / e21 < 0) {
+        result.verdict = std::abs(e32) > std::abs(e21) ? MeshVerdict::oscillating : MeshVerdict::diverging;
+        const double half = result.verdict == MeshVerdict::oscillating ? range / 2 : range;
+        set_interval(result, half, result.verdict == MeshVerdict::oscillating
+                                       ? "values oscillate with the mesh: half their range, " + core::format_number(half, 3) + ", is the interval"
+                                       : "values oscillate with growing differences: no convergence, their range, " + core::format_number(half, 3) + ", is the interval");
+        return;
+    }
+    if (!shrinks) {
+        result.verdict = MeshVerdict::diverging;
+        set_interval(result, range, "differences grow as the mesh gets finer: no convergence, the range of the values, " + core::format_number(range, 3) + ", is the interval");
+        return;
+    }
+    result.verdict = MeshVerdict::monotone;
+    const double p = e21 == 0 ? nan : celik_order(e21, e32, r21, r32);
+    result.observed_order = p;
+    result.used_order = std::isfinite(p) ? std::clamp(p, 0.1, formal_order) : formal_order;
+    const double factor21 = std::pow(r21, result.used_order) - 1;
+    const double factor32 = std::pow(r32, result.used_order) - 1;
+    result.extrapolated = v[0].value - e21 / factor21;
+    result.expanded_uncertainty = 1.25 * std::abs(e21) / factor21;
+    result.standard_uncertainty = result.expanded_uncertainty / 2;
+    result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
+    result.gci_coarse = v[1].value != 0 ? 1.25 * std::abs(e32 / v[1].value) / factor32 : nan;
+    result.asymptotic_ratio = result.gci_fine > 0 ? result.gci_coarse / ((factor21 + 1) * result.gci_fine) : nan;
+    result.text = "monotone convergence, observed order " + core::format_number(p, 3) +
+                  (result.used_order < p || !std::isfinite(p) ? " (order " + core::format_number(result.used_order, 3) + " used)" : "") + ", GCI " + percent(result.gci_fine);
+}
+
+/// phi = phi0 + alpha size^p by weighted least squares for a given p; weights 1/size (finer meshes count more).
+struct PowerFit {
+    double phi0 = 0, alpha = 0, deviation = 0;
+};
+
+PowerFit fit_power(const std::vector<MeshValue>& v, double p) {
+    double w = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const auto& one : v) {
+        const double weight = v[0].size / one.size;
+        const double t = std::pow(one.size / v[0].size, p);
+        w += weight;
+        x += weight * t;
+        y += weight * one.value;
+        xx += weight * t * t;
+        xy += weight * t * one.value;
+    }
+    PowerFit fit;
+    fit.alpha = (w * xy - x * y) / (w * xx - x * x);
+    fit.phi0 = (y - fit.alpha * x) / w;
+    double square = 0;
+    for (const auto& one : v) {
+        const double off = one.value - fit.phi0 - fit.alpha * std::pow(one.size / v[0].size, p);
+        square += v[0].size / one.size / w * static_cast<double>(v.size()) * off * off;
+    }
+    fit.deviation = std::sqrt(square / static_cast<double>(std::max<std::size_t>(1, v.size() - 3)));
+    return fit;
+}
+
+/// The order that leaves the least deviation: a coarse search, then the golden section.
+double best_order(const std::vector<MeshValue>& v) {
+    constexpr double low = 0.05;
+    constexpr double high = 8;
+    constexpr int steps = 160;
+    const auto at = [&](int i) { return low + (high - low) * i / steps; };
+    int best = 0;
+    for (int i = 1; i <= steps; ++i) {
+        best = fit_power(v, at(i)).deviation < fit_power(v, at(best)).deviation ? i : best;
+    }
+    double a = at(std::max(0, best - 1));
+    double b = at(std::min(steps, best + 1));
+    const double ratio = 0.5 * (std::sqrt(5.0) - 1);
+    for (int i = 0; i < 60; ++i) {
+        const double c = b - ratio * (b - a);
+        const double d = a + ratio * (b - a);
+        (fit_power(v, c).deviation < fit_power(v, d).deviation ? b : a) = fit_power(v, c).deviation < fit_power(v, d).deviation ? d : c;
+    }
+    return 0.5 * (a + b);
+}
+
+void many_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
+    const double p = best_order(v);
+    result.observed_order = p;
+    const bool plausible = p >= 0.5 && p <= formal_order + 0.1;
+    result.used_order = plausible ? p : std::clamp(p, 1.0, formal_order);
+    const PowerFit fit = fit_power(v, result.used_order);
+    const double mean_change = range_of(v) / static_cast<double>(v.size() - 1);
+    const double error = std::abs(v[0].value - fit.phi0);
+    const double off = std::abs(v[0].value - fit.phi0 - fit.alpha);
+    const bool good = plausible && fit.deviation < mean_change;
+    result.extrapolated = fit.phi0;
+    // Eça and Hoekstra, equations 18 and 19.
+    result.expanded_uncertainty = good ? 1.25 * error + fit.deviation + off : 3 * fit.deviation / std::max(mean_change, 1e-300) * (error + fit.deviation + off);
+    if (!good) {
+        result.expanded_uncertainty = std::max(result.expanded_uncertainty, 3 * error + fit.deviation + off);
+    }
+    int changes = 0;
+    for (std::size_t i = 2; i < v.size(); ++i) {
+        changes += (v[i].value - v[i - 1].value) * (v[i - 1].value - v[i - 2].value) < 0 ? 1 : 0;
+    }
+    result.verdict = changes > 0 && !good ? MeshVerdict::oscillating : p < 0.1 ? MeshVerdict::diverging : MeshVerdict::monotone;
+    result.standard_uncertainty = result.expanded_uncertainty / 2;
+    result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
+    result.text = std::to_string(v.size()) + " meshes, least squares: " + to_string(result.verdict) + ", observed order " + core::format_number(p, 3) +
+                  (plausible ? "" : " (not plausible: order " + core::format_number(result.used_order, 3) + " and factor 3 used)") + ", uncertainty " + percent(result.gci_fine);
+}
+
+}  // namespace
+
+double mesh_size(double cells, int dimension) {
+    if (!(cells > 0)) {
+        throw core::InputError("range", "a mesh has a positive number of cells");
+    }
+    return std::pow(cells, -1.0 / dimension);
+}
+
+std::string to_string(MeshVerdict verdict) {
+    switch (verdict) {
+        case MeshVerdict::same: return "same";
+        case MeshVerdict::assumed: return "assumed";
+        case MeshVerdict::monotone: return "monotone";
+        case MeshVerdict::oscillating: return "oscillating";
+        case MeshVerdict::diverging: break;
+    }
+    return "diverging";
+}
+
+MeshUncertainty mesh_uncertainty(std::span<const MeshValue> given, double formal_order) {
+    std::vector<MeshValue> values(given.begin(), given.end());
+    check(values);
+    MeshUncertainty result;
+    result.meshes = values.size();
+    result.value = values[0].value;
+    result.extrapolated = result.value;
+    result.relative_change = result.value != 0 ? std::abs((values[1].value - values[0].value) / values[0].value) : nan;
+    result.gci_coarse = nan;
+    result.asymptotic_ratio = nan;
+    double largest = 0;
+    for (const auto& value : values) {
+        largest = std::max(largest, std::abs(value.value));
+    }
+    if (range_of(values) <= 1e-13 * largest) {
+        result.verdict = MeshVerdict::same;
+        result.observed_order = nan;
+        result.used_order = nan;
+        result.text = "the value is the same on all meshes";
+    } else if (values.size() == 2) {
+        two_meshes(values, formal_order, result);
+    } else if (values.size() == 3) {
+        three_meshes(values, formal_order, result);
+    } else {
+        many_meshes(values, formal_order, result);
+    }
+    return result;
+}
+
+namespace {
+
+struct Moments {
+    double mean = 0, deviation = 0;
+};
+
+Moments moments_of(std::span<const double> values) {
+    Moments m;
+    m.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    double square = 0;
+    for (const double v : values) {
+        square += (v - m.mean) * (v - m.mean);
+    }
+    m.deviation = std::sqrt(square / static_cast<double>(values.size() - 1));
+    return m;
+}
+
+/// The truncation that minimises the standard error of what is left, over the first half.
+std::size_t settled_from(std::span<const double> history) {
+    // Sums from the end, so that each truncation costs nothing; values shifted for the rounding's sake.
+    const double shift = history.back();
+    double sum = 0;
+    double square = 0;
+    double best = std::numeric_limits<double>::infinity();
+    std::size_t first = 0;
+    for (std::size_t i = history.size(); i-- > 0;) {
+        sum += history[i] - shift;
+        square += (history[i] - shift) * (history[i] - shift);
+        const auto count = static_cast<double>(history.size() - i);
+        if (i > history.size() / 2) {
+            continue;
+        }
+        const double error = std::max(0.0, square - sum * sum / count) / (count * count);
+        if (error <= best) {
+            best = error;
+            first = i;
+        }
+    }
+    return first;
+}
+
+double straight_line_change(std::span<const double> tail) {
+    const auto n = static_cast<double>(tail.size());
+    const double middle = 0.5 * (n - 1);
+    const double mean = moments_of(tail).mean;
+    double top = 0;
+    double bottom = 0;
+    for (std::size_t i = 0; i < tail.size(); ++i) {
+        const double t = static_cast<double>(i) - middle;
+        top += t * (tail[i] - mean);
+        bottom += t * t;
+    }
+    return top / bottom * (n - 1);
+}
+
+double error_by_batches(std::span<const double> tail) {
+    const std::size_t batches = std::clamp<std::size_t>(tail.size() / 8, 2, 16);
+    const std::size_t length = tail.size() / batches;
+    std::vector<double> means;
+    for (std::size_t b = 0; b < batches; ++b) {
+        means.push_back(moments_of(tail.subspan(b * length, length)).mean);
+    }
+    return moments_of(means).deviation / std::sqrt(static_cast<double>(batches));
+}
+
+/// Lag of the first clear maximum of the autocorrelation behind its first zero.
+double cycle_of(std::span<const double> tail, const Moments& m) {
+    if (!(m.deviation > 0)) {
+        return 0;
+    }
+    const std::size_t most = std::min<std::size_t>(tail.size() / 2, 2000);
+    std::vector<double> correlation(most, 0);
+    for (std::size_t lag = 0; lag < most; ++lag) {
+        double sum = 0;
+        for (std::size_t i = 0; i + lag < tail.size(); ++i) {
+            sum += (tail[i] - m.mean) * (tail[i + lag] - m.mean);
+        }
+        correlation[lag] = sum / (static_cast<double>(tail.size() - lag) * m.deviation * m.deviation);
+    }
+    std::size_t lag = 1;
+    while (lag < most && correlation[lag] > 0) {
+        ++lag;
+    }
+    std::size_t peak = 0;
+    for (; lag < most; ++lag) {
+        if (peak == 0 || correlation[lag] > correlation[peak]) {
+            peak = lag;
+        } else if (correlation[peak] > 0.4 && correlation[lag] < 0.5 * correlation[peak]) {
+            break;
+        }
+    }
+    return peak > 1 && correlation[peak] > 0.4 ? static_cast<double>(peak) : 0;
+}
+
+}  // namespace
+
+IterationScatter iteration_scatter(std::span<const double> history) {
+    if (history.size() < 8) {
+        throw core::InputError("range", "a monitor of " + std::to_string(history.size()) + " values is too short to judge: 8 are needed");
+    }
+    if (std::any_of(history.begin(), history.end(), [](double v) { return !std::isfinite(v); })) {
+        throw core::InputError("range", "the monitor has values that are not finite: the solution diverged");
+    }
+    IterationScatter result;
+    result.first = settled_from(history);
+    const auto tail = history.subspan(result.first);
+    const Moments m = moments_of(tail);
+    result.count = tail.size();
+    result.mean = m.mean;
+    result.deviation = m.deviation;
+    result.error_of_mean = error_by_batches(tail);
+    result.drift = straight_line_change(tail);
+    result.period = cycle_of(tail, m);
+    const bool small = std::abs(result.drift) + m.deviation < 1e-3 * std::abs(m.mean);
+    // Without a trend the line's change over n correlated values is of the size of the error of the mean times sqrt(12).
+    result.settled = small || std::abs(result.drift) < 2 * std::sqrt(12.0) * result.error_of_mean * 0.5 + 1e-12 * std::abs(m.mean) ||
+                     std::abs(result.drift) < 0.5 * m.deviation;
+    result.standard_uncertainty = result.settled ? m.deviation : std::hypot(m.deviation, result.drift);
+    result.text = (result.settled ? "settled" : "still drifting") + std::string(" over the last ") + std::to_string(result.count) + " values: mean " +
+                  core::format_number(m.mean, 5) + ", scatter " + core::format_number(m.deviation, 3) +
+                  (result.settled ? "" : ", drift " + core::format_number(result.drift, 3)) +
+                  (result.period > 0 ? ", cycle of " + core::format_number(result.period, 4) + " iterations" : "");
+    return result;
+}
+
+double combined(std::span<const double> parts) {
+    double square = 0;
+    for (const double part : parts) {
+        square += part * part;
+    }
+    return std::sqrt(square);
+}
+
+void to_json(nlohmann::json& json, const MeshUncertainty& r) {
+    json = {{"verdict", to_string(r.verdict)},
+            {"value", r.value},
+            {"observed_order", r.observed_order},
+            {"used_order", r.used_order},
+            {"extrapolated", r.extrapolated},
+            {"relative_change", r.relative_change},
+            {"gci_fine", r.gci_fine},
+            {"gci_coarse", r.gci_coarse},
+            {"asymptotic_ratio", r.asymptotic_ratio},
+            {"expanded_uncertainty", r.expanded_uncertainty},
+            {"standard_uncertainty", r.standard_uncertainty},
+            {"meshes", r.meshes},
+            {"text", r.text}};
+}
+
+void to_json(nlohmann::json& json, const IterationScatter& r) {
+    json = {{"first", r.first},   {"count", r.count},   {"mean", r.mean},       {"deviation", r.deviation}, {"error_of_mean", r.error_of_mean},
+            {"drift", r.drift},   {"period", r.period}, {"settled", r.settled}, {"standard_uncertainty", r.standard_uncertainty}, {"text", r.text}};
+}
+
+}  // namespace underbody::postproc

@@ -1,0 +1,142 @@
+#include "postproc/uncertainty.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/error.h"
+#include "core/random.h"
+
+namespace underbody::postproc {
+namespace {
+
+std::vector<MeshValue> power_law(const std::vector<double>& sizes, double limit, double slope, double order) {
+    std::vector<MeshValue> values;
+    for (const double h : sizes) {
+        values.push_back({h, limit + slope * std::pow(h, order)});
+    }
+    return values;
+}
+
+TEST(MeshUncertainty, ReproducesThePublishedExample) {
+    // Celik et al. 2008, table 1, first column: 18000, 8000, 4500 cells (2-D), reattachment length.
+    const std::vector<MeshValue> values = {{mesh_size(18000, 2), 6.063}, {mesh_size(8000, 2), 5.972}, {mesh_size(4500, 2), 5.863}};
+    const MeshUncertainty result = mesh_uncertainty(values);
+    EXPECT_EQ(result.verdict, MeshVerdict::monotone);
+    EXPECT_NEAR(result.observed_order, 1.53, 0.005);
+    EXPECT_NEAR(result.extrapolated, 6.1685, 0.0005);
+    EXPECT_NEAR(result.relative_change, 0.015, 0.0002);
+    EXPECT_NEAR(result.gci_fine, 0.0217, 0.0001);
+    EXPECT_NEAR(result.gci_coarse, 0.0411, 0.0001);
+    EXPECT_NEAR(result.asymptotic_ratio, 1.015, 0.0005);
+    EXPECT_NEAR(result.standard_uncertainty, 0.5 * 0.0217 * 6.063, 0.001);
+}
+
+TEST(MeshUncertainty, FindsTheOrderOfAPowerLawForAnyRefinement) {
+    for (const double order : {0.7, 1.0, 1.5, 1.99}) {
+        const auto three = mesh_uncertainty(power_law({1.0, 1.3, 2.1}, 4.0, 0.3, order));
+        EXPECT_NEAR(three.observed_order, order, 1e-8);
+        EXPECT_NEAR(three.extrapolated, 4.0, 1e-8);
+        EXPECT_NEAR(three.gci_fine * three.value, 1.25 * 0.3, 1e-8);
+        const auto five = mesh_uncertainty(power_law({1.0, 1.3, 1.7, 2.1, 3.0}, 4.0, -0.3, order));
+        EXPECT_NEAR(five.observed_order, order, 1e-4);
+        EXPECT_NEAR(five.extrapolated, 4.0, 1e-4);
+        EXPECT_NEAR(five.expanded_uncertainty, 1.25 * 0.3, 1e-3);
+    }
+}
+
+TEST(MeshUncertainty, DoesNotBelieveOrdersAboveTheFormalOne) {
+    const auto result = mesh_uncertainty(power_law({1.0, 2.0, 4.0}, 1.0, 0.01, 5.0));
+    EXPECT_NEAR(result.observed_order, 5, 1e-6);
+    EXPECT_EQ(result.used_order, 2);
+    EXPECT_GT(result.expanded_uncertainty, std::abs(result.value - 1.0));
+}
+
+TEST(MeshUncertainty, NamesOscillatingAndDivergingValues) {
+    const std::vector<MeshValue> oscillating = {{1, 1.00}, {2, 1.02}, {4, 0.96}};
+    EXPECT_EQ(mesh_uncertainty(oscillating).verdict, MeshVerdict::oscillating);
+    EXPECT_NEAR(mesh_uncertainty(oscillating).expanded_uncertainty, 0.03, 1e-12);
+    // EVIE at 5 mm, lift: 0.242, 0.270, 0.274 N on 374k, 138k, 57k cells.
+    const std::vector<MeshValue> diverging = {{mesh_size(374400), 0.242}, {mesh_size(138544), 0.270}, {mesh_size(57280), 0.274}};
+    const auto result = mesh_uncertainty(diverging);
+    EXPECT_EQ(result.verdict, MeshVerdict::diverging);
+    EXPECT_NEAR(result.standard_uncertainty, 0.032 / std::sqrt(3), 1e-9);
+    EXPECT_THAT(result.text, testing::HasSubstr("no convergence"));
+    EXPECT_EQ(result.extrapolated, 0.242);
+}
+
+TEST(MeshUncertainty, CoversTheTruthOfNoisyPowerLawsMostOfTheTime) {
+    core::Random random(7);
+    int covered = 0;
+    constexpr int trials = 400;
+    for (int i = 0; i < trials; ++i) {
+        const double order = 1 + random.uniform();
+        auto values = power_law({1.0, 1.5, 2.2, 3.1}, 10, 0.2, order);
+        for (auto& value : values) {
+            value.value += 0.01 * (random.uniform() - 0.5);
+        }
+        const auto result = mesh_uncertainty(values);
+        covered += std::abs(result.value - 10) <= result.expanded_uncertainty ? 1 : 0;
+    }
+    EXPECT_GE(covered, 0.95 * trials);
+}
+
+TEST(MeshUncertainty, TakesTwoMeshesWithAnAssumedOrderAndEqualValues) {
+    const std::vector<MeshValue> two = {{1, 1.0}, {2, 1.3}};
+    const auto result = mesh_uncertainty(two);
+    EXPECT_EQ(result.verdict, MeshVerdict::assumed);
+    EXPECT_NEAR(result.expanded_uncertainty, 0.3, 1e-12);
+    const std::vector<MeshValue> same = {{1, 1.0}, {2, 1.0}, {3, 1.0}};
+    EXPECT_EQ(mesh_uncertainty(same).verdict, MeshVerdict::same);
+    EXPECT_EQ(mesh_uncertainty(same).standard_uncertainty, 0);
+}
+
+TEST(MeshUncertainty, RefusesWhatIsNoStudy) {
+    EXPECT_THROW(mesh_uncertainty(std::vector<MeshValue>{{1, 1}}), core::InputError);
+    EXPECT_THROW(mesh_uncertainty(std::vector<MeshValue>{{1, 1}, {1, 2}}), core::InputError);
+    EXPECT_THROW(mesh_uncertainty(std::vector<MeshValue>{{1, 1}, {2, NAN}}), core::InputError);
+    EXPECT_THROW(mesh_size(0), core::InputError);
+}
+
+TEST(IterationScatter, CutsTheApproachOffAndMeasuresTheTail) {
+    core::Random random(3);
+    std::vector<double> history;
+    for (int i = 0; i < 1000; ++i) {
+        history.push_back(2 + 5 * std::exp(-i / 40.0) + 0.01 * random.normal());
+    }
+    const auto result = iteration_scatter(history);
+    EXPECT_GT(result.first, 150U);
+    EXPECT_LE(result.first, 500U);
+    EXPECT_NEAR(result.mean, 2, 0.002);
+    EXPECT_NEAR(result.deviation, 0.01, 0.001);
+    EXPECT_TRUE(result.settled);
+    EXPECT_LT(result.error_of_mean, 0.001);
+}
+
+TEST(IterationScatter, NamesADriftAndACycle) {
+    std::vector<double> drifting;
+    std::vector<double> cycling;
+    core::Random random(4);
+    for (int i = 0; i < 600; ++i) {
+        drifting.push_back(1 + 0.001 * i + 0.01 * random.normal());
+        cycling.push_back(1 + 0.1 * std::sin(2 * 3.14159265358979 * i / 50.0));
+    }
+    const auto drift = iteration_scatter(drifting);
+    EXPECT_FALSE(drift.settled);
+    EXPECT_GT(drift.standard_uncertainty, 0.2);
+    const auto cycle = iteration_scatter(cycling);
+    EXPECT_NEAR(cycle.period, 50, 1);
+    EXPECT_NEAR(cycle.deviation, 0.1 / std::sqrt(2), 0.003);
+    EXPECT_THROW(iteration_scatter(std::vector<double>{1, 2, 3}), core::InputError);
+}
+
+TEST(IterationScatter, WritesJson) {
+    const nlohmann::json json = iteration_scatter(std::vector<double>(20, 3.0));
+    EXPECT_EQ(json["mean"], 3.0);
+    EXPECT_EQ(json["settled"], true);
+}
+
+}  // namespace
+}  // namespace underbody::postproc
