@@ -1,0 +1,499 @@
+// A scene as a PNG file: VTK draws the surfaces, everything written on the picture is laid out here in pixels.
+#include <vtkActor.h>
+#include <vtkActor2D.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCoordinate.h>
+#include <vtkDoubleArray.h>
+#include <vtkLight.h>
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkOutputWindow.h>
+#include <vtkPNGWriter.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkProperty2D.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "core/virtual_display.h"
+#include "postproc/colours.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+using Point = std::array<double, 3>;
+
+Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Point unit(const Point& a) {
+    const double size = std::sqrt(dot(a, a));
+    return size > 0 ? Point{a[0] / size, a[1] / size, a[2] / size} : Point{0, 0, 1};
+}
+
+/// One display for the whole process: the user's, or one of our own.
+class Display {
+public:
+    static Display& instance() {
+        static Display display;
+        return display;
+    }
+    void ensure() {
+        const std::lock_guard lock(mutex_);
+        if (own_ != nullptr || core::display_answers()) {
+            return;
+        }
+        own_ = std::make_unique<core::VirtualDisplay>(1600, 1200);
+        ::setenv("DISPLAY", own_->name().c_str(), 1);
+    }
+    void end() {
+        const std::lock_guard lock(mutex_);
+        if (own_ != nullptr) {
+            ::unsetenv("DISPLAY");
+            own_.reset();
+        }
+    }
+
+private:
+    std::mutex mutex_;
+    std::unique_ptr<core::VirtualDisplay> own_;
+};
+
+/// Right, up and toward the eye, as a camera sees the axes.
+struct ViewAxes {
+    Point right, up, back;
+    explicit ViewAxes(const Camera& camera) {
+        back = unit({-camera.towards[0], -camera.towards[1], -camera.towards[2]});
+        right = cross(camera.up, back);
+        if (dot(right, right) < 1e-12) {  // looking along `up`
+            right = cross(Point{1, 0, 0}, back);
+            if (dot(right, right) < 1e-12) {
+                right = {0, 1, 0};
+            }
+        }
+        right = unit(right);
+        up = cross(back, right);
+    }
+};
+
+class Painter {
+public:
+    explicit Painter(const Scene& scene) : scene_(scene), axes_(scene.camera) {
+        range_ = drawn_range(scene.range.value_or(range_of_values()), scene.colours);
+    }
+
+    std::string paint() {
+        window_->SetOffScreenRendering(1);
+        window_->SetSize(scene_.width, scene_.height);
+        window_->SetMultiSamples(8);
+        window_->SetNumberOfLayers(2);
+        if (window_->SupportsOpenGL() == 0) {
+            throw core::SystemError("display", "the display cannot draw (no OpenGL)", {}, "install the Debian package libgl1-mesa-dri, or unset DISPLAY so that Xvfb is used");
+        }
+        const double right = has_bar() ? 1 - bar_space / scene_.width : 1;
+        const double top = 1 - (scene_.title.empty() ? 0 : title_space / scene_.height);
+        main_->SetViewport(0, 0, right, top);
+        main_->SetBackground(1, 1, 1);
+        width_ = right * scene_.width;
+        height_ = top * scene_.height;
+        main_->SetLayer(0);
+        over_->SetLayer(1);
+        over_->InteractiveOff();
+        // The part of the window that the main renderer leaves must be white too.
+        back_->SetBackground(1, 1, 1);
+        back_->SetLayer(0);
+        window_->AddRenderer(back_);
+        window_->AddRenderer(main_);
+        window_->AddRenderer(over_);
+        make_colours();
+        for (const auto& surface : scene_.surfaces) {
+            add(surface);
+        }
+        for (const auto& line : scene_.lines) {
+            add(line);
+        }
+        place_camera();
+        write_words();
+        return png();
+    }
+
+private:
+    static constexpr double bar_space = 150;
+    static constexpr double title_space = 84;
+
+    [[nodiscard]] bool has_bar() const { return !scene_.value_name.empty(); }
+
+    [[nodiscard]] std::pair<double, double> range_of_values() const {
+        std::pair<double, double> range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+        const auto widen = [&](const std::vector<double>& values) {
+            for (const double v : values) {
+                if (std::isfinite(v)) {
+                    range.first = std::min(range.first, v);
+                    range.second = std::max(range.second, v);
+                }
+            }
+        };
+        for (const auto& surface : scene_.surfaces) {
+            widen(surface.values);
+        }
+        for (const auto& line : scene_.lines) {
+            widen(line.values);
+        }
+        return range;
+    }
+
+    void make_colours() {
+        constexpr int steps = 256;
+        colours_->SetNumberOfTableValues(steps);
+        colours_->SetRange(range_.first, range_.second);
+        colours_->SetNanColor(0.75, 0.75, 0.75, 1);
+        for (int i = 0; i < steps; ++i) {
+            const auto c = colour_at(scene_.colours, i / (steps - 1.0));
+            colours_->SetTableValue(i, c[0], c[1], c[2], 1);
+        }
+        colours_->Build();
+    }
+
+    static vtkSmartPointer<vtkPoints> points_of(const std::vector<Point>& from) {
+        auto points = vtkSmartPointer<vtkPoints>::New();
+        points->SetNumberOfPoints(static_cast<vtkIdType>(from.size()));
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            points->SetPoint(static_cast<vtkIdType>(i), from[i].data());
+        }
+        return points;
+    }
+
+    static void give_values(vtkPolyData& data, const std::vector<double>& values) {
+        if (values.size() != static_cast<std::size_t>(data.GetNumberOfPoints())) {
+            return;
+        }
+        vtkNew<vtkDoubleArray> array;
+        array->SetName("value");
+        array->SetNumberOfTuples(data.GetNumberOfPoints());
+        std::copy(values.begin(), values.end(), array->GetPointer(0));
+        data.GetPointData()->SetScalars(array);
+    }
+
+    vtkSmartPointer<vtkActor> actor_for(vtkPolyData& data, bool coloured, const Point& colour) {
+        vtkNew<vtkPolyDataMapper> mapper;
+        mapper->SetInputData(&data);
+        mapper->SetScalarVisibility(coloured ? 1 : 0);
+        mapper->SetLookupTable(colours_);
+        mapper->UseLookupTableScalarRangeOn();
+        mapper->InterpolateScalarsBeforeMappingOn();
+        auto actor = vtkSmartPointer<vtkActor>::New();
+        actor->SetMapper(mapper);
+        actor->GetProperty()->SetColor(colour[0], colour[1], colour[2]);
+        main_->AddActor(actor);
+        return actor;
+    }
+
+    void add(const DrawnSurface& surface) {
+        vtkNew<vtkPolyData> data;
+        data->SetPoints(points_of(surface.points));
+        vtkNew<vtkCellArray> cells;
+        for (const auto& triangle : surface.triangles) {
+            cells->InsertNextCell({static_cast<vtkIdType>(triangle[0]), static_cast<vtkIdType>(triangle[1]), static_cast<vtkIdType>(triangle[2])});
+        }
+        data->SetPolys(cells);
+        give_values(*data, surface.values);
+        vtkSmartPointer<vtkPolyData> drawn = data;
+        if (surface.smooth) {
+            vtkNew<vtkPolyDataNormals> normals;
+            normals->SetInputData(data);
+            normals->SetFeatureAngle(30);
+            normals->ConsistencyOff();
+            normals->SplittingOn();
+            normals->Update();
+            drawn = normals->GetOutput();
+        }
+        auto actor = actor_for(*drawn, !surface.values.empty(), surface.colour);
+        auto* property = actor->GetProperty();
+        property->SetOpacity(surface.opacity);
+        property->SetAmbient(surface.values.empty() ? 0.25 : 0.42);
+        property->SetDiffuse(surface.values.empty() ? 0.75 : 0.58);
+        property->SetSpecular(surface.values.empty() ? 0.12 : 0.0);
+        property->SetSpecularPower(30);
+        if (surface.edges) {
+            property->EdgeVisibilityOn();
+            property->SetEdgeColor(0.35, 0.35, 0.35);
+            property->SetLineWidth(0.5F);
+        }
+        if (!surface.smooth) {
+            property->LightingOff();
+        }
+    }
+
+    void add(const DrawnLine& line) {
+        vtkNew<vtkPolyData> data;
+        data->SetPoints(points_of(line.points));
+        vtkNew<vtkCellArray> cells;
+        cells->InsertNextCell(static_cast<int>(line.points.size()));
+        for (std::size_t i = 0; i < line.points.size(); ++i) {
+            cells->InsertCellPoint(static_cast<vtkIdType>(i));
+        }
+        data->SetLines(cells);
+        give_values(*data, line.values);
+        auto actor = actor_for(*data, !line.values.empty(), line.colour);
+        actor->GetProperty()->LightingOff();
+        actor->GetProperty()->SetLineWidth(static_cast<float>(line.width));
+        actor->GetProperty()->RenderLinesAsTubesOff();
+    }
+
+    [[nodiscard]] std::array<double, 6> box() const {
+        if (scene_.camera.box) {
+            return *scene_.camera.box;
+        }
+        constexpr double far = std::numeric_limits<double>::infinity();
+        std::array<double, 6> b = {far, -far, far, -far, far, -far};
+        const auto widen = [&](const std::vector<Point>& points) {
+            for (const auto& p : points) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    b[2 * k] = std::min(b[2 * k], p[k]);
+                    b[2 * k + 1] = std::max(b[2 * k + 1], p[k]);
+                }
+            }
+        };
+        for (const auto& surface : scene_.surfaces) {
+            widen(surface.points);
+        }
+        for (const auto& line : scene_.lines) {
+            widen(line.points);
+        }
+        return b[0] <= b[1] ? b : std::array<double, 6>{-1, 1, -1, 1, -1, 1};
+    }
+
+    void place_camera() {
+        const auto b = box();
+        const Point centre = {0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5])};
+        double half_width = 0;
+        double half_height = 0;
+        double depth = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Point p = minus({b[static_cast<std::size_t>(corner & 1)], b[static_cast<std::size_t>(2 + ((corner >> 1) & 1))], b[static_cast<std::size_t>(4 + ((corner >> 2) & 1))]}, centre);
+            half_width = std::max(half_width, std::abs(dot(p, axes_.right)));
+            half_height = std::max(half_height, std::abs(dot(p, axes_.up)));
+            depth = std::max(depth, std::abs(dot(p, axes_.back)));
+        }
+        // Room below for the scale bar and the axes.
+        constexpr double margin = 1.16;
+        scale_ = margin * std::max({half_height, half_width * height_ / width_, 1e-12}) / scene_.camera.zoom;
+        const double distance = scene_.camera.parallel ? 4 * (depth + scale_) : scale_ / std::tan(15 * std::atan(1.0) / 45) + depth;
+        auto* camera = main_->GetActiveCamera();
+        camera->SetFocalPoint(centre.data());
+        camera->SetPosition(centre[0] + distance * axes_.back[0], centre[1] + distance * axes_.back[1], centre[2] + distance * axes_.back[2]);
+        camera->SetViewUp(axes_.up.data());
+        camera->SetParallelProjection(scene_.camera.parallel ? 1 : 0);
+        camera->SetParallelScale(scale_);
+        camera->SetViewAngle(30);
+        main_->ResetCameraClippingRange();
+    }
+
+    // ---- words and scales, in pixels from the lower left ----
+
+    void text(const std::string& words, double x, double y, int size, bool bold, double grey, int align = 0) {
+        vtkNew<vtkTextActor> actor;
+        actor->SetInput(words.c_str());
+        actor->SetPosition(x, y);
+        auto* property = actor->GetTextProperty();
+        property->SetFontFamilyToArial();
+        property->SetFontSize(size);
+        property->SetBold(bold ? 1 : 0);
+        property->SetColor(grey, grey, grey);
+        property->SetJustification(align < 0 ? VTK_TEXT_LEFT : align > 0 ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
+        if (align == 2) {
+            property->SetJustificationToCentered();
+        }
+        property->SetVerticalJustificationToBottom();
+        over_->AddViewProp(actor);
+    }
+
+    void shapes(const std::vector<Point>& points, const std::vector<std::vector<vtkIdType>>& polygons, const std::vector<std::vector<vtkIdType>>& lines,
+                const std::vector<std::array<double, 3>>& colours, float width = 1.5F) {
+        vtkNew<vtkPolyData> data;
+        data->SetPoints(points_of(points));
+        vtkNew<vtkUnsignedCharArray> rgb;
+        rgb->SetNumberOfComponents(3);
+        vtkNew<vtkCellArray> line_cells;
+        vtkNew<vtkCellArray> polygon_cells;
+        for (const auto& line : lines) {
+            line_cells->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
+        }
+        for (const auto& polygon : polygons) {
+            polygon_cells->InsertNextCell(static_cast<vtkIdType>(polygon.size()), polygon.data());
+        }
+        for (const auto& c : colours) {
+            rgb->InsertNextTuple3(255 * c[0], 255 * c[1], 255 * c[2]);
+        }
+        data->SetLines(line_cells);
+        data->SetPolys(polygon_cells);
+        data->GetCellData()->SetScalars(rgb);
+        vtkNew<vtkPolyDataMapper2D> mapper;
+        mapper->SetInputData(data);
+        vtkNew<vtkActor2D> actor;
+        actor->SetMapper(mapper);
+        actor->GetProperty()->SetLineWidth(width);
+        over_->AddViewProp(actor);
+    }
+
+    void write_words() {
+        if (!scene_.title.empty()) {
+            text(scene_.title, 24, scene_.height - 44, 24, true, 0.1);
+            text(scene_.subtitle, 24, scene_.height - 72, 17, false, 0.35);
+        }
+        if (has_bar()) {
+            draw_bar();
+        }
+        if (scene_.scale_bar && scene_.camera.parallel) {
+            draw_scale();
+        }
+        if (scene_.axes) {
+            draw_axes();
+        }
+    }
+
+    void draw_bar() {
+        const double left = scene_.width - bar_space + 30;
+        const double wide = 24;
+        const double bottom = 0.14 * scene_.height;
+        const double top = scene_.height - title_space - 60;
+        constexpr int steps = 128;
+        std::vector<Point> points;
+        std::vector<std::vector<vtkIdType>> polygons;
+        std::vector<std::array<double, 3>> colours;
+        for (int i = 0; i < steps; ++i) {
+            const double y0 = bottom + (top - bottom) * i / steps;
+            const double y1 = bottom + (top - bottom) * (i + 1) / steps;
+            const auto first = static_cast<vtkIdType>(points.size());
+            points.insert(points.end(), {{left, y0, 0}, {left + wide, y0, 0}, {left + wide, y1, 0}, {left, y1, 0}});
+            polygons.push_back({first, first + 1, first + 2, first + 3});
+            colours.push_back(colour_at(scene_.colours, (i + 0.5) / steps));
+        }
+        shapes(points, polygons, {}, colours);
+        std::vector<Point> frame = {{left, bottom, 0}, {left + wide, bottom, 0}, {left + wide, top, 0}, {left, top, 0}};
+        std::vector<std::vector<vtkIdType>> lines = {{0, 1, 2, 3, 0}};
+        std::vector<std::array<double, 3>> greys = {{0.3, 0.3, 0.3}};
+        for (const double tick : round_ticks(range_.first, range_.second, 6)) {
+            const double y = bottom + (top - bottom) * (tick - range_.first) / (range_.second - range_.first);
+            const auto first = static_cast<vtkIdType>(frame.size());
+            frame.insert(frame.end(), {{left + wide, y, 0}, {left + wide + 6, y, 0}});
+            lines.push_back({first, first + 1});
+            greys.push_back({0.3, 0.3, 0.3});
+            text(core::format_number(std::abs(tick) < 1e-12 * (range_.second - range_.first) ? 0.0 : tick, 6), left + wide + 11, y - 9, 16, false, 0.15);
+        }
+        shapes(frame, {}, lines, greys, 1.2F);
+        const std::string unit_text = scene_.value_unit.empty() || scene_.value_unit == "1" ? std::string() : " [" + scene_.value_unit + "]";
+        const std::string heading = scene_.value_name + unit_text;
+        if (heading.size() > 15 && !unit_text.empty()) {  // too wide for one line
+            text(scene_.value_name, scene_.width - 14, top + 36, 16, true, 0.15, 1);
+            text(unit_text, scene_.width - 14, top + 16, 16, true, 0.15, 1);
+        } else {
+            text(heading, scene_.width - 14, top + 20, 17, true, 0.15, 1);
+        }
+    }
+
+    void draw_scale() {
+        const double pixels_per_metre = height_ / (2 * scale_);
+        const double length = round_below(0.22 * width_ / pixels_per_metre);
+        const double pixels = length * pixels_per_metre;
+        const double x = 28;
+        const double y = 26;
+        shapes({{x, y, 0}, {x + pixels, y, 0}, {x, y - 5, 0}, {x, y + 5, 0}, {x + pixels, y - 5, 0}, {x + pixels, y + 5, 0}}, {}, {{0, 1}, {2, 3}, {4, 5}},
+               {{0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}}, 2);
+        const std::string label = length < 0.9995e-3   ? core::format_number(length * 1e6, 3) + " um"
+                                  : length < 0.9995    ? core::format_number(length * 1e3, 3) + " mm"
+                                                       : core::format_number(length, 3) + " m";
+        text(label, x + pixels + 10, y - 9, 16, false, 0.1);
+    }
+
+    void draw_axes() {
+        const double x = width_ - 74;
+        const double y = 62;
+        const double length = 42;
+        std::vector<Point> points = {{x, y, 0}};
+        std::vector<std::vector<vtkIdType>> lines;
+        std::vector<std::array<double, 3>> colours;
+        static constexpr std::array<std::array<double, 3>, 3> tints = {{{0.80, 0.20, 0.20}, {0.10, 0.55, 0.25}, {0.15, 0.35, 0.80}}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            Point axis{};
+            axis[k] = 1;
+            const double dx = dot(axis, axes_.right);
+            const double dy = dot(axis, axes_.up);
+            if (std::hypot(dx, dy) < 0.12) {
+                continue;  // it looks at the viewer
+            }
+            points.push_back({x + length * dx, y + length * dy, 0});
+            lines.push_back({0, static_cast<vtkIdType>(points.size() - 1)});
+            colours.push_back(tints[k]);
+            const double reach = (length + 13) / std::hypot(dx, dy) * std::hypot(dx, dy);
+            text(scene_.axis_names[k], x + reach * dx + 10 * dx / std::hypot(dx, dy) * (1 - std::hypot(dx, dy)), y + reach * dy - 9, 15, false, 0.2, 2);
+        }
+        shapes(points, {}, lines, colours, 2.2F);
+    }
+
+    std::string png() {
+        window_->Render();
+        vtkNew<vtkWindowToImageFilter> grab;
+        grab->SetInput(window_);
+        grab->SetInputBufferTypeToRGB();
+        grab->ReadFrontBufferOff();
+        grab->ShouldRerenderOff();
+        vtkNew<vtkPNGWriter> writer;
+        writer->SetInputConnection(grab->GetOutputPort());
+        writer->WriteToMemoryOn();
+        writer->SetCompressionLevel(6);
+        writer->Write();
+        vtkUnsignedCharArray* bytes = writer->GetResult();
+        if (bytes == nullptr || bytes->GetNumberOfValues() == 0) {
+            throw core::SystemError("display", "the picture could not be drawn");
+        }
+        return {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfValues())};
+    }
+
+    const Scene& scene_;
+    ViewAxes axes_;
+    std::pair<double, double> range_;
+    double width_ = 0, height_ = 0, scale_ = 1;
+    vtkNew<vtkRenderWindow> window_;
+    vtkNew<vtkRenderer> back_;
+    vtkNew<vtkRenderer> main_;
+    vtkNew<vtkRenderer> over_;
+    vtkNew<vtkLookupTable> colours_;
+};
+
+}  // namespace
+
+std::string draw_png(const Scene& scene) {
+    if (scene.width < 64 || scene.height < 64 || scene.width > 8192 || scene.height > 8192) {
+        throw core::UsageError("usage", "a picture has 64 to 8192 pixels a side");
+    }
+    static std::mutex one_at_a_time;  // OpenGL contexts and their threads
+    const std::lock_guard lock(one_at_a_time);
+    Display::instance().ensure();
+    return Painter(scene).paint();
+}
+
+void end_drawing() { Display::instance().end(); }
+
+}  // namespace underbody::postproc
