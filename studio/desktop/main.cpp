@@ -1,1 +1,116 @@
-int main() { return 0; }
+// underbody-studio: the desktop.
+#include <QVTKOpenGLNativeWidget.h>
+
+#include <CLI/CLI.hpp>
+#include <QApplication>
+#include <QStyleFactory>
+#include <QSurfaceFormat>
+#include <clocale>
+#include <cstdio>
+#include <memory>
+
+#include "core/error.h"
+#include "core/virtual_display.h"
+#include "studio/desktop/main_window.h"
+#include "studio/desktop/screenshots.h"
+
+namespace {
+
+struct Options {
+    std::string study;
+    std::string screenshots;
+    int width = 1440;
+    int height = 900;
+};
+
+/// -1: go on; else the exit code.
+int parse(int argc, char** argv, Options& options) {
+    CLI::App app{
+        "Underbody Studio: looks into a study: its cases, the pressure on the body, force tables with their\n"
+        "equilibria, stability maps, and what measurements say the model lacks.",
+        "underbody-studio"};
+    app.set_version_flag("--version", UNDERBODY_VERSION);
+    app.add_option("STUDY", options.study, "folder of a study (it holds study.toml); open one later with Ctrl+O");
+    app.add_option("--screenshot", options.screenshots,
+                   "load the study, visit each panel, save pictures of the window into this folder, and end")
+        ->type_name("FOLDER");
+    app.add_option("--width", options.width, "of the window, px")->check(CLI::Range(600, 8000));
+    app.add_option("--height", options.height, "of the window, px")->check(CLI::Range(400, 8000));
+    app.footer(
+        "Examples:\n"
+        "  underbody-studio cases/evie                      open the shipped study\n"
+        "  underbody-studio cases/evie --screenshot shots   pictures of every panel, without a display if need be\n"
+        "Keys: Ctrl+O open, Ctrl+R compute what changed, F5 reload, Ctrl+1 ... Ctrl+4 panels, U T S R O views of the\n"
+        "body, Ctrl+E export picture, Ctrl+Shift+E export table, Esc cancel, F8 problems, F9 cases, F1 effects.\n"
+        "Exit codes: 0 done, 1 defect of the program, 2 wrong use, 3 wrong input or no display.");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    if (!options.screenshots.empty() && options.study.empty()) {
+        std::fprintf(stderr, "underbody-studio: --screenshot needs a STUDY\n");
+        return 2;
+    }
+    return -1;
+}
+
+/// Qt aborts without a display: find out before. A picture needs none of the user's: it gets one of its own.
+std::unique_ptr<underbody::core::VirtualDisplay> need_display(const Options& options) {
+    using namespace underbody;
+    const bool wayland = std::getenv("WAYLAND_DISPLAY") != nullptr;
+    if (core::display_answers() || (wayland && options.screenshots.empty())) {
+        return nullptr;
+    }
+    if (options.screenshots.empty()) {
+        throw core::SystemError("display", "there is no display to open a window on", {},
+                                "log in to a desktop, use ssh -X, or take pictures with --screenshot FOLDER");
+    }
+    auto display = std::make_unique<core::VirtualDisplay>(options.width + 80, options.height + 80);
+    ::setenv("DISPLAY", display->name().c_str(), 1);
+    return display;
+}
+
+int run(int argc, char** argv) {
+    using namespace underbody::studio;
+    Options options;
+    if (const int code = parse(argc, argv, options); code >= 0) {
+        return code;
+    }
+    const auto display = need_display(options);
+    if (!options.screenshots.empty()) {
+        ::setenv("QT_QPA_PLATFORM", "xcb", 1);  // 3D needs an X server, also where tests ask for `offscreen`
+    }
+    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    QApplication application(argc, argv);
+    // Qt takes the user's locale over; numbers in files must not change with it.
+    std::setlocale(LC_NUMERIC, "C");
+    QLocale::setDefault(QLocale::c());
+    QApplication::setOrganizationName("Underbody");
+    QApplication::setApplicationName("studio");
+    QApplication::setStyle(QStyleFactory::create("Fusion"));
+    MainWindow window(options.screenshots.empty());
+    window.resize(options.width, options.height);
+    if (!options.screenshots.empty()) {
+        return take_screenshots(window, options.study, options.screenshots);
+    }
+    window.show();
+    if (!options.study.empty()) {
+        window.open_study(options.study);
+    }
+    return QApplication::exec();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const underbody::core::Error& error) {
+        std::fprintf(stderr, "underbody-studio: %s\n", error.what());
+        return 3;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "underbody-studio: defect of the program: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,174 @@
+#include "studio/desktop/cases_panel.h"
+
+#include <QCollator>
+#include <QHeaderView>
+#include <cmath>
+#include <map>
+
+#include "core/text.h"
+#include "core/units.h"
+
+namespace underbody::studio {
+
+namespace {
+
+QString qt(const std::string& text) { return QString::fromStdString(text); }
+
+enum Column { name_column, gap_column, pitch_column, lift_column, drag_column, status_column, column_count };
+
+/// Sorts numbers as numbers.
+class Item : public QTreeWidgetItem {
+public:
+    using QTreeWidgetItem::QTreeWidgetItem;
+    bool operator<(const QTreeWidgetItem& other) const override {
+        const int column = treeWidget()->sortColumn();
+        const QVariant mine = data(column, Qt::UserRole + 1);
+        const QVariant others = other.data(column, Qt::UserRole + 1);
+        if (mine.isValid() && others.isValid()) {
+            return mine.toDouble() < others.toDouble();
+        }
+        static const QCollator natural = [] {
+            QCollator collator;
+            collator.setNumericMode(true);  // h2 before h10
+            return collator;
+        }();
+        return natural.compare(text(column), other.text(column)) < 0;
+    }
+    void number(int column, double shown, int digits) {
+        if (std::isfinite(shown)) {
+            setText(column, QString::fromStdString(core::format_number(shown, digits)).replace('-', QChar(0x2212)));
+            setData(column, Qt::UserRole + 1, shown);
+            setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+        }
+    }
+};
+
+/// Value of a column of the loads table in the row of a case; NaN when there is none.
+double load_of(const cases::StudyResults& results, const std::string& name, const char* column) {
+    const auto* names = results.loads.find("case");
+    const auto* values = results.loads.find(column);
+    if (names == nullptr || values == nullptr) {
+        return std::nan("");
+    }
+    for (std::size_t row = 0; row < names->text.size() && row < values->numbers.size(); ++row) {
+        if (names->text[row] == name) {
+            return values->numbers[row];
+        }
+    }
+    return std::nan("");
+}
+
+QString status_of(const Session& session, const cases::Case& one, bool has_loads) {
+    std::error_code code;
+    if (!std::filesystem::exists(one.file, code)) {
+        return "file missing";
+    }
+    for (const auto& step : session.results.steps) {
+        if (step.kind == "loads" && step.name == one.name && !step.error.empty()) {
+            return "failed";
+        }
+    }
+    return has_loads ? "done" : "not run";
+}
+
+QString why(const Session& session, const cases::Case& one) {
+    for (const auto& step : session.results.steps) {
+        if (step.name == one.name && !step.error.empty()) {
+            return "\n" + qt(step.error);
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+CasesTree::CasesTree(QWidget* parent) : QTreeWidget(parent) {
+    setObjectName("cases");
+    setColumnCount(column_count);
+    setHeaderLabels({"case", "gap\nmm", "pitch\n°", "lift\nN", "drag\nN", "status"});
+    header()->setDefaultAlignment(Qt::AlignCenter);
+    header()->setStretchLastSection(true);
+    setIndentation(12);
+    setUniformRowHeights(true);
+    setAlternatingRowColors(true);
+    setSortingEnabled(true);
+    connect(this, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
+        const QVariant index = item != nullptr ? item->data(0, Qt::UserRole) : QVariant();
+        if (session_ && index.isValid() && index.toULongLong() < session_->study.cases.size()) {
+            emit chosen(session_->study.cases[index.toULongLong()]);
+        }
+    });
+}
+
+void CasesTree::show_session(const SessionPointer& session) {
+    const QString current = currentItem() != nullptr ? currentItem()->text(0) : QString();
+    const bool blocked = blockSignals(true);
+    setSortingEnabled(false);
+    clear();
+    session_ = session;
+    std::map<std::string, Item*> groups;
+    for (std::size_t i = 0; i < session->study.cases.size(); ++i) {
+        const auto& one = session->study.cases[i];
+        const std::string variant = one.conditions.text("variant").value_or("cases");
+        Item*& group = groups[variant];
+        if (group == nullptr) {
+            group = new Item(this);
+            group->setText(name_column, qt(variant));
+            group->setExpanded(true);
+            QFont bold = font();
+            bold.setBold(true);
+            group->setFont(name_column, bold);
+        }
+        auto* item = new Item(group);
+        item->setText(name_column, qt(one.name));
+        item->setData(name_column, Qt::UserRole, static_cast<qulonglong>(i));
+        item->number(gap_column, one.conditions.number("gap").value_or(std::nan("")) * 1000, 5);
+        item->number(pitch_column, core::convert(one.conditions.number("pitch").value_or(std::nan("")), "rad", "deg"),
+                     4);
+        const double lift = load_of(session->results, one.name, "lift_force");
+        item->number(lift_column, lift, 3);
+        item->number(drag_column, load_of(session->results, one.name, "drag_force"), 3);
+        const QString status = status_of(*session, one, std::isfinite(lift));
+        item->setText(status_column, status);
+        item->setToolTip(name_column, qt(one.conditions.label()) + "\n" + qt(one.file.string()) + why(*session, one));
+        item->setToolTip(status_column, item->toolTip(name_column));
+        if (status == "failed" || status == "file missing") {
+            item->setForeground(status_column, QColor(178, 40, 10));
+        } else if (status == "not run") {
+            item->setForeground(status_column, QColor(130, 130, 130));
+        } else {
+            item->setForeground(status_column, QColor(0, 112, 79));
+        }
+        if (item->text(0) == current) {
+            setCurrentItem(item);
+        }
+    }
+    for (const auto& [name, group] : groups) {
+        group->setText(status_column, QString::number(group->childCount()));
+        group->setTextAlignment(status_column, Qt::AlignRight);
+    }
+    setSortingEnabled(true);
+    sortByColumn(name_column, Qt::AscendingOrder);
+    resizeColumnToContents(name_column);
+    for (int column = gap_column; column < column_count; ++column) {
+        header()->resizeSection(column, column < lift_column ? 46 : 62);
+    }
+    blockSignals(blocked);
+}
+
+void CasesTree::filter(const QString& text) {
+    for (int i = 0; i < topLevelItemCount(); ++i) {
+        QTreeWidgetItem* group = topLevelItem(i);
+        bool any = false;
+        for (int k = 0; k < group->childCount(); ++k) {
+            QTreeWidgetItem* item = group->child(k);
+            const bool fits = text.isEmpty() || item->text(0).contains(text, Qt::CaseInsensitive) ||
+                              item->toolTip(0).contains(text, Qt::CaseInsensitive);
+            item->setHidden(!fits);
+            any = any || fits;
+        }
+        group->setHidden(!any);
+    }
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,197 @@
+#include "studio/desktop/discovery_panel.h"
+
+#include <QBoxLayout>
+#include <QComboBox>
+#include <QImage>
+#include <QLabel>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QTextBrowser>
+#include <QUrl>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "studio/desktop/catalogue.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+namespace {
+
+using nlohmann::json;
+
+QString html(const std::string& text) { return QString::fromStdString(text).toHtmlEscaped(); }
+
+/// Text or number of a key, for people; "" when it is not there.
+QString value(const json& object, const char* key, int digits = 3) {
+    const auto at = object.is_object() ? object.find(key) : object.end();
+    if (!object.is_object() || at == object.end() || at->is_null()) {
+        return {};
+    }
+    if (at->is_string()) {
+        return html(at->get<std::string>());
+    }
+    return at->is_number() ? html(core::format_number(at->get<double>(), digits)) : html(at->dump());
+}
+
+QString unit_of(const json& object) {
+    const auto at = object.find("unit");
+    return at != object.end() && at->is_string() ? html(pretty_unit(at->get<std::string>())) : QString();
+}
+
+QString parameters(const json& effect) {
+    QString text;
+    for (const auto& [name, one] : effect.value("parameters", json::object()).items()) {
+        text += (text.isEmpty() ? "" : "<br>") + html(name) + " = " + value(one, "value", 4);
+        const QString sigma = value(one, "sigma", 2);
+        text += (sigma.isEmpty() || sigma == "0" ? "" : " ± " + sigma) + " " + unit_of(one);
+    }
+    return text;
+}
+
+QString effect_rows(const json& effects, const char* last_key, const QString& last_title) {
+    if (!effects.is_array() || effects.empty()) {
+        return {};
+    }
+    QString text =
+        "<table cellpadding=5 cellspacing=0 border=1 style='border-collapse: collapse' width='100%'>"
+        "<tr><th align=left>effect</th><th align=left>parameters</th><th align=right>probability</th><th align=left>" +
+        last_title + "</th></tr>";
+    for (const auto& effect : effects) {
+        text += "<tr><td><b>" + value(effect, "name") + "</b></td><td>" + parameters(effect) + "</td><td align=right>" +
+                value(effect, "probability", 3) + "</td><td>" + value(effect, last_key) + "</td></tr>";
+    }
+    return text + "</table>";
+}
+
+QString error_line(const json& error) {
+    if (!error.is_object() || !error.contains("before")) {
+        return {};
+    }
+    const auto interval = [&](const char* which) {
+        const json& one = error.at(which);
+        return value(one, "rmse", 3) + " (" + value(one, "low", 3) + " … " + value(one, "high", 3) + ")";
+    };
+    QString text = "<p>Error of " + value(error, "channel") + " on data held out from every fit: <b>" +
+                   interval("before") + "</b> → <b>" + (error.contains("after") ? interval("after") : QString("–")) +
+                   "</b> " + unit_of(error);
+    if (error.contains("in_noise")) {
+        text += "; in standard deviations of the noise " + value(error["in_noise"], "before", 3) + " → " +
+                value(error["in_noise"], "after", 3);
+    }
+    return text + "</p>";
+}
+
+}  // namespace
+
+QString discovery_page(const std::string& text) {
+    const json document = json::parse(text, nullptr, false);
+    if (!document.is_object()) {
+        return "<p>The stored result cannot be read; compute it again (Ctrl+R).</p>";
+    }
+    const std::string verdict = document.value("verdict", "");
+    QString page;
+    if (verdict == "none") {
+        page += "<h2>Nothing beyond the noise</h2>";
+    } else if (verdict == "effect") {
+        page += "<h2>The model lacks an effect that has a name</h2>";
+    } else if (verdict == "unknown") {
+        page += "<h2>Something real, but no named effect explains it</h2>";
+    }
+    page += "<p>" + value(document, "sentence") + "</p>";
+    page += error_line(document.value("error", json()));
+    page += effect_rows(document.value("effects", json()), "evidence", "evidence");
+    const QString rivals = effect_rows(document.value("alternatives", json()), "told_apart_by", "told apart by");
+    page += rivals.isEmpty() ? "" : "<h3>What else it might be</h3>" + rivals;
+    const json depends = document.value("depends_on", json::array());
+    if (depends.is_array() && !depends.empty()) {
+        QString names;
+        for (const auto& name : depends) {
+            names += (names.isEmpty() ? "" : ", ") + html(name.is_string() ? name.get<std::string>() : name.dump());
+        }
+        page += "<p>The residual depends on " + names + " (found without any named effect).</p>";
+    }
+    const QString next = value(document, "next_experiment");
+    page += next.isEmpty() ? "" : "<h3>Next experiment</h3><p>" + next + "</p>";
+    return page;
+}
+
+DiscoveryPanel::DiscoveryPanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent) {
+    setObjectName("discovery");
+    auto* column = new QVBoxLayout(this);
+    auto* row = new QHBoxLayout;
+    column->addLayout(row);
+    row->addWidget(new QLabel("Measurement"));
+    choice_ = new QComboBox;
+    choice_->setMinimumWidth(260);
+    row->addWidget(choice_);
+    row->addStretch(1);
+    auto* effects = new QPushButton("&Effects …");
+    effects->setToolTip("Every effect that a model may lack (F1)");
+    row->addWidget(effects);
+    connect(effects, &QPushButton::clicked, this, [this] { show_catalogue(); });
+    page_ = new QTextBrowser;
+    column->addWidget(page_, 1);
+    connect(choice_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] { show_measurement(); });
+    page_->setHtml("<p style='color: gray'>Open a study with measurements</p>");
+}
+
+void DiscoveryPanel::show_session(const SessionPointer& session) {
+    session_ = session;
+    const QString kept = choice_->currentText();
+    {
+        const QSignalBlocker quiet(choice_);
+        choice_->clear();
+        for (const auto& measurement : session->study.measurements) {
+            choice_->addItem(QString::fromStdString(measurement.name));
+        }
+        const int at = choice_->findText(kept);
+        choice_->setCurrentIndex(at >= 0 ? at : 0);
+    }
+    show_measurement();
+}
+
+void DiscoveryPanel::show_measurement() {
+    const std::string name = choice_->currentText().toStdString();
+    if (name.empty()) {
+        page_->setHtml("<p style='color: gray'>This study has no measurements</p>");
+        return;
+    }
+    QString page = "<h1>" + html(name) + "</h1>";
+    const auto* found = session_->results.document("discovery/" + name);
+    const auto* residual = session_->results.document("residual/" + name);
+    if (found != nullptr) {
+        page += discovery_page(*found);
+    } else if (residual == nullptr) {
+        page += "<p>Not computed yet: Study &gt; Compute what changed (Ctrl+R).</p>";
+    }
+    const int width = std::max(400, page_->viewport()->width() - 40);
+    for (const auto& [key, png] : session_->results.pictures) {
+        if (key.find(name) == std::string::npos ||
+            (key.find("residual") == std::string::npos && key.find("discovery") == std::string::npos)) {
+            continue;
+        }
+        const QImage image = QImage::fromData(reinterpret_cast<const uchar*>(png.data()), static_cast<int>(png.size()));
+        const QString url = "picture://" + QString::fromStdString(key).toHtmlEscaped();
+        page_->document()->addResource(QTextDocument::ImageResource, QUrl(url), image);
+        page += QString("<p><img src='%1' width='%2'></p>").arg(url).arg(std::min(width, 900));
+    }
+    page_->setHtml(page);
+}
+
+bool DiscoveryPanel::has_picture() const { return session_ != nullptr && choice_->count() > 0; }
+
+void DiscoveryPanel::export_picture(const std::filesystem::path& path) {
+    if (path.extension() != ".png") {
+        throw core::UsageError("format", "this panel is written as .png only");
+    }
+    if (!page_->grab().save(QString::fromStdString(path.string()), "PNG")) {
+        throw core::SystemError("write", "the picture could not be written", {path.string(), {}, {}, {}});
+    }
+}
+
+void DiscoveryPanel::show_catalogue() { show_effect_catalogue(this); }
+
+}  // namespace underbody::studio

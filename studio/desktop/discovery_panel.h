@@ -1,0 +1,32 @@
+// What measurements say about the model: residual, verdict, error before and after, as the study's store holds them.
+#pragma once
+
+#include "studio/desktop/panel.h"
+
+class QComboBox;
+class QTextBrowser;
+
+namespace underbody::studio {
+
+class DiscoveryPanel : public Panel {
+    Q_OBJECT
+public:
+    DiscoveryPanel(Jobs& jobs, QWidget* parent);
+    void show_session(const SessionPointer& session) override;
+    [[nodiscard]] bool has_picture() const override;
+    void export_picture(const std::filesystem::path& path) override;
+    /// The catalogue of effects, in a window of its own.
+    void show_catalogue();
+
+private:
+    void show_measurement();
+
+    SessionPointer session_;
+    QComboBox* choice_ = nullptr;
+    QTextBrowser* page_ = nullptr;
+};
+
+/// The verdict of a `discovery.json` (interfaces, section 6) as HTML. Keys that are missing are left out.
+QString discovery_page(const std::string& json);
+
+}  // namespace underbody::studio

@@ -1,0 +1,10 @@
+// The program's icon, drawn: a flat-bottomed body over the ground.
+#pragma once
+
+#include <QIcon>
+
+namespace underbody::studio {
+
+QIcon program_icon();
+
+}  // namespace underbody::studio

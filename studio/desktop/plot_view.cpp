@@ -1,0 +1,85 @@
+#include "studio/desktop/plot_view.h"
+
+#include <qcustomplot.h>
+
+#include <QBoxLayout>
+
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+PlotView::PlotView(QWidget* parent) : QWidget(parent) {
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 0);
+    plot_ = new QCustomPlot(this);
+    column->addWidget(plot_);
+    plot_->setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
+    plot_->setMinimumSize(260, 200);
+    plot_->setToolTip("Wheel: zoom. Drag: move. Double click: show all.");
+    connect(plot_, &QCustomPlot::mouseMove, this, [this](QMouseEvent* event) {
+        if (shown_ && plot_->axisRect() != nullptr && plot_->axisRect()->rect().contains(event->pos())) {
+            const auto part = [](const core::FigureAxis& axis, double value) {
+                return QString("%1 %2 %3")
+                    .arg(QString::fromStdString(axis.label))
+                    .arg(value, 0, 'g', 4)
+                    .arg(QString::fromStdString(pretty_unit(axis.unit)));
+            };
+            emit hovered(part(figure_.x, plot_->xAxis->pixelToCoord(event->pos().x())) + "   " +
+                         part(figure_.y, plot_->yAxis->pixelToCoord(event->pos().y())));
+        }
+    });
+    connect(plot_, &QCustomPlot::mousePress, this, [this](QMouseEvent* event) { pressed_ = event->pos(); });
+    connect(plot_, &QCustomPlot::mouseRelease, this, [this](QMouseEvent* event) {
+        const bool still = (event->pos() - pressed_).manhattanLength() < 4;
+        if (!still) {
+            zoomed_ = true;
+        } else if (shown_ && event->button() == Qt::LeftButton && plot_->axisRect()->rect().contains(event->pos())) {
+            emit clicked(plot_->xAxis->pixelToCoord(event->pos().x()), plot_->yAxis->pixelToCoord(event->pos().y()));
+        }
+    });
+    connect(plot_, &QCustomPlot::mouseWheel, this, [this] { zoomed_ = true; });
+    connect(plot_, &QCustomPlot::mouseDoubleClick, this, [this] { show_all(); });
+}
+
+void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
+    const bool keep = keep_zoom && zoomed_ && shown_;
+    const QCPRange x = keep ? plot_->xAxis->range() : QCPRange();
+    const QCPRange y = keep ? plot_->yAxis->range() : QCPRange();
+    figure_ = figure;
+    shown_ = true;
+    draw(figure_, *plot_);
+    zoomed_ = keep;
+    if (keep) {
+        plot_->xAxis->setRange(x);
+        plot_->yAxis->setRange(y);
+    }
+    plot_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotView::show_text(const QString& text) {
+    core::Figure empty;
+    draw(empty, *plot_);
+    shown_ = false;
+    for (auto* axis : plot_->axisRect()->axes()) {
+        axis->setVisible(false);
+        axis->grid()->setVisible(false);
+    }
+    auto* label = new QCPItemText(plot_);
+    label->position->setType(QCPItemPosition::ptAxisRectRatio);
+    label->position->setCoords(0.5, 0.5);
+    label->setText(text);
+    label->setColor(QColor(110, 110, 110));
+    plot_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotView::write(const std::filesystem::path& path) const { write_picture(figure_, path); }
+
+void PlotView::show_all() {
+    if (shown_) {
+        zoomed_ = false;
+        draw(figure_, *plot_);
+        plot_->replot(QCustomPlot::rpQueuedReplot);
+    }
+}
+
+}  // namespace underbody::studio

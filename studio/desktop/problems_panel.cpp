@@ -1,0 +1,111 @@
+#include "studio/desktop/problems_panel.h"
+
+#include <QApplication>
+#include <QBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QStyle>
+#include <QTime>
+#include <QToolButton>
+
+namespace underbody::studio {
+
+ProblemList::ProblemList(QWidget* parent) : QTreeWidget(parent) {
+    setObjectName("problems");
+    setColumnCount(4);
+    setHeaderLabels({"time", "what", "where", "what to do"});
+    setRootIsDecorated(false);
+    setAlternatingRowColors(true);
+    setTextElideMode(Qt::ElideMiddle);
+    header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+    header()->resizeSection(1, 620);
+    header()->resizeSection(2, 260);
+}
+
+void ProblemList::add(const core::Problem& problem, const QString& hint) {
+    using Severity = core::Problem::Severity;
+    constexpr int most = 2000;
+    while (topLevelItemCount() >= most) {
+        delete takeTopLevelItem(0);
+    }
+    auto* item = new QTreeWidgetItem(this);
+    const auto icon = problem.severity == Severity::error     ? QStyle::SP_MessageBoxCritical
+                      : problem.severity == Severity::warning ? QStyle::SP_MessageBoxWarning
+                                                              : QStyle::SP_MessageBoxInformation;
+    item->setIcon(0, style()->standardIcon(icon));
+    item->setText(0, QTime::currentTime().toString("HH:mm:ss"));
+    item->setText(1, QString::fromStdString(problem.message));
+    item->setText(2, QString::fromStdString(problem.place.text()));
+    item->setText(3, hint);
+    for (int column = 1; column < 4; ++column) {
+        item->setToolTip(column, item->text(column));
+    }
+    scrollToItem(item);
+}
+
+void ProblemList::note(const QString& text) { add({core::Problem::Severity::note, text.toStdString(), {}}); }
+
+QString ProblemList::text() const {
+    QString result;
+    for (int i = 0; i < topLevelItemCount(); ++i) {
+        const QTreeWidgetItem* item = topLevelItem(i);
+        result += item->text(0) + "\t" + item->text(1) + "\t" + item->text(2) + "\t" + item->text(3) + "\n";
+    }
+    return result;
+}
+
+Banner::Banner(QWidget* parent) : QFrame(parent) {
+    setObjectName("banner");
+    setStyleSheet(
+        "QFrame#banner { background: #fff0e6; border: 1px solid #d55e00; border-radius: 4px; }"
+        "QFrame#banner QLabel { color: #5c2600; }");
+    auto* row = new QHBoxLayout(this);
+    row->setContentsMargins(10, 6, 6, 6);
+    auto* icon = new QLabel;
+    icon->setPixmap(style()->standardIcon(QStyle::SP_MessageBoxWarning).pixmap(24, 24));
+    row->addWidget(icon, 0, Qt::AlignTop);
+    text_ = new QLabel;
+    text_->setWordWrap(true);
+    text_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    row->addWidget(text_, 1);
+    auto* close = new QToolButton;
+    close->setText("×");
+    close->setAutoRaise(true);
+    close->setToolTip("Close this message (it stays in the list of problems)");
+    connect(close, &QToolButton::clicked, this, &QWidget::hide);
+    row->addWidget(close, 0, Qt::AlignTop);
+    hide();
+}
+
+void Banner::show_error(const QString& what, const QString& message, const QString& hint) {
+    QString text = "<b>" + what.toHtmlEscaped() + "</b><br>" + message.toHtmlEscaped();
+    if (!hint.isEmpty()) {
+        text += "<br><i>" + hint.toHtmlEscaped() + "</i>";
+    }
+    text_->setText(text);
+    show();
+}
+
+Told tell(const std::exception_ptr& error) {
+    Told told;
+    told.problem.severity = core::Problem::Severity::error;
+    try {
+        std::rethrow_exception(error);
+    } catch (const core::Error& known) {
+        told.problem.message = known.message();
+        told.problem.place = known.place();
+        told.hint = QString::fromStdString(known.hint());
+        const std::string place = known.place().text();
+        told.message = QString::fromStdString((place.empty() ? "" : place + ": ") + known.message());
+    } catch (const std::exception& defect) {
+        told.problem.message = std::string("defect of the program: ") + defect.what();
+        told.message = QString::fromStdString(told.problem.message);
+        told.hint = "please report it with the list of problems";
+    } catch (...) {
+        told.problem.message = "defect of the program: an unknown exception";
+        told.message = QString::fromStdString(told.problem.message);
+    }
+    return told;
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,43 @@
+// What was found and what went wrong, with time, place and hint; and the banner over the panels for the latest error.
+#pragma once
+
+#include <QFrame>
+#include <QTreeWidget>
+#include <exception>
+
+#include "core/error.h"
+
+class QLabel;
+
+namespace underbody::studio {
+
+class ProblemList : public QTreeWidget {
+    Q_OBJECT
+public:
+    explicit ProblemList(QWidget* parent);
+    void add(const core::Problem& problem, const QString& hint = {});
+    void note(const QString& text);
+    /// Tab-separated text of all lines, for reports of defects.
+    [[nodiscard]] QString text() const;
+};
+
+/// A message with its hint above the panels, until it is closed or something succeeds.
+class Banner : public QFrame {
+    Q_OBJECT
+public:
+    explicit Banner(QWidget* parent);
+    void show_error(const QString& what, const QString& message, const QString& hint);
+
+private:
+    QLabel* text_ = nullptr;
+};
+
+/// Message and hint of any exception.
+struct Told {
+    QString message;
+    QString hint;
+    core::Problem problem;
+};
+Told tell(const std::exception_ptr& error);
+
+}  // namespace underbody::studio

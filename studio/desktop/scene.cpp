@@ -1,0 +1,407 @@
+#include "studio/desktop/scene.h"
+
+#include <QVTKOpenGLNativeWidget.h>
+#include <vtkActor.h>
+#include <vtkAxesActor.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkCaptionActor2D.h>
+#include <vtkCellData.h>
+#include <vtkCellPicker.h>
+#include <vtkDataArray.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkInteractorStyleTrackballCamera.h>
+#include <vtkLookupTable.h>
+#include <vtkOrientationMarkerWidget.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
+#include <vtkTextProperty.h>
+
+#include <QBuffer>
+#include <QImage>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "studio/figures/colour_scale.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+using postproc::Location;
+
+bool Scene::possible() {
+    static const bool yes = [] {
+        QOpenGLContext context;
+        context.setFormat(QVTKOpenGLNativeWidget::defaultFormat());
+        if (!context.create()) {
+            return false;
+        }
+        QOffscreenSurface surface;
+        surface.setFormat(context.format());
+        surface.create();
+        return surface.isValid() && context.makeCurrent(&surface) && context.format().majorVersion() >= 3;
+    }();
+    return yes;
+}
+
+struct Scene::Parts {
+    QVTKOpenGLNativeWidget* widget = nullptr;
+    vtkNew<vtkGenericOpenGLRenderWindow> window;
+    vtkNew<vtkRenderer> renderer;
+    vtkNew<vtkScalarBarActor> bar;
+    vtkNew<vtkLookupTable> colours;
+    vtkNew<vtkAxesActor> axes;
+    vtkNew<vtkOrientationMarkerWidget> marker;
+    vtkNew<vtkCellPicker> picker;
+    vtkNew<vtkCallbackCommand> on_press;
+    std::shared_ptr<const postproc::Field> field;
+    struct Surface {
+        std::size_t zone = 0;
+        vtkSmartPointer<vtkPolyDataMapper> mapper;
+        vtkSmartPointer<vtkActor> actor;
+        vtkSmartPointer<vtkActor> mirrored;
+    };
+    std::vector<Surface> surfaces;
+    std::vector<bool> seen;
+    Choice choice;
+    std::string mirror;
+    std::function<void(const QString&)>* picked = nullptr;
+
+    void pick();
+    [[nodiscard]] const postproc::ArrayInfo* info(const Surface& surface) const {
+        return field->zones[surface.zone].find(choice.name);
+    }
+};
+
+namespace {
+
+/// The numbers of an array's chosen component (the size of a vector for -1).
+double value_of(vtkDataArray& array, vtkIdType at, int component) {
+    if (component >= 0) {
+        return array.GetComponent(at, component);
+    }
+    if (array.GetNumberOfComponents() == 1) {
+        return array.GetComponent(at, 0);
+    }
+    double sum = 0;
+    for (int c = 0; c < array.GetNumberOfComponents(); ++c) {
+        sum += array.GetComponent(at, c) * array.GetComponent(at, c);
+    }
+    return std::sqrt(sum);
+}
+
+vtkDataArray* array_of(const postproc::Zone& zone, const postproc::ArrayInfo& info) {
+    if (!zone.surface) {
+        return nullptr;
+    }
+    return info.on == Location::nodes ? zone.surface->GetPointData()->GetArray(info.name.c_str())
+                                      : zone.surface->GetCellData()->GetArray(info.name.c_str());
+}
+
+std::array<double, 3> direction(const std::string& axis, std::array<double, 3> fallback) {
+    if (axis.size() != 2 || axis[1] < 'x' || axis[1] > 'z') {
+        return fallback;
+    }
+    std::array<double, 3> result{};
+    result[static_cast<std::size_t>(axis[1] - 'x')] = axis[0] == '-' ? -1 : 1;
+    return result;
+}
+
+void dress_text(vtkTextProperty& text, int size) {
+    text.SetFontFamilyToArial();
+    text.SetColor(0.15, 0.15, 0.15);
+    text.SetFontSize(size);
+    text.BoldOff();
+    text.ItalicOff();
+    text.ShadowOff();
+}
+
+}  // namespace
+
+Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
+    Parts& p = *parts_;
+    p.widget = new QVTKOpenGLNativeWidget(parent);
+    p.widget->setRenderWindow(p.window);
+    p.window->AddRenderer(p.renderer);
+    p.window->SetMultiSamples(4);
+    p.renderer->SetBackground(1, 1, 1);
+    p.renderer->SetBackground2(0.88, 0.91, 0.94);
+    p.renderer->GradientBackgroundOn();
+    vtkNew<vtkInteractorStyleTrackballCamera> style;
+    p.window->GetInteractor()->SetInteractorStyle(style);
+    p.bar->SetLookupTable(p.colours);
+    p.bar->SetNumberOfLabels(6);
+    p.bar->SetUnconstrainedFontSize(true);
+    p.bar->SetBarRatio(0.25);
+    p.bar->SetVerticalTitleSeparation(10);
+    p.bar->SetWidth(0.11);
+    p.bar->SetHeight(0.62);
+    p.bar->SetPosition(0.875, 0.2);
+    p.bar->SetLabelFormat("%.3g");
+    p.bar->SetMaximumNumberOfColors(256);
+    dress_text(*p.bar->GetTitleTextProperty(), 15);
+    dress_text(*p.bar->GetLabelTextProperty(), 13);
+    p.bar->SetVisibility(false);
+    p.renderer->AddActor2D(p.bar);
+    for (auto* caption :
+         {p.axes->GetXAxisCaptionActor2D(), p.axes->GetYAxisCaptionActor2D(), p.axes->GetZAxisCaptionActor2D()}) {
+        dress_text(*caption->GetCaptionTextProperty(), 14);
+    }
+    p.axes->SetXAxisLabelText("x");
+    p.axes->SetYAxisLabelText("y");
+    p.axes->SetZAxisLabelText("z");
+    p.marker->SetOrientationMarker(p.axes);
+    p.marker->SetInteractor(p.window->GetInteractor());
+    p.marker->SetViewport(0, 0, 0.16, 0.2);
+    p.marker->SetEnabled(1);
+    p.marker->InteractiveOff();
+    p.picked = &on_pick;
+    p.picker->SetTolerance(0.0005);
+    p.on_press->SetClientData(&p);
+    p.on_press->SetCallback([](vtkObject*, unsigned long, void* data, void*) { static_cast<Parts*>(data)->pick(); });
+    p.window->GetInteractor()->AddObserver(vtkCommand::LeftButtonPressEvent, p.on_press);
+}
+
+Scene::~Scene() { parts_->window->GetInteractor()->RemoveObserver(parts_->on_press); }
+
+QWidget* Scene::widget() const { return parts_->widget; }
+
+const postproc::Field* Scene::field() const { return parts_->field.get(); }
+
+void Scene::show(std::shared_ptr<const postproc::Field> field, bool refit) {
+    Parts& p = *parts_;
+    for (const auto& surface : p.surfaces) {
+        p.renderer->RemoveActor(surface.actor);
+        p.renderer->RemoveActor(surface.mirrored);
+    }
+    p.surfaces.clear();
+    p.field = std::move(field);
+    p.seen.assign(p.field->zones.size(), true);
+    for (std::size_t i = 0; i < p.field->zones.size(); ++i) {
+        const auto& zone = p.field->zones[i];
+        if (!zone.surface || zone.surface->GetNumberOfCells() == 0) {
+            continue;
+        }
+        Parts::Surface surface;
+        surface.zone = i;
+        surface.mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
+        // Smooth to the eye; points and faces keep their numbers, so that a click finds its value.
+        vtkNew<vtkPolyDataNormals> normals;
+        normals->SetInputData(zone.surface);
+        normals->SplittingOff();
+        normals->ConsistencyOff();
+        normals->Update();
+        surface.mapper->SetInputData(normals->GetOutput());
+        surface.mapper->SetLookupTable(p.colours);
+        surface.mapper->UseLookupTableScalarRangeOn();
+        surface.mapper->InterpolateScalarsBeforeMappingOn();
+        surface.actor = vtkSmartPointer<vtkActor>::New();
+        surface.actor->SetMapper(surface.mapper);
+        surface.actor->GetProperty()->SetColor(0.72, 0.76, 0.8);
+        surface.actor->GetProperty()->SetAmbient(0.62);
+        surface.actor->GetProperty()->SetDiffuse(0.42);
+        surface.mirrored = vtkSmartPointer<vtkActor>::New();
+        surface.mirrored->SetMapper(surface.mapper);
+        surface.mirrored->SetProperty(surface.actor->GetProperty());
+        surface.mirrored->SetVisibility(false);
+        p.renderer->AddActor(surface.actor);
+        p.renderer->AddActor(surface.mirrored);
+        p.surfaces.push_back(std::move(surface));
+    }
+    mirror(p.mirror);
+    if (refit) {
+        p.renderer->ResetCamera();
+    }
+}
+
+void Scene::set_visible(const std::vector<bool>& zones) {
+    parts_->seen = zones;
+    for (const auto& surface : parts_->surfaces) {
+        const bool seen = surface.zone < zones.size() && zones[surface.zone];
+        surface.actor->SetVisibility(seen);
+        surface.mirrored->SetVisibility(seen && !parts_->mirror.empty());
+    }
+}
+
+bool Scene::visible(std::size_t zone) const { return zone < parts_->seen.size() && parts_->seen[zone]; }
+
+std::vector<Scene::Choice> Scene::choices() const {
+    std::vector<Choice> result;
+    const auto add = [&](Choice choice) {
+        if (std::none_of(result.begin(), result.end(), [&](const Choice& c) { return c.label == choice.label; })) {
+            result.push_back(std::move(choice));
+        }
+    };
+    for (const auto& surface : parts_->surfaces) {
+        for (const auto& info : parts_->field->zones[surface.zone].arrays) {
+            if (array_of(parts_->field->zones[surface.zone], info) == nullptr) {
+                continue;
+            }
+            std::string words = info.name;
+            std::replace(words.begin(), words.end(), '_', ' ');
+            add({info.name, -1, words, info.unit});
+            for (int c = 0; info.components == 3 && c < 3; ++c) {
+                add({info.name, c, words + " " + "xyz"[c], info.unit});
+            }
+        }
+    }
+    return result;
+}
+
+void Scene::colour_by(const Choice& choice, bool whole_range) {
+    Parts& p = *parts_;
+    p.choice = choice;
+    std::vector<double> values;
+    for (auto& surface : p.surfaces) {
+        const auto* info = choice.name.empty() ? nullptr : p.info(surface);
+        vtkDataArray* array = info != nullptr ? array_of(p.field->zones[surface.zone], *info) : nullptr;
+        surface.mapper->SetScalarVisibility(array != nullptr);
+        if (array == nullptr) {
+            continue;
+        }
+        if (info->on == Location::nodes) {
+            surface.mapper->SetScalarModeToUsePointFieldData();
+        } else {
+            surface.mapper->SetScalarModeToUseCellFieldData();
+        }
+        surface.mapper->SelectColorArray(info->name.c_str());
+        if (visible(surface.zone)) {
+            for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
+                const double value = value_of(*array, i, choice.component);
+                if (std::isfinite(value)) {
+                    values.push_back(value);
+                }
+            }
+        }
+    }
+    double lower = 0;
+    double upper = 1;
+    if (!values.empty()) {
+        const std::size_t cut = whole_range ? 0 : values.size() / 100;
+        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(cut), values.end());
+        lower = values[cut];
+        std::nth_element(values.begin(), values.end() - 1 - static_cast<std::ptrdiff_t>(cut), values.end());
+        upper = values[values.size() - 1 - cut];
+    }
+    // Around zero the two sides have two colours; what is of one sign goes from dark to light.
+    const bool both_signs = lower < 0 && upper > 0 && std::min(-lower, upper) > 0.05 * std::max(-lower, upper);
+    if (both_signs) {
+        upper = std::max(-lower, upper);
+        lower = -upper;
+    }
+    p.colours->SetNumberOfTableValues(256);
+    for (int i = 0; i < 256; ++i) {
+        const core::Colour c = both_signs ? diverging(i / 255.0) : viridis(i / 255.0);
+        p.colours->SetTableValue(i, c.red / 255.0, c.green / 255.0, c.blue / 255.0);
+    }
+    p.colours->SetTableRange(lower, upper > lower ? upper : lower + 1);
+    if (choice.component >= 0) {
+        p.colours->SetVectorModeToComponent();
+        p.colours->SetVectorComponent(choice.component);
+    } else {
+        p.colours->SetVectorModeToMagnitude();
+    }
+    p.bar->SetTitle(axis_title(choice.label, choice.unit).c_str());
+    p.bar->SetVisibility(!values.empty());
+}
+
+void Scene::show_edges(bool edges) {
+    for (const auto& surface : parts_->surfaces) {
+        surface.actor->GetProperty()->SetEdgeVisibility(edges);
+        surface.actor->GetProperty()->SetEdgeColor(0.25, 0.25, 0.25);
+        surface.actor->GetProperty()->SetLineWidth(0.6F);
+    }
+}
+
+void Scene::mirror(const std::string& axis) {
+    parts_->mirror = axis;
+    for (const auto& surface : parts_->surfaces) {
+        surface.mirrored->SetScale(axis == "x" ? -1 : 1, axis == "y" ? -1 : 1, axis == "z" ? -1 : 1);
+        surface.mirrored->SetVisibility(!axis.empty() && visible(surface.zone));
+    }
+}
+
+void Scene::look_from(const std::string& view, const std::string& forward, const std::string& up) {
+    const auto f = direction(forward, {1, 0, 0});
+    const auto u = direction(up, {0, 0, 1});
+    // Starboard of someone who looks forward: f x u.
+    const std::array<double, 3> s = {f[1] * u[2] - f[2] * u[1], f[2] * u[0] - f[0] * u[2], f[0] * u[1] - f[1] * u[0]};
+    std::array<double, 3> from{};
+    std::array<double, 3> top = u;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (view == "bottom") {
+            from[i] = -u[i];
+            top[i] = s[i];
+        } else if (view == "top") {
+            from[i] = u[i];
+            top[i] = -s[i];
+        } else if (view == "side") {
+            from[i] = s[i];
+        } else if (view == "front") {
+            from[i] = f[i];
+        } else {
+            from[i] = 1.0 * f[i] + 0.8 * s[i] - 0.45 * u[i];
+        }
+    }
+    vtkCamera* camera = parts_->renderer->GetActiveCamera();
+    camera->SetFocalPoint(0, 0, 0);
+    camera->SetPosition(from[0], from[1], from[2]);
+    camera->SetViewUp(top[0], top[1], top[2]);
+    camera->SetParallelProjection(view != "iso");
+    parts_->renderer->ResetCamera();
+    camera->Zoom(view == "iso" ? 1.2 : 1.15);
+    camera->SetWindowCenter(0.1, 0);  // room for the colour bar on the right
+}
+
+void Scene::Parts::pick() {
+    int* at = window->GetInteractor()->GetEventPosition();
+    if (!field || picked == nullptr || !*picked || picker->Pick(at[0], at[1], 0, renderer) == 0) {
+        return;
+    }
+    for (const auto& surface : surfaces) {
+        if (picker->GetActor() != surface.actor && picker->GetActor() != surface.mirrored) {
+            continue;
+        }
+        const auto& zone = field->zones[surface.zone];
+        double where[3];
+        picker->GetPickPosition(where);
+        QString text = QString("%1: x %2, y %3, z %4 mm").arg(QString::fromStdString(zone.name));
+        for (const double coordinate : where) {
+            text = text.arg(1000 * coordinate, 0, 'f', 2);
+        }
+        const auto* array_info = info(surface);
+        vtkDataArray* array = array_info != nullptr ? array_of(zone, *array_info) : nullptr;
+        const vtkIdType index =
+            array_info != nullptr && array_info->on == Location::nodes ? picker->GetPointId() : picker->GetCellId();
+        if (array != nullptr && index >= 0 && index < array->GetNumberOfTuples()) {
+            text += QString("  ·  %1 %2 %3")
+                        .arg(QString::fromStdString(choice.label))
+                        .arg(value_of(*array, index, choice.component), 0, 'g', 5)
+                        .arg(QString::fromStdString(pretty_unit(choice.unit)));
+        }
+        (*picked)(text);
+        return;
+    }
+}
+
+void Scene::render() { parts_->window->Render(); }
+
+std::string Scene::png() {
+    render();
+    const QImage image = parts_->widget->grabFramebuffer();
+    QByteArray bytes;
+    QBuffer buffer(&bytes);
+    buffer.open(QIODevice::WriteOnly);
+    image.save(&buffer, "PNG");
+    return bytes.toStdString();
+}
+
+}  // namespace underbody::studio
