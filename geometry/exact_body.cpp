@@ -99,8 +99,12 @@ double SideProfile::distance(double half, double height) const {
         if (angle >= 0 && angle < fillet_end_ && dz > 0) {
             return std::hypot(dx, dz) - radius_;
         }
+        if (dx < 0 && dz > 0) {
+            return -height;  // over the flat base
+        }
     }
-    const double dx = half - centre_, dz = depth_ - height;
+    // Past its own middle (the other side of the body) the side says nothing.
+    const double dx = std::max(0.0, half - centre_), dz = depth_ - height;
     if (semi_ == rise_) {
         return std::hypot(dx, dz) - semi_;
     }
@@ -117,6 +121,10 @@ ExactBody::ExactBody(const BodyShape& shape)
         along_ = SideProfile(-extent.tail, a_, depth_, shape.edge_radius);
         across_ = SideProfile(extent.half_width, b_, depth_, shape.edge_radius);
     }
+    if (shape.edge_radius > 0) {
+        tabulate_spine();
+    }
+    highest_fillet_ = std::max(fillet_top(0), fillet_top(half_pi));
     if (!shape.protrusion) {
         return;
     }
@@ -143,28 +151,69 @@ bool ExactBody::cut(Side side) const {
     return shape_.base == BaseKind::rectangle || (shape_.base == BaseKind::ellipse_front && side != Side::front);
 }
 
-ExactBody::Spine ExactBody::spine(double t) const {
+ExactBody::Spine ExactBody::solved_spine(double t) const {
     // Contact of the ball: its height z (from the centre of the ellipsoid, negative) solves z - r n_z = r - depth.
     const double r = shape_.edge_radius, ct = std::cos(t), st = std::sin(t);
     const double horizontal = std::hypot(ct / a_, st / b_);
-    const auto normal_z = [&](double z) {
-        const double s = std::sqrt(std::max(0.0, 1 - square(z / c_)));
-        const double nz = z / (c_ * c_), nh = s * horizontal;
-        return nz / std::hypot(nz, nh);
-    };
-    double low = -depth_, high = 0;  // z - r n_z - r + depth grows with z
-    for (int i = 0; i < 60 && high - low > 1e-16 * c_; ++i) {
-        const double mid = 0.5 * (low + high);
-        (mid - r * normal_z(mid) - r + depth_ < 0 ? low : high) = mid;
+    // n_z = (z/c^2)/m with m^2 = (z/c^2)^2 + (1 - z^2/c^2) horizontal^2; d n_z/dz = horizontal^2/(c^2 m^3)
+    const double c2 = c_ * c_, h2 = horizontal * horizontal;
+    double z = r - depth_, nz = 0;
+    double low = -depth_, high = 0;  // z - r n_z grows with z
+    for (int i = 0; i < 60; ++i) {
+        const double m2 = square(z / c2) + std::max(0.0, 1 - z * z / c2) * h2, m = std::sqrt(m2);
+        nz = z / c2 / m;
+        const double f = z - r * nz - r + depth_;
+        (f < 0 ? low : high) = z;
+        double next = z - f / std::max(0.1, 1 - r * h2 / (c2 * m2 * m));
+        if (!(next > low && next < high)) {
+            next = 0.5 * (low + high);
+        }
+        if (std::abs(next - z) < 1e-16 * c_) {
+            break;
+        }
+        z = next;
     }
-    const double z = 0.5 * (low + high), s = std::sqrt(1 - square(z / c_));
-    const double nz = normal_z(z), nh = std::sqrt(std::max(0.0, 1 - nz * nz));
+    const double s = std::sqrt(1 - square(z / c_));
+    const double nh = std::sqrt(std::max(0.0, 1 - nz * nz));
     return {a_ * s * ct - r * nh * ct / (a_ * horizontal), b_ * s * st - r * nh * st / (b_ * horizontal), z + depth_};
+}
+
+constexpr std::size_t spine_steps = 1024;
+
+void ExactBody::tabulate_spine() {
+    spine_table_.reserve(spine_steps + 1);
+    for (std::size_t i = 0; i <= spine_steps; ++i) {
+        constexpr double step = 1e-4;
+        const double t = half_pi * static_cast<double>(i) / spine_steps;
+        const Spine here = solved_spine(t), ahead = solved_spine(t + step), back = solved_spine(t - step);
+        const double scale = half_pi / spine_steps / (2 * step);
+        spine_table_.push_back(
+            {here, {scale * (ahead.x - back.x), scale * (ahead.y - back.y), scale * (ahead.height - back.height)}});
+    }
+}
+
+ExactBody::Spine ExactBody::spine(double t) const {
+    // Fold into the first quadrant.
+    double folded = std::abs(std::remainder(t, 2 * std::numbers::pi));
+    const double sign_y = std::remainder(t, 2 * std::numbers::pi) < 0 ? -1 : 1;
+    const double sign_x = folded > half_pi ? -1 : 1;
+    folded = sign_x < 0 ? std::numbers::pi - folded : folded;
+    const double position = folded / half_pi * spine_steps;
+    const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(position), spine_steps - 1);
+    const double w = position - static_cast<double>(i);
+    const SpineEntry &low = spine_table_[i], &high = spine_table_[i + 1];
+    const auto cubic = [w](double a, double da, double b, double db) {
+        const double v = 1 - w;
+        return v * v * ((1 + 2 * w) * a + w * da) + w * w * ((3 - 2 * w) * b - v * db);
+    };
+    return {sign_x * cubic(low.value.x, low.slope.x, high.value.x, high.slope.x),
+            sign_y * cubic(low.value.y, low.slope.y, high.value.y, high.slope.y),
+            cubic(low.value.height, low.slope.height, high.value.height, high.slope.height)};
 }
 
 double ExactBody::fillet_top(double t) const { return shape_.edge_radius > 0 ? spine(t).height : 0.0; }
 
-double ExactBody::highest_fillet() const { return std::max(fillet_top(0), fillet_top(half_pi)); }
+double ExactBody::highest_fillet() const { return highest_fillet_; }
 
 Vec3 ExactBody::ellipsoid_point(double height, double t) const {
     const double ct = std::cos(t), st = std::sin(t), r = shape_.edge_radius;
@@ -232,26 +281,34 @@ double ExactBody::protrusion_depth(double x, double y) const {
     return profile_depth(std::hypot(x - foot.x, std::max(0.0, std::abs(y) - foot.half_axis)));
 }
 
+double ExactBody::ellipsoid_parameter(const Vec3& p) const {
+    double t = std::atan2(p.y / b_, p.x / a_);
+    if (shape_.edge_radius == 0 || p.z >= highest_fillet_ || p.z >= fillet_top(t)) {
+        return t;
+    }
+    // Nearest point of the spine: Gauss-Newton, whose factor is the ball's radius over the spine's.
+    constexpr double step = 1e-5;
+    for (int i = 0; i < 40; ++i) {
+        const Spine here = spine(t), ahead = spine(t + step);
+        const double dx = (ahead.x - here.x) / step, dy = (ahead.y - here.y) / step;
+        const double change = ((p.x - here.x) * dx + (p.y - here.y) * dy) / (dx * dx + dy * dy);
+        t += change;
+        if (std::abs(change) < 1e-13) {
+            break;
+        }
+    }
+    return t;
+}
+
 double ExactBody::distance_to_ellipsoid(const Vec3& p) const {
     const Vec3 q = unbent(p);
-    if (shape_.edge_radius > 0 && q.z < highest_fillet()) {
-        // Parameter of the outline from the point's own direction, improved by the level's shape (two steps are enough
-        // near the surface): normal direction of the inset curve at the nearest point.
+    if (shape_.edge_radius > 0 && q.z < highest_fillet_) {
         const double r = shape_.edge_radius;
-        double t = std::atan2(q.y / b_, q.x / a_);
-        Spine ball = spine(t);
-        for (int i = 0; i < 6; ++i) {
-            const double psi = std::atan2(q.y - ball.y, q.x - ball.x);
-            const double next = std::atan2(b_ * std::sin(psi), a_ * std::cos(psi));
-            ball = spine(next);
-            if (std::abs(next - t) < 1e-12) {
-                break;
-            }
-            t = next;
-        }
+        const double t = ellipsoid_parameter(q);
+        const Spine ball = spine(t);
         if (q.z < ball.height) {
             const double out = (q.x - ball.x) * std::cos(t) / a_ + (q.y - ball.y) * std::sin(t) / b_;
-            return std::hypot(out / std::hypot(std::cos(t) / a_, std::sin(t) / b_), r - q.z) - r;
+            return out < 0 ? -q.z : std::hypot(out / std::hypot(std::cos(t) / a_, std::sin(t) / b_), r - q.z) - r;
         }
     }
     const double z = q.z - depth_;
@@ -267,7 +324,14 @@ double ExactBody::distance_to_side(const Vec3& p, Side side) const {
 
 double ExactBody::distance_to_base(const Vec3& p) const {
     const Vec3 q = unbent(p);
-    return -(q.z + protrusion_depth(q.x, q.y));
+    const double vertical = -(q.z + protrusion_depth(q.x, q.y));
+    if (!shape_.protrusion) {
+        return vertical;
+    }
+    const Foot foot = protrusion_foot();
+    const double d = std::hypot(q.x - foot.x, std::max(0.0, std::abs(q.y) - foot.half_axis)), step = 1e-6 * foot.radius;
+    const double slope = (profile_depth(d + step) - profile_depth(std::max(0.0, d - step))) / (2 * step);
+    return vertical / std::hypot(1, slope);
 }
 
 }  // namespace underbody::geometry

@@ -73,6 +73,8 @@ public:
     /// The ellipsoid piece (with its rounded edge) at a height, by the parameter t of its outline: 0 nose, pi/2 port.
     /// The horizontal normal depends on t only.
     [[nodiscard]] Vec3 ellipsoid_point(double height, double t) const;
+    /// Parameter t of a point on (or near) the ellipsoid piece, in [0, 2 pi).
+    [[nodiscard]] double ellipsoid_parameter(const Vec3& p) const;
     /// Height where the rounding of the edge meets the ellipsoid.
     [[nodiscard]] double fillet_top(double t) const;
     /// Highest of them.
@@ -95,6 +97,9 @@ public:
     /// Depth of the profile at a distance from its axis.
     [[nodiscard]] double profile_depth(double distance) const;
 
+    /// m^3, of everything (protrusion and bore included), by quadrature to about 1e-9 of itself.
+    [[nodiscard]] double volume() const;
+
     /// Signed distances of a bent point to pieces, positive outside, to first order near the surface.
     [[nodiscard]] double distance_to_ellipsoid(const Vec3& p) const;
     [[nodiscard]] double distance_to_side(const Vec3& p, Side side) const;
@@ -105,10 +110,18 @@ private:
         double x = 0, y = 0, height = 0;  // centre of the ball, height of its contact
     };
     [[nodiscard]] Spine spine(double t) const;
+    [[nodiscard]] Spine solved_spine(double t) const;
+    void tabulate_spine();
+    // One quadrant; cubics between the entries, to rounding.
+    struct SpineEntry {
+        Spine value, slope;
+    };
+    std::vector<SpineEntry> spine_table_;
     BodyShape shape_;
     double a_, b_, c_, depth_;
     double taper_ = 0;  // d(width factor)/dx at the base
     double slope_ = 0;  // tangent of the pitch of the base
+    double highest_fillet_ = 0;
     SideProfile along_, across_;
     // protrusion profile: an arc or a line for the flank, an arc of the blend
     double crest_centre_ = 0, crest_radius_ = 0, flank_end_ = 0, foot_ = 0, blend_ = 0, half_axis_ = 0;

@@ -1,0 +1,313 @@
+// The family of bodies: every kind of base with every option, certified.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "geometry/body_surface.h"
+#include "geometry/certificate.h"
+#include "geometry/mass_properties.h"
+#include "tests/support/support.h"
+
+namespace underbody::geometry {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+BodyShape shipped(const std::string& name) {
+    return read_shape(test::source_folder() / "cases/evie/shapes" / (name + ".toml"));
+}
+
+SurfaceMesh made(const BodyShape& shape, std::size_t triangles = 6000) {
+    SurfaceOptions options;
+    options.triangles = triangles;
+    return make_surface(shape, options);
+}
+
+TEST(Family, ShipsBodiesThatPassTheirCertificate) {
+    for (const char* name : {"ellipse", "rectangle", "ellipse_front", "rectangle_bump1", "rectangle_bump2",
+                             "ellipse_front_bump1", "ellipse_front_bump2"}) {
+        const BodyShape shape = shipped(name);
+        EXPECT_EQ(shape.name, name);
+        const SurfaceMesh mesh = made(shape, 20000);
+        const Certificate certificate = certify(mesh, shape);
+        EXPECT_TRUE(certificate.passed()) << name;
+        EXPECT_GT(certificate.smallest_angle, 20 * degree) << name;
+        EXPECT_LT(certificate.largest_aspect_ratio, 4) << name;
+        EXPECT_LT(certificate.exact->distance_largest, 1.2e-4) << name;
+        EXPECT_LT(std::abs(certificate.exact->volume_error), 1.2e-3) << name;
+        EXPECT_EQ(mesh.patch_names.size(), shape.protrusion ? 3u : 2u);
+    }
+}
+
+TEST(Family, HasTheBaseOutlinesOfTheCfd) {
+    const Box rectangle = bounding_box(patch_of(made(shipped("rectangle")), "base"));
+    EXPECT_NEAR(rectangle.upper.x, 0.047519, 1e-6);
+    EXPECT_NEAR(rectangle.upper.y, 0.035546, 1e-6);
+    const Box front = bounding_box(patch_of(made(shipped("ellipse_front")), "base"));
+    EXPECT_NEAR(front.upper.x, 0.067202, 1e-6);
+    EXPECT_NEAR(front.lower.x, -0.047519, 1e-6);
+    EXPECT_NEAR(front.upper.y, 0.035546, 1e-6);
+    EXPECT_NEAR(bounding_box(made(shipped("ellipse_front_bump2"))).lower.z, -0.002, 1e-7);
+}
+
+TEST(Family, ConvergesToTheExactShapeAtSecondOrder) {
+    BodyShape shape = shipped("ellipse_front_bump2");
+    shape.edge_radius = 0.004;
+    shape.protrusion->blend_radius = 0.003;
+    shape.nozzle = Nozzle{0.005, 0.5, 0.01};
+    shape.taper = 0.1;
+    shape.base_pitch = 1.5 * degree;
+    const Certificate coarse = certify(made(shape, 20000), shape), fine = certify(made(shape, 80000), shape);
+    EXPECT_TRUE(coarse.passed());
+    EXPECT_TRUE(fine.passed());
+    EXPECT_NEAR(std::log2(coarse.exact->distance_rms / fine.exact->distance_rms), 2.3, 0.7);
+    EXPECT_NEAR(std::log2(std::abs(coarse.exact->volume_error / fine.exact->volume_error)), 2.3, 0.7);
+}
+
+TEST(Family, KeepsTheBaseFlatAndAtItsPitch) {
+    BodyShape shape = shipped("rectangle");
+    shape.base_pitch = 3 * degree;
+    shape.edge_radius = 0.002;
+    const SurfaceMesh mesh = made(shape), base = patch_of(mesh, "base");
+    for (const Vec3& p : base.points) {
+        EXPECT_NEAR(p.z, p.x * std::tan(shape.base_pitch), 1e-12);
+    }
+    EXPECT_NEAR(bounding_box(mesh).upper.z, 0.0725 * 1.75, 1e-9) << "the upper half stays";
+}
+
+TEST(Family, TaperMovesNoVolumeOfABodyLikeForeAndAft) {
+    BodyShape shape = shipped("ellipse");
+    const double straight = certify(made(shape, 1000), shape).exact->volume;
+    shape.taper = 0.3;
+    EXPECT_NEAR(certify(made(shape, 1000), shape).exact->volume, straight, 1e-9 * straight);
+    shape.base_pitch = 3 * degree;
+    EXPECT_NE(certify(made(shape, 1000), shape).exact->volume, straight);
+}
+
+TEST(Family, RoundsTheEdgeWithTheRadiusAsked) {
+    // A body of revolution: the rounding is a torus about the axis, whose volume is known by Pappus.
+    BodyShape shape;
+    shape.length = shape.width = shape.height = 0.2;
+    shape.base_cut = 0.6;
+    const double sharp = certify(made(shape, 1000), shape).exact->volume;
+    shape.edge_radius = 0.01;
+    const double round = certify(made(shape, 1000), shape).exact->volume;
+    // In the half plane: sphere of radius R = 0.1, base at depth 0.06; the ball's centre lies at depth 0.05, 0.09 from
+    // the centre.
+    const double depth = 0.06, r = 0.01, radius = 0.1, x = std::sqrt(0.09 * 0.09 - 0.05 * 0.05);
+    double lost = 0;
+    const int n = 200000;
+    for (int i = 0; i < n; ++i) {
+        const double u = (i + 0.5) / n * (depth - 0.05 * radius / 0.09);
+        const double outer = std::sqrt(radius * radius - (depth - u) * (depth - u)),
+                     inner = x + std::sqrt(u * (2 * r - u));
+        lost += std::numbers::pi * (outer * outer - inner * inner) * (depth - 0.05 * radius / 0.09) / n;
+    }
+    EXPECT_NEAR((sharp - round) / lost, 1, 1e-5);
+}
+
+// Random valid and invalid shapes -----------------------------------------------------------------------------------
+
+BodyShape random_shape(core::Random& random) {
+    BodyShape s;
+    s.length = random.uniform(0.05, 1);
+    s.width = s.length * random.uniform(0.5, 1.2);
+    s.height = s.length * random.uniform(0.4, 1.1);
+    s.base_cut = random.uniform(0.3, 0.95);
+    s.base = static_cast<BaseKind>(random.below(3));
+    const double scale = std::sqrt(1 - s.base_cut * s.base_cut);
+    if (s.base != BaseKind::ellipse && random.below(2) == 0) {
+        s.base_length = scale * s.length * random.uniform(0.4, 0.9);
+        s.base_width = scale * s.width * random.uniform(0.4, 0.9);
+    }
+    if (random.below(2) == 0) {
+        s.edge_radius = s.base_depth() * random.uniform(0.01, 0.4);
+    }
+    if (random.below(3) == 0) {
+        s.taper = random.uniform(-0.4, 0.4);
+    }
+    if (random.below(3) == 0) {
+        s.base_pitch = random.uniform(-4, 4) * degree;
+    }
+    const BodyShape::BaseExtent extent = s.base_extent();
+    const double base = extent.nose - extent.tail;
+    if (random.below(2) == 0) {
+        Protrusion p;
+        p.position = random.uniform(0.15, 0.9);
+        p.length = base * random.uniform(0.03, 0.2);
+        p.height = p.length * random.uniform(0.05, 0.4);
+        p.profile = static_cast<ProtrusionProfile>(random.below(2));
+        p.blend_radius = random.below(2) == 0 ? 0 : p.length * random.uniform(0.05, 0.5);
+        s.protrusion = p;
+    }
+    if (random.below(3) == 0) {
+        Nozzle n;
+        n.diameter = base * random.uniform(0.01, 0.08);
+        n.position = random.uniform(0.2, 0.8);
+        n.depth = random.below(2) == 0 ? 0 : s.base_depth() * random.uniform(0.02, 0.5);
+        s.nozzle = n;
+    }
+    return s;
+}
+
+std::size_t fuzz_count(std::size_t usual) {
+    const char* wanted = std::getenv("UNDERBODY_LONG_RUN");
+    return wanted != nullptr && std::string(wanted) != "0" ? 2000 : usual;
+}
+
+TEST(ShapeFuzz, EveryValidShapeIsCertified) {
+    const std::size_t count = fuzz_count(60);
+    core::Random random(20251121);
+    std::size_t made_ones = 0, refused = 0;
+    for (; made_ones < count;) {
+        const BodyShape shape = random_shape(random);
+        try {
+            check(shape);
+        } catch (const core::InputError& error) {
+            ASSERT_EQ(error.kind(), "range");
+            ASSERT_FALSE(error.hint().empty());
+            ++refused;
+            ASSERT_LT(refused, 5 * count + 100);
+            continue;
+        }
+        ++made_ones;
+        const Certificate certificate = certify(made(shape, 3000), shape);
+        ASSERT_TRUE(certificate.passed()) << certificate.faults.front().what << "\n" << write_shape(shape);
+        EXPECT_GT(certificate.smallest_angle, 1.0 * degree) << write_shape(shape);
+        EXPECT_LT(std::abs(certificate.exact->volume_error), 0.03) << write_shape(shape);
+    }
+    RecordProperty("certified", static_cast<int>(made_ones));
+}
+
+// Breaks one number of a good shape.
+std::string spoil(BodyShape& s, core::Random& random) {
+    const double bad = random.below(2) == 0 ? 0.0 : -random.uniform(0.001, 1);
+    if (!s.protrusion) {
+        s.protrusion = Protrusion{};
+    }
+    if (!s.nozzle) {
+        s.nozzle = Nozzle{};
+    }
+    switch (random.below(14)) {
+        case 0:
+            s.length = bad;
+            return "length";
+        case 1:
+            s.width = bad;
+            return "width";
+        case 2:
+            s.height = bad;
+            return "height";
+        case 3:
+            s.base_cut = random.below(2) == 0 ? random.uniform(1, 5) : bad;
+            return "base_cut";
+        case 4:
+            s.base = BaseKind::rectangle;
+            s.base_length = s.length * random.uniform(1, 3);
+            return "base_length";
+        case 5:
+            s.base = BaseKind::rectangle;
+            s.base_width = s.width * random.uniform(1, 3);
+            return "base_width";
+        case 6:
+            s.edge_radius = s.height * random.uniform(0.6, 3);
+            return "edge_radius";
+        case 7:
+            s.taper = random.uniform(1, 3);
+            return "taper";
+        case 8:
+            s.base_pitch = random.uniform(20, 80) * degree;
+            return "base_pitch";
+        case 9:
+            s.protrusion->position = random.below(2) == 0 ? random.uniform(1, 3) : -random.uniform(0.01, 2);
+            return "position";
+        case 10:
+            s.protrusion->height = bad;
+            return "height";
+        case 11:
+            s.protrusion->length = s.length * random.uniform(1, 3);
+            return "length";
+        case 12:
+            s.nozzle->diameter = s.length * random.uniform(1, 2);
+            return "diameter";
+        default:
+            s.nozzle->depth = s.height * random.uniform(1, 2);
+            return "depth";
+    }
+}
+
+TEST(ShapeFuzz, EveryInvalidShapeIsRefusedWithAReason) {
+    const std::size_t count = fuzz_count(300);
+    core::Random random(4);
+    for (std::size_t i = 0; i < count; ++i) {
+        BodyShape shape = random_shape(random);
+        spoil(shape, random);
+        try {
+            make_surface(shape);
+            ADD_FAILURE() << "made from\n" << write_shape(shape);
+        } catch (const core::InputError& error) {
+            EXPECT_EQ(error.kind(), "range");
+            EXPECT_THAT(error.hint(), testing::HasSubstr("nearest allowed value")) << error.what();
+        }
+    }
+}
+
+TEST(Certificate, FindsAnOpenEdgeAndItsPlace) {
+    SurfaceMesh mesh = made(shipped("ellipse"), 1000);
+    const Vec3 hole = mesh.centre(100);
+    mesh.triangles.erase(mesh.triangles.begin() + 100);
+    mesh.patch.erase(mesh.patch.begin() + 100);
+    const Certificate certificate = certify(mesh);
+    EXPECT_FALSE(certificate.closed);
+    EXPECT_LT(distance(certificate.faults.front().where, hole), 0.01);
+    EXPECT_THROW(require(certificate, "body"), core::InputError);
+}
+
+TEST(Certificate, FindsTrianglesThatRunThroughEachOther) {
+    SurfaceMesh mesh = made(shipped("ellipse"), 1000);
+    // Push one point of the top through the base.
+    for (Vec3& p : mesh.points) {
+        if (p.x == 0 && p.y == 0 && p.z > 0.1) {
+            p.z = -0.01;
+        }
+    }
+    const Certificate certificate = certify(mesh);
+    EXPECT_TRUE(certificate.closed);
+    EXPECT_FALSE(certificate.self_intersection_free);
+    EXPECT_NEAR(certificate.faults.front().where.z, 0, 0.08);
+}
+
+TEST(Certificate, FindsAFoldAndASurfaceInsideOut) {
+    SurfaceMesh mesh = made(shipped("ellipse"), 1000);
+    SurfaceMesh folded = mesh;
+    for (std::size_t i = 0; i < folded.triangles.size(); ++i) {
+        if (folded.patch_names[static_cast<std::size_t>(folded.patch[i])] == "base" && folded.centre(i).x > 0.03) {
+            // an inner point of the base beyond its neighbours, in the plane
+            folded.points[static_cast<std::size_t>(folded.triangles[i][0])].x += 0.03;
+            break;
+        }
+    }
+    EXPECT_FALSE(certify(folded).self_intersection_free);
+    for (Triangle& t : mesh.triangles) {
+        std::swap(t[1], t[2]);
+    }
+    EXPECT_FALSE(certify(mesh).oriented);
+    EXPECT_EQ(certify(mesh).faults.front().what, "inside out");
+}
+
+TEST(Family, TellsEqualShapesFromDifferentOnes) {
+    BodyShape a = shipped("rectangle_bump2"), b = a;
+    b.name = "other";
+    b.length = 8 * 0.0254;  // 8 in = 203.2 mm, other last bits
+    b.base_length = 0.2032 * std::sqrt(1 - 0.75 * 0.75) / std::numbers::sqrt2;
+    EXPECT_EQ(shape_hash(a), shape_hash(b));
+    b.protrusion->height = 0.00201;
+    EXPECT_NE(shape_hash(a), shape_hash(b));
+}
+
+}  // namespace
+}  // namespace underbody::geometry
