@@ -16,7 +16,7 @@ class Equation {
 public:
     Equation(const HeaveRecord& record, const HeaveExplanation& explanation)
         : terms_(explanation.terms), curve_(record.plant->lift_curve()), flexible_(explanation.flexible),
-          gain_(explanation.lift_gain * record.lift_factor),
+          gain_(explanation.lift_gain * record.lift_factor), held_(record.plant->held()),
           rough_(terms_.rough_near != 0 || terms_.rough_far != 0), history_(terms_.history != 0) {
         for (double& memory : memory_) {
             memory = 0;
@@ -93,6 +93,18 @@ public:
         if (flexible_ != nullptr) {
             force += (*flexible_)(h, w, t, u);
         }
+        for (const auto& correction : terms_.corrections) {
+            double point[tables::max_axes] = {};
+            for (std::size_t i = 0; i < correction.axes.size(); ++i) {
+                const dynamics::Channel channel = correction.axes[i];
+                point[i] = channel == dynamics::Channel::gap              ? h
+                           : channel == dynamics::Channel::heave_velocity ? w
+                           : channel == dynamics::Channel::time           ? t
+                           : channel == dynamics::Channel::input_force    ? u
+                                                                          : held_.get(channel, 0);
+            }
+            force += correction.table.value(point);
+        }
         double mass_slope = 0;
         double mass = inertia(h, mass_slope);
         force -= 0.5 * mass_slope * w * w;
@@ -145,6 +157,7 @@ private:
     const dynamics::Curve& curve_;
     const FlexibleForce* flexible_;
     double gain_;
+    const dynamics::Conditions& held_;
     bool rough_;
     bool history_;
     double memory_[dynamics::history_states];
@@ -194,60 +207,70 @@ double FlexibleForce::operator()(double h, double w, double t, double u) const {
     return sum;
 }
 
-void transform_input(const HeaveRecord& record, const dynamics::HeaveTerms& terms, std::vector<double>& input) {
+void transform_input(const HeaveRecord& record, const HeaveExplanation& explanation, std::vector<double>& input) {
+    const dynamics::HeaveTerms& terms = explanation.terms;
     const std::vector<double>& time = record.raw_time;
-    const std::vector<double>* source = &record.raw_input;
-    std::vector<double> felt;
-    const auto interpolate = [&](const std::vector<double>& values, double t, std::size_t& at) {
-        if (t <= time.front()) {
-            return values.front();
+    const std::size_t n = time.size();
+    std::vector<double> felt = record.raw_input;
+    if (terms.input_dead_zone != 0 || terms.input_gain != 1) {
+        for (double& u : felt) {
+            u = terms.input_gain * std::copysign(std::max(0.0, std::abs(u) - terms.input_dead_zone), u);
         }
-        while (at + 2 < time.size() && time[at + 1] < t) {
+    }
+    // the integral of what the body feels, exact for an input held or linear between samples
+    std::vector<double> integral(n, 0);
+    double lagged = felt.front();
+    for (std::size_t i = 1; i < n; ++i) {
+        const double dt = time[i] - time[i - 1];
+        const double area = dt * (explanation.hold ? felt[i - 1] : 0.5 * (felt[i - 1] + felt[i]));
+        double out = area;
+        if (terms.input_lag > 0) {
+            // area of the lagged signal = area of the input - time constant * growth of the lagged signal
+            const double a = dt / terms.input_lag;
+            const double decay = std::exp(-a);
+            const double ramp = a > 1e-6 ? (1 - decay) / a : 1 - 0.5 * a;
+            const double before = lagged;
+            lagged = explanation.hold ? lagged * decay + felt[i - 1] * (1 - decay)
+                                      : lagged * decay + felt[i] - felt[i - 1] * decay - (felt[i] - felt[i - 1]) * ramp;
+            out = area - terms.input_lag * (lagged - before);
+        }
+        integral[i] = integral[i - 1] + out;
+    }
+    const bool lag = terms.input_lag > 0;
+    std::size_t at = 0;
+    const auto integral_at = [&](double t) {
+        if (t <= time.front()) {
+            return (t - time.front()) * felt.front();
+        }
+        if (t >= time.back()) {
+            return integral.back() + (t - time.back()) * (lag ? lagged : felt.back());
+        }
+        while (at + 2 < n && time[at + 1] < t) {
             ++at;
         }
-        if (t >= time[at + 1]) {
-            return values[at + 1];
+        const double dt = time[at + 1] - time[at];
+        const double part = t - time[at];
+        if (lag || explanation.hold) {
+            return integral[at] + (integral[at + 1] - integral[at]) * part / dt;
         }
-        return values[at] + (values[at + 1] - values[at]) * (t - time[at]) / (time[at + 1] - time[at]);
+        return integral[at] + part * (felt[at] + 0.5 * (felt[at + 1] - felt[at]) * part / dt);
     };
-    double delay = terms.input_delay;
-    if (terms.input_dead_zone != 0 || terms.input_gain != 1 || terms.input_lag > 0) {
-        felt.resize(time.size());
-        std::size_t at = 0;
-        for (std::size_t i = 0; i < time.size(); ++i) {
-            const double u = delay > 0 ? interpolate(record.raw_input, time[i] - delay, at) : record.raw_input[i];
-            felt[i] = terms.input_gain * std::copysign(std::max(0.0, std::abs(u) - terms.input_dead_zone), u);
-        }
-        delay = 0;
-        if (terms.input_lag > 0) {
-            double y = felt.front();
-            double before = felt.front();
-            for (std::size_t i = 1; i < felt.size(); ++i) {
-                // exact for an input that is linear between samples
-                const double a = (time[i] - time[i - 1]) / terms.input_lag;
-                const double decay = std::exp(-a);
-                const double ramp = a > 1e-6 ? (1 - decay) / a : 1 - 0.5 * a;
-                const double now = felt[i];
-                y = y * decay + now - before * decay - (now - before) * ramp;
-                before = now;
-                felt[i] = y;
-            }
-        }
-        source = &felt;
-    }
     input.resize(record.time.size());
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < input.size(); ++k) {
-        input[k] = interpolate(*source, record.time[k] - delay, at);
+    double before = integral_at(record.time.front() - terms.input_delay);
+    input[0] = felt.front();
+    for (std::size_t k = 1; k < input.size(); ++k) {
+        const double now = integral_at(record.time[k] - terms.input_delay);
+        input[k] = (now - before) / (record.time[k] - record.time[k - 1]);
+        before = now;
     }
 }
 
 double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
-                          std::vector<double>& innovations) {
+                          std::vector<double>& innovations, std::vector<double>* states) {
     Equation equation(record, explanation);
     const dynamics::HeaveTerms& terms = explanation.terms;
     std::vector<double> input;
-    transform_input(record, terms, input);
+    transform_input(record, explanation, input);
     double h = 0;
     double w = 0;
     first_guess(record, h, w);
@@ -285,9 +308,8 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
             const int parts = static_cast<int>(std::ceil(rest / longest_step));
             const double dt = rest / parts;
             for (int part = 0; part < parts; ++part) {
-                const double share = static_cast<double>(part) / parts;
-                const double u0 = input[k - 1] + (input[k] - input[k - 1]) * share;
-                const double u1 = input[k - 1] + (input[k] - input[k - 1]) * (share + 1.0 / parts);
+                const double u0 = input[k];
+                const double u1 = input[k];
                 double slope_h = 0;
                 double slope_w = 0;
                 const double variance = p.ww;
@@ -340,6 +362,10 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
                 innovations.push_back(0);
             }
         }
+        if (states != nullptr) {
+            states->push_back(h);
+            states->push_back(w);
+        }
     }
     return log_determinant;
 }
@@ -350,7 +376,7 @@ SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation&
     using Matrix = std::array<double, 9>;
     Equation equation(record, explanation);
     std::vector<double> input;
-    transform_input(record, explanation.terms, input);
+    transform_input(record, explanation, input);
     const std::size_t n = record.time.size();
     std::vector<Vector> predicted(n), filtered(n);
     std::vector<Matrix> predicted_p(n), filtered_p(n), transition(n);
@@ -385,8 +411,8 @@ SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation&
             for (int part = 0; part < parts; ++part) {
                 const double share = static_cast<double>(part) / parts;
                 const double t = record.time[k - 1] + rest * share;
-                const double u0 = input[k - 1] + (input[k] - input[k - 1]) * share + x[2];
-                const double u1 = input[k - 1] + (input[k] - input[k - 1]) * (share + 1.0 / parts) + x[2];
+                const double u0 = input[k] + x[2];
+                const double u1 = u0;
                 double slope_h = 0;
                 double slope_w = 0;
                 double mass_slope = 0;
@@ -535,8 +561,7 @@ void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, co
         const int parts = static_cast<int>(std::ceil(rest / longest_step));
         for (int part = 0; part < parts; ++part) {
             const double share = static_cast<double>(part) / parts;
-            equation.advance(record.time[k - 1] + rest * share, rest / parts, input[k - 1] + (input[k] - input[k - 1]) * share,
-                             input[k - 1] + (input[k] - input[k - 1]) * (share + 1.0 / parts), 0, h, w);
+            equation.advance(record.time[k - 1] + rest * share, rest / parts, input[k], input[k], 0, h, w);
         }
         predicted.push_back(reading(k));
     }

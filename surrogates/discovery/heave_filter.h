@@ -36,15 +36,17 @@ struct HeaveExplanation {
     dynamics::HeaveTerms terms;          ///< of the model with the hypothesis' effects (its sources are not used)
     double lift_gain = 1;                ///< further factor on the lift table
     const FlexibleForce* flexible = nullptr;
+    bool hold = true;                    ///< the recorded input is held from sample to sample (digital controller); else linear between
 };
 
-/// Recorded input as the body feels it (delay, dead zone, gain, lag), at the record's times.
-void transform_input(const HeaveRecord& record, const dynamics::HeaveTerms& terms, std::vector<double>& input);
+/// Recorded input as the body feels it (delay, dead zone, gain, lag): input[k] is its mean from the record's time k-1 to k.
+void transform_input(const HeaveRecord& record, const HeaveExplanation& explanation, std::vector<double>& input);
 
 /// Runs the filter over one record. Appends the normalised innovations (gap, then velocity when measured, of each step; 0 where
 /// there was no reading, so that the length never changes) and returns sum log S of the readings there were.
+/// `states`, when given, gets the filtered (gap, velocity) of each step, one after the other.
 double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
-                          std::vector<double>& innovations);
+                          std::vector<double>& innovations, std::vector<double>* states = nullptr);
 
 /// Smoothed states of one record (Rauch, Tung and Striebel 1965), with a residual force that walks at random:
 /// what force must be added to the model for the motion that was seen.

@@ -98,7 +98,7 @@ void average(const std::vector<double>& time, const std::vector<double>& values,
     }
 }
 
-/// Groups readings into steps; a gap in time begins a new step. Fills times and returns each reading's step.
+/// Groups readings into steps; a gap in time gets empty steps. Fills times and returns each reading's step.
 std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector<double>& step_time) {
     std::vector<std::size_t> step_of(time.size());
     std::vector<double> sum;
@@ -106,6 +106,14 @@ std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector
     double begin = -1e300;
     for (std::size_t i = 0; i < time.size(); ++i) {
         if (time[i] - begin >= record_step * (1 - 1e-6)) {
+            if (i > 0 && time[i] - time[i - 1] > 2 * record_step) {
+                const double gap = time[i] - time[i - 1];
+                const auto empty = static_cast<std::size_t>(gap / record_step) - 1;
+                for (std::size_t k = 1; k <= empty; ++k) {
+                    sum.push_back(time[i - 1] + gap * static_cast<double>(k) / static_cast<double>(empty + 1));
+                    count.push_back(1);
+                }
+            }
             begin = time[i];
             sum.push_back(0);
             count.push_back(0);

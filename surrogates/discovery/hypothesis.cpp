@@ -149,6 +149,57 @@ std::vector<Hypothesis> static_hypotheses(const std::vector<Channel>& varying, c
     return list;
 }
 
+std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool /*velocity_measured*/) {
+    std::vector<Hypothesis> list;
+    for (const dynamics::Effect* effect : dynamics::effects()) {
+        const dynamics::EffectInfo& info = effect->info();
+        if (info.seen_in == dynamics::SeenIn::static_set || info.takes_table || info.takes_parameter) {
+            continue;
+        }
+        Hypothesis hypothesis = make(info, {""}, "");
+        hypothesis.starts.clear();
+        const auto start = [&](const std::vector<std::vector<double>>& values) { hypothesis.starts = values; };
+        if (info.name == "gap_dependent_added_mass") {
+            start({{0.5, 0.02}, {0.5, 0.06}, {0.5, 0.2}});
+        } else if (info.name == "surface_roughness") {
+            start({{0.1, 0.1, 0.03}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.3}});
+        } else if (info.name == "tether_stiffness") {
+            start({{0.03, 0.1}});
+        } else if (info.name != "periodic_disturbance") {  // its starts come from a scan over frequency
+            start({{}});
+            for (const FitParameter& p : hypothesis.parameters) {
+                hypothesis.starts.front().push_back(std::min(p.start + 0.3 * p.typical, p.upper));
+            }
+        }
+        list.push_back(std::move(hypothesis));
+    }
+    std::size_t sources = 0;
+    std::size_t which = 0;
+    for (std::size_t k = 0; k < model.forces.size(); ++k) {
+        if (model.forces[k].quantity == "lift_force") {
+            ++sources;
+            which = k;
+        }
+    }
+    if (sources == 1) {
+        // the scale of the force table is the declared number that has no name of its own in the catalogue
+        Hypothesis hypothesis;
+        hypothesis.names = {"declared_parameter"};
+        dynamics::EffectUse use = dynamics::neutral_use("declared_parameter");
+        use.parameter = "force." + std::to_string(which + 1) + ".factor";
+        const double declared = model.forces[which].factor;
+        use.values[0] = declared;
+        hypothesis.form = use.parameter;
+        hypothesis.uses = {use};
+        hypothesis.parameters = {{"value", "1", 0.05 * declared, 20 * declared, declared, 0.1 * declared}};
+        hypothesis.slots = {{0, 0}};
+        hypothesis.starts = {{1.02 * declared}};
+        hypothesis.depends_on = {"gap"};
+        list.push_back(std::move(hypothesis));
+    }
+    return list;
+}
+
 Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b) {
     Hypothesis both = a;
     for (std::size_t j = 0; j < both.parameters.size(); ++j) {

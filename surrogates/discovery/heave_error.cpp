@@ -1,0 +1,145 @@
+#include "surrogates/discovery/heave_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/region.h"
+
+namespace underbody::discovery {
+
+void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                    double horizon, std::vector<double>& sum_of_squares, std::vector<double>& counts) {
+    const std::vector<std::size_t>& chosen = experiment.chosen();
+    sum_of_squares.assign(chosen.size(), 0);
+    counts.assign(chosen.size(), 0);
+    std::vector<double> innovations, states, input, predicted;
+    // `unknown` comes as a table: the smooth force it was made from is gone by then, so the table itself is used
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+        const HeaveRecord& record = experiment.records().records[chosen[c]];
+        const HeaveExplanation explanation = experiment.explanation(chosen[c], uses);
+        innovations.clear();
+        states.clear();
+        filter_innovations(record, explanation, noise, innovations, &states);
+        transform_input(record, explanation, input);
+        const std::size_t n = record.time.size();
+        std::size_t first = 0;
+        while (first < n && record.time[first] - record.time.front() < 1) {
+            ++first;   // a second for the filter to find the state
+        }
+        while (first + 2 < n) {
+            std::size_t last = first;
+            while (last + 1 < n && record.time[last + 1] - record.time[first] <= horizon) {
+                ++last;
+            }
+            if (last < first + 2) {
+                break;
+            }
+            free_run(record, explanation, input, first, last, states[2 * first], states[2 * first + 1], predicted);
+            for (std::size_t k = first + 1; k <= last; ++k) {
+                if (std::isfinite(record.gap[k])) {
+                    // the average of m readings carries 1/m of their variance: the rest is put back, so that the figure is one of readings
+                    const double share = record.gap_share[k] * record.gap_share[k];
+                    const double difference = record.gap[k] - predicted[k - first];
+                    sum_of_squares[c] += difference * difference + (1 - share) * noise.gap * noise.gap;
+                    counts[c] += 1;
+                }
+            }
+            first = last;
+        }
+    }
+}
+
+dynamics::EffectUse force_table(const FlexibleForce& force) {
+    const std::size_t variables = force.variables.size();
+    const std::size_t each = variables == 1 ? 49 : 25;
+    std::size_t count = 1;
+    for (std::size_t v = 0; v < variables; ++v) {
+        count *= each;
+    }
+    std::vector<std::vector<double>> grid(variables, std::vector<double>(count));
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::size_t rest = i;
+        double point[4] = {0, 0, 0, 0};
+        for (std::size_t v = 0; v < variables; ++v) {
+            const double x = force.lower[v] + (force.upper[v] - force.lower[v]) * static_cast<double>(rest % each) / static_cast<double>(each - 1);
+            grid[v][i] = x;
+            rest /= each;
+            point[static_cast<std::size_t>(force.variables[v])] = x;
+        }
+        values[i] = force(point[0], point[1], point[2], point[3]);
+    }
+    core::Table table;
+    table.source = "correction-lift_force.csv";
+    for (std::size_t v = 0; v < variables; ++v) {
+        const char* name = variable_name(force.variables[v]);
+        table.add_numbers(name, core::find_quantity(name)->unit, grid[v]);
+    }
+    table.add_numbers("lift_force", "N", values);
+    dynamics::EffectUse use = dynamics::neutral_use("unknown");
+    use.quantity = "lift_force";
+    use.table = tables::ForceTable::fit(table, "lift_force");
+    use.table_file = table.source;
+    return use;
+}
+
+Consequence heave_consequence(const dynamics::Model& before, const dynamics::Model& after, const HeaveRecords& records,
+                              core::Progress& progress) {
+    Consequence result;
+    const dynamics::Conditions held = records.records.front().plant->held();
+    try {
+        const dynamics::HeavePlant old_plant(before, held);
+        const dynamics::HeavePlant new_plant(after, held);
+        const std::vector<dynamics::HeaveEquilibrium> old_list = dynamics::heave_equilibria(old_plant);
+        std::vector<dynamics::HeaveEquilibrium> new_list = dynamics::heave_equilibria(new_plant);
+        for (const dynamics::HeaveEquilibrium& one : old_list) {
+            EquilibriumPair pair{one.name, one.stable, one.gap, std::nan("")};
+            const auto nearest = std::min_element(new_list.begin(), new_list.end(), [&](const auto& a, const auto& b) {
+                return std::abs(a.gap - one.gap) + (a.stable != one.stable) * 1e3 < std::abs(b.gap - one.gap) + (b.stable != one.stable) * 1e3;
+            });
+            if (nearest != new_list.end() && nearest->stable == one.stable) {
+                pair.gap_after = nearest->gap;
+                new_list.erase(nearest);
+            }
+            result.equilibria.push_back(pair);
+        }
+        for (const dynamics::HeaveEquilibrium& one : new_list) {
+            result.equilibria.push_back({one.name, one.stable, std::nan(""), one.gap});
+        }
+        double low = 1e300, high = -1e300;
+        for (const HeaveRecord& record : records.records) {
+            for (const double gap : record.gap) {
+                if (std::isfinite(gap)) {
+                    low = std::min(low, gap);
+                    high = std::max(high, gap);
+                }
+            }
+        }
+        dynamics::RegionOptions options;
+        options.axes = {{"gap", std::max(low, 1e-3), std::max(high, 2e-3)}, {"heave_velocity", -0.1, 0.1}};
+        options.columns = options.rows = 40;
+        options.refine = false;
+        options.held = held;
+        const auto shares = [&](const dynamics::Model& model) {
+            std::map<std::string, double> fractions;
+            for (const dynamics::EndClass& one : dynamics::stability_region(model, options, progress).classes) {
+                fractions[one.name] = one.fraction;
+            }
+            return fractions;
+        };
+        result.region_before = shares(before);
+        result.region_after = after.effects.size() == before.effects.size() && after.changed == before.changed ? result.region_before : shares(after);
+        result.text = "Free motion (no input force) from starts with gaps of " + core::format_number(1000 * options.axes[0].lower, 3) + " to " +
+                      core::format_number(1000 * options.axes[0].upper, 3) + " mm and velocities of -0.1 to 0.1 m/s.";
+    } catch (const core::Cancelled&) {
+        throw;
+    } catch (const core::Error& error) {
+        result.text = "The free motion could not be mapped: " + error.message();
+    }
+    return result;
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,89 @@
+// Heave runs against a model: likelihood of any hypothesis by the filter inside the loop, with the noise it needs.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "surrogates/discovery/attribution.h"
+#include "surrogates/discovery/heave_filter.h"
+#include "surrogates/discovery/heave_record.h"
+#include "surrogates/discovery/hypothesis.h"
+
+namespace underbody::discovery {
+
+class HeaveExperiment {
+public:
+    /// `chosen` are the records that may be used; the data set's declared noise is checked against the data.
+    HeaveExperiment(const dynamics::Model& model, const HeaveRecords& records, std::vector<std::size_t> chosen,
+                    std::optional<double> declared_gap_noise, std::optional<double> declared_velocity_noise);
+
+    [[nodiscard]] const HeaveNoise& noise() const { return noise_; }
+    void set_noise(const HeaveNoise& noise) { noise_ = noise; }
+    /// Whether the recorded input is held between samples (default) or linear.
+    [[nodiscard]] bool hold() const { return hold_; }
+    void set_hold(bool hold) { hold_ = hold; }
+    [[nodiscard]] const std::vector<std::size_t>& chosen() const { return chosen_; }
+    [[nodiscard]] const HeaveRecords& records() const { return records_; }
+    [[nodiscard]] const dynamics::Model& model() const { return model_; }
+    [[nodiscard]] const core::Problems& problems() const { return problems_; }
+    /// "declared" or what else, by channel.
+    [[nodiscard]] const std::string& gap_noise_from() const { return gap_from_; }
+    [[nodiscard]] const std::string& velocity_noise_from() const { return velocity_from_; }
+
+    /// The model of one record with further effects.
+    [[nodiscard]] HeaveExplanation explanation(std::size_t record, const std::vector<dynamics::EffectUse>& uses,
+                                               const FlexibleForce* flexible = nullptr) const;
+
+    /// -2 log likelihood; innovations of all chosen records one after the other, `by_record` its parts.
+    double evaluate(const std::vector<dynamics::EffectUse>& uses, const FlexibleForce* flexible, const HeaveNoise& noise,
+                    std::vector<double>& innovations, std::vector<double>* by_record = nullptr) const;
+
+    /// Process noise of greatest likelihood for these effects, starting from noise.process; the cost there.
+    double fit_process(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise) const;
+    /// White and coloured sensor noise as well. True if coloured noise was found to be there.
+    bool fit_noise(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise) const;
+
+    struct Result {
+        FittedHypothesis fitted;
+        HeaveNoise noise;
+    };
+    /// Best numbers, process noise lowered step by step from `begin` as long as that helps: the first steps are as tame as a
+    /// regression, the last as sharp as a simulation of the whole run.
+    [[nodiscard]] Result fit(const Hypothesis& hypothesis, const HeaveNoise& begin) const;
+
+    /// A smooth force over the variables on top of fixed effects; gain relative to `base_cost`.
+    struct Smooth {
+        SmoothFit fit;
+        FlexibleForce force;
+        HeaveNoise noise;
+    };
+    [[nodiscard]] Smooth fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
+                                    const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin, double base_cost) const;
+
+    /// Frequencies at which a periodic force would explain most, with amplitude and phase: starts for the hypothesis.
+    [[nodiscard]] std::vector<std::vector<double>> periodic_starts(const std::vector<dynamics::EffectUse>& uses,
+                                                                   const HeaveNoise& noise, std::size_t count) const;
+
+    /// Number of readings behind the likelihood.
+    [[nodiscard]] std::size_t readings() const;
+
+private:
+    const dynamics::Model& model_;
+    const HeaveRecords& records_;
+    std::vector<std::size_t> chosen_;
+    std::vector<dynamics::HeaveTerms> bare_;   ///< per record: terms without the sources' tables, cheap to copy
+    HeaveNoise noise_;
+    std::string gap_from_;
+    std::string velocity_from_;
+    core::Problems problems_;
+    double declared_factor_ = 1;
+    bool hold_ = true;
+};
+
+/// Names of variables as in interfaces.md.
+const char* variable_name(FlexibleForce::Variable variable);
+
+}  // namespace underbody::discovery
