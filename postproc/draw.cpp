@@ -4,7 +4,7 @@
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCoordinate.h>
+#include <vtkContourFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkLight.h>
 #include <vtkLookupTable.h>
@@ -44,7 +44,6 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
 Point unit(const Point& a) {
@@ -229,6 +228,10 @@ private:
             drawn = normals->GetOutput();
         }
         auto actor = actor_for(*drawn, !surface.values.empty(), surface.colour);
+        if (surface.contours > 0) {  // lines of equal value lie on top
+            actor->GetMapper()->SetResolveCoincidentTopologyToPolygonOffset();
+            actor->GetMapper()->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 2);
+        }
         auto* property = actor->GetProperty();
         property->SetOpacity(surface.opacity);
         property->SetAmbient(surface.values.empty() ? 0.25 : 0.42);
@@ -243,6 +246,31 @@ private:
         if (!surface.smooth) {
             property->LightingOff();
         }
+        if (surface.contours > 0 && !surface.values.empty()) {
+            add_contours(*data, surface.contours);
+        }
+    }
+
+    void add_contours(vtkPolyData& data, int count) {
+        vtkNew<vtkContourFilter> contours;
+        contours->SetInputData(&data);
+        int i = 0;
+        for (const double tick : round_ticks(range_.first, range_.second, count)) {
+            contours->SetValue(i++, tick);
+        }
+        contours->Update();
+        vtkNew<vtkPolyDataMapper> mapper;
+        mapper->SetInputData(contours->GetOutput());
+        mapper->ScalarVisibilityOff();
+        mapper->SetRelativeCoincidentTopologyLineOffsetParameters(-2, -2);
+        mapper->SetResolveCoincidentTopologyToPolygonOffset();
+        vtkNew<vtkActor> actor;
+        actor->SetMapper(mapper);
+        actor->GetProperty()->SetColor(0.12, 0.12, 0.12);
+        actor->GetProperty()->SetOpacity(0.45);
+        actor->GetProperty()->SetLineWidth(1.0F);
+        actor->GetProperty()->LightingOff();
+        main_->AddActor(actor);
     }
 
     void add(const DrawnLine& line) {
@@ -261,45 +289,46 @@ private:
         actor->GetProperty()->RenderLinesAsTubesOff();
     }
 
-    [[nodiscard]] std::array<double, 6> box() const {
+    /// What must be in the picture: the corners of the given box, or every point.
+    template <typename Act>
+    void for_points(Act&& act) const {
         if (scene_.camera.box) {
-            return *scene_.camera.box;
-        }
-        constexpr double far = std::numeric_limits<double>::infinity();
-        std::array<double, 6> b = {far, -far, far, -far, far, -far};
-        const auto widen = [&](const std::vector<Point>& points) {
-            for (const auto& p : points) {
-                for (std::size_t k = 0; k < 3; ++k) {
-                    b[2 * k] = std::min(b[2 * k], p[k]);
-                    b[2 * k + 1] = std::max(b[2 * k + 1], p[k]);
-                }
+            const auto& b = *scene_.camera.box;
+            for (std::size_t corner = 0; corner < 8; ++corner) {
+                act(Point{b[corner & 1], b[2 + ((corner >> 1) & 1)], b[4 + ((corner >> 2) & 1)]});
             }
-        };
+            return;
+        }
         for (const auto& surface : scene_.surfaces) {
-            widen(surface.points);
+            std::for_each(surface.points.begin(), surface.points.end(), act);
         }
         for (const auto& line : scene_.lines) {
-            widen(line.points);
+            std::for_each(line.points.begin(), line.points.end(), act);
         }
-        return b[0] <= b[1] ? b : std::array<double, 6>{-1, 1, -1, 1, -1, 1};
     }
 
     void place_camera() {
-        const auto b = box();
-        const Point centre = {0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5])};
-        double half_width = 0;
-        double half_height = 0;
-        double depth = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-            const Point p = minus({b[static_cast<std::size_t>(corner & 1)], b[static_cast<std::size_t>(2 + ((corner >> 1) & 1))], b[static_cast<std::size_t>(4 + ((corner >> 2) & 1))]}, centre);
-            half_width = std::max(half_width, std::abs(dot(p, axes_.right)));
-            half_height = std::max(half_height, std::abs(dot(p, axes_.up)));
-            depth = std::max(depth, std::abs(dot(p, axes_.back)));
+        constexpr double far = std::numeric_limits<double>::infinity();
+        std::array<double, 6> seen = {far, -far, far, -far, far, -far};  // along right, up, back
+        for_points([&](const Point& p) {
+            const Point q = {dot(p, axes_.right), dot(p, axes_.up), dot(p, axes_.back)};
+            for (std::size_t k = 0; k < 3; ++k) {
+                seen[2 * k] = std::min(seen[2 * k], q[k]);
+                seen[2 * k + 1] = std::max(seen[2 * k + 1], q[k]);
+            }
+        });
+        if (!(seen[0] <= seen[1])) {
+            seen = {-1, 1, -1, 1, -1, 1};
         }
-        // Room below for the scale bar and the axes.
-        constexpr double margin = 1.16;
-        scale_ = margin * std::max({half_height, half_width * height_ / width_, 1e-12}) / scene_.camera.zoom;
-        const double distance = scene_.camera.parallel ? 4 * (depth + scale_) : scale_ / std::tan(15 * std::atan(1.0) / 45) + depth;
+        const auto middle = [&](std::size_t k) { return 0.5 * (seen[2 * k] + seen[2 * k + 1]); };
+        const auto half = [&](std::size_t k) { return 0.5 * (seen[2 * k + 1] - seen[2 * k]); };
+        Point centre{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            centre[i] = middle(0) * axes_.right[i] + middle(1) * axes_.up[i] + middle(2) * axes_.back[i];
+        }
+        constexpr double margin = 1.16;  // room below for the scale bar and the axes
+        scale_ = margin * std::max({half(1), half(0) * height_ / width_, 1e-12}) / scene_.camera.zoom;
+        const double distance = scene_.camera.parallel ? 4 * (half(2) + scale_) : scale_ / std::tan(15 * std::atan(1.0) / 45) + half(2);
         auto* camera = main_->GetActiveCamera();
         camera->SetFocalPoint(centre.data());
         camera->SetPosition(centre[0] + distance * axes_.back[0], centre[1] + distance * axes_.back[1], centre[2] + distance * axes_.back[2]);
@@ -429,7 +458,7 @@ private:
 
     void draw_axes() {
         const double x = width_ - 74;
-        const double y = 62;
+        const double y = 80;
         const double length = 42;
         std::vector<Point> points = {{x, y, 0}};
         std::vector<std::vector<vtkIdType>> lines;

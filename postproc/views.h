@@ -22,7 +22,8 @@ struct DrawnSurface {
     std::array<double, 3> colour{0.72, 0.75, 0.78};
     double opacity = 1;
     bool edges = false;                         ///< draw the triangles' edges
-    bool smooth = true;                         ///< round shading over edges below 30 degrees
+    bool smooth = true;                         ///< round shading over edges below 30 degrees; false: flat colours, no light
+    int contours = 0;                           ///< about so many thin lines of equal value, at round values
 };
 
 /// A line to be drawn: streamlines, traces.
@@ -86,7 +87,7 @@ struct ViewOptions {
     double speed = 0;                        ///< m/s, for pressure coefficients in subtitles; 0: unknown
     int width = 1200;
     int height = 800;
-    /// Colour ranges to share between cases, by the array's name.
+    /// Colour ranges to share between cases, SI, by the view's name ("pressure-underbody") or the array's ("pressure").
     std::vector<std::pair<std::string, std::pair<double, double>>> ranges;
     /// Box to fit, file axes, to share between cases (see Camera::box).
     std::optional<std::array<double, 6>> box;
@@ -110,6 +111,11 @@ std::vector<std::string> possible_views(const Field& field, const ViewOptions& o
 
 /// One of them. Throws core::InputError with the nearest name.
 View view(const Field& field, const std::string& name, const ViewOptions& options = {}, core::Progress& progress = core::Progress::none());
+
+/// Colour ranges of all views of these fields together, and the box around all bodies: give both to every case's
+/// options and its pictures can be compared.
+ViewOptions shared_view_options(const std::vector<const Field*>& fields, const ViewOptions& options = {},
+                                core::Progress& progress = core::Progress::none());
 
 /// `b` minus `a` of an array on the body's surface, on the mesh of `b`; `a`, whatever its mesh, is interpolated there
 /// from its nearest faces. Diverging colours centred on zero. The caption says how far apart the surfaces lie.

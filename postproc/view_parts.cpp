@@ -1,0 +1,279 @@
+#include "postproc/view_parts.h"
+
+#include <vtkAppendFilter.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellDataToPointData.h>
+#include <vtkCutter.h>
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPlane.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkStreamTracer.h>
+#include <vtkTriangleFilter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "postproc/surface_arrays.h"
+
+namespace underbody::postproc {
+
+Box empty_box() {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    return {far, -far, far, -far, far, -far};
+}
+
+void widen(Box& box, const Point& point) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        box[2 * k] = std::min(box[2 * k], point[k]);
+        box[2 * k + 1] = std::max(box[2 * k + 1], point[k]);
+    }
+}
+
+void widen(Box& box, const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        box[2 * k] = std::min(box[2 * k], other[2 * k]);
+        box[2 * k + 1] = std::max(box[2 * k + 1], other[2 * k + 1]);
+    }
+}
+
+double diagonal(const Box& box) { return std::hypot(box[1] - box[0], box[3] - box[2], box[5] - box[4]); }
+
+std::vector<const Zone*> body_zones(const Field& field, const std::vector<std::string>& patterns) {
+    const bool walls = std::any_of(field.zones.begin(), field.zones.end(), [](const Zone& z) { return z.kind == ZoneKind::wall; });
+    std::vector<const Zone*> zones;
+    for (const auto& zone : field.zones) {
+        const bool surface = zone.surface != nullptr && zone.volume == nullptr && zone.surface->GetNumberOfPolys() > 0;
+        const bool by_kind = walls ? zone.kind == ZoneKind::wall : true;
+        if (surface && (patterns.empty() ? by_kind : matches_any(patterns, zone.name))) {
+            zones.push_back(&zone);
+        }
+    }
+    return zones;
+}
+
+namespace {
+
+double size_of(std::span<const double> values, std::size_t tuple, std::size_t components) {
+    if (components == 1) {
+        return values[tuple];
+    }
+    double square = 0;
+    for (std::size_t k = 0; k < components; ++k) {
+        square += values[tuple * components + k] * values[tuple * components + k];
+    }
+    return std::sqrt(square);
+}
+
+double face_area(const SurfaceArrays& surface, std::size_t face) {
+    const auto first = surface.offsets()[face];
+    const auto last = surface.offsets()[face + 1];
+    const auto point = [&](Index i) { return surface.points().data() + 3 * surface.connectivity()[static_cast<std::size_t>(i)]; };
+    double a[3] = {0, 0, 0};
+    for (Index i = first + 1; i + 1 < last; ++i) {
+        const double* o = point(first);
+        const double* p = point(i);
+        const double* q = point(i + 1);
+        const double u[3] = {p[0] - o[0], p[1] - o[1], p[2] - o[2]};
+        const double v[3] = {q[0] - o[0], q[1] - o[1], q[2] - o[2]};
+        a[0] += u[1] * v[2] - u[2] * v[1];
+        a[1] += u[2] * v[0] - u[0] * v[2];
+        a[2] += u[0] * v[1] - u[1] * v[0];
+    }
+    return 0.5 * std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+std::vector<double> point_values(const Zone& zone, const SurfaceArrays& surface, const std::string& name) {
+    std::vector<double> result;
+    std::vector<double> own;
+    if (auto* on_points = zone.surface->GetPointData()->GetArray(name.c_str())) {
+        const auto values = values_of(*on_points, own);
+        const auto components = static_cast<std::size_t>(on_points->GetNumberOfComponents());
+        for (std::size_t i = 0; i < surface.nodes(); ++i) {
+            result.push_back(size_of(values, i, components));
+        }
+    } else if (auto* on_faces = zone.surface->GetCellData()->GetArray(name.c_str())) {
+        const auto values = values_of(*on_faces, own);
+        const auto components = static_cast<std::size_t>(on_faces->GetNumberOfComponents());
+        // Cell data counts verts and lines before polygons.
+        const auto before = static_cast<std::size_t>(zone.surface->GetNumberOfVerts() + zone.surface->GetNumberOfLines());
+        result.assign(surface.nodes(), 0);
+        std::vector<double> weights(surface.nodes(), 0);
+        for (std::size_t f = 0; f < surface.faces(); ++f) {
+            const double area = face_area(surface, f);
+            const double value = size_of(values, before + f, components);
+            for (Index i = surface.offsets()[f]; i < surface.offsets()[f + 1]; ++i) {
+                const auto node = static_cast<std::size_t>(surface.connectivity()[static_cast<std::size_t>(i)]);
+                result[node] += area * value;
+                weights[node] += area;
+            }
+        }
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            result[i] = weights[i] > 0 ? result[i] / weights[i] : std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+DrawnSurface drawn_surface(const Zone& zone, const std::string& array) {
+    DrawnSurface drawn;
+    const SurfaceArrays surface(*zone.surface);
+    for (std::size_t i = 0; i < surface.nodes(); ++i) {
+        const double* p = surface.points().data() + 3 * i;
+        drawn.points.push_back({p[0], p[1], p[2]});
+    }
+    for (std::size_t f = 0; f < surface.faces(); ++f) {
+        const auto first = static_cast<std::size_t>(surface.offsets()[f]);
+        const auto last = static_cast<std::size_t>(surface.offsets()[f + 1]);
+        for (std::size_t i = first + 1; i + 1 < last; ++i) {
+            drawn.triangles.push_back({static_cast<int>(surface.connectivity()[first]), static_cast<int>(surface.connectivity()[i]),
+                                       static_cast<int>(surface.connectivity()[i + 1])});
+        }
+    }
+    if (!array.empty()) {
+        drawn.values = point_values(zone, surface, array);
+    }
+    return drawn;
+}
+
+void mirror_into(DrawnSurface& surface, const ViewMirror& mirror) {
+    if (mirror.axis < 0) {
+        return;
+    }
+    const auto k = static_cast<std::size_t>(mirror.axis);
+    const auto count = static_cast<int>(surface.points.size());
+    const std::size_t triangles = surface.triangles.size();
+    for (int i = 0; i < count; ++i) {
+        Point p = surface.points[static_cast<std::size_t>(i)];
+        p[k] = 2 * mirror.at - p[k];
+        surface.points.push_back(p);
+    }
+    for (std::size_t i = 0; i < triangles; ++i) {
+        const auto [a, b, c] = surface.triangles[i];
+        surface.triangles.push_back({a + count, c + count, b + count});
+    }
+    const std::size_t values = surface.values.size();
+    for (std::size_t i = 0; i < values; ++i) {
+        surface.values.push_back(surface.values[i]);
+    }
+}
+
+DrawnLine mirrored(const DrawnLine& line, const ViewMirror& mirror) {
+    DrawnLine other = line;
+    for (auto& p : other.points) {
+        p[static_cast<std::size_t>(mirror.axis)] = 2 * mirror.at - p[static_cast<std::size_t>(mirror.axis)];
+    }
+    return other;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::vector<std::string>& arrays) {
+    vtkNew<vtkAppendFilter> append;
+    bool some = false;
+    for (const auto& zone : field.zones) {
+        if (zone.volume == nullptr || zone.volume->GetNumberOfCells() == 0 || zone.kind == ZoneKind::solid) {
+            continue;
+        }
+        vtkNew<vtkUnstructuredGrid> slim;
+        slim->CopyStructure(zone.volume);
+        for (const auto& name : arrays) {
+            if (auto* on_points = zone.volume->GetPointData()->GetArray(name.c_str())) {
+                slim->GetPointData()->AddArray(on_points);
+            } else if (auto* on_cells = zone.volume->GetCellData()->GetArray(name.c_str())) {
+                slim->GetCellData()->AddArray(on_cells);
+            }
+        }
+        append->AddInputData(slim);
+        some = true;
+    }
+    if (!some) {
+        return nullptr;
+    }
+    vtkNew<vtkCellDataToPointData> to_points;
+    to_points->SetInputConnection(append->GetOutputPort());
+    to_points->PassCellDataOff();
+    to_points->Update();
+    auto result = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    result->ShallowCopy(to_points->GetOutput());
+    // What was on points already passes through as point data.
+    for (const auto& name : arrays) {
+        auto* passed = vtkDataSet::SafeDownCast(append->GetOutputDataObject(0))->GetPointData()->GetArray(name.c_str());
+        if (passed != nullptr && result->GetPointData()->GetArray(name.c_str()) == nullptr) {
+            result->GetPointData()->AddArray(passed);
+        }
+    }
+    return result;
+}
+
+DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point& normal, const std::string& array) {
+    vtkNew<vtkPlane> plane;
+    plane->SetOrigin(through.data());
+    plane->SetNormal(normal.data());
+    vtkNew<vtkCutter> cutter;
+    cutter->SetInputData(&volume);
+    cutter->SetCutFunction(plane);
+    cutter->GenerateTrianglesOn();
+    vtkNew<vtkTriangleFilter> triangles;
+    triangles->SetInputConnection(cutter->GetOutputPort());
+    triangles->PassLinesOff();
+    triangles->PassVertsOff();
+    triangles->Update();
+    Zone zone;
+    zone.surface = triangles->GetOutput();
+    DrawnSurface drawn;
+    if (zone.surface->GetNumberOfPolys() > 0) {
+        drawn = drawn_surface(zone, array);
+    }
+    drawn.smooth = false;
+    return drawn;
+}
+
+std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest) {
+    vtkNew<vtkPoints> points;
+    for (const auto& seed : seeds) {
+        points->InsertNextPoint(seed.data());
+    }
+    vtkNew<vtkPolyData> source;
+    source->SetPoints(points);
+    vtkNew<vtkUnstructuredGrid> with_vectors;
+    with_vectors->ShallowCopy(&volume);
+    with_vectors->GetPointData()->SetActiveVectors("velocity");
+    vtkNew<vtkStreamTracer> tracer;
+    tracer->SetInputData(with_vectors);
+    tracer->SetSourceData(source);
+    tracer->SetIntegratorTypeToRungeKutta45();
+    tracer->SetIntegrationDirectionToBoth();
+    tracer->SetMaximumPropagation(longest);
+    tracer->SetInitialIntegrationStep(0.3);
+    tracer->SetMaximumNumberOfSteps(4000);
+    tracer->SetTerminalSpeed(1e-5);
+    tracer->SetComputeVorticity(false);
+    tracer->Update();
+    vtkPolyData* traced = tracer->GetOutput();
+    auto* velocity = traced->GetPointData()->GetArray("velocity");
+    std::vector<DrawnLine> lines;
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType c = 0; velocity != nullptr && c < traced->GetNumberOfCells(); ++c) {
+        traced->GetCellPoints(c, ids);
+        DrawnLine line;
+        for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i) {
+            Point p{};
+            traced->GetPoint(ids->GetId(i), p.data());
+            double v[3];
+            velocity->GetTuple(ids->GetId(i), v);
+            line.points.push_back(p);
+            line.values.push_back(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+        }
+        if (line.points.size() > 1) {
+            lines.push_back(std::move(line));
+        }
+    }
+    return lines;
+}
+
+}  // namespace underbody::postproc

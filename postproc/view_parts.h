@@ -1,0 +1,51 @@
+// From fields to what is drawn: surfaces of the body, cuts through the volume, streamlines.
+#pragma once
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <string>
+#include <vector>
+
+#include "postproc/field.h"
+#include "postproc/views.h"
+
+namespace underbody::postproc {
+
+using Point = std::array<double, 3>;
+
+/// A mirror plane, or none (axis < 0).
+struct ViewMirror {
+    int axis = -1;
+    double at = 0;
+};
+
+/// Box of points: x0, x1, y0, y1, z0, z1; empty when x0 > x1.
+using Box = std::array<double, 6>;
+Box empty_box();
+void widen(Box& box, const Point& point);
+void widen(Box& box, const Box& other);
+double diagonal(const Box& box);
+
+/// The body's surface zones, as `loads` chooses them: patterns, else walls, else every surface with pressure.
+std::vector<const Zone*> body_zones(const Field& field, const std::vector<std::string>& patterns);
+
+/// A zone's polygons as triangles with the array's values at their points: node values as they are, face values averaged
+/// by area. Vectors give their size. Values are empty when the zone does not have the array.
+DrawnSurface drawn_surface(const Zone& zone, const std::string& array);
+
+/// The other half, put behind the first.
+void mirror_into(DrawnSurface& surface, const ViewMirror& mirror);
+DrawnLine mirrored(const DrawnLine& line, const ViewMirror& mirror);
+
+/// All volumes in one grid with the given arrays at the points; nullptr when the field has no volume with cells.
+vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::vector<std::string>& arrays);
+
+/// The grid cut by a plane, as triangles with values at their points.
+DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point& normal, const std::string& array);
+
+/// Streamlines of `velocity` (point data) through the seeds, both ways; values are speeds.
+std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest);
+
+}  // namespace underbody::postproc
