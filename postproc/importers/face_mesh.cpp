@@ -1,8 +1,8 @@
 #include "postproc/importers/face_mesh.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
-#include <unordered_map>
 
 namespace underbody::postproc {
 
@@ -111,6 +111,16 @@ ZoneKind kind_of_type(const std::string& type) {
 
 bool is_inner_code(int code) { return code == 2; }
 bool is_hidden_code(int code) { return code == 0x1f; }
+
+void hide_generated_faces(FaceMesh& mesh) {
+    const bool has_parents = std::any_of(mesh.face_blocks.begin(), mesh.face_blocks.end(),
+                                         [](const FaceBlock& block) { return block.kind == 0x18; });
+    for (const auto& block : mesh.face_blocks) {
+        if (has_parents && (block.kind == 0x3f0 || block.kind == 0x3f4) && block.count > 0) {
+            mesh.interface_children.push_back({block.first, block.first + block.count - 1});
+        }
+    }
+}
 
 void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress) {
     constexpr std::uint64_t most = 0x7fffffffULL;

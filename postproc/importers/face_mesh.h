@@ -96,6 +96,10 @@ ZoneKind kind_of_type(const std::string& type);
 bool is_inner_code(int code);
 bool is_hidden_code(int code);
 
+/// Faces that the solver made where two meshes meet lie on top of those that the cells were made with: no cell gets
+/// them.
+void hide_generated_faces(FaceMesh& mesh);
+
 /// Checks that ranges, node ids and cell ids are consistent; throws InputError that names zone and face.
 void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress);
 

@@ -568,14 +568,7 @@ void MeshReader::finish() {
                                    {mesh.file, {}, {}, {}});
         }
     }
-    // Generated faces of a mesh interface lie on top of the faces that the cells were made with.
-    const bool has_parents = std::any_of(mesh.face_blocks.begin(), mesh.face_blocks.end(),
-                                         [](const FaceBlock& block) { return block.kind == 0x18; });
-    for (const auto& block : mesh.face_blocks) {
-        if (has_parents && (block.kind == 0x3f0 || block.kind == 0x3f4) && block.count > 0) {
-            mesh.interface_children.push_back({block.first, block.first + block.count - 1});
-        }
-    }
+    hide_generated_faces(mesh);
     for (const auto& [index, times] : skipped_) {
         result_.settings.skipped.push_back(std::to_string(index) +
                                            (times > 1 ? " (" + std::to_string(times) + " times)" : ""));

@@ -3,7 +3,8 @@
 
 #define UNDERBODY_IMPORTERS(X) \
     X(cfd_post_csv) \
-    X(fluent_legacy)
+    X(fluent_legacy) \
+    X(fluent_hdf5)
 
 namespace underbody::postproc {
 

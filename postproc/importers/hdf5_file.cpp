@@ -1,0 +1,254 @@
+#include "postproc/importers/hdf5_file.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+/// Closes an HDF5 handle of any kind.
+class Handle {
+public:
+    explicit Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+    ~Handle() {
+        if (id_ >= 0) {
+            close_(id_);
+        }
+    }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    [[nodiscard]] hid_t get() const { return id_; }
+    [[nodiscard]] bool good() const { return id_ >= 0; }
+
+private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
+
+void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+constexpr std::uint64_t largest_ratio = 1032;  // of deflate
+constexpr std::size_t most_children = 1000000;
+
+herr_t note_child(hid_t /*group*/, const char* name, const H5L_info_t* /*info*/, void* list) {
+    auto& names = *static_cast<std::vector<std::string>*>(list);
+    if (names.size() >= most_children) {
+        return 1;
+    }
+    names.emplace_back(name);
+    return 0;
+}
+
+std::string string_of(hid_t type, const std::vector<char>& raw) {
+    std::string text(raw.data(), raw.size());
+    const std::size_t width = H5Tget_size(type);
+    std::string joined;
+    for (std::size_t at = 0; width > 0 && at < text.size(); at += width) {
+        const std::string part = text.substr(at, width);
+        joined += part.substr(0, part.find('\0'));
+    }
+    return joined;
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
+    quiet();
+    std::error_code error;
+    bytes_ = std::filesystem::file_size(path, error);
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+    file_ = H5Fopen(name_.c_str(), H5F_ACC_RDONLY, access.get());
+    if (file_ < 0) {
+        throw core::InputError("format", "this is not a whole HDF5 file: it is cut short or damaged",
+                               {name_, {}, {}, {}}, "copy the file again");
+    }
+}
+
+Hdf5File::~Hdf5File() {
+    if (file_ >= 0) {
+        H5Fclose(file_);
+    }
+}
+
+void Hdf5File::fail(const std::string& path, const std::string& what) const {
+    throw core::InputError("format", path + ": " + what, {name_, {}, {}, {}}, "the file is damaged or incomplete");
+}
+
+bool Hdf5File::has(const std::string& path) const {
+    if (path == "/") {
+        return true;
+    }
+    // Every step of the path has to be asked for: HDF5 takes a missing parent for an error.
+    for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
+        const std::string part = path.substr(0, slash);
+        if (H5Lexists(file_, part.c_str(), H5P_DEFAULT) <= 0) {
+            return false;
+        }
+        if (slash == std::string::npos) {
+            return H5Oexists_by_name(file_, path.c_str(), H5P_DEFAULT) > 0;
+        }
+    }
+}
+
+std::vector<std::string> Hdf5File::children(const std::string& path) const {
+    std::vector<std::string> names;
+    if (!has(path)) {
+        return names;
+    }
+    const Handle group(H5Gopen2(file_, path.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.good()) {
+        return names;
+    }
+    if (H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, note_child, &names) < 0) {
+        fail(path, "its contents cannot be listed");
+    }
+    std::stable_sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+        const auto x = core::parse_integer(a);
+        const auto y = core::parse_integer(b);
+        return x && y ? *x < *y : a < b;
+    });
+    return names;
+}
+
+std::optional<std::int64_t> Hdf5File::attribute(const std::string& path, const std::string& name) const {
+    if (!has(path) || H5Aexists_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) {
+        return {};
+    }
+    const Handle attribute(H5Aopen_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (!attribute.good()) {
+        return {};
+    }
+    const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+    const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+    std::int64_t value = 0;
+    if (!space.good() || H5Sget_simple_extent_npoints(space.get()) != 1 || H5Tget_class(type.get()) != H5T_INTEGER ||
+        H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) {
+        fail(path, "its attribute " + name + " is not one whole number");
+    }
+    return value;
+}
+
+std::optional<std::string> Hdf5File::text_attribute(const std::string& path, const std::string& name) const {
+    if (!has(path) || H5Aexists_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) {
+        return {};
+    }
+    const Handle attribute(H5Aopen_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (!attribute.good()) {
+        return {};
+    }
+    const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+    const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+    const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : 0;
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 || count != 1 ||
+        H5Tget_size(type.get()) > 65536) {
+        return {};
+    }
+    std::vector<char> raw(H5Tget_size(type.get()));
+    if (H5Aread(attribute.get(), type.get(), raw.data()) < 0) {
+        return {};
+    }
+    return string_of(type.get(), raw);
+}
+
+std::vector<std::uint64_t> Hdf5File::shape(const std::string& path) const {
+    if (!has(path)) {
+        return {};
+    }
+    const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!set.good()) {
+        return {};
+    }
+    const Handle space(H5Dget_space(set.get()), H5Sclose);
+    const int rank = H5Sget_simple_extent_ndims(space.get());
+    if (rank < 1 || rank > 2) {
+        return {};
+    }
+    hsize_t lengths[2] = {};
+    H5Sget_simple_extent_dims(space.get(), lengths, nullptr);
+    return {lengths, lengths + rank};
+}
+
+/// How many numbers a dataset holds, if the bytes that it has in the file can hold them.
+std::uint64_t Hdf5File::checked_size(std::int64_t dataset, const std::string& path, std::size_t bytes_each) const {
+    const Handle space(H5Dget_space(dataset), H5Sclose);
+    const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : -1;
+    if (count < 0) {
+        fail(path, "its size cannot be read");
+    }
+    const auto size = static_cast<std::uint64_t>(count);
+    const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(dataset), bytes_);
+    if (size / largest_ratio > stored || (size > 0 && stored == 0)) {
+        fail(path,
+             "it claims " + std::to_string(size) + " values but has " + std::to_string(stored) + " bytes in the file");
+    }
+    if (size > (std::uint64_t{1} << 60) / std::max<std::size_t>(1, bytes_each)) {
+        fail(path, "it is too large");
+    }
+    return size;
+}
+
+Buffer<double> Hdf5File::reals(const std::string& path) const {
+    const Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    if (!set.good()) {
+        fail(path, "there is no such data set");
+    }
+    const Handle type(H5Dget_type(set.get()), H5Tclose);
+    const H5T_class_t kind = H5Tget_class(type.get());
+    if (kind != H5T_FLOAT && kind != H5T_INTEGER) {
+        fail(path, "its values are not numbers");
+    }
+    Buffer<double> values(checked_size(set.get(), path, sizeof(double)));
+    if (!values.empty() && H5Dread(set.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+        fail(path, "its values cannot be read");
+    }
+    return values;
+}
+
+Buffer<std::uint32_t> Hdf5File::numbers(const std::string& path) const {
+    const Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    if (!set.good()) {
+        fail(path, "there is no such data set");
+    }
+    const Handle type(H5Dget_type(set.get()), H5Tclose);
+    if (H5Tget_class(type.get()) != H5T_INTEGER) {
+        fail(path, "its values are not whole numbers");
+    }
+    // Negative numbers become 0, too large ones the largest: both fail the checks that follow.
+    Buffer<std::uint32_t> values(checked_size(set.get(), path, sizeof(std::uint32_t)));
+    if (!values.empty() && H5Dread(set.get(), H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+        fail(path, "its values cannot be read");
+    }
+    return values;
+}
+
+std::string Hdf5File::text(const std::string& path) const {
+    const Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    if (!set.good()) {
+        return {};
+    }
+    const Handle type(H5Dget_type(set.get()), H5Tclose);
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0) {
+        return {};
+    }
+    const std::size_t width = H5Tget_size(type.get());
+    const Handle space(H5Dget_space(set.get()), H5Sclose);
+    const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : 0;
+    const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(set.get()), bytes_);
+    if (count <= 0 || width == 0 || static_cast<std::uint64_t>(count) > stored || width / largest_ratio > stored ||
+        width * static_cast<std::uint64_t>(count) / largest_ratio > stored) {
+        return {};
+    }
+    std::vector<char> raw(width * static_cast<std::size_t>(count));
+    if (H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) < 0) {
+        fail(path, "its text cannot be read");
+    }
+    return string_of(type.get(), raw);
+}
+
+}  // namespace underbody::postproc
