@@ -13,8 +13,11 @@
 
 namespace underbody::dynamics {
 
-/// Inputs on a strictly ascending time base (steps may differ), linear between samples, held beyond the ends.
+/// Inputs on a strictly ascending time base (steps may differ), held beyond the ends.
 struct InputSignals {
+    /// What the input force does between samples: `held` is what a digital controller does (a record of its commands).
+    enum class Between { linear, held };
+    Between input_between = Between::linear;
     std::vector<double> time;
     struct Signal {
         Channel channel;
@@ -128,10 +131,13 @@ public:
 
 private:
     [[nodiscard]] HeavePlant::Moment moment_at(std::size_t half, double t) const;
+    void transform_linear(const HeaveTerms& terms, const std::vector<double>& values);
+    void transform_held(const HeaveTerms& terms, std::vector<double> values);
     std::vector<double> time_;
     std::vector<std::size_t> start_;  ///< sample -> index of its half step
     std::vector<double> half_time_;
-    std::vector<double> input_;     ///< per half step
+    std::vector<double> input_;      ///< per half step: at the start (from the right) and in the middle of each step
+    std::vector<double> input_end_;  ///< per half step that ends a step: from the left
     std::vector<double> factors_;   ///< per half step and varying source
     std::vector<double> channels_;  ///< per half step: channel_count values; empty when nobody needs them
     std::size_t factor_count_ = 0;

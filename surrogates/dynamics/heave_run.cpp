@@ -87,16 +87,14 @@ HeaveRun::HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double m
     }
     const std::size_t count = half_time_.size();
     const HeaveTerms& terms = plant.terms;
-    input_.assign(count, inputs.held.get(Channel::input_force, plant.held().get(Channel::input_force, 0.0)));
+    const double held_input = inputs.held.get(Channel::input_force, plant.held().get(Channel::input_force, 0.0));
+    std::vector<double> recorded;
     std::vector<const InputSignals::Signal*> others;
     std::vector<std::vector<double>> filled;
     for (const InputSignals::Signal& signal : inputs.signals) {
         std::vector<double> values = without_gaps(time_, signal.values);
         if (signal.channel == Channel::input_force) {
-            std::size_t hint = 0;
-            for (std::size_t i = 0; i < count; ++i) {
-                input_[i] = interpolated(time_, values, half_time_[i] - terms.input_delay, hint);
-            }
+            recorded = std::move(values);
         } else if (std::find(plant.varying_channels_.begin(), plant.varying_channels_.end(), signal.channel) ==
                    plant.varying_channels_.end()) {
             throw core::InputError(
@@ -106,11 +104,13 @@ HeaveRun::HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double m
             filled.push_back(std::move(values));
         }
     }
-    for (double& u : input_) {
-        u = terms.input_gain * std::copysign(std::max(0.0, std::abs(u) - terms.input_dead_zone), u);
+    if (recorded.empty()) {
+        recorded.assign(time_.size(), held_input);
     }
-    if (terms.input_lag > 0) {
-        apply_lag(half_time_, input_, terms.input_lag);
+    if (inputs.input_between == InputSignals::Between::held) {
+        transform_held(terms, std::move(recorded));
+    } else {
+        transform_linear(terms, recorded);
     }
     const auto value_of = [&](Channel channel, double t, double fallback) {
         for (std::size_t k = 0; k < others.size(); ++k) {
@@ -147,6 +147,67 @@ HeaveRun::HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double m
     }
 }
 
+namespace {
+
+double through_dead_zone(const HeaveTerms& terms, double u) {
+    return terms.input_gain * std::copysign(std::max(0.0, std::abs(u) - terms.input_dead_zone), u);
+}
+
+}  // namespace
+
+void HeaveRun::transform_linear(const HeaveTerms& terms, const std::vector<double>& values) {
+    input_.resize(half_time_.size());
+    std::size_t hint = 0;
+    for (std::size_t i = 0; i < input_.size(); ++i) {
+        input_[i] = through_dead_zone(terms, interpolated(time_, values, half_time_[i] - terms.input_delay, hint));
+    }
+    if (terms.input_lag > 0) {
+        apply_lag(half_time_, input_, terms.input_lag);
+    }
+    input_end_ = input_;
+}
+
+void HeaveRun::transform_held(const HeaveTerms& terms, std::vector<double> values) {
+    for (double& u : values) {
+        u = through_dead_zone(terms, u);
+    }
+    // The mean over a step is exact whatever the delay: from the integral of the steps, which is linear between
+    // samples.
+    std::vector<double> sum(time_.size(), 0.0);
+    for (std::size_t i = 0; i + 1 < time_.size(); ++i) {
+        sum[i + 1] = sum[i] + values[i] * (time_[i + 1] - time_[i]);
+    }
+    std::size_t hint = 0;
+    const auto integral = [&](double t) {
+        if (t <= time_.front()) {
+            return values.front() * (t - time_.front());
+        }
+        if (t >= time_.back()) {
+            return sum.back() + values.back() * (t - time_.back());
+        }
+        return interpolated(time_, sum, t, hint);
+    };
+    input_.resize(half_time_.size());
+    input_end_.resize(half_time_.size());
+    double lagged = values.front();
+    for (std::size_t half = 0; half + 2 < half_time_.size(); half += 2) {
+        const double width = half_time_[half + 2] - half_time_[half];
+        const double mean =
+            (integral(half_time_[half + 2] - terms.input_delay) - integral(half_time_[half] - terms.input_delay)) /
+            width;
+        if (terms.input_lag > 0) {
+            const double decay = std::exp(-0.5 * width / terms.input_lag);
+            input_[half] = lagged;
+            input_[half + 1] = mean + (lagged - mean) * decay;
+            lagged = mean + (lagged - mean) * decay * decay;
+            input_end_[half + 2] = lagged;
+        } else {
+            input_[half] = input_[half + 1] = input_end_[half + 2] = mean;
+        }
+    }
+    input_.back() = terms.input_lag > 0 ? lagged : input_[input_.size() - 2];
+}
+
 HeavePlant::Moment HeaveRun::moment_at(std::size_t half, double t) const {
     return {t, input_[half], factor_count_ ? &factors_[half * factor_count_] : nullptr,
             channels_.empty() ? nullptr : &channels_[half * channel_count]};
@@ -160,7 +221,8 @@ void HeaveRun::moment(double t, HeavePlant::Moment& out, std::vector<double>& bu
     const std::size_t channels = channels_.empty() ? 0 : channel_count;
     buffer.resize(factor_count_ + channels);
     out.t = t;
-    out.input = input_[i] + part * (input_[i + 1] - input_[i]);
+    const double right = (i + 1) % 2 == 0 ? input_end_[i + 1] : input_[i + 1];
+    out.input = input_[i] + part * (right - input_[i]);
     for (std::size_t k = 0; k < factor_count_; ++k) {
         const double a = factors_[i * factor_count_ + k], b = factors_[(i + 1) * factor_count_ + k];
         buffer[k] = a + part * (b - a);
@@ -297,7 +359,8 @@ void HeaveRun::simulate(const HeavePlant& plant, std::size_t first, std::size_t 
             const double t = half_time_[half], next = half_time_[half + 2];
             const HeavePlant::Moment a = moment_at(half, t);
             const HeavePlant::Moment b = moment_at(half + 1, half_time_[half + 1]);
-            const HeavePlant::Moment c = moment_at(half + 2, next);
+            HeavePlant::Moment c = moment_at(half + 2, next);
+            c.input = input_end_[half + 2];
             if (history) {
                 advance<true>(plant, s, next - t, a, b, c);
             } else {

@@ -25,7 +25,7 @@ struct Ode::Impl {
     SUNNonlinearSolver fixed_point = nullptr;
     void* memory = nullptr;
     std::vector<int> found;
-    bool bad = false;
+    double last = 0;  ///< time of `y`
 
     ~Impl() {
         if (memory) {
@@ -83,9 +83,17 @@ struct Ode::Impl {
         Stop stop;
         CVodeSetStopTime(memory, t_end);
         realtype reached = 0;
-        const int flag = CVode(memory, t_end, y, &reached, task);
+        int flag = CVode(memory, t_end, y, &reached, task);
+        if (flag == CV_ILL_INPUT) {
+            // An event function that stays near zero right after an event: start afresh from here, where it counts as
+            // passed.
+            CVodeReInit(memory, last, y);
+            CVodeSetStopTime(memory, t_end);
+            flag = CVode(memory, t_end, y, &reached, task);
+        }
         check(flag, reached);
         stop.t = reached;
+        last = reached;
         if (flag == CV_ROOT_RETURN) {
             stop.event = true;
             stop.which.assign(problem.direction.size(), 0);
@@ -140,6 +148,7 @@ void Ode::start(double t, const std::vector<double>& y) {
     for (std::size_t i = 0; i < impl_->problem.size; ++i) {
         N_VGetArrayPointer(impl_->y)[i] = y[i];
     }
+    impl_->last = t;
     impl_->check(CVodeReInit(impl_->memory, t, impl_->y), t);
 }
 

@@ -333,6 +333,8 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
 InputSignals signals_of(const MeasuredRun& run) {
     InputSignals signals;
     signals.time = run.table.numbers("time");
+    signals.input_between =
+        InputSignals::Between::held;  // a digital controller holds its command from sample to sample
     for (const auto& [name, value] : run.conditions) {
         Channel channel{};
         if (find_channel(name, channel)) {
