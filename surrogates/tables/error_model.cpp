@@ -7,14 +7,14 @@
 
 namespace underbody::tables {
 
-ErrorModel::ErrorModel(std::vector<std::vector<double>> points, std::vector<double> node_variance)
-    : variance_(std::move(node_variance)) {
+ErrorModel::ErrorModel(std::vector<std::vector<double>> points, std::vector<double> node_sigma)
+    : sigma_(std::move(node_sigma)) {
     std::size_t count = 1;
     for (auto& axis : points) {
         count *= axis.size();
         axes_.emplace_back(std::move(axis));
     }
-    assert(count == variance_.size());
+    assert(count == sigma_.size());
 }
 
 void ErrorModel::set_cell_error(std::size_t k, std::vector<double> error) {
@@ -23,14 +23,13 @@ void ErrorModel::set_cell_error(std::size_t k, std::vector<double> error) {
 }
 
 double ErrorModel::sigma(const double* point, const double* beyond) const noexcept {
-    if (variance_.empty()) {
+    if (sigma_.empty()) {
         return 0;
     }
     const std::size_t n = axes_.size();
     double fraction[CubicGrid::max_axes] = {};
     std::size_t cell[CubicGrid::max_axes] = {};
-    double variance = 0;
-    double growth = 0;
+    double result = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const GridAxis& axis = axes_[k];
         if (std::isnan(point[k])) {
@@ -41,10 +40,9 @@ double ErrorModel::sigma(const double* point, const double* beyond) const noexce
         const double start = axis.points()[cell[k]];
         fraction[k] = (x - start) / (axis.points()[cell[k] + 1] - start);
         if (!cell_error_[k].empty()) {
-            const double bump = cell_error_[k][cell[k]] * 4 * fraction[k] * (1 - fraction[k]);
-            variance += bump * bump;
+            result += cell_error_[k][cell[k]] * 4 * fraction[k] * (1 - fraction[k]);
         }
-        growth += beyond != nullptr ? std::abs(beyond[k]) * growth_[k] : 0;
+        result += beyond != nullptr ? std::abs(beyond[k]) * growth_[k] : 0;
     }
     for (std::size_t corner = 0; corner < std::size_t{1} << n; ++corner) {
         double weight = 1;
@@ -54,9 +52,9 @@ double ErrorModel::sigma(const double* point, const double* beyond) const noexce
             weight *= upper ? fraction[k] : 1 - fraction[k];
             node = node * axes_[k].size() + cell[k] + (upper ? 1 : 0);
         }
-        variance += weight * variance_[node];
+        result += weight * sigma_[node];
     }
-    return std::sqrt(variance + growth * growth);
+    return result;
 }
 
 }  // namespace underbody::tables

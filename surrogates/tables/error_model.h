@@ -1,4 +1,4 @@
-// The variance of a table between and beyond its points.
+// The error of a table between and beyond its points.
 #pragma once
 
 #include <array>
@@ -10,13 +10,15 @@
 
 namespace underbody::tables {
 
-/// Variance on a tensor grid: multilinear between the nodes, plus, for interpolated tables, the interpolation error that
-/// rises from zero at the points to its cell's value in the middle: sum over axes of cell^2 (4 t (1 - t))^2.
+/// Standard deviation on a tensor grid: multilinear between the nodes, plus, for interpolated tables, the interpolation
+/// error that rises from zero at the points to its cell's value in the middle (cell * 4 t (1 - t), every axis), plus a
+/// linear growth beyond the ends. The parts are added, not squared: errors of one table are not independent, and a
+/// controller can evaluate it without a square root.
 class ErrorModel {
 public:
     ErrorModel() = default;
-    /// `node_variance` on the grid `points`, last axis fastest.
-    ErrorModel(std::vector<std::vector<double>> points, std::vector<double> node_variance);
+    /// `node_sigma` on the grid `points`, last axis fastest.
+    ErrorModel(std::vector<std::vector<double>> points, std::vector<double> node_sigma);
 
     /// One number a cell along axis k: the standard error of the interpolation in the middle of the cell.
     void set_cell_error(std::size_t k, std::vector<double> error);
@@ -24,18 +26,18 @@ public:
     void set_growth(std::size_t k, double per_unit) { growth_[k] = per_unit; }
 
     /// Zero everywhere?
-    [[nodiscard]] bool empty() const { return variance_.empty(); }
+    [[nodiscard]] bool empty() const { return sigma_.empty(); }
     /// Standard deviation at a point; `beyond` (one entry per axis) is how far it lies outside.
     [[nodiscard]] double sigma(const double* point, const double* beyond) const noexcept;
 
     [[nodiscard]] const std::vector<GridAxis>& axes() const { return axes_; }
-    [[nodiscard]] const std::vector<double>& variance() const { return variance_; }
+    [[nodiscard]] const std::vector<double>& node_sigma() const { return sigma_; }
     [[nodiscard]] const std::vector<double>& cell_error(std::size_t k) const { return cell_error_[k]; }
     [[nodiscard]] double growth(std::size_t k) const { return growth_[k]; }
 
 private:
     std::vector<GridAxis> axes_;
-    std::vector<double> variance_;
+    std::vector<double> sigma_;
     std::array<std::vector<double>, CubicGrid::max_axes> cell_error_;
     std::array<double, CubicGrid::max_axes> growth_{};
 };

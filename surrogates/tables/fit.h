@@ -12,6 +12,9 @@ namespace underbody::tables {
 /// Chooses and fits; throws core::InputError when the kind asked for cannot take the points.
 std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options);
 
+/// A table that `export --format csv` wrote, taken back as it was; nothing when the table is not one of those (or not of this quantity).
+std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, const std::string& quantity, const FitOptions& options);
+
 /// Exact interpolation of a full grid.
 std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, const FitOptions& options);
 

@@ -89,13 +89,13 @@ std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, con
         grid.push_back(axis.points);
     }
     std::vector<double> values(points.order.size());
-    std::vector<double> variance(points.order.size(), 0.0);
+    std::vector<double> sigma(points.order.size(), 0.0);
     for (std::size_t i = 0; i < values.size(); ++i) {
         values[i] = points.value[points.order[i]];
-        variance[i] = points.has_sigma() ? std::pow(points.sigma[points.order[i]], 2) : 0;
+        sigma[i] = points.has_sigma() ? points.sigma[points.order[i]] : 0;
     }
     table->surface = CubicGrid(grid, values, table->rule);
-    table->error = ErrorModel(grid, std::move(variance));
+    table->error = ErrorModel(grid, std::move(sigma));
     for (std::size_t k = 0; k < n; ++k) {
         table->error.set_cell_error(k, cell_errors(table->rule, table->surface, values, k));
         // Beyond the ends the table knows nothing but that the force may go on as steeply as it did on average.

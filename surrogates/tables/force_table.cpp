@@ -33,6 +33,11 @@ ForceTable ForceTable::read(const std::filesystem::path& path, const std::string
 }
 
 ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity, const FitOptions& options) {
+    if (options.kind == FitOptions::Kind::automatic) {
+        if (auto exported = fit_exported(table, quantity, options)) {
+            return ForceTable(std::move(exported));
+        }
+    }
     return ForceTable(fit_points(set_points(table, quantity, options), options));
 }
 

@@ -1,6 +1,7 @@
 #include "surrogates/tables/grid.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -37,20 +38,32 @@ GridAxis::GridAxis(std::vector<double> points) : x_(std::move(points)) {
     }
 }
 
-CubicGrid::CubicGrid(std::vector<std::vector<double>> points, std::span<const double> values, SlopeRule rule) {
-    const std::size_t n = points.size();
-    assert(n >= 1 && n <= max_axes);
+void CubicGrid::set_axes(std::vector<std::vector<double>> points) {
+    assert(!points.empty() && points.size() <= max_axes);
     std::size_t count = 1;
-    for (std::size_t k = n; k-- > 0;) {
+    for (std::size_t k = points.size(); k-- > 0;) {
         stride_[k] = count;
         count *= points[k].size();
     }
-    assert(values.size() == count);
     for (auto& axis : points) {
         axes_.emplace_back(std::move(axis));
     }
+    nodes_.resize(count << axes_.size());
+}
+
+CubicGrid::CubicGrid(std::vector<std::vector<double>> points, std::vector<double> hermite) {
+    set_axes(std::move(points));
+    assert(hermite.size() == nodes_.size());
+    nodes_ = std::move(hermite);
+    build_cells();
+}
+
+CubicGrid::CubicGrid(std::vector<std::vector<double>> points, std::span<const double> values, SlopeRule rule) {
+    set_axes(std::move(points));
+    const std::size_t n = axes_.size();
+    const std::size_t count = nodes();
+    assert(values.size() == count);
     const std::size_t width = std::size_t{1} << n;
-    nodes_.resize(count * width);
     for (std::size_t i = 0; i < count; ++i) {
         nodes_[i * width] = values[i];
     }
@@ -258,27 +271,34 @@ double CubicGrid::from_cells_2(const Spot* s, double* slope) const noexcept {
     return p[0] + u * (p[1] + u * (p[2] + u * p[3]));
 }
 
+namespace {
+
+/// Hermite functions on a cell of width h at distance `offset` from its start: [differentiated][corner][derivative].
+void hermite_weights(double h, double offset, double (&w)[2][2][2]) {
+    const double t = offset / h;
+    const double r = 1 - t;
+    w[0][0][0] = r * r * (1 + 2 * t);
+    w[0][1][0] = t * t * (3 - 2 * t);
+    w[0][0][1] = h * t * r * r;
+    w[0][1][1] = -h * t * t * r;
+    w[1][0][0] = -6 * t * r / h;
+    w[1][1][0] = 6 * t * r / h;
+    w[1][0][1] = r * (1 - 3 * t);
+    w[1][1][1] = t * (3 * t - 2);
+}
+
+}  // namespace
+
 /// Sum over corners and derivatives of the products of Hermite functions; any number of axes.
 double CubicGrid::from_nodes(const Spot* spots, double* slope) const noexcept {
     const std::size_t n = axes_.size();
     const std::size_t width = std::size_t{1} << n;
-    // weight[k][corner][derivative], and its own derivative.
-    double weight[max_axes][2][2];
-    double rate[max_axes][2][2];
+    double weight[max_axes][2][2][2];  // [axis][differentiated][corner][derivative]
     std::size_t base = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const auto& x = axes_[k].points();
         const double h = x[spots[k].cell + 1] - x[spots[k].cell];
-        const double t = spots[k].offset / h;
-        const double r = 1 - t;
-        weight[k][0][0] = r * r * (1 + 2 * t);
-        weight[k][1][0] = t * t * (3 - 2 * t);
-        weight[k][0][1] = h * t * r * r;
-        weight[k][1][1] = -h * t * t * r;
-        rate[k][0][0] = -6 * t * r / h;
-        rate[k][1][0] = 6 * t * r / h;
-        rate[k][0][1] = r * (1 - 3 * t);
-        rate[k][1][1] = t * (3 * t - 2);
+        hermite_weights(h, spots[k].offset, weight[k]);
         base += spots[k].cell * stride_[k];
     }
     double value = 0;
@@ -292,7 +312,7 @@ double CubicGrid::from_nodes(const Spot* spots, double* slope) const noexcept {
         for (std::size_t mask = 0; mask < width; ++mask) {
             double product = data[mask];
             for (std::size_t k = 0; k < n; ++k) {
-                product *= weight[k][corner >> k & 1][mask >> k & 1];
+                product *= weight[k][0][corner >> k & 1][mask >> k & 1];
             }
             value += product;
             if (slope == nullptr) {
@@ -301,7 +321,7 @@ double CubicGrid::from_nodes(const Spot* spots, double* slope) const noexcept {
             for (std::size_t j = 0; j < n; ++j) {
                 double part = data[mask];
                 for (std::size_t k = 0; k < n; ++k) {
-                    part *= (k == j ? rate : weight)[k][corner >> k & 1][mask >> k & 1];
+                    part *= weight[k][k == j ? 1 : 0][corner >> k & 1][mask >> k & 1];
                 }
                 gradient[j] += part;
             }
@@ -313,6 +333,88 @@ double CubicGrid::from_nodes(const Spot* spots, double* slope) const noexcept {
         }
     }
     return value;
+}
+
+void CubicGrid::derivatives(const double* point, double* result) const noexcept {
+    const std::size_t n = axes_.size();
+    const std::size_t width = std::size_t{1} << n;
+    double weight[max_axes][2][2][2];  // [axis][differentiated][corner][derivative]
+    std::size_t base = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const Spot s = spot(k, point[k]);
+        const auto& x = axes_[k].points();
+        hermite_weights(x[s.cell + 1] - x[s.cell], s.offset, weight[k]);
+        base += s.cell * stride_[k];
+    }
+    for (std::size_t wanted = 0; wanted < width; ++wanted) {
+        result[wanted] = 0;
+        for (std::size_t corner = 0; corner < width; ++corner) {
+            std::size_t node = base;
+            for (std::size_t k = 0; k < n; ++k) {
+                node += (corner >> k & 1) * stride_[k];
+            }
+            for (std::size_t mask = 0; mask < width; ++mask) {
+                double product = nodes_[node * width + mask];
+                for (std::size_t k = 0; k < n; ++k) {
+                    product *= weight[k][wanted >> k & 1][corner >> k & 1][mask >> k & 1];
+                }
+                result[wanted] += product;
+            }
+        }
+    }
+}
+
+std::vector<std::vector<double>> CubicGrid::points() const {
+    std::vector<std::vector<double>> result;
+    for (const auto& axis : axes_) {
+        result.push_back(axis.points());
+    }
+    return result;
+}
+
+CubicGrid CubicGrid::resampled(std::vector<std::vector<double>> points) const {
+    const std::size_t n = axes_.size();
+    std::size_t count = 1;
+    for (const auto& axis : points) {
+        count *= axis.size();
+    }
+    std::vector<double> hermite(count << n);
+    double at[max_axes];
+    for (std::size_t node = 0; node < count; ++node) {
+        std::size_t rest = node;
+        for (std::size_t k = n; k-- > 0;) {
+            at[k] = points[k][rest % points[k].size()];
+            rest /= points[k].size();
+        }
+        derivatives(at, &hermite[node << n]);
+    }
+    return {std::move(points), std::move(hermite)};
+}
+
+CubicGrid CubicGrid::transformed(double factor, unsigned mirrored) const {
+    const std::size_t n = axes_.size();
+    auto turned = points();
+    for (std::size_t k = 0; k < n; ++k) {
+        if ((mirrored >> k & 1) != 0) {
+            std::reverse(turned[k].begin(), turned[k].end());
+            for (double& x : turned[k]) {
+                x = -x;
+            }
+        }
+    }
+    std::vector<double> hermite(nodes_.size());
+    for (std::size_t node = 0; node < nodes(); ++node) {
+        std::size_t from = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t i = node / stride_[k] % axes_[k].size();
+            from += ((mirrored >> k & 1) != 0 ? axes_[k].size() - 1 - i : i) * stride_[k];
+        }
+        for (std::size_t mask = 0; mask < std::size_t{1} << n; ++mask) {
+            const bool odd = (std::popcount(static_cast<unsigned>(mask) & mirrored) & 1) != 0;
+            hermite[(node << n) + mask] = (odd ? -factor : factor) * nodes_[(from << n) + mask];
+        }
+    }
+    return {std::move(turned), std::move(hermite)};
 }
 
 double CubicGrid::value(const double* point, double* slope) const noexcept {

@@ -58,6 +58,16 @@ public:
     CubicGrid() = default;
     /// `values` with the last axis fastest.
     CubicGrid(std::vector<std::vector<double>> points, std::span<const double> values, SlopeRule rule);
+    /// From Hermite data as hermite() gives them.
+    CubicGrid(std::vector<std::vector<double>> points, std::vector<double> hermite);
+
+    /// All 2^dimensions derivatives (order as hermite()) at a point inside the axes.
+    void derivatives(const double* point, double* result) const noexcept;
+    /// The same function sampled, with its slopes, at other points (each axis inside this one's range).
+    [[nodiscard]] CubicGrid resampled(std::vector<std::vector<double>> points) const;
+    /// factor * function, and the axes whose bit is set in `mirrored` turned round (x -> -x).
+    [[nodiscard]] CubicGrid transformed(double factor, unsigned mirrored) const;
+    [[nodiscard]] std::vector<std::vector<double>> points() const;
 
     [[nodiscard]] std::size_t dimensions() const { return axes_.size(); }
     [[nodiscard]] const GridAxis& axis(std::size_t k) const { return axes_[k]; }
@@ -97,6 +107,7 @@ public:
     }
 
 private:
+    void set_axes(std::vector<std::vector<double>> points);
     void limit_cross_slopes();
     void limit_node(std::size_t node, std::span<const std::size_t> index);
     void build_cells();

@@ -1,0 +1,218 @@
+// underbody table fit | at | equilibria
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/commands.h"
+#include "studio/cli/shell.h"
+#include "studio/cli/table_options.h"
+#include "studio/figures/render.h"
+#include "surrogates/tables/equilibria.h"
+#include "surrogates/tables/figures.h"
+#include "surrogates/tables/line.h"
+
+namespace underbody::studio {
+
+namespace {
+
+using tables::ForceTable;
+
+/// A value in the unit the user's file has.
+std::string shown(const ForceTable& table, const std::string& quantity, const std::string& si, double value, int digits = 5) {
+    const std::string unit = tables::shown_unit(table, quantity);
+    return core::format_number(core::convert(value, si, unit), digits) + " " + unit;
+}
+
+struct FitCommand {
+    TableOptions table;
+    std::string picture;
+};
+
+int run_fit(Shell& shell, const FitCommand& command) {
+    const auto all = command.table.fit_all(shell);
+    nlohmann::json document;
+    document["tables"] = nlohmann::json::array();
+    for (const auto& table : all) {
+        nlohmann::json entry = table;
+        std::string text = table.quantity() + ": " + table.kind() + " through " + std::to_string(table.points().rows()) + " points";
+        for (const auto& axis : table.axes()) {
+            text += "\n  " + axis.name + " " + shown(table, axis.name, axis.unit, axis.lower) + " to " + shown(table, axis.name, axis.unit, axis.upper) + ", " +
+                    std::to_string(axis.points.size()) + " set points";
+        }
+        for (const auto& remark : table.remarks()) {
+            text += "\n  " + remark.message;
+        }
+        shell.print(text);
+        document["tables"].push_back(entry);
+    }
+    if (!command.picture.empty()) {
+        write_picture(tables::figure(all.front()), command.picture);
+        document["picture"] = command.picture;
+    }
+    if (shell.json) {
+        shell.print_json(document);
+    }
+    return done;
+}
+
+struct AtCommand {
+    TableOptions table;
+    std::vector<std::string> points;
+};
+
+int run_at(Shell& shell, const AtCommand& command) {
+    nlohmann::json document;
+    document["values"] = nlohmann::json::array();
+    for (const auto& table : command.table.fit_all(shell)) {
+        for (const auto& text : command.points) {
+            core::Problems remarks;
+            const auto point = tables::held_point(table, {}, read_assignments(text), &remarks);
+            shell.show(remarks);
+            const auto e = table.at(point);
+            nlohmann::json entry = tables::to_json(table, point, e);
+            std::string line = table.quantity() + " " + shown(table, table.quantity(), table.unit(), e.value, 7);
+            if (e.sigma > 0) {
+                line += " +- " + shown(table, table.quantity(), table.unit(), e.sigma, 3);
+            }
+            for (std::size_t k = 0; k < point.size(); ++k) {
+                const auto& axis = table.axes()[k];
+                line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " + table.unit() + "/" + axis.unit + " along " + axis.name;
+                if (e.beyond[k] != 0) {
+                    shell.warn(axis.name + " is outside the table by " + shown(table, axis.name, axis.unit, std::abs(e.beyond[k])) + ": " +
+                               (table.range() == tables::RangePolicy::extrapolate ? "extrapolated" : "the end value is held"));
+                }
+            }
+            shell.print(line);
+            document["values"].push_back(std::move(entry));
+        }
+    }
+    // One value lies at the top too: the usual question has one answer.
+    for (const auto& [key, value] : document["values"][0].items()) {
+        document[key] = value;
+    }
+    if (shell.json) {
+        shell.print_json(document);
+    }
+    return done;
+}
+
+struct EquilibriaCommand {
+    TableOptions table;
+    std::string weight = "0 N";
+    std::string mass;
+    std::string damping;
+    std::string held;
+    std::string picture;
+    double scale = 1;
+    int draws = 200;
+};
+
+std::string described(const ForceTable& table, const tables::Equilibria& found, const tables::Equilibrium& e) {
+    std::string text = tables::to_string(e.stability) + " at " + shown(table, found.axis, found.axis_unit, e.gap, 6);
+    if (e.sigma > 0 && std::isfinite(e.sigma)) {
+        text += " +- " + shown(table, found.axis, found.axis_unit, e.sigma, 2);
+    }
+    text += "   stiffness " + core::format_number(e.stiffness, 5) + " N/m";
+    if (e.frequency > 0) {
+        text += ", " + core::format_number(e.frequency, 4) + " Hz";
+    }
+    if (e.damping_ratio > 0) {
+        text += ", damping ratio " + core::format_number(e.damping_ratio, 3);
+    }
+    if (e.stability == tables::Stability::stable) {
+        text += ", survives a push of " + shown(table, found.axis, found.axis_unit, e.kick_gap, 4);
+        if (e.kick_velocity > 0) {
+            text += " or a kick of " + core::format_number(e.kick_velocity, 4) + " m/s";
+        }
+        text += e.limited_by_range ? " (to the end of the table)" : "";
+    }
+    if (e.probability && *e.probability < 0.995) {
+        text += ", exists with probability " + core::format_number(*e.probability, 2);
+    }
+    return text;
+}
+
+int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
+    const auto table = command.table.fit(shell);
+    tables::EquilibriumOptions options;
+    options.net_weight = core::parse_in(command.weight, "N");
+    options.virtual_mass = command.mass.empty() ? 0 : core::parse_in(command.mass, "kg");
+    options.damping = command.damping.empty() ? 0 : core::parse_in(command.damping, "N s/m");
+    options.scale = command.scale;
+    options.held = read_assignments(command.held);
+    options.draws = command.draws;
+    const auto found = tables::equilibria(table, options);
+    shell.show(found.remarks);
+    for (const auto& e : found.all) {
+        shell.print(described(table, found, e));
+    }
+    if (found.all.empty()) {
+        shell.print("no equilibrium: the net force is " + core::format_number(found.force_at_lower, 4) + " N at " +
+                    shown(table, found.axis, found.axis_unit, found.lower) + " and " + core::format_number(found.force_at_upper, 4) + " N at " +
+                    shown(table, found.axis, found.axis_unit, found.upper));
+    }
+    nlohmann::json document = found;
+    if (!command.picture.empty()) {
+        tables::FigureOptions figure;
+        figure.axis = found.axis;
+        figure.held = found.held;
+        figure.equilibria = options;
+        write_picture(tables::curve_figure(table, figure), command.picture);
+        document["picture"] = command.picture;
+    }
+    if (shell.json) {
+        shell.print_json(document);
+    }
+    return done;
+}
+
+}  // namespace
+
+void add_table_command(CLI::App& app, Shell& shell) {
+    CLI::App* table = app.add_subcommand("table", "force tables: fit, values and slopes, equilibria");
+    table->require_subcommand(1);
+    table->footer(
+        "Examples:\n"
+        "  underbody table fit lift.csv --picture lift.png\n"
+        "  underbody table at lift.csv gap=5mm,pitch=1deg\n"
+        "  underbody table equilibria lift.csv --weight \"0.3 N\" --mass \"3.954 kg\"");
+
+    auto fit = std::make_shared<FitCommand>();
+    CLI::App* fit_command = table->add_subcommand("fit", "fits every force of the table and says how");
+    fit->table.add_to(*fit_command);
+    fit_command->add_option("--picture", fit->picture, "writes the table as a picture (.png, .pdf)");
+    fit_command->footer(
+        "Examples:\n"
+        "  underbody table fit forces.csv --where \"variant=ellipse, mesh=medium, speed=0.5\" --axes gap,pitch\n"
+        "  underbody table fit lift.csv --kind spline --picture lift.png");
+    shell.on(fit_command, [&shell, fit] { return run_fit(shell, *fit); });
+
+    auto at = std::make_shared<AtCommand>();
+    CLI::App* at_command = table->add_subcommand("at", "values, slopes and errors at points");
+    at->table.add_to(*at_command);
+    at_command->add_option("points", at->points, "gap=5mm,pitch=1deg (a bare number is SI)")->required()->expected(-1);
+    at_command->footer("Examples:\n  underbody table at lift.csv gap=5mm\n  underbody table at loads.csv gap=5mm,pitch=2deg gap=8mm,pitch=2deg --json");
+    shell.on(at_command, [&shell, at] { return run_at(shell, *at); });
+
+    auto eq = std::make_shared<EquilibriaCommand>();
+    CLI::App* eq_command = table->add_subcommand("equilibria", "where lift and net weight balance, and how firmly");
+    eq->table.add_to(*eq_command);
+    eq_command->add_option("--weight", eq->weight, "net weight: weight less buoyancy, positive sinks (default 0 N)");
+    eq_command->add_option("--mass", eq->mass, "virtual mass in heave, mass + added mass; gives frequency and kick velocity");
+    eq_command->add_option("--damping", eq->damping, "linear damping in heave, such as \"0.4 N s/m\"");
+    eq_command->add_option("--held", eq->held, "values of the other axes, such as pitch=1deg,speed=0.5");
+    eq_command->add_option("--scale", eq->scale, "factor on the table's force, such as (speed/reference)^2");
+    eq_command->add_option("--draws", eq->draws, "tables drawn from the error for the probabilities")->check(CLI::Range(0, 100000))->capture_default_str();
+    eq_command->add_option("--picture", eq->picture, "writes the curve with its equilibria (.png, .pdf)");
+    eq_command->footer(
+        "Examples:\n"
+        "  underbody table equilibria lift.csv --weight 0.3 --mass 3.954\n"
+        "  underbody table equilibria loads.csv --weight \"30 gf\" --held pitch=1deg --picture eq.png");
+    shell.on(eq_command, [&shell, eq] { return run_equilibria(shell, *eq); });
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,102 @@
+#include "studio/cli/table_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/shell.h"
+#include "surrogates/tables/select.h"
+
+namespace underbody::studio {
+
+void TableOptions::add_to(CLI::App& command) {
+    command.add_option("table", file, "points as CSV: gap [mm], pitch [deg], ..., lift_force [N], lift_force_sigma [N], ...")->required();
+    command.add_option("--quantity", quantity, "column to use (default: lift_force, or the first force of the table)");
+    command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either");
+    command.add_option("--axes", axes, "columns that are axes, such as gap,pitch (default: all known ones that vary)");
+    command.add_option("--kind", kind, "auto | interpolation | gp | spline")->capture_default_str();
+    command.add_option("--range", range, "outside the points: clamp | refuse | extrapolate")->capture_default_str();
+}
+
+tables::FitOptions TableOptions::fit_options() const {
+    tables::FitOptions options;
+    const std::vector<std::string> kinds = {"auto", "interpolation", "gp", "spline"};
+    if (kind == "auto") {
+        options.kind = tables::FitOptions::Kind::automatic;
+    } else if (kind == "interpolation") {
+        options.kind = tables::FitOptions::Kind::interpolation;
+    } else if (kind == "gp") {
+        options.kind = tables::FitOptions::Kind::gaussian_process;
+    } else if (kind == "spline") {
+        options.kind = tables::FitOptions::Kind::spline;
+    } else {
+        throw core::UsageError("kind", "there is no kind of table '" + kind + "'", {}, core::did_you_mean(kind, kinds));
+    }
+    if (range == "clamp") {
+        options.range = tables::RangePolicy::clamp;
+    } else if (range == "refuse") {
+        options.range = tables::RangePolicy::refuse;
+    } else if (range == "extrapolate") {
+        options.range = tables::RangePolicy::extrapolate;
+    } else {
+        throw core::UsageError("range", "there is no range policy '" + range + "'", {}, core::did_you_mean(range, {"clamp", "refuse", "extrapolate"}));
+    }
+    for (const auto name : core::split(axes, ',')) {
+        if (!core::trimmed(name).empty()) {
+            options.axes.emplace_back(core::trimmed(name));
+        }
+    }
+    return options;
+}
+
+namespace {
+
+std::vector<std::string> quantities_of(const core::Table& table, const std::string& asked) {
+    std::vector<std::string> names;
+    for (const auto name : core::split(asked, ',')) {
+        if (!core::trimmed(name).empty()) {
+            names.emplace_back(core::trimmed(name));
+        }
+    }
+    if (names.empty()) {
+        names = tables::force_columns(table);
+    }
+    if (names.empty()) {
+        throw core::InputError("missing", "the table has no force and no other column to fit", {table.source, {}, {}, {}},
+                               "a force column is named lift_force [N], drag_force [N], pitch_moment [N m], ...");
+    }
+    return names;
+}
+
+}  // namespace
+
+tables::ForceTable TableOptions::fit(Shell& shell) const {
+    const auto table = tables::selected_rows(core::read_csv(file), where);
+    auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
+    shell.show(fitted.remarks());
+    return fitted;
+}
+
+std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell) const {
+    const auto table = tables::selected_rows(core::read_csv(file), where);
+    std::vector<tables::ForceTable> all;
+    for (const auto& name : quantities_of(table, quantity)) {
+        all.push_back(tables::ForceTable::fit(table, name, fit_options()));
+        shell.show(all.back().remarks());
+    }
+    return all;
+}
+
+std::vector<std::pair<std::string, double>> read_assignments(const std::string& text) {
+    std::vector<std::pair<std::string, double>> values;
+    if (core::trimmed(text).empty()) {
+        return values;
+    }
+    for (const auto& v : core::parse_assignments(text)) {
+        values.emplace_back(v.name, v.value);
+    }
+    return values;
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,38 @@
+// Options that all commands on force tables share: which rows, which quantity, how to fit.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surrogates/tables/force_table.h"
+
+namespace CLI {
+class App;
+}
+
+namespace underbody::studio {
+
+class Shell;
+
+struct TableOptions {
+    std::string file;
+    std::string quantity;
+    std::string where;
+    std::string axes;
+    std::string kind = "auto";
+    std::string range = "clamp";
+
+    /// Adds TABLE.csv, --quantity, --where, --axes, --kind, --range.
+    void add_to(CLI::App& command);
+    [[nodiscard]] tables::FitOptions fit_options() const;
+    /// Fits one quantity: the one asked for, or the first force of the table. Remarks go to the shell.
+    [[nodiscard]] tables::ForceTable fit(Shell& shell) const;
+    /// All quantities asked for ("a,b"), or all forces of the table.
+    [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell) const;
+};
+
+/// "gap=5mm,pitch=1deg" as name and SI value.
+std::vector<std::pair<std::string, double>> read_assignments(const std::string& text);
+
+}  // namespace underbody::studio

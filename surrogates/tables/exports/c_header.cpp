@@ -1,0 +1,325 @@
+// C99 header: static arrays and static inline functions; no heap, no library, bounded steps.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "surrogates/tables/exports/export_grid.h"
+
+namespace underbody::tables {
+
+namespace {
+
+/// Index of uniform buckets for one axis, short enough for a small controller.
+struct Index {
+    std::vector<std::size_t> first;
+    double per_unit = 0;
+};
+
+Index index_of(const std::vector<double>& x) {
+    const std::size_t cells = x.size() - 1;
+    const double span = x.back() - x.front();
+    double shortest = span;
+    for (std::size_t i = 0; i < cells; ++i) {
+        shortest = std::min(shortest, x[i + 1] - x[i]);
+    }
+    const double wanted = std::ceil(span / shortest) + 1;
+    const auto buckets = static_cast<std::size_t>(std::clamp(wanted, static_cast<double>(cells), static_cast<double>(8 * cells)));
+    Index index;
+    index.per_unit = static_cast<double>(buckets) / span;
+    std::size_t i = 0;
+    for (std::size_t b = 0; b < buckets; ++b) {
+        // A little early, so that rounding in the controller's own arithmetic cannot start behind the cell.
+        const double begin = x.front() + (static_cast<double>(b) - 1e-3) / index.per_unit;
+        while (i + 1 < cells && begin >= x[i + 1]) {
+            ++i;
+        }
+        index.first.push_back(i);
+    }
+    return index;
+}
+
+class Writer {
+public:
+    explicit Writer(const ExportGrid& grid) : g_(grid), n_(grid.axes.size()), name_(grid.name), real_(grid.single_precision ? "float" : "double") {}
+
+    std::string text() {
+        head();
+        data();
+        helpers();
+        evaluation();
+        shorthands();
+        out_ += "\n#endif\n";
+        return std::move(out_);
+    }
+
+private:
+    std::string number(double v) const {
+        if (!g_.single_precision) {
+            std::string text = core::format_number(v);
+            return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+        }
+        std::string text = core::format_number(static_cast<double>(static_cast<float>(v)), 9);
+        return (text.find_first_of(".en") == std::string::npos ? text + ".0" : text) + "f";
+    }
+    [[nodiscard]] std::string upper_name() const {
+        std::string text = name_;
+        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        return text;
+    }
+    [[nodiscard]] std::string index_type() const {
+        const bool small = std::all_of(g_.axes.begin(), g_.axes.end(), [](const ExportAxis& a) { return a.points.size() <= 65535; });
+        return small ? "unsigned short" : "unsigned";
+    }
+    template <class Values, class Format>
+    void array(const std::string& type, const std::string& name, const Values& values, Format&& format) {
+        out_ += "static const " + type + " " + name_ + "_" + name + "[" + std::to_string(values.size()) + "] = {";
+        std::size_t column = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const std::string item = format(values[i]) + (i + 1 < values.size() ? "," : "");
+            if (column == 0 || column + item.size() > 118) {
+                out_ += "\n    ";
+                column = 4;
+            }
+            out_ += item + " ";
+            column += item.size() + 1;
+        }
+        out_ += "\n};\n";
+    }
+    void reals(const std::string& name, const std::vector<double>& values) {
+        array(real_, name, values, [this](double v) { return number(v); });
+    }
+
+    void head() {
+        out_ += "/*\n";
+        for (auto line : g_.origin) {
+            for (std::size_t at; (at = line.find("*/")) != std::string::npos;) {
+                line.replace(at, 2, "* /");
+            }
+            for (std::size_t at; (at = line.find("/*")) != std::string::npos;) {
+                line.replace(at, 2, "/ *");
+            }
+            out_ += " * " + line + "\n";
+        }
+        out_ += " *\n * Use: " + name_ + "_result r; " + name_ + "_at(point, &r);  with point[] = {";
+        for (std::size_t k = 0; k < n_; ++k) {
+            out_ += (k == 0 ? "" : ", ") + g_.axes[k].name + " [" + g_.axes[k].unit + "]";
+        }
+        out_ += "}\n *      or " + name_ + "_value(";
+        for (std::size_t k = 0; k < n_; ++k) {
+            out_ += (k == 0 ? "" : ", ") + identifier(g_.axes[k].name);
+        }
+        out_ += ") for the value alone.\n * A point that is not a number gives a value that is not a number.\n */\n";
+        const std::string guard = "UNDERBODY_" + upper_name() + "_H";
+        out_ += "#ifndef " + guard + "\n#define " + guard + "\n\n";
+        out_ += "#define " + upper_name() + "_AXES " + std::to_string(n_) + "\n\n";
+        out_ += "typedef " + real_ + " " + name_ + "_real;\n\n";
+        out_ += "typedef struct {\n    " + name_ + "_real value;                /* " + g_.unit + " */\n";
+        out_ += "    " + name_ + "_real slope[" + std::to_string(n_) + "];             /* " + g_.unit + " per unit of each axis */\n";
+        out_ += "    " + name_ + "_real sigma;                /* " + g_.unit + ", one standard deviation */\n";
+        out_ += "    " + name_ + "_real beyond[" + std::to_string(n_) + "];            /* how far outside each axis, signed; 0 inside */\n";
+        out_ += "    int outside;                   /* 1 when the point lies outside the table */\n} " + name_ + "_result;\n\n";
+    }
+
+    void data() {
+        for (std::size_t k = 0; k < n_; ++k) {
+            const std::string id = std::to_string(k);
+            const auto& x = g_.axes[k].points;
+            out_ += "/* " + g_.axes[k].name + " [" + g_.axes[k].unit + "] */\n";
+            reals("x" + id, x);
+            const Index index = index_of(x);
+            per_unit_.push_back(index.per_unit);
+            buckets_.push_back(index.first.size());
+            array(index_type(), "first" + id, index.first, [](std::size_t v) { return std::to_string(v); });
+            if (has_cells(k)) {
+                reals("cell" + id, g_.error.cell_error(k));
+            }
+        }
+        out_ += "/* value, slope along axis 0";
+        out_ += n_ > 1 ? ", slope along axis 1, both, ..." : "";
+        out_ += " at every grid point, last axis fastest */\n";
+        reals("data", g_.surface.hermite());
+        if (has_sigma()) {
+            out_ += "/* one standard deviation at every grid point */\n";
+            reals("sigma_data", g_.error.node_sigma());
+        }
+        out_ += "\n";
+    }
+
+    [[nodiscard]] bool has_sigma() const {
+        const auto& sigma = g_.error.node_sigma();
+        return std::any_of(sigma.begin(), sigma.end(), [](double s) { return s != 0; });
+    }
+    [[nodiscard]] bool has_cells(std::size_t k) const {
+        const auto& cells = g_.error.cell_error(k);
+        return std::any_of(cells.begin(), cells.end(), [](double s) { return s != 0; });
+    }
+
+    void helpers() {
+        out_ += "static inline unsigned " + name_ + "_cell(const " + name_ + "_real* x, const " + index_type() + "* first, unsigned cells, unsigned buckets, " +
+                name_ + "_real per_unit, " + name_ + "_real v) {\n";
+        out_ += "    unsigned b = (unsigned)((v - x[0]) * per_unit);\n    unsigned i = first[b < buckets ? b : buckets - 1u];\n";
+        out_ += "    while (i + 1u < cells && v >= x[i + 1u]) {\n        ++i;\n    }\n    return i;\n}\n\n";
+        // w: values and slopes of the four cubic Hermite functions.
+        out_ += "static inline void " + name_ + "_weights(" + name_ + "_real h, " + name_ + "_real t, " + name_ + "_real* w, " + name_ + "_real* d) {\n";
+        const std::string one = number(1), two = number(2), three = number(3), six = number(6);
+        out_ += "    const " + name_ + "_real r = " + one + " - t;\n";
+        out_ += "    w[0] = r * r * (" + one + " + " + two + " * t);\n    w[1] = h * t * r * r;\n";
+        out_ += "    w[2] = t * t * (" + three + " - " + two + " * t);\n    w[3] = -h * t * t * r;\n";
+        out_ += "    d[2] = " + six + " * t * r / h;\n    d[0] = -d[2];\n    d[1] = r * (" + one + " - " + three + " * t);\n    d[3] = t * (" + three +
+                " * t - " + two + ");\n}\n\n";
+    }
+
+    void evaluation() {
+        const std::string real = name_ + "_real";
+        const std::string n = std::to_string(n_);
+        out_ += "/* Everything at a point. */\nstatic inline void " + name_ + "_at(const " + real + "* point, " + name_ + "_result* result) {\n";
+        out_ += "    " + real + " w[" + n + "][4], d[" + n + "][4], t[" + n + "], sigma = " + number(0) + ";\n";
+        out_ += "    unsigned cell[" + n + "];\n    int held[" + n + "];\n";
+        out_ += "    result->outside = 0;\n";
+        for (std::size_t k = 0; k < n_; ++k) {
+            axis_part(k);
+        }
+        sum_part();
+        sigma_part();
+        if (g_.range == RangePolicy::extrapolate) {
+            for (std::size_t k = 0; k < n_; ++k) {
+                const std::string id = std::to_string(k);
+                out_ += "    result->value += result->slope[" + id + "] * result->beyond[" + id + "];\n";
+            }
+            out_ += "    (void)held;\n";
+        } else {
+            for (std::size_t k = 0; k < n_; ++k) {
+                const std::string id = std::to_string(k);
+                out_ += "    if (held[" + id + "]) {\n        result->slope[" + id + "] = " + number(0) + ";\n    }\n";
+            }
+        }
+        out_ += "}\n\n";
+    }
+
+    void axis_part(std::size_t k) {
+        const std::string real = name_ + "_real";
+        const std::string id = std::to_string(k);
+        const std::string x = name_ + "_x" + id;
+        const std::size_t cells = g_.axes[k].points.size() - 1;
+        const std::string last = x + "[" + std::to_string(cells) + "]";
+        out_ += "    {\n        const " + real + " v = point[" + id + "];\n        " + real + " p = v;\n";
+        out_ += "        result->beyond[" + id + "] = " + number(0) + ";\n        held[" + id + "] = 0;\n";
+        out_ += "        if (!(v >= " + x + "[0])) {\n            p = " + x + "[0];\n            held[" + id + "] = 1;\n";
+        out_ += "            result->beyond[" + id + "] = v - p;\n            result->outside = 1;\n";
+        out_ += "        } else if (v > " + last + ") {\n            p = " + last + ";\n            held[" + id + "] = 1;\n";
+        out_ += "            result->beyond[" + id + "] = v - p;\n            result->outside = 1;\n        }\n";
+        out_ += "        cell[" + id + "] = " + name_ + "_cell(" + x + ", " + name_ + "_first" + id + ", " + std::to_string(cells) + "u, " +
+                std::to_string(buckets_[k]) + "u, " + number(per_unit_[k]) + ", p);\n";
+        out_ += "        {\n            const " + real + " h = " + x + "[cell[" + id + "] + 1u] - " + x + "[cell[" + id + "]];\n";
+        // Not a number: v < x[0] is false, v - v carries it on.
+        out_ += "            t[" + id + "] = (p - " + x + "[cell[" + id + "]]) / h;\n            if (!(v >= " + x + "[0]) && !(v < " + x + "[0])) {\n                t[" + id +
+                "] = v - v;\n            }\n";
+        out_ += "            " + name_ + "_weights(h, t[" + id + "], w[" + id + "], d[" + id + "]);\n        }\n    }\n";
+    }
+
+    void sum_part() {
+        const std::string real = name_ + "_real";
+        if (n_ == 1) {
+            out_ += "    {\n        const " + real + "* a = " + name_ + "_data + 2u * cell[0];\n";
+            out_ += "        result->value = w[0][0] * a[0] + w[0][1] * a[1] + w[0][2] * a[2] + w[0][3] * a[3];\n";
+            out_ += "        result->slope[0] = d[0][0] * a[0] + d[0][1] * a[1] + d[0][2] * a[2] + d[0][3] * a[3];\n    }\n";
+            return;
+        }
+        if (n_ == 2) {
+            const std::string columns = std::to_string(g_.axes[1].points.size()) + "u";
+            out_ += "    {\n        const " + real + "* a = " + name_ + "_data + 4u * (cell[0] * " + columns + " + cell[1]);\n";
+            out_ += "        const " + real + "* b = a + 4u * " + columns + ";\n        " + real + " g[4], s[4];\n        unsigned i;\n";
+            out_ += "        /* along axis 0, for value and axis-1 slope at both ends of axis 1 */\n";
+            out_ += "        for (i = 0; i < 4u; ++i) {\n            const unsigned j = 2u * i;\n";
+            out_ += "            g[i] = w[0][0] * a[j] + w[0][1] * a[j + 1u] + w[0][2] * b[j] + w[0][3] * b[j + 1u];\n";
+            out_ += "            s[i] = d[0][0] * a[j] + d[0][1] * a[j + 1u] + d[0][2] * b[j] + d[0][3] * b[j + 1u];\n        }\n";
+            out_ += "        result->value = w[1][0] * g[0] + w[1][1] * g[1] + w[1][2] * g[2] + w[1][3] * g[3];\n";
+            out_ += "        result->slope[0] = w[1][0] * s[0] + w[1][1] * s[1] + w[1][2] * s[2] + w[1][3] * s[3];\n";
+            out_ += "        result->slope[1] = d[1][0] * g[0] + d[1][1] * g[1] + d[1][2] * g[2] + d[1][3] * g[3];\n    }\n";
+            return;
+        }
+        const std::string n = std::to_string(n_) + "u";
+        const std::string width = std::to_string(std::size_t{1} << n_) + "u";
+        out_ += "    {\n        unsigned corner, mask, k, j;\n        result->value = " + number(0) + ";\n";
+        out_ += "        for (j = 0; j < " + n + "; ++j) {\n            result->slope[j] = " + number(0) + ";\n        }\n";
+        out_ += "        for (corner = 0; corner < " + width + "; ++corner) {\n            unsigned node = 0;\n            const " + real + "* a;\n";
+        for (std::size_t k = 0; k < n_; ++k) {
+            out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" + std::to_string(k) + "] + (corner >> " +
+                    std::to_string(k) + " & 1u);\n";
+        }
+        out_ += "            a = " + name_ + "_data + " + width + " * node;\n";
+        out_ += "            for (mask = 0; mask < " + width + "; ++mask) {\n";
+        out_ += "                " + real + " product = a[mask];\n";
+        out_ += "                for (k = 0; k < " + n + "; ++k) {\n                    product *= w[k][2u * (corner >> k & 1u) + (mask >> k & 1u)];\n                }\n";
+        out_ += "                result->value += product;\n                for (j = 0; j < " + n + "; ++j) {\n                    " + real + " part = a[mask];\n";
+        out_ += "                    for (k = 0; k < " + n + "; ++k) {\n                        part *= (k == j ? d : w)[k][2u * (corner >> k & 1u) + (mask >> k & 1u)];\n";
+        out_ += "                    }\n                    result->slope[j] += part;\n                }\n            }\n        }\n    }\n";
+    }
+
+    void sigma_part() {
+        const std::string real = name_ + "_real";
+        const std::string one = number(1);
+        if (has_sigma()) {
+            out_ += "    {\n        unsigned corner;\n        for (corner = 0; corner < " + std::to_string(std::size_t{1} << n_) + "u; ++corner) {\n";
+            out_ += "            unsigned node = 0;\n            " + real + " weight = " + one + ";\n";
+            for (std::size_t k = 0; k < n_; ++k) {
+                const std::string id = std::to_string(k);
+                out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" + id + "] + (corner >> " + id + " & 1u);\n";
+                out_ += "            weight *= (corner >> " + id + " & 1u) ? t[" + id + "] : " + one + " - t[" + id + "];\n";
+            }
+            out_ += "            sigma += weight * " + name_ + "_sigma_data[node];\n        }\n    }\n";
+        }
+        for (std::size_t k = 0; k < n_; ++k) {
+            const std::string id = std::to_string(k);
+            if (has_cells(k)) {
+                out_ += "    sigma += " + name_ + "_cell" + id + "[cell[" + id + "]] * " + number(4) + " * t[" + id + "] * (" + one + " - t[" + id + "]);\n";
+            }
+            if (g_.error.growth(k) != 0) {
+                out_ += "    sigma += " + number(g_.error.growth(k)) + " * (result->beyond[" + id + "] < " + number(0) + " ? -result->beyond[" + id + "] : result->beyond[" +
+                        id + "]);\n";
+            }
+        }
+        out_ += "    result->sigma = sigma;\n";
+    }
+
+    void shorthands() {
+        std::string parameters;
+        std::string list;
+        for (std::size_t k = 0; k < n_; ++k) {
+            const std::string id = identifier(g_.axes[k].name);
+            parameters += (k == 0 ? "" : ", ") + name_ + "_real " + id;
+            list += (k == 0 ? "" : ", ") + id;
+        }
+        const std::string fill = [&] {
+            std::string text;
+            for (std::size_t k = 0; k < n_; ++k) {
+                text += "    point[" + std::to_string(k) + "] = " + identifier(g_.axes[k].name) + ";\n";
+            }
+            return text;
+        }();
+        const std::string begin = "    " + name_ + "_real point[" + std::to_string(n_) + "];\n    " + name_ + "_result result;\n" + fill + "    " + name_ +
+                                  "_at(point, &result);\n";
+        out_ += "static inline " + name_ + "_real " + name_ + "_value(" + parameters + ") {\n" + begin + "    return result.value;\n}\n\n";
+        out_ += "static inline " + name_ + "_real " + name_ + "_sigma(" + parameters + ") {\n" + begin + "    return result.sigma;\n}\n\n";
+        out_ += "static inline int " + name_ + "_outside(" + parameters + ") {\n" + begin + "    return result.outside;\n}\n";
+    }
+
+    const ExportGrid& g_;
+    std::size_t n_;
+    std::string name_;
+    std::string real_;
+    std::string out_;
+    std::vector<double> per_unit_;
+    std::vector<std::size_t> buckets_;
+};
+
+}  // namespace
+
+void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& /*result*/) {
+    core::write_file(path, Writer(grid).text());
+}
+
+}  // namespace underbody::tables

@@ -1,0 +1,50 @@
+// Force tables for controllers: files that evaluate like the table, with slopes and error where the format can.
+//
+// A new format is one file in this folder and one line in `exporters()` (export.cpp).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/progress.h"
+#include "surrogates/tables/force_table.h"
+
+namespace underbody::tables {
+
+/// Sign convention of what is written.
+enum class Frame {
+    up,  ///< as inside the program: lift positive up, drag against the motion
+    ned  ///< body axes x forward, y starboard, z down: z_force = -lift_force, x_force = -drag_force, w = -heave_velocity
+};
+
+struct ExportOptions {
+    std::string name;                   ///< prefix of C identifiers, model name; empty: the quantity
+    bool single_precision = false;      ///< C: float instead of double
+    Frame frame = Frame::up;
+    double max_error = 0;               ///< > 0: thin the grid to the smallest that stays within this share of the force's range
+    std::vector<std::pair<std::string, std::size_t>> points;  ///< axis -> that many evenly spaced points
+    bool overwrite = false;             ///< also files that this program did not write
+};
+
+struct ExportResult {
+    std::vector<std::filesystem::path> files;  ///< the first is the one asked for
+    std::vector<std::size_t> grid;             ///< points an axis
+    double error = 0;                          ///< largest difference from the table in its range, in its unit (0: none)
+    core::Problems remarks;
+};
+
+struct ExportFormat {
+    std::string name;         ///< "c"
+    std::string ending;       ///< ".h"
+    std::string description;  ///< one line
+};
+const std::vector<ExportFormat>& export_formats();
+
+/// Throws core::UsageError for an unknown format, an axis that is none, a share that makes no sense; core::InputError (kind "exists")
+/// when the path holds something this program did not write; core::SystemError when it cannot be written. Whole files by rename.
+ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path,
+                          const ExportOptions& options = {}, core::Progress& progress = core::Progress::none());
+
+}  // namespace underbody::tables

@@ -1,0 +1,109 @@
+// Reads back what `export --format csv` wrote: grid, Hermite data and error, without a new fit.
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "surrogates/tables/fit.h"
+#include "surrogates/tables/force_table_impl.h"
+
+namespace underbody::tables {
+
+namespace {
+
+nlohmann::json facts_of(const core::Table& table) {
+    for (const auto& comment : table.comments) {
+        if (comment.find("\"underbody_table\"") != std::string::npos) {
+            nlohmann::json facts = nlohmann::json::parse(comment, nullptr, false);
+            if (facts.is_object()) {
+                return facts;
+            }
+        }
+    }
+    return nullptr;
+}
+
+std::vector<std::string> slope_columns(const std::string& quantity, const std::vector<TableAxis>& axes) {
+    std::vector<std::string> names{quantity};
+    for (std::size_t mask = 1; mask < std::size_t{1} << axes.size(); ++mask) {
+        std::string name = quantity + "_per";
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            name += (mask >> k & 1) != 0 ? "_" + axes[k].name : "";
+        }
+        names.push_back(name);
+    }
+    return names;
+}
+
+}  // namespace
+
+std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, const std::string& quantity, const FitOptions& options) {
+    const nlohmann::json facts = facts_of(table);
+    if (facts.is_null() || facts.value("quantity", "") != quantity) {
+        return nullptr;
+    }
+    FitOptions named = options;
+    named.axes = facts.value("axes", std::vector<std::string>{});
+    for (const auto& name : named.axes) {
+        if (table.find(name) == nullptr) {
+            return nullptr;
+        }
+    }
+    SetPoints points = set_points(table, quantity, named);
+    const auto columns = slope_columns(quantity, points.axes);
+    for (const auto& name : columns) {
+        if (table.find(name) == nullptr || table.find(name)->is_text()) {
+            return nullptr;
+        }
+    }
+    if (!points.full_grid) {
+        throw core::InputError("grid", "an exported table has lost some of its rows" + (points.missing.empty() ? "" : ": " + points.missing),
+                               {table.source, {}, {}, {}}, "export it again");
+    }
+    auto result = std::make_shared<ForceTable::Impl>();
+    result->quantity = points.quantity;
+    result->unit = points.unit;
+    result->source = table.source;
+    result->axes = points.axes;
+    result->points = points.table;
+    result->constants = points.constants;
+    result->range = options.range != RangePolicy::clamp                  ? options.range
+                    : facts.value("range", "clamp") == "extrapolate" ? RangePolicy::extrapolate
+                                                                         : RangePolicy::clamp;
+    result->kind = "exported grid";
+    result->remarks.push_back({core::Problem::Severity::note, "an exported table: taken with its slopes and error, not fitted again", {table.source, {}, {}, {}}});
+    std::vector<std::vector<double>> grid;
+    for (const auto& axis : points.axes) {
+        grid.push_back(axis.points);
+    }
+    const std::size_t width = columns.size();
+    std::vector<double> hermite(points.order.size() * width);
+    std::vector<double> sigma(points.order.size(), 0.0);
+    const core::Column* errors = table.find(quantity + "_sigma");
+    for (std::size_t node = 0; node < points.order.size(); ++node) {
+        const std::size_t row = points.row[points.order[node]];
+        for (std::size_t m = 0; m < width; ++m) {
+            const double v = points.table.numbers(columns[m])[row];
+            if (!std::isfinite(v)) {
+                throw core::InputError("missing", "an exported table lacks a slope", points.table.place(row, columns[m]), "export it again");
+            }
+            hermite[node * width + m] = v;
+        }
+        const double s = errors != nullptr && !errors->is_text() ? points.table.numbers(errors->name)[row] : 0;
+        sigma[node] = std::isfinite(s) ? s : 0;
+    }
+    result->surface = CubicGrid(grid, std::move(hermite));
+    result->error = ErrorModel(grid, std::move(sigma));
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+        if (facts.contains("cell_error") && facts["cell_error"].size() == grid.size() && facts["cell_error"][k].size() + 1 == grid[k].size()) {
+            result->error.set_cell_error(k, facts["cell_error"][k].get<std::vector<double>>());
+        }
+        if (facts.contains("growth") && facts["growth"].size() == grid.size()) {
+            result->error.set_growth(k, facts["growth"][k].get<double>());
+        }
+    }
+    return result;
+}
+
+}  // namespace underbody::tables

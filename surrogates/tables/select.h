@@ -1,0 +1,19 @@
+// Which rows and which quantities of a table to use.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/table.h"
+
+namespace underbody::tables {
+
+/// Rows where every condition holds: "variant=ellipse, mesh=medium, pitch=0deg". Text columns compare as written, numbers within
+/// 1e-9; a bare number is SI. "NAME=a|b" takes either. Empty: all rows. Throws core::UsageError for an unknown column or a selection that leaves nothing
+/// (naming the values there are).
+core::Table selected_rows(const core::Table& table, const std::string& conditions);
+
+/// Known forces and moments that the table has, in its order; other numeric columns when it has none of these.
+std::vector<std::string> force_columns(const core::Table& table);
+
+}  // namespace underbody::tables

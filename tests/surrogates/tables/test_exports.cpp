@@ -1,0 +1,333 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/random.h"
+#include "surrogates/tables/exports/export.h"
+#include "surrogates/tables/force_table.h"
+#include "tests/surrogates/tables/tables_support.h"
+
+namespace underbody {
+namespace {
+
+using tables::ExportOptions;
+using tables::FitOptions;
+using tables::ForceTable;
+using ::testing::HasSubstr;
+
+core::Table with_sigma(core::Table table, double sigma) {
+    table.add_numbers("lift_force_sigma", "N", std::vector<double>(table.rows(), sigma));
+    return table;
+}
+
+FitOptions interpolation(tables::RangePolicy range = tables::RangePolicy::clamp) {
+    FitOptions options;
+    options.kind = FitOptions::Kind::interpolation;
+    options.range = range;
+    return options;
+}
+
+ForceTable one_axis(tables::RangePolicy range = tables::RangePolicy::clamp) {
+    return ForceTable::fit(with_sigma(test::ref_a(), 2e-4), "lift_force", interpolation(range));
+}
+
+ForceTable two_axes(tables::RangePolicy range = tables::RangePolicy::clamp) {
+    std::vector<double> gap, pitch;
+    for (int i = 0; i < 24; ++i) {
+        gap.push_back(0.001 * std::pow(100.0, i / 23.0));
+    }
+    for (int i = -6; i <= 6; ++i) {
+        pitch.push_back(i * 0.012);
+    }
+    return ForceTable::fit(with_sigma(test::grid_table(gap, pitch, [](double h, double p) { return 3e-4 / h + 4 * p / (1 + 40 * h) + 0.3 * std::sin(9 * h); }), 0.01),
+                           "lift_force", interpolation(range));
+}
+
+ForceTable three_axes() {
+    std::vector<double> g, p, u, f;
+    for (const double a : {0.001, 0.003, 0.01, 0.05}) {
+        for (const double b : {-0.05, 0.0, 0.05}) {
+            for (const double c : {0.3, 0.5, 0.9}) {
+                g.push_back(a);
+                p.push_back(b);
+                u.push_back(c);
+                f.push_back(c * c * (1e-3 / a + 3 * b) + std::cos(100 * a));
+            }
+        }
+    }
+    core::Table table;
+    table.source = "three";
+    table.add_numbers("gap", "m", g);
+    table.add_numbers("pitch", "rad", p);
+    table.add_numbers("speed", "m/s", u);
+    table.add_numbers("lift_force", "N", f);
+    return ForceTable::fit(table, "lift_force", interpolation());
+}
+
+/// Random points, a third of them outside.
+std::vector<double> random_points(const ForceTable& table, std::size_t count, bool as_float = false) {
+    core::Random random(1234);
+    std::vector<double> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        for (const auto& axis : table.axes()) {
+            const double span = axis.upper - axis.lower;
+            const bool inside = random.below(3) != 0;
+            double x = inside ? random.uniform(axis.lower, axis.upper) : random.uniform(axis.lower - span, axis.upper + span);
+            if (random.below(20) == 0) {
+                x = axis.points[random.below(axis.points.size())];
+            }
+            points.push_back(as_float ? static_cast<double>(static_cast<float>(x)) : x);
+        }
+    }
+    return points;
+}
+
+/// A C program around the header: points on stdin, value, slopes, sigma, outside, beyond on stdout, all double.
+std::string driver(const std::string& name, std::size_t axes) {
+    const std::string n = std::to_string(axes);
+    return "#include <stdio.h>\n#include \"table.h\"\nint main(void) {\n    double in[" + n + "];\n    while (fread(in, sizeof(double), " + n + ", stdin) == " + n +
+           ") {\n        " + name + "_real p[" + n + "];\n        " + name + "_result r;\n        double out[" + std::to_string(3 + 2 * axes) +
+           "];\n        int k;\n        for (k = 0; k < " + n + "; ++k) {\n            p[k] = (" + name + "_real)in[k];\n        }\n        " + name +
+           "_at(p, &r);\n        out[0] = (double)r.value;\n        out[1] = (double)r.sigma;\n        out[2] = r.outside;\n        for (k = 0; k < " + n +
+           "; ++k) {\n            out[3 + k] = (double)r.slope[k];\n            out[3 + " + n +
+           " + k] = (double)r.beyond[k];\n        }\n        fwrite(out, sizeof(double), " + std::to_string(3 + 2 * axes) +
+           ", stdout);\n    }\n    return 0;\n}\n";
+}
+
+std::vector<double> run_header(const std::filesystem::path& folder, const std::string& compiler, const std::string& name, std::size_t axes,
+                               const std::vector<double>& points, bool& ok) {
+    core::write_file(folder / "main.c", driver(name, axes));
+    core::write_file(folder / "points.bin", {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(double)});
+    const std::string at = "cd '" + folder.string() + "' && ";
+    ok = std::system((at + compiler + " -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -pedantic main.c -o main 2> errors.txt && ./main < points.bin > out.bin").c_str()) == 0;
+    if (!ok) {
+        ADD_FAILURE() << core::read_file(folder / "errors.txt");
+        return {};
+    }
+    const std::string bytes = core::read_file(folder / "out.bin");
+    std::vector<double> out(bytes.size() / sizeof(double));
+    std::memcpy(out.data(), bytes.data(), out.size() * sizeof(double));
+    return out;
+}
+
+bool have(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
+
+void check_header(const ForceTable& table, bool single, const std::string& compiler) {
+    core::TemporaryFolder folder;
+    ExportOptions options;
+    options.single_precision = single;
+    export_table(table, "c", folder.path() / "table.h", options);
+    const std::size_t n = table.axes().size();
+    const auto points = random_points(table, 10000, single);
+    bool ok = false;
+    const auto out = run_header(folder.path(), compiler, "lift_force", n, points, ok);
+    if (!ok) {
+        return;
+    }
+    const std::size_t width = 3 + 2 * n;
+    ASSERT_EQ(out.size(), 10000 * width);
+    double size = 0;
+    double steepest[4] = {};
+    for (int i = 0; i < 10000; ++i) {
+        const auto e = table.at({&points[i * n], n});
+        size = std::max(size, std::abs(e.value));
+        for (std::size_t k = 0; k < n; ++k) {
+            steepest[k] = std::max(steepest[k], std::abs(e.slope[k]));
+        }
+    }
+    const double tolerance = single ? 1e-6 : 1e-12;
+    for (int i = 0; i < 10000; ++i) {
+        const auto e = table.at({&points[i * n], n});
+        const double* o = &out[i * width];
+        ASSERT_NEAR(o[0], e.value, tolerance * size);
+        ASSERT_NEAR(o[1], e.sigma, tolerance * (1 + e.sigma));
+        bool at_an_end = false;  // an end rounded to float may fall on either side
+        for (std::size_t k = 0; k < n; ++k) {
+            at_an_end = at_an_end || (e.beyond[k] != 0 && std::abs(e.beyond[k]) < 1e-6);
+        }
+        if (single && at_an_end) {
+            continue;
+        }
+        ASSERT_EQ(o[2] != 0, e.outside);
+        for (std::size_t k = 0; k < n; ++k) {
+            ASSERT_NEAR(o[3 + k], e.slope[k], (single ? 1e-4 : 1e-11) * steepest[k]);
+            ASSERT_NEAR(o[3 + n + k], e.beyond[k], tolerance);
+        }
+    }
+}
+
+class CHeader : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(CHeader, EvaluatesLikeTheTableInsideAndOutside) {
+    if (!have(GetParam())) {
+        GTEST_SKIP() << "skipped: " << GetParam() << " is not installed";
+    }
+    for (const auto range : {tables::RangePolicy::clamp, tables::RangePolicy::extrapolate}) {
+        check_header(one_axis(range), false, GetParam());
+        check_header(two_axes(range), false, GetParam());
+    }
+    check_header(three_axes(), false, GetParam());
+    check_header(one_axis(), true, GetParam());
+    check_header(two_axes(), true, GetParam());
+}
+INSTANTIATE_TEST_SUITE_P(Compilers, CHeader, ::testing::Values("gcc", "clang"));
+
+TEST(Exports, OfCsvReadBackAsTheSameTable) {
+    core::TemporaryFolder folder;
+    for (const ForceTable& table : {one_axis(), two_axes(), three_axes(), test::ref_a_spline(), two_axes(tables::RangePolicy::extrapolate)}) {
+        export_table(table, "csv", folder.path() / "t.csv", {});
+        const ForceTable again = ForceTable::read(folder.path() / "t.csv", "lift_force");
+        const std::size_t n = table.axes().size();
+        ASSERT_EQ(again.axes().size(), n);
+        const auto points = random_points(table, 10000);
+        for (int i = 0; i < 10000; ++i) {
+            const auto a = table.at({&points[i * n], n});
+            const auto b = again.at({&points[i * n], n});
+            ASSERT_NEAR(a.value, b.value, 1e-12 * (1 + std::abs(a.value)));
+            ASSERT_NEAR(a.sigma, b.sigma, 1e-12 * (1 + a.sigma));
+            ASSERT_EQ(a.outside, b.outside);
+            for (std::size_t k = 0; k < n; ++k) {
+                ASSERT_NEAR(a.slope[k], b.slope[k], 1e-10 * (1 + std::abs(a.slope[k])));
+            }
+        }
+    }
+}
+
+/// What the JSON itself says about evaluating it, done by its words.
+struct JsonTable {
+    nlohmann::json j;
+    [[nodiscard]] std::pair<double, double> at(const double* p) const {
+        const std::size_t n = j["axes"].size();
+        std::vector<std::size_t> cell(n), size(n);
+        std::vector<double> t(n), h(n), x(n);
+        double sigma = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            const auto points = j["axes"][k]["points"].get<std::vector<double>>();
+            size[k] = points.size();
+            x[k] = std::clamp(p[k], points.front(), points.back());
+            cell[k] = 0;
+            while (cell[k] + 2 < points.size() && x[k] >= points[cell[k] + 1]) {
+                ++cell[k];
+            }
+            h[k] = points[cell[k] + 1] - points[cell[k]];
+            t[k] = (x[k] - points[cell[k]]) / h[k];
+            if (!j["cell_error"][k].empty()) {
+                sigma += j["cell_error"][k][cell[k]].get<double>() * 4 * t[k] * (1 - t[k]);
+            }
+            sigma += j["growth"][k].get<double>() * std::abs(p[k] - x[k]);
+        }
+        double value = 0;
+        for (std::size_t corner = 0; corner < std::size_t{1} << n; ++corner) {
+            std::size_t node = 0;
+            double weight = 1;
+            for (std::size_t k = 0; k < n; ++k) {
+                const bool up = (corner >> k & 1) != 0;
+                node = node * size[k] + cell[k] + (up ? 1 : 0);
+                weight *= up ? t[k] : 1 - t[k];
+            }
+            sigma += weight * j["sigma"][node].get<double>();
+            for (std::size_t m = 0; m < std::size_t{1} << n; ++m) {
+                double product = j["hermite"][node][m].get<double>();
+                for (std::size_t k = 0; k < n; ++k) {
+                    const double r = 1 - t[k];
+                    const bool up = (corner >> k & 1) != 0;
+                    const bool slope = (m >> k & 1) != 0;
+                    product *= slope ? (up ? -h[k] * t[k] * t[k] * r : h[k] * t[k] * r * r) : (up ? t[k] * t[k] * (3 - 2 * t[k]) : r * r * (1 + 2 * t[k]));
+                }
+                value += product;
+            }
+        }
+        return {value, sigma};
+    }
+};
+
+TEST(Exports, OfJsonEvaluateByTheirOwnWords) {
+    core::TemporaryFolder folder;
+    for (const ForceTable& table : {one_axis(), two_axes()}) {
+        export_table(table, "json", folder.path() / "t.json", {});
+        const JsonTable json{nlohmann::json::parse(core::read_file(folder.path() / "t.json"))};
+        const std::size_t n = table.axes().size();
+        const auto points = random_points(table, 2000);
+        for (int i = 0; i < 2000; ++i) {
+            const auto e = table.at({&points[i * n], n});
+            const auto [value, sigma] = json.at(&points[i * n]);
+            ASSERT_NEAR(value, e.value, 1e-12 * (1 + std::abs(e.value)));
+            ASSERT_NEAR(sigma, e.sigma, 1e-12 * (1 + e.sigma));
+        }
+    }
+}
+
+TEST(Exports, ThinTheGridAndKeepTheErrorAskedFor) {
+    std::vector<double> gap, pitch;
+    for (int i = 0; i < 60; ++i) {
+        gap.push_back(0.001 * std::pow(100.0, i / 59.0));
+        pitch.push_back(-0.1 + 0.2 * i / 59);
+    }
+    const auto table = ForceTable::fit(test::grid_table(gap, pitch, [](double h, double p) { return 3e-4 / h + 4 * p / (1 + 40 * h) + 0.3 * std::sin(9 * h); }),
+                                       "lift_force", interpolation());
+    core::TemporaryFolder folder;
+    ExportOptions options;
+    options.max_error = 0.005;
+    const auto result = export_table(table, "csv", folder.path() / "thin.csv", options);
+    ASSERT_EQ(result.grid.size(), 2u);
+    EXPECT_LT(result.grid[0] * result.grid[1], 200u);
+    const auto thin = ForceTable::read(folder.path() / "thin.csv", "lift_force");
+    double low = 1e9, high = -1e9, worst = 0;
+    core::Random random(5);
+    for (int i = 0; i < 20000; ++i) {
+        const double p[2] = {random.uniform(0.001, 0.1), random.uniform(-0.1, 0.1)};
+        const double v = table.value(p);
+        low = std::min(low, v);
+        high = std::max(high, v);
+        worst = std::max(worst, std::abs(v - thin.value(p)));
+    }
+    EXPECT_LE(worst, 0.0051 * (high - low));
+    EXPECT_GT(result.error, 0);
+    EXPECT_THAT(core::read_file(folder.path() / "thin.csv"), HasSubstr("Differs from the full table by at most"));
+}
+
+TEST(Exports, InTheDownFrameTurnTheirSigns) {
+    core::TemporaryFolder folder;
+    std::vector<double> w, f;
+    for (const double v : {-0.2, -0.1, 0.05, 0.3}) {
+        w.push_back(v);
+        f.push_back(1 - 2 * v + v * v);
+    }
+    core::Table data;
+    data.add_numbers("heave_velocity", "m/s", w);
+    data.add_numbers("lift_force", "N", f);
+    const auto table = ForceTable::fit(data, "lift_force", interpolation());
+    ExportOptions options;
+    options.frame = tables::Frame::ned;
+    export_table(table, "csv", folder.path() / "ned.csv", options);
+    const auto ned = ForceTable::read(folder.path() / "ned.csv", "z_force");
+    for (double v = -0.25; v < 0.35; v += 0.01) {
+        const double down = -v;
+        EXPECT_NEAR(ned.value(&down), -table.value(&v), 1e-14);
+        EXPECT_NEAR(ned.at({&down, 1}).slope[0], table.at({&v, 1}).slope[0], 1e-12);
+    }
+}
+
+TEST(Exports, DoNotTouchAFileThatIsNotOurs) {
+    core::TemporaryFolder folder;
+    const auto path = folder.path() / "mine.h";
+    core::write_file(path, "int precious;\n");
+    EXPECT_THROW(export_table(one_axis(), "c", path), core::InputError);
+    EXPECT_EQ(core::read_file(path), "int precious;\n");
+    ExportOptions options;
+    options.overwrite = true;
+    export_table(one_axis(), "c", path, options);
+    export_table(one_axis(), "c", path);  // ours now
+    EXPECT_THAT(core::read_file(path), HasSubstr("Underbody"));
+    EXPECT_THROW(export_table(one_axis(), "c", folder.path()), core::InputError);
+    EXPECT_THROW(export_table(one_axis(), "cc", path), core::UsageError);
+}
+
+}  // namespace
+}  // namespace underbody
