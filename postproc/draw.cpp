@@ -234,9 +234,9 @@ private:
         }
         auto* property = actor->GetProperty();
         property->SetOpacity(surface.opacity);
-        property->SetAmbient(surface.values.empty() ? 0.25 : 0.42);
-        property->SetDiffuse(surface.values.empty() ? 0.75 : 0.58);
-        property->SetSpecular(surface.values.empty() ? 0.12 : 0.0);
+        property->SetAmbient(surface.values.empty() ? 0.35 : 0.58);
+        property->SetDiffuse(surface.values.empty() ? 0.65 : 0.42);
+        property->SetSpecular(surface.values.empty() ? 0.04 : 0.0);
         property->SetSpecularPower(30);
         if (surface.edges) {
             property->EdgeVisibilityOn();

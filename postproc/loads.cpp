@@ -298,7 +298,9 @@ private:
         }
         const auto k = static_cast<std::size_t>(mirror_.axis);
         const double size = norm(plus(upper_, lower_, -1));
-        if (!mirror_.stated) {
+        if (!mirror_.stated && lower_[k] < -1e-3 * size && upper_[k] > 1e-3 * size) {
+            mirror_.at = 0;  // on both sides: refused below
+        } else if (!mirror_.stated) {
             mirror_.at = std::abs(lower_[k]) <= std::abs(upper_[k]) ? lower_[k] : upper_[k];
             if (std::abs(mirror_.at) <= 1e-3 * size) {
                 mirror_.at = 0;

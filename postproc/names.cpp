@@ -38,7 +38,7 @@ constexpr std::array known = {
     Known{"wall_shear_magnitude", "Pa", "wall_shear_magnitude wall_shear_stress_magnitude"},
     Known{"wall_shear_force", "N", "sv_wall_shear wall_shear_force"},
     Known{"skin_friction_coefficient", "1", "skin_friction_coef skin_friction_coefficient skinfrictioncoefficient"},
-    Known{"y_plus", "1", "yplus y_plus sv_yplus sv_y_plus wall_yplus solver_yplus"},
+    Known{"y_plus", "1", "yplus y_plus sv_yplus sv_wall_yplus sv_y_plus wall_yplus solver_yplus"},
     Known{"y_plus_u_tau", "1", "sv_yplus_utau sv_wall_yplus_utau"},
     Known{"wall_heat_flux", "W/m^2", "wall_heat_flux heat_flux wallheatflux total_surface_heat_flux"},
     Known{"wall_distance", "m", "wall_distance sv_wall_dist cell_wall_distance turbulentdistance"},

@@ -123,6 +123,7 @@ struct Section {
 struct Block {
     std::string name;
     const char* name_at = nullptr;
+    bool named = false;  ///< by a [Name] line, which may be empty
     std::vector<Section> sections;
 };
 
@@ -220,9 +221,9 @@ private:
             p = next_section(body);
             section.body = {body, static_cast<std::size_t>(p - body)};
             if (section.word == "name") {
-                blocks.push_back({std::string(first_line(section.body)), section.at, {}});
+                blocks.push_back({std::string(first_line(section.body)), section.at, true, {}});
             } else if (blocks.empty()) {
-                blocks.push_back({"", section.at, {}});  // a profile whose [Name] was cut away
+                blocks.push_back({"", section.at, false, {}});  // a profile whose [Name] was cut away
             }
             if (!is_known_section(section.word)) {
                 note(Severity::warning, "section [" + section.word + "] is not known and was left out", place_of(section.at, false));
@@ -247,7 +248,7 @@ private:
     void check_names(std::vector<Block>& blocks) const {
         for (std::size_t i = 0; i < blocks.size(); ++i) {
             if (blocks[i].name.empty()) {
-                if (!(i == 0 && !blocks[i].sections.empty())) {
+                if (blocks[i].named) {
                     throw InputError("zone", "[Name] without a name", place_of(blocks[i].name_at, false));
                 }
                 blocks[i].name = std::filesystem::path(field_.files[0]).stem().string();

@@ -299,8 +299,12 @@ IndexRows index_chunk(std::string_view text, char separator, std::size_t least, 
             ++p;
             continue;
         }
-        if (*p == '#') {
-            p = line_end(p, end) + 1;
+        const char* bare = p;  // a row of nothing but separators is a blank line of a spreadsheet
+        while (bare < end && (*bare == separator || is_blank(*bare))) {
+            ++bare;
+        }
+        if (*p == '#' || bare == end || *bare == '\n') {
+            p = line_end(bare, end) + 1;
             continue;
         }
         const char* row_start = p;
@@ -334,7 +338,7 @@ IndexRows index_chunk(std::string_view text, char separator, std::size_t least, 
                 break;
             }
             if (!separated) {
-                throw RowError{after, "'" + std::string(token_at(after, end, separator).substr(0, 40)) +
+                throw RowError{after, "'" + std::string(token_at(p, end, separator).substr(0, 40)) +
                                           "' behind a node number", ""};
             }
         }

@@ -1,0 +1,276 @@
+// What flows through the gap under the base.
+#include <vtkCutter.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPlane.h>
+#include <vtkPointData.h>
+#include <vtkTriangleFilter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "postproc/probe.h"
+#include "postproc/surface_arrays.h"
+#include "postproc/view_parts.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Point plus(const Point& a, const Point& b, double s = 1) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
+
+core::Place place_of(const Field& field) { return {field.files.empty() ? "" : field.files.front(), {}, {}, {}}; }
+
+/// A corner of a section in its own plane: to starboard, up, with what is integrated.
+struct Corner {
+    double side, height, velocity, speed, pressure;
+};
+
+Corner between(const Corner& a, const Corner& b, double t) {
+    const auto mix = [t](double x, double y) { return x + t * (y - x); };
+    return {mix(a.side, b.side), mix(a.height, b.height), mix(a.velocity, b.velocity), mix(a.speed, b.speed), mix(a.pressure, b.pressure)};
+}
+
+/// Keeps the part of a polygon where sign * (coordinate - limit) <= 0 (Sutherland and Hodgman 1974).
+std::vector<Corner> clipped(const std::vector<Corner>& polygon, double Corner::*coordinate, double limit, double sign) {
+    std::vector<Corner> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Corner& a = polygon[i];
+        const Corner& b = polygon[(i + 1) % polygon.size()];
+        const double da = sign * (a.*coordinate - limit);
+        const double db = sign * (b.*coordinate - limit);
+        if (da <= 0) {
+            kept.push_back(a);
+        }
+        if ((da < 0 && db > 0) || (da > 0 && db < 0)) {
+            kept.push_back(between(a, b, da / (da - db)));
+        }
+    }
+    return kept;
+}
+
+struct Sums {
+    double area = 0, flow = 0, speed = 0, pressure = 0, flow_pressure = 0;
+
+    /// Linear over each triangle of the fan: exact for sums, and for the product of two by the rule of the midpoints.
+    void add(const std::vector<Corner>& polygon) {
+        for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+            const std::array<Corner, 3> c = {polygon[0], polygon[i], polygon[i + 1]};
+            const double a = 0.5 * std::abs((c[1].side - c[0].side) * (c[2].height - c[0].height) - (c[2].side - c[0].side) * (c[1].height - c[0].height));
+            area += a;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Corner middle = between(c[k], c[(k + 1) % 3], 0.5);
+                flow += a / 3 * middle.velocity;
+                speed += a / 3 * middle.speed;
+                pressure += a / 3 * middle.pressure;
+                flow_pressure += a / 3 * middle.velocity * middle.pressure;
+            }
+        }
+    }
+};
+
+/// Base, axes and volume, ready for cuts.
+class Gap {
+public:
+    Gap(const Field& field, const GapOptions& options) : options_(options), starboard_(cross(options.forward, options.up)) {
+        for (const auto& zone : field.zones) {
+            if (zone.surface != nullptr && zone.surface->GetNumberOfPolys() > 0 && matches(options.base, zone.name)) {
+                base_.push_back(&zone);
+            }
+        }
+        if (base_.empty()) {
+            throw core::InputError("zone", "no zone fits '" + options.base + "' as the base above the gap", place_of(field), "name it with --base");
+        }
+        volume_ = volume_with(field, {"velocity", "pressure"});
+        if (volume_ == nullptr || volume_->GetPointData()->GetArray("velocity") == nullptr) {
+            throw core::InputError("missing", "the flow through the gap needs a volume with a velocity", place_of(field), "CFD-Post surfaces do not hold one");
+        }
+        for (const Zone* zone : base_) {
+            Box one{};
+            zone->surface->GetBounds(one.data());
+            widen(box_, one);
+        }
+        centre_ = {0.5 * (box_[0] + box_[1]), 0.5 * (box_[2] + box_[3]), 0.5 * (box_[4] + box_[5])};
+        half_ = 0.5 * std::abs(dot({box_[1] - box_[0], box_[3] - box_[2], box_[5] - box_[4]}, options.forward));
+    }
+
+    [[nodiscard]] double half_length() const { return half_; }
+    [[nodiscard]] const Point& centre() const { return centre_; }
+    [[nodiscard]] vtkUnstructuredGrid& volume() const { return *volume_; }
+    [[nodiscard]] const Point& starboard() const { return starboard_; }
+
+    /// Extent of the base across the station: its sides and its highest point there.
+    struct Section {
+        double left = 0, right = 0, height = 0;
+        bool found = false;
+    };
+    [[nodiscard]] Section section_of_base(double position) const {
+        Section s;
+        s.left = s.height = std::numeric_limits<double>::infinity();
+        s.right = -s.left;
+        s.height = -std::numeric_limits<double>::infinity();
+        for (const Zone* zone : base_) {
+            const DrawnSurface drawn = drawn_surface(*zone, "");
+            for (const auto& triangle : drawn.triangles) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Point& a = drawn.points[static_cast<std::size_t>(triangle[k])];
+                    const Point& b = drawn.points[static_cast<std::size_t>(triangle[(k + 1) % 3])];
+                    const double da = dot(plus(a, centre_, -1), options_.forward) - position;
+                    const double db = dot(plus(b, centre_, -1), options_.forward) - position;
+                    if ((da <= 0) == (db <= 0)) {
+                        continue;
+                    }
+                    const Point p = plus(a, plus(b, a, -1), da / (da - db));
+                    s.left = std::min(s.left, dot(p, starboard_));
+                    s.right = std::max(s.right, dot(p, starboard_));
+                    s.height = std::max(s.height, dot(p, options_.up));
+                    s.found = true;
+                }
+            }
+        }
+        return s;
+    }
+
+    [[nodiscard]] Sums flow_at(double position, const Section& section) const {
+        vtkNew<vtkPlane> plane;
+        const Point through = plus(centre_, options_.forward, position);
+        plane->SetOrigin(through.data());
+        plane->SetNormal(options_.forward.data());
+        vtkNew<vtkCutter> cutter;
+        cutter->SetInputData(volume_);
+        cutter->SetCutFunction(plane);
+        vtkNew<vtkTriangleFilter> triangles;
+        triangles->SetInputConnection(cutter->GetOutputPort());
+        triangles->PassLinesOff();
+        triangles->PassVertsOff();
+        triangles->Update();
+        const SurfaceArrays cut(*triangles->GetOutput());
+        auto* velocity = triangles->GetOutput()->GetPointData()->GetArray("velocity");
+        auto* pressure = triangles->GetOutput()->GetPointData()->GetArray("pressure");
+        Sums sums;
+        for (std::size_t f = 0; f < cut.faces(); ++f) {
+            std::vector<Corner> polygon;
+            for (Index i = cut.offsets()[f]; i < cut.offsets()[f + 1]; ++i) {
+                const Index node = cut.connectivity()[static_cast<std::size_t>(i)];
+                const double* x = cut.points().data() + 3 * node;
+                Point v{};
+                velocity->GetTuple(node, v.data());
+                polygon.push_back({dot({x[0], x[1], x[2]}, starboard_), dot({x[0], x[1], x[2]}, options_.up), -dot(v, options_.forward), std::sqrt(dot(v, v)),
+                                   pressure == nullptr ? 0 : pressure->GetComponent(node, 0)});
+            }
+            polygon = clipped(polygon, &Corner::side, section.left, -1);
+            polygon = clipped(polygon, &Corner::side, section.right, 1);
+            sums.add(clipped(polygon, &Corner::height, section.height, 1));
+        }
+        return sums;
+    }
+
+private:
+    const GapOptions& options_;
+    Point starboard_;
+    std::vector<const Zone*> base_;
+    vtkSmartPointer<vtkUnstructuredGrid> volume_;
+    Box box_ = empty_box();
+    Point centre_{};
+    double half_ = 0;
+};
+
+}  // namespace
+
+core::Table gap_flow(const Field& field, const GapOptions& options, core::Progress& progress) {
+    if (options.stations < 1) {
+        throw core::UsageError("usage", "one station at least");
+    }
+    const Gap gap(field, options);
+    const double halves = options.symmetry.empty() || options.symmetry == "none" ? 1 : 2;
+    const auto density = options.density ? options.density : field.density;
+    std::vector<double> position, width, area, flow, mass, bulk, speed, pressure, bulk_pressure;
+    for (int i = 0; i < options.stations; ++i) {
+        progress.check();
+        progress.report(static_cast<double>(i) / options.stations, "sections of the gap");
+        // Away from the very ends, where the section has no width.
+        const double at = gap.half_length() * (2 * (i + 0.5) / options.stations - 1);
+        const auto section = gap.section_of_base(at);
+        const Sums sums = section.found ? gap.flow_at(at, section) : Sums();
+        const bool some = sums.area > 0;
+        position.push_back(at);
+        width.push_back(section.found ? halves * (section.right - section.left) : 0);
+        area.push_back(halves * sums.area);
+        flow.push_back(halves * sums.flow);
+        mass.push_back(halves * sums.flow * density.value_or(0));
+        bulk.push_back(some ? sums.flow / sums.area : std::numeric_limits<double>::quiet_NaN());
+        speed.push_back(some ? sums.speed / sums.area : std::numeric_limits<double>::quiet_NaN());
+        pressure.push_back(some ? sums.pressure / sums.area : std::numeric_limits<double>::quiet_NaN());
+        bulk_pressure.push_back(sums.flow != 0 ? sums.flow_pressure / sums.flow : std::numeric_limits<double>::quiet_NaN());
+    }
+    core::Table table;
+    table.add_numbers("position", "m", position);
+    table.add_numbers("width", "m", width);
+    table.add_numbers("area", "m^2", area);
+    table.add_numbers("volume_flow", "m^3/s", flow);
+    if (density) {
+        table.add_numbers("mass_flow", "kg/s", mass);
+    }
+    table.add_numbers("bulk_velocity", "m/s", bulk);
+    table.add_numbers("mean_speed", "m/s", speed);
+    if (gap.volume().GetPointData()->GetArray("pressure") != nullptr) {
+        table.add_numbers("mean_pressure", "Pa", pressure);
+        table.add_numbers("bulk_pressure", "Pa", bulk_pressure);
+    }
+    return table;
+}
+
+core::Figure gap_profile_figure(const Field& field, const GapOptions& options, core::Progress& progress) {
+    const Gap gap(field, options);
+    Box all{};
+    gap.volume().GetBounds(all.data());
+    double ground = std::numeric_limits<double>::infinity();
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        ground = std::min(ground, dot({all[corner & 1], all[2 + ((corner >> 1) & 1)], all[4 + ((corner >> 2) & 1)]}, options.up));
+    }
+    core::Figure figure;
+    figure.title = "velocity across the gap";
+    figure.x = {"velocity of the stream", "m/s"};
+    figure.y = {"height over the ground", "mm"};
+    figure.caption = "Velocity against the forward axis between ground and base, in the middle plane, at stations along the base (position from its centre, forward positive).";
+    std::size_t colour = 0;
+    for (const double share : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
+        progress.check();
+        const double at = share * gap.half_length();
+        const auto section = gap.section_of_base(at);
+        if (!section.found) {
+            continue;
+        }
+        // Just beside the middle plane: a half model ends there.
+        const bool half = !options.symmetry.empty() && options.symmetry != "none";
+        const double reach = std::max(std::abs(section.left), std::abs(section.right));
+        const double side = half ? (section.right > -section.left ? 1.0 : -1.0) * 1e-3 * reach : 0.5 * (section.left + section.right);
+        Point foot = plus(gap.centre(), options.forward, at);
+        foot = plus(foot, gap.starboard(), side - dot(foot, gap.starboard()));
+        foot = plus(foot, options.up, ground - dot(foot, options.up));
+        ProbeOptions arrays;
+        arrays.arrays = {"velocity"};
+        constexpr int count = 61;
+        const double gap_height = section.height - ground;
+        const core::Table line = probe_line(field, plus(foot, options.up, 1e-4 * gap_height), plus(foot, options.up, (1 - 1e-4) * gap_height), count, arrays, progress);
+        core::FigureCurve curve;
+        curve.name = core::format_number(1000 * at, 3) + " mm";
+        curve.colour = core::palette(colour++);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Point v = {line.numbers("velocity_x")[i], line.numbers("velocity_y")[i], line.numbers("velocity_z")[i]};
+            if (std::isfinite(v[0])) {
+                curve.x.push_back(-dot(v, options.forward));
+                curve.y.push_back(1000 * gap_height * (1e-4 + (1 - 2e-4) * static_cast<double>(i) / (count - 1)));
+            }
+        }
+        figure.curves.push_back(std::move(curve));
+    }
+    return figure;
+}
+
+}  // namespace underbody::postproc

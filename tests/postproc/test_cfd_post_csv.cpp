@@ -1,0 +1,275 @@
+#include <gmock/gmock.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include <clocale>
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "core/file.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "core/text.h"
+#include "postproc/field.h"
+#include "tests/support/support.h"
+
+namespace underbody::postproc {
+namespace {
+
+using testing::HasSubstr;
+
+/// Two triangles; the second block is a quad.
+const std::string good =
+    "\n[Name]\nbase\n\n[Data]\n"
+    "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa ]\n"
+    "0,0,0, 1.5e+01, 1,0,0\n"
+    "1,0,0, 2.5e+01, 1,0,0\n"
+    "1,1,0, -3.5e+01, 1,0,2\n"
+    "0,1,0, 4.5E+001, 1,0,0\n"
+    "\n[Faces]\n0, 1, 2\n0, 2, 3\n"
+    "\n[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n"
+    "0,0,1,1\n1,0,1,2\n1,1,1,3\n0,1,1,4\n\n[Faces]\n0,1,2,3\n";
+
+Field read_text(const std::string& text, const ReadOptions& options = {}) {
+    const core::TemporaryFolder folder;
+    std::ofstream(folder.path() / "field.csv", std::ios::binary) << text;  // thousands of them: not synced to the disk
+    return read_field(folder.path() / "field.csv", options);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+/// Reads a damaged text; returns "line N: message" of the error.
+std::string failure(const std::string& text, const ReadOptions& options = {}) {
+    try {
+        read_text(text, options);
+    } catch (const core::InputError& error) {
+        return "line " + std::to_string(error.place().line.value_or(0)) + ": " + error.message() + " | " + error.hint();
+    }
+    return "read without an error";
+}
+
+double value(const Zone& zone, const char* array, vtkIdType i, int component = 0) {
+    return zone.surface->GetPointData()->GetArray(array)->GetComponent(i, component);
+}
+
+TEST(CfdPostCsv, ReadsBlocksWithFacesAndJoinsComponents) {
+    const Field field = read_text(good);
+    EXPECT_EQ(field.format, "CFD-Post CSV");
+    ASSERT_EQ(field.zones.size(), 2U);
+    const Zone& base = *field.find("base");
+    EXPECT_EQ(base.surface->GetNumberOfPoints(), 4);
+    EXPECT_EQ(base.surface->GetNumberOfPolys(), 2);
+    EXPECT_EQ(value(base, "pressure", 2), -35);
+    EXPECT_EQ(value(base, "pressure", 3), 45);
+    EXPECT_EQ(base.surface->GetPointData()->GetArray("wall_shear")->GetNumberOfComponents(), 3);
+    EXPECT_EQ(value(base, "wall_shear", 2, 2), 2);
+    EXPECT_EQ(base.find("pressure")->unit, "Pa");
+    EXPECT_EQ(base.find("pressure")->original_name, "Pressure");
+    EXPECT_FALSE(base.normals_into_fluid);
+    EXPECT_EQ(field.find("hull")->surface->GetNumberOfPolys(), 1);
+    EXPECT_TRUE(field.problems.empty()) << field.problems.front().message;
+}
+
+TEST(CfdPostCsv, DoesNotCareForBomLineEndsCommentsAndSpreadsheetCommas) {
+    std::string text = "\xEF\xBB\xBF" + good.substr(1);
+    text = replaced(text, "0,0,0, 1.5e+01", "# a remark, with commas and [brackets]\n0,0,0, 1.5e+01");
+    text = replaced(text, "[Faces]\n", "[Faces],,,,\n\n");
+    text = replaced(text, "0, 1, 2\n", "0, 1, 2,,,\n,,,,,\n");
+    std::string crlf;
+    for (const char c : text) {
+        crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    }
+    const Field field = read_text(crlf);
+    EXPECT_EQ(field.zones.size(), 2U);
+    EXPECT_EQ(value(field.zones[0], "pressure", 3), 45);
+    EXPECT_EQ(field.zones[0].surface->GetNumberOfPolys(), 2);
+}
+
+TEST(CfdPostCsv, ConvertsTheUnitsOfTheHeader) {
+    std::string text = replaced(good, "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]", "X [ mm ], Y [mm], Z [ mm ], Pressure [ bar ]");
+    text = replaced(text, "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]", "X [ m ], Y [ mm ], Z [ m ], Temperature [ C ]");
+    const Field field = read_text(text);
+    EXPECT_NEAR(field.zones[0].surface->GetPoint(1)[0], 0.001, 1e-18);
+    EXPECT_NEAR(value(field.zones[0], "pressure", 0), 15e5, 1e-6);
+    EXPECT_NEAR(value(field.zones[1], "temperature", 1), 275.15, 1e-9);
+    ASSERT_EQ(field.problems.size(), 1U);  // mixed units are said
+    EXPECT_THAT(field.problems[0].message, HasSubstr("different units"));
+}
+
+TEST(CfdPostCsv, AsksForUnitsThatTheFileDoesNotSay) {
+    const std::string no_length = replaced(good, "X [ m ], Y", "X, Y");
+    EXPECT_THAT(failure(no_length), HasSubstr("line 6: coordinate 'X' has no unit | say it with --length-unit"));
+    ReadOptions options;
+    options.length_unit = "m";
+    EXPECT_EQ(read_text(no_length, options).zones.size(), 2U);
+    const std::string no_pressure = replaced(good, "Pressure [ Pa ]", "Pressure");
+    EXPECT_THAT(failure(no_pressure), HasSubstr("line 6: column 'Pressure' has no unit"));
+    options.units = {{"Pressure", "kPa"}};
+    EXPECT_NEAR(value(read_text(no_pressure, options).zones[0], "pressure", 0), 15000, 1e-9);
+    EXPECT_THAT(failure(replaced(good, "Pressure [ Pa ]", "Pressure [ m ]")), HasSubstr("another dimension"));
+    EXPECT_THAT(failure(replaced(good, "X [ m ]", "X [ furlongish ]")), HasSubstr("unknown unit 'furlongish'"));
+}
+
+TEST(CfdPostCsv, NamesFileAndLineOfWhatIsWrong) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {replaced(good, "1,1,0, -3.5e+01", "1,1,0, -3.5x+01"), "line 9: 'x+01' behind a number"},
+        {replaced(good, "1,1,0, -3.5e+01", "1,1,0, abc"), "line 9: 'abc' is not a number"},
+        {replaced(good, "1,1,0, -3.5e+01", "1,1,0, nan"), "line 9: 'nan' is not a finite number"},
+        {replaced(good, "1,1,0, -3.5e+01", "1,1,0, -inf"), "line 9: '-inf' is not a finite number"},
+        {replaced(good, "1,1,0, -3.5e+01", "1,1,0, 1e999"), "line 9: '1e999' is not a number"},
+        {replaced(good, "1,1,0, -3.5e+01, 1,0,2", "1,1,0, -3.5e+01, 1"), "line 9: the row has 5 values, the header names 7"},
+        {replaced(good, "1,1,0, -3.5e+01, 1,0,2", "1,1,0, -3.5e+01, 1,0,2,7"), "line 9: the row has more values"},
+        {replaced(good, "0, 2, 3\n", "0, 2, 4\n"), "line 14: node 4 is missing: zone 'base' has 4 nodes"},
+        {replaced(good, "0, 2, 3\n", "0, -2, 3\n"), "line 14: '-2' is not a node number"},
+        {replaced(good, "0, 2, 3\n", "0, 2\n"), "line 14: a row of 2 node numbers"},
+        {replaced(good, "0, 2, 3\n", "0, 2 3\n"), "line 14: '3' behind a node number"},
+        {replaced(good, "hull", "base"), "line 16: two zones are called 'base'"},
+        {replaced(good, "1,1,0, -3.5e+01", ",1,0, -3.5e+01"), "line 9: coordinate 'X' has no value here"},
+        {replaced(good, "\n0,0,0, 1.5e+01, 1,0,0\n1,0,0, 2.5e+01, 1,0,0\n1,1,0, -3.5e+01, 1,0,2\n0,1,0, 4.5E+001, 1,0,0\n", "\n"), "has no rows"},
+        {"[Name]\nempty\n", "line 1: zone 'empty' has no [Data]"},
+        {"[Name]\nx\n[Data]\n", "line 3: [Data] of zone 'x' is empty"},
+        {"[Name]\n[Data]\nX [m],Y [m]\n1,2\n", "line 1: [Name] without a name"}};
+    for (const auto& [text, expected] : cases) {
+        EXPECT_THAT(failure(text), HasSubstr(expected));
+    }
+}
+
+TEST(CfdPostCsv, NeverTakesATruncatedFileForAWholeOne) {
+    // Cut anywhere behind the first block's name, the file is refused, or what is missing is said.
+    int silent = 0;
+    for (std::size_t size = 10; size + 1 < good.size(); ++size) {
+        try {
+            const Field field = read_text(good.substr(0, size));
+            const bool whole = field.zones.size() == 2 && field.zones[1].surface->GetNumberOfPolys() == 1;
+            silent += field.problems.empty() && !whole && good[size - 1] != '\n' ? 1 : 0;
+        } catch (const core::InputError& error) {
+            EXPECT_FALSE(error.place().file.empty());
+        }
+    }
+    EXPECT_EQ(silent, 0);
+}
+
+TEST(CfdPostCsv, TellsDecimalCommasAndTakesSemicolonsWithPoints) {
+    std::string semicolons = "[Name]\na\n[Data]\nX [ m ];Y [ m ];Z [ m ];Pressure [ Pa ]\n0;0;0;1.5\n1;0;0;2.5\n0;1;0;3.5\n[Faces]\n0;1;2\n";
+    EXPECT_EQ(value(read_text(semicolons).zones[0], "pressure", 1), 2.5);
+    EXPECT_THAT(failure(replaced(semicolons, "1.5", "1,5")), HasSubstr("line 5: '1,5' has a decimal comma"));
+}
+
+TEST(CfdPostCsv, KeepsMissingValuesAsMissingAndSaysWhere) {
+    const Field field = read_text(replaced(replaced(good, "1,1,0, -3.5e+01", "1,1,0, null"), "0,1,0, 4.5E+001", "0,1,0, "));
+    EXPECT_TRUE(std::isnan(value(field.zones[0], "pressure", 2)));
+    EXPECT_TRUE(std::isnan(value(field.zones[0], "pressure", 3)));
+    ASSERT_EQ(field.problems.size(), 1U);
+    EXPECT_EQ(*field.problems[0].place.line, 9);
+    EXPECT_THAT(field.problems[0].message, HasSubstr("2 of 4 values of 'Pressure' are missing"));
+}
+
+TEST(CfdPostCsv, TakesRepeatedColumnsOnceAndNodeNumbersAsNumbers) {
+    const Field field = read_text(
+        "[Name]\na\n[Data]\nNode Number, X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Pressure [ Pa ], X [ m ], Velocity [ m s^-1 ], Velocity u [ m s^-1 ]\n"
+        "0,0,0,0,1,1,0,3,1\n1,1,0,0,2,2,1,3,1\n2,0,1,0,3,3,0,3,1\n[Faces]\n0,1,2\n");
+    const auto& arrays = field.zones[0].arrays;
+    ASSERT_EQ(arrays.size(), 3U);
+    EXPECT_EQ(arrays[0].name, "pressure");
+    EXPECT_EQ(arrays[1].name, "velocity_magnitude");
+    EXPECT_EQ(arrays[2].name, "velocity_x");
+}
+
+TEST(CfdPostCsv, ReadsLinesPointsAndProfilesWithoutCoordinates) {
+    const Field line = read_text("[Name]\ncut\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n0,0,0,1\n1,0,0,2\n2,0,0,3\n[Lines]\n0,1\n1,2\n");
+    EXPECT_EQ(line.zones[0].kind, ZoneKind::line);
+    EXPECT_EQ(line.zones[0].surface->GetNumberOfLines(), 2);
+    const Field profile = read_text("[Name],,\nInflow,,\n\n[Spatial Fields],,\nr,,\n\n[Data],,\nr [ m ], Total Pressure [ Pa ], Velocity Axial\n0.2,1e5,1\n0.3,1.1e5,1\n");
+    EXPECT_EQ(profile.zones[0].kind, ZoneKind::other);
+    EXPECT_EQ(profile.zones[0].surface->GetFieldData()->GetArray("pressure_total")->GetComponent(1, 0), 1.1e5);
+}
+
+TEST(CfdPostCsv, FindsFacesThatRunOppositeWaysAndFacesWithoutArea) {
+    const Field turned = read_text(replaced(good, "0, 2, 3\n", "3, 2, 0\n"));
+    ASSERT_FALSE(turned.problems.empty());
+    EXPECT_THAT(turned.problems[0].message, HasSubstr("1 were turned to agree"));
+    vtkNew<vtkIdList> ids;
+    turned.zones[0].surface->GetCellPoints(1, ids);
+    EXPECT_EQ(ids->GetId(0), 0);
+    const Field flat = read_text(replaced(good, "0, 2, 3\n", "0, 2, 3\n0, 2, 2\n"));
+    const auto& problem = flat.problems.front();
+    EXPECT_EQ(problem.severity, core::Problem::Severity::error);
+    EXPECT_THAT(problem.message, HasSubstr("no area"));
+    EXPECT_EQ(*problem.place.line, 15);
+}
+
+TEST(CfdPostCsv, ReadsEveryNumberExactlyAndTheSameWithAnyNumberOfThreads) {
+    core::Random random(11);
+    std::string text = "[Name]\na\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], q\n";
+    std::vector<double> expected;
+    for (int i = 0; i < 60000; ++i) {  // several chunks of 2 MiB
+        const double p = random.normal() * std::pow(10.0, std::floor(random.uniform(-30, 30)));
+        char odd[64];
+        std::snprintf(odd, sizeof odd, i % 3 == 0 ? "%.9e" : i % 3 == 1 ? "%.17g" : "%.6f", random.normal() * 1e3);
+        expected.push_back(p);
+        expected.push_back(*core::parse_number(odd));
+        text += std::to_string(i) + ",0,1, " + core::format_number(p) + " , " + odd + (i % 1000 == 0 ? "\n\n" : "\n");
+    }
+    for (const int threads : {1, 2, 4}) {
+        core::set_threads(threads);
+        const Field field = read_text(text);
+        ASSERT_EQ(field.zones[0].surface->GetNumberOfPoints(), 60000);
+        for (vtkIdType i = 0; i < 60000; ++i) {
+            ASSERT_EQ(value(field.zones[0], "pressure", i), expected[static_cast<std::size_t>(2 * i)]);
+            ASSERT_EQ(value(field.zones[0], "q", i), expected[static_cast<std::size_t>(2 * i + 1)]);
+            ASSERT_EQ(field.zones[0].surface->GetPoint(i)[0], static_cast<double>(i));
+        }
+    }
+    core::set_threads(0);
+}
+
+TEST(CfdPostCsv, TakesOnlyTheZonesAndArraysAskedFor) {
+    ReadOptions options;
+    options.zones = {"h*"};
+    options.arrays = {"pressure"};
+    const Field field = read_text(good, options);
+    ASSERT_EQ(field.zones.size(), 1U);
+    EXPECT_EQ(field.zones[0].name, "hull");
+    options.zones = {"keel"};
+    EXPECT_THAT(failure(good, options), HasSubstr("no zone of the file fits"));
+}
+
+TEST(CfdPostCsv, SurvivesRandomDamage) {
+    core::Random random(5);
+    for (int i = 0; i < 800; ++i) {
+        std::string text = good;
+        const int hits = 1 + static_cast<int>(random.uniform(0, 4));
+        for (int k = 0; k < hits; ++k) {
+            const auto at = static_cast<std::size_t>(random.uniform(0, static_cast<double>(text.size())));
+            static const std::string signs = "[],;\n\r 0129-+eE.#\t\"x\x80";
+            text[at] = signs[static_cast<std::size_t>(random.uniform(0, static_cast<double>(signs.size())))];
+        }
+        try {
+            read_text(text);
+        } catch (const core::InputError& error) {
+            EXPECT_FALSE(error.message().empty());
+        }
+    }
+}
+
+TEST(CfdPostCsv, ReadsTheSampleFiles) {
+    UNDERBODY_NEEDS_SHARED("samples/cfx_csv/R37_inlet.csv");
+    const auto folder = test::shared_folder() / "samples/cfx_csv";
+    const Field inlet = read_field(folder / "R37_inlet.csv");
+    EXPECT_EQ(inlet.zones[0].name, "Inflow");
+    EXPECT_EQ(inlet.zones[0].find("pressure_total")->original_unit, "Pa");
+    const Field blades = read_field(folder / "11_blades_mode_1_ND_0.csv");
+    EXPECT_EQ(blades.zones[0].surface->GetNumberOfPoints(), 9526);  // as its parameter Nnodes says
+    EXPECT_NEAR(blades.zones[0].surface->GetPoint(0)[0], -5.13577717e-3, 1e-15);
+    EXPECT_EQ(read_field(folder / "R37_mode1_1p.csv").zones[0].name, "mode1");
+}
+
+}  // namespace
+}  // namespace underbody::postproc

@@ -1,0 +1,404 @@
+// Loads against closed forms.
+#include "postproc/loads.h"
+
+#include <gmock/gmock.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "postproc/loads_table.h"
+
+namespace underbody::postproc {
+namespace {
+
+using testing::HasSubstr;
+using PointFunction = std::function<double(const Vector&)>;
+
+/// A zone from points and faces, with pressure and shear as functions of the place, on nodes.
+Zone make_zone(const std::string& name, const std::vector<Vector>& points, const std::vector<std::vector<vtkIdType>>& faces,
+               const PointFunction& pressure, const std::function<Vector(const Vector&)>& shear = {}) {
+    Zone zone;
+    zone.name = name;
+    zone.kind = ZoneKind::wall;
+    zone.normals_into_fluid = false;
+    zone.surface = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> places;
+    places->SetDataTypeToDouble();
+    vtkNew<vtkDoubleArray> values;
+    values->SetName("pressure");
+    vtkNew<vtkDoubleArray> tractions;
+    tractions->SetName("wall_shear");
+    tractions->SetNumberOfComponents(3);
+    for (const auto& p : points) {
+        places->InsertNextPoint(p.data());
+        values->InsertNextValue(pressure(p));
+        const Vector t = shear ? shear(p) : Vector{};
+        tractions->InsertNextTuple(t.data());
+    }
+    vtkNew<vtkCellArray> cells;
+    for (const auto& face : faces) {
+        cells->InsertNextCell(static_cast<vtkIdType>(face.size()), face.data());
+    }
+    zone.surface->SetPoints(places);
+    zone.surface->SetPolys(cells);
+    zone.surface->GetPointData()->AddArray(values);
+    zone.surface->GetPointData()->AddArray(tractions);
+    zone.arrays = {{"pressure", "Pa", "Pressure", "Pa", Location::nodes, 1}, {"wall_shear", "Pa", "Wall Shear X", "Pa", Location::nodes, 3}};
+    return zone;
+}
+
+/// An ellipsoid of quads (triangles at the poles), optionally cut at y = 0 to a half model; `turned`: normals inward.
+Zone ellipsoid(int rings, const Vector& axes, const PointFunction& pressure, bool half = false, bool turned = false, const std::string& name = "hull") {
+    std::vector<Vector> points;
+    std::vector<std::vector<vtkIdType>> faces;
+    const int around = half ? rings : 2 * rings;
+    const int columns = half ? around + 1 : around;
+    for (int i = 0; i <= rings; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            const double theta = M_PI * i / rings;
+            const double phi = (half ? M_PI : 2 * M_PI) * j / around;
+            double y = axes[1] * std::sin(theta) * std::sin(phi);
+            if (half && (j == 0 || j == around)) {
+                y = 0;
+            }
+            points.push_back({axes[0] * std::sin(theta) * std::cos(phi), y, axes[2] * std::cos(theta)});
+        }
+    }
+    for (int i = 0; i < rings; ++i) {
+        for (int j = 0; j < around; ++j) {
+            const vtkIdType a = i * columns + j;
+            const vtkIdType b = i * columns + (j + 1) % columns;
+            const vtkIdType c = b + columns;
+            const vtkIdType d = a + columns;
+            std::vector<vtkIdType> face = i == 0 ? std::vector<vtkIdType>{a, d, c} : i == rings - 1 ? std::vector<vtkIdType>{a, d, b} : std::vector<vtkIdType>{a, d, c, b};
+            if (turned) {
+                std::reverse(face.begin(), face.end());
+            }
+            faces.push_back(face);
+        }
+    }
+    return make_zone(name, points, faces, pressure);
+}
+
+Field field_of(std::vector<Zone> zones) {
+    Field field;
+    field.files = {"made.csv"};
+    field.zones = std::move(zones);
+    return field;
+}
+
+LoadsOptions about(const Vector& reference, const std::string& symmetry = "") {
+    LoadsOptions options;
+    options.reference = reference;
+    options.symmetry = symmetry;
+    return options;
+}
+
+constexpr double g = 9.80665;
+constexpr double rho = 998;
+double hydrostatic(const Vector& p) { return -rho * g * p[2] + 5000; }
+
+TEST(Loads, OfHydrostaticPressureAreTheBuoyancyAtTheCentroid) {
+    const Vector axes = {0.1, 0.07, 0.05};
+    for (const bool turned : {false, true}) {
+        const auto result = loads(field_of({ellipsoid(60, axes, hydrostatic, false, turned)}), about({0.3, -0.2, 0.1}));
+        const double buoyancy = rho * g * 4 * M_PI / 3 * axes[0] * axes[1] * axes[2];
+        EXPECT_NEAR(result.named.lift_force, buoyancy, 2.2e-3 * buoyancy);  // the polyhedron has less volume
+        EXPECT_NEAR(result.named.drag_force, 0, 1e-9 * buoyancy);
+        // The buoyancy acts at the centroid (0, 0, 0): moment = (0 - reference) x F.
+        EXPECT_NEAR(result.total.moment[0], 0.2 * result.total.force[2], 1e-9);
+        EXPECT_NEAR(result.total.moment[1], 0.3 * result.total.force[2], 1e-9);
+        EXPECT_LT(result.closure, 1e-12);
+        EXPECT_THAT(result.orientation, HasSubstr("closes"));
+        EXPECT_EQ(result.zones[0].turned, turned);
+        ASSERT_TRUE(result.centre_of_pressure);
+        EXPECT_NEAR((*result.centre_of_pressure)[0], 0, 1e-9);
+    }
+}
+
+TEST(Loads, ConvergeToTheBuoyancyWithTheSecondOrder) {
+    const double exact = rho * g * 4 * M_PI / 3 * 1e-3;
+    double last = 0;
+    for (const int rings : {20, 40, 80}) {
+        const double error = exact - loads(field_of({ellipsoid(rings, {0.1, 0.1, 0.1}, hydrostatic)}), about({})).named.lift_force;
+        if (last > 0) {
+            EXPECT_NEAR(last / error, 4, 0.1);
+        }
+        last = error;
+    }
+}
+
+TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
+    const auto p = [](const Vector& x) { return 30 * x[0] - 200 * x[2] + 1000 * x[0] * x[2] + 40; };
+    const auto whole = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p)}), about({0.01, 0, -0.02}));
+    for (const bool turned : {false, true}) {
+        const auto half = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, turned)}), about({0.01, 0, -0.02}, "y"));
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_NEAR(half.total.force[k], whole.total.force[k], 1e-9);
+            EXPECT_NEAR(half.total.moment[k], whole.total.moment[k], 1e-10);
+        }
+        EXPECT_NEAR(half.area, whole.area, 1e-9);
+        EXPECT_LT(half.closure, 1e-9);
+        // A reference beside the plane moves the moment by r x F.
+        const auto beside = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, turned)}), about({0.01, 0.5, -0.02}, "y"));
+        EXPECT_NEAR(beside.total.moment[0], whole.total.moment[0] - 0.5 * whole.total.force[2], 1e-9);
+    }
+    const auto forgotten = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, true)}), about({0.01, 0, -0.02}));
+    EXPECT_NEAR(2 * forgotten.total.force[2], whole.total.force[2], 1e-9);  // the sides are settled also without the plane
+    ASSERT_FALSE(forgotten.problems.empty());
+    EXPECT_THAT(forgotten.problems.back().message, HasSubstr("--symmetry y"));
+    EXPECT_GT(forgotten.closure, 0.1);
+    EXPECT_THROW(loads(field_of({ellipsoid(20, {0.1, 0.1, 0.1}, p)}), about({}, "y")), core::InputError);
+}
+
+/// A box whose top and bottom are zones of their own; any of them may lie the wrong way round.
+Field box(bool turn_bottom, bool turn_top, bool without_top = false) {
+    const std::vector<Vector> x = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0, 0, 0.5}, {2, 0, 0.5}, {2, 1, 0.5}, {0, 1, 0.5}};
+    std::vector<std::vector<vtkIdType>> bottom = {{0, 3, 2, 1}};
+    std::vector<std::vector<vtkIdType>> top = {{4, 5, 6, 7}};
+    const auto turn = [](auto& faces) { std::for_each(faces.begin(), faces.end(), [](auto& f) { std::reverse(f.begin(), f.end()); }); };
+    if (turn_bottom) {
+        turn(bottom);
+    }
+    if (turn_top) {
+        turn(top);
+    }
+    const auto p = [](const Vector& q) { return 1 + q[2]; };
+    std::vector<Zone> zones = {make_zone("base", {x[0], x[1], x[2], x[3]}, {{bottom[0][0], bottom[0][1], bottom[0][2], bottom[0][3]}}, p),
+                               make_zone("sides", x, {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}, p)};
+    if (!without_top) {
+        zones.push_back(make_zone("top", {x[4], x[5], x[6], x[7]}, {{top[0][0] - 4, top[0][1] - 4, top[0][2] - 4, top[0][3] - 4}}, p));
+    }
+    return field_of(std::move(zones));
+}
+
+TEST(Loads, SettleTheSidesOfEachZone) {
+    for (int choice = 0; choice < 4; ++choice) {
+        const auto result = loads(box((choice & 1) != 0, (choice & 2) != 0));
+        EXPECT_NEAR(result.named.lift_force, 1.0 * 2 - 1.5 * 2, 1e-12) << choice;
+        EXPECT_NEAR(result.closure, 0, 1e-12);
+        EXPECT_EQ(result.zones[0].turned, (choice & 1) != 0);
+        EXPECT_EQ(result.zones[2].turned, (choice & 2) != 0);
+        EXPECT_THAT(result.reference_from, HasSubstr("zone 'base'"));
+        EXPECT_NEAR(result.reference[0], 1, 1e-12);
+        EXPECT_NEAR(result.reference[2], 0, 1e-12);
+        const auto open = loads(box((choice & 1) != 0, false, true));
+        EXPECT_NEAR(open.named.lift_force, 1.0 * 2, 1e-12);
+        EXPECT_THAT(open.orientation, HasSubstr("share edges"));
+        ASSERT_FALSE(open.problems.empty());
+        EXPECT_THAT(open.problems.back().message, HasSubstr("not closed"));
+        EXPECT_NEAR(open.force_per_reference_pascal[2], 2, 1e-12);
+    }
+}
+
+TEST(Loads, TakeTheSidesAsToldWhenTold) {
+    LoadsOptions options;
+    options.fluid = FluidSide::as_in_file;
+    EXPECT_NEAR(loads(box(true, false), options).named.lift_force, -2 - 3, 1e-12);
+    options.fluid = FluidSide::reversed;
+    EXPECT_NEAR(loads(box(true, false), options).named.lift_force, 2 + 3, 1e-12);
+}
+
+TEST(Loads, SayThatAPlateAloneHasNoSide) {
+    const auto plate = make_zone("base", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}}, [](const Vector&) { return 7.0; });
+    const auto result = loads(field_of({plate}));
+    ASSERT_FALSE(result.problems.empty());
+    EXPECT_THAT(result.problems[0].message, HasSubstr("cannot be told from its shape"));
+    EXPECT_NEAR(std::abs(result.named.lift_force), 7, 1e-12);
+}
+
+TEST(Loads, IntegrateLinearValuesExactlyOverEveryPolygon) {
+    // A plane hexagon, a quad, a triangle; p = a + b x, so that F and M are the polygon's moments in closed form.
+    const std::vector<std::vector<Vector>> polygons = {{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}},
+                                                       {{0, 0, 0}, {2, 0, 0}, {3, 2, 0}, {0, 1, 0}},
+                                                       {{0, 0, 0}, {1, -1, 0}, {3, 0, 0}, {3, 2, 0}, {1, 3, 0}, {0, 2, 0}}};
+    for (const auto& polygon : polygons) {
+        double area = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;  // by Green's theorem
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const auto& a = polygon[i];
+            const auto& b = polygon[(i + 1) % polygon.size()];
+            const double w = a[0] * b[1] - b[0] * a[1];
+            area += w / 2;
+            sx += w * (a[0] + b[0]) / 6;
+            sy += w * (a[1] + b[1]) / 6;
+            sxx += w * (a[0] * a[0] + a[0] * b[0] + b[0] * b[0]) / 12;
+            sxy += w * (a[0] * b[1] + 2 * a[0] * a[1] + 2 * b[0] * b[1] + b[0] * a[1]) / 24;
+        }
+        std::vector<vtkIdType> face(polygon.size());
+        std::iota(face.begin(), face.end(), vtkIdType{0});
+        LoadsOptions options = about({});
+        options.fluid = FluidSide::as_in_file;
+        const auto shear = [](const Vector& q) { return Vector{2 + 3 * q[0], 0, 1}; };
+        const auto result = loads(field_of({make_zone("a", polygon, {face}, [](const Vector& q) { return 5 + 7 * q[0]; }, shear)}), options);
+        const double force = -(5 * area + 7 * sx);
+        const bool quad = polygon.size() == 4;  // a bilinear map is not linear in x over a general quad, only nearly
+        EXPECT_NEAR(result.pressure.force[2], force, quad ? 2e-12 : 1e-12);
+        EXPECT_NEAR(result.pressure.moment[0], -(5 * sy + 7 * sxy), 1e-9);
+        EXPECT_NEAR(result.pressure.moment[1], 5 * sx + 7 * sxx, 1e-9);
+        EXPECT_NEAR(result.viscous.force[0], 2 * area + 3 * sx, 1e-9);
+        EXPECT_NEAR(result.viscous.moment[1], -(sx), 1e-9);
+        EXPECT_NEAR(result.viscous.moment[2], -(2 * sy + 3 * sxy), 1e-9);
+        EXPECT_NEAR(result.area, area, 1e-12);
+    }
+}
+
+TEST(Loads, OfAWarpedQuadAreThoseOfItsBilinearPatch) {
+    core::Random random(2);
+    for (int trial = 0; trial < 20; ++trial) {
+        std::vector<Vector> x = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+        std::vector<double> p;
+        for (auto& q : x) {
+            for (auto& c : q) {
+                c += 0.3 * random.normal();
+            }
+            p.push_back(random.normal());
+        }
+        // The patch in small pieces.
+        Vector force{};
+        Vector moment{};
+        constexpr int n = 160;
+        const auto mix = [&](auto get, double u, double v) { return (1 - u) * (1 - v) * get(0) + u * (1 - v) * get(1) + u * v * get(2) + (1 - u) * v * get(3); };
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n; ++j) {
+                const double u = (i + 0.5) / n;
+                const double v = (j + 0.5) / n;
+                Vector q{}, du{}, dv{};
+                for (std::size_t k = 0; k < 3; ++k) {
+                    q[k] = mix([&](std::size_t m) { return x[m][k]; }, u, v);
+                    du[k] = (1 - v) * (x[1][k] - x[0][k]) + v * (x[2][k] - x[3][k]);
+                    dv[k] = (1 - u) * (x[3][k] - x[0][k]) + u * (x[2][k] - x[1][k]);
+                }
+                const double value = mix([&](std::size_t m) { return p[m]; }, u, v) / (n * n);
+                const Vector f = {-value * (du[1] * dv[2] - du[2] * dv[1]), -value * (du[2] * dv[0] - du[0] * dv[2]), -value * (du[0] * dv[1] - du[1] * dv[0])};
+                for (std::size_t k = 0; k < 3; ++k) {
+                    force[k] += f[k];
+                }
+                moment[0] += q[1] * f[2] - q[2] * f[1];
+                moment[1] += q[2] * f[0] - q[0] * f[2];
+                moment[2] += q[0] * f[1] - q[1] * f[0];
+            }
+        }
+        std::size_t next = 0;
+        LoadsOptions options = about({});
+        options.fluid = FluidSide::as_in_file;
+        const auto result = loads(field_of({make_zone("a", x, {{0, 1, 2, 3}}, [&](const Vector&) { return p[next++]; })}), options);
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_NEAR(result.pressure.force[k], force[k], 1e-4);
+            EXPECT_NEAR(result.pressure.moment[k], moment[k], 2e-4);
+        }
+    }
+}
+
+TEST(Loads, TurnWithTheAxesAndKeepTheVehiclesSense) {
+    // A push at the bow upward, seen with other axes: forward -y, up +x of the file.
+    const Vector axes = {0.1, 0.1, 0.1};
+    const auto p = [](const Vector& x) { return 1000 * x[0] * x[0] * x[0] + 100 * x[0] * x[1]; };
+    LoadsOptions options = about({});
+    options.forward = axis_from("-y");
+    options.up = axis_from("x");
+    const auto result = loads(field_of({ellipsoid(30, axes, p)}), options);
+    EXPECT_NEAR(result.named.lift_force, result.total.force[0], 1e-15);
+    EXPECT_NEAR(result.named.drag_force, result.total.force[1], 1e-15);
+    EXPECT_NEAR(result.named.side_force, result.total.force[2], 1e-15);  // (-y) x (x) = z is starboard
+    EXPECT_THROW(axis_from("q"), core::UsageError);
+    options.up = axis_from("y");
+    EXPECT_THROW(loads(field_of({ellipsoid(10, axes, p)}), options), core::UsageError);
+}
+
+TEST(Loads, AreTheSameWithAnyNumberOfThreads) {
+    const Field field = field_of({ellipsoid(300, {0.1, 0.08, 0.06}, [](const Vector& x) { return std::sin(50 * x[0]) + x[2]; })});
+    core::set_threads(1);
+    const auto one = loads(field, about({}));
+    core::set_threads(4);
+    const auto four = loads(field, about({}));
+    core::set_threads(0);
+    EXPECT_EQ(one.total.force, four.total.force);
+    EXPECT_EQ(one.total.moment, four.total.moment);
+}
+
+TEST(Loads, PreferFaceValuesAndSayWhereValuesCameFrom) {
+    Field field = box(false, false);
+    for (auto& zone : field.zones) {
+        vtkNew<vtkDoubleArray> on_faces;
+        on_faces->SetName("pressure");
+        on_faces->SetNumberOfTuples(zone.surface->GetNumberOfPolys());
+        on_faces->Fill(zone.name == "base" ? 10 : 0);
+        zone.surface->GetCellData()->AddArray(on_faces);
+        zone.arrays[0].on = Location::faces;
+    }
+    const auto result = loads(field);
+    EXPECT_EQ(result.values_from, "faces");
+    EXPECT_NEAR(result.named.lift_force, 20, 1e-12);
+}
+
+TEST(Loads, RefuseWhatCannotBeIntegrated) {
+    const auto message = [](const Field& field, const LoadsOptions& options = {}) {
+        try {
+            loads(field, options);
+        } catch (const core::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    Field missing = box(false, false);
+    missing.zones[1].surface->GetPointData()->GetArray("pressure")->SetComponent(3, 0, NAN);
+    EXPECT_THAT(message(missing), HasSubstr("zone 'sides': pressure has no finite value at node 3"));
+    Field points = box(false, false);
+    points.zones[0].surface->SetPolys(vtkNew<vtkCellArray>());
+    points.zones[0].kind = ZoneKind::wall;
+    EXPECT_THAT(message(points), HasSubstr("has no faces"));
+    Field bare = box(false, false);
+    bare.zones[0].surface->GetPointData()->RemoveArray("pressure");
+    EXPECT_THAT(message(bare), HasSubstr("zone 'base' has no pressure"));
+    Field damaged = box(false, false);
+    damaged.problems.push_back({core::Problem::Severity::error, "a face has no area", {"made.csv", 17, {}, {}}});
+    EXPECT_THAT(message(damaged), HasSubstr("made.csv:17: a face has no area"));
+    LoadsOptions accept;
+    accept.accept_problems = true;
+    EXPECT_EQ(message(damaged, accept), "no error");
+    LoadsOptions zones;
+    zones.zones = {"bse"};
+    EXPECT_THAT(message(box(false, false), zones), HasSubstr("did you mean 'base'?"));
+}
+
+TEST(Loads, GiveCoefficientsAndTheRunningIntegral) {
+    LoadsOptions options = about({0, 0, 0});
+    options.references = {1000, 2.0, 0.2, 0.16, 0.12};
+    options.stations = 10;
+    const auto result = loads(field_of({ellipsoid(40, {0.1, 0.08, 0.06}, hydrostatic)}), options);
+    ASSERT_TRUE(result.coefficients);
+    EXPECT_NEAR(result.coefficients->lift, result.named.lift_force / (0.5 * 1000 * 4 * M_PI / 4 * 0.2 * 0.16), 1e-12);
+    ASSERT_EQ(result.stations.size(), 11U);
+    EXPECT_NEAR(result.stations.back().behind.lift_force, result.named.lift_force, 1e-9);
+    EXPECT_NEAR(result.stations[5].behind.lift_force, 0.5 * result.named.lift_force, 0.03 * result.named.lift_force);
+    const nlohmann::json json = result;
+    for (const char* key : {"force", "moment", "reference", "pressure", "viscous", "lift_force", "drag_force", "side_force", "pitch_moment", "roll_moment", "yaw_moment",
+                            "coefficients", "zones", "closure", "force_per_reference_pascal", "values_from"}) {
+        EXPECT_TRUE(json.contains(key)) << key;
+    }
+    EXPECT_EQ(json["pressure"]["force"].size(), 3U);
+}
+
+TEST(LoadsTable, HasOneRowACaseWithItsConditions) {
+    const auto result = loads(box(false, false));
+    const core::Table table = loads_table({{"a.csv", {{"gap", 0.005}}, {{"variant", "ellipse"}}, result}, {"b.csv", {{"gap", 0.01}, {"lift_force", 1.0}}, {}, result}}, {{"gap", "mm"}});
+    EXPECT_EQ(table.rows(), 2U);
+    EXPECT_EQ(table.find("gap")->written_unit, "mm");
+    EXPECT_EQ(table.numbers("gap")[1], 0.01);
+    EXPECT_EQ(table.text("variant")[0], "ellipse");
+    EXPECT_NEAR(table.numbers("lift_force")[0], -1, 1e-12);
+    EXPECT_EQ(table.numbers("lift_force_stated")[1], 1.0);
+    EXPECT_TRUE(std::isnan(table.numbers("lift_force_stated")[0]));
+}
+
+}  // namespace
+}  // namespace underbody::postproc
