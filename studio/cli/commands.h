@@ -21,7 +21,10 @@ using AddCommand = void (*)(CLI::App& app, Shell& shell);
     X(predict) \
     X(region) \
     X(table) \
-    X(export)
+    X(export) \
+    X(study) \
+    X(learn) \
+    X(estimate)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

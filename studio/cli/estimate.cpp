@@ -1,0 +1,172 @@
+// underbody estimate: separate forces from gap and velocity.
+#include "surrogates/estimator/estimate.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "core/table.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/commands.h"
+#include "studio/cli/shell.h"
+#include "studio/figures/render.h"
+#include "surrogates/dynamics/measurements.h"
+#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/predict.h"
+
+namespace underbody::studio {
+
+namespace {
+
+struct Arguments {
+    std::string model, data, out, plot, poles, export_c, gap_noise, velocity_noise;
+    std::vector<std::string> surfaces;
+    estimator::EstimateOptions options;
+};
+
+estimator::Poles parse_poles(const std::string& text) {
+    estimator::Poles poles;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        std::string item = text.substr(at, comma - at);
+        while (!item.empty() && item.front() == ' ') {
+            item.erase(item.begin());
+        }
+        double real = 0, imaginary = 0;
+        const char* end = item.data() + item.size();
+        auto result = std::from_chars(item.data(), end, real);
+        if (result.ec == std::errc() && result.ptr != end) {
+            const char* from = *result.ptr == '+' ? result.ptr + 1 : result.ptr;
+            result = std::from_chars(from, end, imaginary);
+            if (result.ec == std::errc() && result.ptr != end && *result.ptr == 'i') {
+                ++result.ptr;
+            }
+        }
+        if (result.ec != std::errc() || result.ptr != end) {
+            throw core::UsageError("parse", "'" + item + "' is no pole", {}, "for instance --poles -3,-4 or --poles -3+1i,-3-1i");
+        }
+        poles.emplace_back(real, imaginary);
+        at = comma + 1;
+    }
+    return poles;
+}
+
+nlohmann::json identify(const Arguments& a, const dynamics::Measurements& data, const estimator::FilterNoise& noise, std::string& text) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& run : data.runs) {
+        core::Problems remarks;
+        const estimator::RunSignals signals = estimator::signals_of_run(run, remarks);
+        std::vector<estimator::Surface> surfaces;
+        for (const auto& item : a.surfaces) {
+            const std::size_t sign = item.find('=');
+            if (sign == std::string::npos) {
+                throw core::UsageError("parse", "--surface wants NAME=MODEL.toml, not '" + item + "'");
+            }
+            surfaces.push_back({item.substr(0, sign), estimator::separate(dynamics::read_model(item.substr(sign + 1)),
+                                                                          dynamics::signals_of(run).held)});
+        }
+        const auto result = estimator::identify_surface(surfaces, signals, noise);
+        nlohmann::json probability = nlohmann::json::object();
+        for (std::size_t i = 0; i < result.names.size(); ++i) {
+            probability[result.names[i]] = result.probability[i].back();
+        }
+        list.push_back({{"run", run.name}, {"surface", result.names[result.best]}, {"probability", probability}});
+        text += run.name + ": surface " + result.names[result.best] + ", probability " +
+                core::format_number(result.probability[result.best].back(), 4) + "\n";
+    }
+    return list;
+}
+
+int run(const Arguments& a, Shell& shell) {
+    const dynamics::Model model = dynamics::read_model(a.model);
+    const dynamics::Measurements data = dynamics::read_measurements(a.data);
+    shell.show(data.problems);
+    estimator::EstimateOptions options = a.options;
+    if (!a.poles.empty()) {
+        options.poles = parse_poles(a.poles);
+    }
+    options.gap_sigma = a.gap_noise.empty() ? 0 : core::parse_in(a.gap_noise, "m");
+    options.velocity_sigma = a.velocity_noise.empty() ? 0 : core::parse_in(a.velocity_noise, "m/s");
+    const estimator::Estimation result = estimator::estimate(model, data, options, shell.progress());
+    shell.show(result.remarks);
+    std::string surfaces_text;
+    nlohmann::json surfaces;
+    if (!a.surfaces.empty()) {
+        surfaces = identify(a, data, result.noise, surfaces_text);
+    }
+    if (!a.export_c.empty() && result.design.empty()) {
+        throw core::UsageError("missing", "the extended filter has no linear form to export", {},
+                               "choose --observer kalman, reduced, full, latent or disturbance");
+    }
+    if (!a.out.empty()) {
+        core::write_csv(std::filesystem::path(a.out), result.table);
+    }
+    if (!a.export_c.empty()) {
+        const std::string name = std::filesystem::path(a.export_c).stem().string();
+        core::write_file(a.export_c, estimator::export_c(result.design.front().filter, name, {a.model}));
+    }
+    if (!a.plot.empty()) {
+        write_picture(result.figure, a.plot);
+    }
+    if (shell.json) {
+        nlohmann::json json = result;
+        if (!a.surfaces.empty()) {
+            json["surfaces"] = surfaces;
+        }
+        shell.print_json(json);
+    }
+    std::string text = result.explanation + "\n";
+    for (const auto& [name, label] : result.labels) {
+        text += "  " + name + ": " + label + "\n";
+    }
+    if (std::isfinite(result.separability.b_eff)) {
+        text += "drag law that the model holds at slow drift: b_eff = " + core::format_number(result.separability.b_eff, 4) +
+                " N s/m; observability determinant " + core::format_number(result.separability.determinant, 4) + "\n";
+    }
+    for (const auto& r : result.runs) {
+        text += r.name + ": " + std::to_string(r.samples) + " samples";
+        if (std::isfinite(r.mean_squared_innovation)) {
+            text += ", innovations " + core::format_number(std::sqrt(r.mean_squared_innovation), 3) + " of what the filter states";
+        }
+        text += "\n";
+    }
+    shell.print(text + surfaces_text);
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_estimate_command(CLI::App& app, Shell& shell) {
+    CLI::App* command = app.add_subcommand("estimate", "forces of ground and drag from measured gap and velocity");
+    auto a = std::make_shared<Arguments>();
+    command->add_option("model", a->model, "the model (model.toml)")->required();
+    command->add_option("--data", a->data, "folder of measurements (with dataset.toml, time series)")->required();
+    command->add_option("--out", a->out, "estimates with their sigmas as a table (CSV)");
+    command->add_option("--plot", a->plot, "forces of the first run (.png, .pdf)");
+    command->add_option("--observer", a->options.observer,
+                        "extended (default), kalman, reduced, full, latent or disturbance");
+    command->add_option("--poles", a->poles, "poles of the error, 1/s (default -3,-4)");
+    command->add_option("--order", a->options.order, "order of the learned linear model (default: least squares with known rows)");
+    command->add_option("--gap-noise", a->gap_noise, "one standard deviation of the gap sensor (default: declared, else from the data)");
+    command->add_option("--velocity-noise", a->velocity_noise, "likewise of measured heave velocity");
+    command->add_option("--force-density", a->options.force_density,
+                        "how fast the force may depart from its table, N^2/s (default: the likeliest)");
+    command->add_option("--drag-error", a->options.drag_relative, "relative deviation of the declared drag law (default 0.2)");
+    command->add_flag("--smooth", a->options.smooth, "use the whole run for each moment");
+    command->add_option("--surface", a->surfaces, "NAME=MODEL.toml, twice or more: which surface is under the vehicle");
+    command->add_option("--export-c", a->export_c, "the linear observer as a C99 header");
+    command->footer(
+        "Examples:\n"
+        "  underbody estimate model.toml --data runs --out est.csv\n"
+        "  underbody estimate model.toml --data runs --observer kalman --export-c observer.h --json\n"
+        "  underbody estimate model.toml --data runs --surface smooth=model.toml --surface rough=rough.toml\n"
+        "What can be separated is said: the total force is observed; ground and drag force are told apart by the drag law\n"
+        "that the model holds, and are labelled model-dependent.");
+    shell.on(command, [a, &shell] { return run(*a, shell); });
+}
+
+}  // namespace underbody::studio

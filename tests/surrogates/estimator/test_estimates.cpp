@@ -1,0 +1,251 @@
+// The extended filter, what the sensors can know along the gap, the bank of surfaces, dynamic mode decomposition, measured runs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/random.h"
+#include "surrogates/dynamics/measurements.h"
+#include "surrogates/dynamics/model.h"
+#include "surrogates/estimator/dmd.h"
+#include "surrogates/estimator/estimate.h"
+#include "surrogates/estimator/information.h"
+#include "surrogates/estimator/published.h"
+#include "tests/support/support.h"
+
+namespace underbody::estimator {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct Simulated {
+    RunSignals signals;
+    std::vector<double> gap, velocity, ground, drag;
+};
+
+Simulated simulate(const SeparatedPlant& plant, double gap, double duration, double step, double noise, std::uint64_t seed) {
+    Simulated s;
+    core::Random random(seed);
+    double h = gap, w = 0, slope = 0;
+    s.signals.held = true;
+    for (double t = 0; t < duration; t += step) {
+        s.gap.push_back(h);
+        s.velocity.push_back(w);
+        s.ground.push_back(plant.ground_force(h, slope));
+        s.drag.push_back(plant.drag_force(w, slope));
+        s.signals.time.push_back(t);
+        s.signals.gap.push_back(h + noise * random.normal());
+        const double u = -0.05 * (h - gap) - 0.3 * w - plant.ground_force(gap, slope) - plant.bias + 0.004 * std::sin(0.7 * t);
+        s.signals.input.push_back(u);
+        plant.advance(h, w, u, step);
+    }
+    return s;
+}
+
+TEST(ExtendedFilter, FindsTheForcesFromTheGapAlone) {
+    const SeparatedPlant plant = reference_plant(quadratic_drag(.02, 6));
+    const Simulated s = simulate(plant, 0.2, 30, 0.02, 2e-4, 1);
+    FilterNoise noise;
+    noise.force_density = 1e-9;
+    const FilterResult r = extended_filter(plant, s.signals, noise);
+    EXPECT_NEAR(r.mean_squared_innovation, 1, 0.15);
+    EXPECT_LT(std::abs(r.innovation_correlation), 0.12);
+    double square = 0;
+    for (std::size_t k = 500; k < s.gap.size(); ++k) {
+        square += std::pow(r.estimates[k].total_force - (s.ground[k] - s.drag[k]), 2);
+    }
+    EXPECT_LT(std::sqrt(square / static_cast<double>(s.gap.size() - 500)), 4e-4);
+    const FilterResult smooth = extended_filter(plant, s.signals, noise, true);
+    double filtered = 0, smoothed = 0;
+    for (std::size_t k = 200; k + 200 < s.gap.size(); ++k) {
+        filtered += std::pow(r.estimates[k].velocity - s.velocity[k], 2);
+        smoothed += std::pow(smooth.estimates[k].velocity - s.velocity[k], 2);
+    }
+    EXPECT_LT(smoothed, 0.6 * filtered);
+}
+
+TEST(ExtendedFilter, FindsADepartureFromTheTable) {
+    const SeparatedPlant declared = reference_plant();
+    SeparatedPlant real = declared;
+    real.ground_force = [f = declared.ground_force](double h, double& slope) { return f(h, slope) + 0.003; };
+    const Simulated s = simulate(real, 0.2, 40, 0.02, 2e-4, 2);
+    FilterNoise noise;
+    noise.force_density = likely_force_density(declared, {s.signals}, noise);
+    const FilterResult r = extended_filter(declared, s.signals, noise);
+    double mean = 0;
+    for (std::size_t k = s.gap.size() - 500; k < s.gap.size(); ++k) {
+        mean += r.estimates[k].departure / 500;
+    }
+    EXPECT_NEAR(mean, 0.003, 3e-4);
+}
+
+TEST(ExtendedFilter, BridgesMissingValuesGapsInTimeAndOutliers) {
+    const SeparatedPlant plant = reference_plant();
+    Simulated s = simulate(plant, 0.2, 30, 0.02, 2e-4, 3);
+    for (std::size_t k = 300; k < 340; ++k) {
+        s.signals.gap[k] = nan;
+    }
+    s.signals.gap[700] += 0.05;
+    s.signals.gap[900] -= 0.02;
+    Simulated cut = s;
+    const auto erase = [](std::vector<double>& v) { v.erase(v.begin() + 1000, v.begin() + 1060); };
+    erase(cut.signals.time);
+    erase(cut.signals.gap);
+    erase(cut.signals.input);
+    FilterNoise noise;
+    noise.force_density = 1e-8;
+    const FilterResult r = extended_filter(plant, cut.signals, noise);
+    EXPECT_EQ(r.outliers, 2U);
+    EXPECT_EQ(r.missing, 40U);
+    EXPECT_GT(r.estimates[339].gap_sigma, 1.3 * r.estimates[299].gap_sigma);
+    EXPECT_NEAR(r.estimates.back().gap, s.gap.back(), 6 * r.estimates.back().gap_sigma);
+    const UniformRun u = uniform(cut.signals, 0.02);
+    EXPECT_EQ(u.outliers, 2U);
+    EXPECT_EQ(u.gaps, 2U);
+    Simulated bad = s;
+    bad.signals.time[5] = bad.signals.time[4];
+    EXPECT_THROW(extended_filter(plant, bad.signals, noise), core::InputError);
+    bad.signals.input[9] = nan;
+    EXPECT_THROW(extended_filter(plant, bad.signals, noise), core::InputError);
+}
+
+TEST(ExtendedFilter, CoversTheTruthAsOftenAsItSays) {
+    const SeparatedPlant plant = reference_plant(quadratic_drag(.02, 6));
+    FilterNoise noise;
+    noise.force_density = 1e-7;
+    const Consistency c = consistency_along_gap(plant, noise, {0.03, 0.2, 0.6}, 60, 6, 0.02, 5);
+    for (std::size_t i = 0; i < c.gaps.size(); ++i) {
+        EXPECT_GT(c.nees[i], 3 - 1.5 * (c.upper - 3)) << c.gaps[i];
+        EXPECT_LT(c.nees[i], 3 + 1.5 * (c.upper - 3)) << c.gaps[i];
+        EXPECT_GT(c.coverage[i], 0.85);
+        EXPECT_NEAR(c.innovation[i], 1, 0.05);
+    }
+}
+
+TEST(InformationAlongTheGap, BoundsTheFilterAndGrowsWithTheNoise) {
+    const SeparatedPlant plant = reference_plant(quadratic_drag(.02, 6));
+    InformationOptions o;
+    o.gaps = {0.03, 0.1, 0.3, 0.8};
+    o.speeds = {0, 0.01, 0.03};
+    o.noise.force_density = 1e-8;
+    const InformationMap fine = information_along_gap(plant, o);
+    o.noise.gap *= 10;
+    const InformationMap coarse = information_along_gap(plant, o);
+    o.noise.gap /= 10;
+    o.drag_prior = 0;
+    const InformationMap known = information_along_gap(plant, o);
+    for (std::size_t i = 0; i < fine.total_sigma.size(); ++i) {
+        EXPECT_LT(fine.total_sigma[i], coarse.total_sigma[i]);
+        // A drag law that is not trusted costs the ground force once the body moves, and nothing at rest.
+        EXPECT_GT(fine.ground_sigma[i], known.ground_sigma[i] * (i < 4 ? 1 - 1e-9 : 1.0001));
+        EXPECT_LT(fine.ground_sigma[i], known.ground_sigma[i] * (i < 4 ? 1 + 1e-9 : 10));
+    }
+    EXPECT_GE(coarse.blind_share, fine.blind_share);
+    const auto seen = observability_along_gap(plant, {0.05, 0.4, 1.0});
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_GT(seen.smallest_singular_value[i], 1e-6);
+        EXPECT_EQ(seen.separate_rank[i], 1U);
+    }
+}
+
+TEST(BankOfSurfaces, NamesTheSurfaceUnderTheVehicle) {
+    const auto surface = [](double deeper) {
+        SeparatedPlant p = reference_plant(quadratic_drag(.02, 6));
+        p.ground_force = [f = p.ground_force, deeper](double h, double& slope) {
+            const double value = f(h, slope);
+            slope *= 1 + deeper;
+            return (1 + deeper) * value;
+        };
+        return p;
+    };
+    const std::vector<Surface> bank{{"smooth", surface(0)}, {"rough", surface(0.3)}, {"rougher", surface(0.6)}};
+    FilterNoise noise;
+    noise.force_density = 1e-10;
+    int right = 0;
+    for (std::size_t truth = 0; truth < 3; ++truth) {
+        const SurfaceProbability p = identify_surface(bank, simulate(bank[truth].plant, 0.08, 30, 0.02, 2e-4, 7 + truth).signals, noise);
+        right += p.best == truth ? 1 : 0;
+        EXPECT_GT(p.probability[truth].back(), 0.9) << bank[truth].name;
+        EXPECT_NEAR(p.probability[0][40] + p.probability[1][40] + p.probability[2][40], 1, 1e-12);
+    }
+    EXPECT_EQ(right, 3);
+}
+
+TEST(DynamicModeDecomposition, IsExactOnALinearPlant) {
+    SeparatedPlant plant = reference_plant(quadratic_drag(1.25, 0));
+    plant.ground_force = [](double h, double& slope) {
+        slope = -0.4;
+        return -0.4 * h;
+    };
+    plant.bias = 0.003;
+    TrainingOptions o;
+    o.auxiliaries = {};
+    o.samples = 2000;
+    const AugmentedModel m = learn_dmd(snapshot_pairs(plant, o, 0.1));
+    const double s = 1 / plant.virtual_mass;
+    EXPECT_NEAR(m.A(0, 0), -1.25 * s, 1e-6);
+    EXPECT_NEAR(m.A(0, 1), -0.4 * s, 1e-6);
+    EXPECT_NEAR(m.A(1, 0), 1, 1e-6);
+    EXPECT_NEAR(m.B(0, 0), s, 1e-6);
+    EXPECT_NEAR(m.offset[0], 0.003 * s, 1e-7);
+    PredictionTest test;
+    test.runs = 5;
+    test.gap_lower = -.1;
+    test.gap_upper = .1;
+    for (const auto& e : compare_predictions(plant, {{"dmdc", m}}, test)) {
+        EXPECT_LT(e.gap, 1e-4) << e.model;
+    }
+}
+
+TEST(DynamicModeDecomposition, PredictsBetterWithADictionary) {
+    const SeparatedPlant plant = reference_plant();
+    TrainingOptions o;
+    o.samples = 8000;
+    o.gap_upper = 0.3;
+    o.auxiliaries = {};
+    const AugmentedModel plain = learn_dmd(snapshot_pairs(plant, o, 0.1));
+    o.auxiliaries = {"ground_force", "velocity_squared", "gap_squared", "gap_cubed"};
+    const AugmentedModel lifted = learn_dmd(snapshot_pairs(plant, o, 0.1));
+    PredictionTest test;
+    test.gap_upper = 0.3;
+    test.horizon = 2;
+    const auto errors = compare_predictions(plant, {{"dmdc", plain}, {"edmdc", lifted}}, test);
+    ASSERT_EQ(errors.size(), 4U);
+    EXPECT_LT(errors[3].acceleration, errors[2].acceleration);
+    EXPECT_LT(errors[3].gap, errors[2].gap);
+}
+
+class ExampleRuns : public ::testing::Test {
+protected:
+    std::filesystem::path folder() const { return test::shared_folder() / "examples/loop/example-00"; }
+};
+
+TEST_F(ExampleRuns, AreEstimatedByEveryObserverThatTheDataAllow) {
+    UNDERBODY_NEEDS_SHARED("examples/loop/example-00/model.toml");
+    const dynamics::Model model = dynamics::read_model(folder() / "model.toml");
+    const dynamics::Measurements data = dynamics::read_measurements(folder());
+    for (const char* observer : {"extended", "kalman", "full", "latent"}) {
+        EstimateOptions o;
+        o.observer = observer;
+        const Estimation e = estimate(model, data, o);
+        EXPECT_EQ(e.runs.size(), data.runs.size()) << observer;
+        EXPECT_GT(e.table.rows(), 1000U);
+        const auto& gap = e.table.numbers("gap");
+        EXPECT_TRUE(std::all_of(gap.begin(), gap.end(), [](double v) { return std::abs(v) < 5; })) << observer;
+    }
+    EstimateOptions reduced;
+    reduced.observer = "reduced";
+    try {
+        estimate(model, data, reduced);
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_NE(error.hint().find("extended, kalman or full"), std::string::npos);
+    }
+    const TrainingSet set = training_from_runs(model, data, {});
+    const AugmentedModel learned = learn(moments(set.view()), set.layout);
+    EXPECT_NEAR(learned.A(0, 2), 1 / model.heave_mass(), 1e-6);
+}
+
+}  // namespace
+}  // namespace underbody::estimator
