@@ -60,8 +60,11 @@ std::optional<std::string> Engine::make(const std::string& kind, const std::stri
             store_.put(digest, kind, name, *value);
         } catch (const core::Cancelled&) {
             throw;
-        } catch (const core::SystemError&) {
-            throw;  // no disk, no store: nothing that the next step would fare better with
+        } catch (const core::SystemError& error) {
+            if (error.kind() != "display") {
+                throw;  // no disk, no store: nothing that the next step would fare better with
+            }
+            step.error = error.what();
         } catch (const core::Error& error) {
             step.error = error.what();
         }
@@ -84,10 +87,25 @@ void Engine::figure(const std::string& name, const Key& key, const std::function
         return nlohmann::json({{"title", figure.title}, {"caption", figure.caption}}).dump() + "\n" + options.renderer(figure);
     });
     if (value) {
-        const std::size_t end = value->find('\n');
-        add_document("figure/" + name, value->substr(0, end));
-        add_picture("figure/" + name, value->substr(end + 1));
+        unpack("figure/" + name, *value);
     }
+}
+
+void Engine::picture(const std::string& kind, const std::string& name, const Key& key, const std::function<std::string()>& work) {
+    if (!options.pictures) {
+        return;
+    }
+    Key of_picture(kind, {"postproc"});
+    of_picture.add(key.digest());
+    if (const auto value = make(kind, name, of_picture, work)) {
+        unpack(kind + "/" + name, *value);
+    }
+}
+
+void Engine::unpack(const std::string& name, const std::string& value) {
+    const std::size_t end = value.find('\n');
+    add_document(name, value.substr(0, end));
+    add_picture(name, value.substr(end + 1));
 }
 
 std::string Engine::hash_of(const fs::path& file) {

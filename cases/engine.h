@@ -42,6 +42,8 @@ public:
                                     const std::function<std::string()>& work);
     /// A plot of the step, drawn when there is a renderer; kept under `figure/NAME`.
     void figure(const std::string& name, const Key& key, const std::function<core::Figure()>& work);
+    /// A 3D picture: `work` gives one line of JSON ({"caption"}) and the PNG behind it. Nothing without RunOptions::pictures.
+    void picture(const std::string& kind, const std::string& name, const Key& key, const std::function<std::string()>& work);
     /// Hash of a file's content, read once a run.
     std::string hash_of(const std::filesystem::path& file);
     /// Hash over all regular files below a folder.
@@ -59,6 +61,7 @@ public:
     static void write_if_changed(const std::filesystem::path& file, const std::string& bytes);
 
 private:
+    void unpack(const std::string& name, const std::string& value);
     Store store_;
     std::mutex mutex_;
     std::map<std::filesystem::path, std::string> hashes_;

@@ -130,7 +130,7 @@ private:
                 rows.push_back({spec.name, shown(volume, "m^3", "L", 4), shown(number_in(*body, "area"), "m^2", "cm^2", 4),
                                 shown(number_in(*body, "buoyancy"), "N", "N", 4), body->value("watertight", false) ? "yes" : "no"});
             }
-            if (const auto* png = engine_.results.picture("body/" + spec.name)) {
+            if (const auto* png = engine_.results.picture("body picture/" + spec.name)) {
                 pictures.push_back({*png, spec.name, "the body " + spec.name});
             }
         }
@@ -141,11 +141,10 @@ private:
     void fields() {
         std::vector<HtmlPage::Picture> pictures;
         for (const auto& spec : engine_.study.pictures) {
-            for (const auto& view : spec.views) {
-                const std::string key = "picture/" + spec.name + "/" + view;
-                const auto head = document(key);
-                if (const auto* png = engine_.results.picture(key); png != nullptr && head) {
-                    pictures.push_back({*png, text_in(*head, "caption"), spec.name});
+            for (const auto& [key, png] : engine_.results.pictures) {
+                if (key.starts_with("picture/" + spec.name + "/")) {
+                    const auto head = document(key);
+                    pictures.push_back({png, head ? text_in(*head, "caption") : "", spec.name});
                 }
             }
         }

@@ -27,6 +27,23 @@ std::string compute_body(Engine& engine, const BodySpec& spec) {
     return document.dump();
 }
 
+std::string draw_body(Engine& engine, const BodySpec& spec) {
+    const auto mesh = geometry::make_surface(geometry::read_shape(spec.shape), {}, engine.progress);
+    postproc::Scene scene;
+    postproc::DrawnSurface surface;
+    for (const auto& point : mesh.points) {
+        surface.points.push_back({point.x, point.y, point.z});
+    }
+    for (const auto& triangle : mesh.triangles) {
+        surface.triangles.push_back({triangle[0], triangle[1], triangle[2]});
+    }
+    scene.surfaces.push_back(std::move(surface));
+    scene.title = spec.name;
+    scene.subtitle = "seen from below";
+    scene.camera.towards = {-1, 0.8, 0.9};
+    return nlohmann::json({{"caption", "The body '" + spec.name + "' from below."}}).dump() + "\n" + postproc::draw_png(scene);
+}
+
 }  // namespace
 
 void run_bodies(Engine& engine) {
@@ -36,6 +53,7 @@ void run_bodies(Engine& engine) {
             key.add(engine.hash_of(spec.shape)).add(engine.study.reference);
             if (const auto made = engine.make("body", spec.name, key, [&] { return compute_body(engine, spec); })) {
                 engine.add_document("body/" + spec.name, *made);
+                engine.picture("body picture", spec.name, key, [&] { return draw_body(engine, spec); });
             }
         } catch (const core::InputError& error) {
             engine.fail("body", spec.name, error.what());

@@ -58,19 +58,32 @@ std::string compute_table(const TableSpec& spec, const core::Table& points) {
     return document.dump();
 }
 
+std::string ending_of(const std::string& format) {
+    std::vector<std::string> known;
+    for (const auto& candidate : tables::export_formats()) {
+        if (candidate.name == format) {
+            return candidate.ending;
+        }
+        known.push_back(candidate.name);
+    }
+    throw core::InputError("name", "unknown export format '" + format + "'", {}, core::did_you_mean(format, known));
+}
+
 /// Writes the exports beside the report and names them in the document.
 void write_exports(Engine& engine, const TableSpec& spec, const core::Table& points, const Key& key, nlohmann::json& document) {
     document["exports"] = nlohmann::json::array();
     for (const auto& format : spec.exports) {
         std::string file = spec.name;
         std::replace_if(file.begin(), file.end(), [](char c) { return c == ' ' || c == ','; }, '_');
-        const std::string ending = tables::export_ending(format);
+        const std::string ending = ending_of(format);
         Key export_key("export", {"surrogates/tables"});
         export_key.add(key.digest()).add(format);
         const auto bytes = engine.make("export", spec.name + " as " + format, export_key, [&] {
             const core::TemporaryFolder folder;
             const auto path = folder.path() / (file + ending);
-            tables::export_table(fitted(spec, points), format, path);
+            tables::ExportOptions options;
+            options.name = file;
+            tables::export_table(fitted(spec, points), format, path, options, engine.progress);
             return core::read_file(path);
         });
         if (bytes) {
@@ -97,7 +110,11 @@ void run_table(Engine& engine, const TableSpec& spec) {
         return;
     }
     nlohmann::json document = nlohmann::json::parse(*made);
-    write_exports(engine, spec, points, key, document);
+    try {
+        write_exports(engine, spec, points, key, document);
+    } catch (const core::InputError& error) {
+        engine.fail("export", spec.name, error.what());
+    }
     engine.add_document("table/" + spec.name, document.dump());
     engine.figure("table/" + spec.name, key, [&] {
         const tables::ForceTable table = fitted(spec, points);

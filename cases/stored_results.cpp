@@ -58,8 +58,10 @@ StudyResults stored_results(const Study& study, const RunOptions& options) {
         reader.picture(results, "body picture", body.name);
     }
     for (const auto& spec : study.pictures) {
-        for (const auto& view : spec.views) {
-            reader.picture(results, "picture", spec.name + "/" + view);
+        for (const Case* entry : study.select(spec.where)) {
+            for (const auto& view : spec.views) {
+                reader.picture(results, "picture", spec.name + "/" + entry->name + "/" + view);
+            }
         }
     }
     for (const auto& mesh : study.mesh_uncertainties) {

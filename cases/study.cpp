@@ -261,8 +261,15 @@ Study Study::open(const fs::path& path) {
         PictureSpec spec;
         spec.name = unique_name(table, pictures);
         spec.where = read_conditions(table.table_or_empty("where"));
-        spec.array = table.string_or("array", "pressure");
         spec.views = table.strings("views");
+        if (table.has("range")) {
+            const auto range = table.quantities("range", "Pa");
+            if (range.size() != 2 || !(range[0] < range[1])) {
+                throw core::InputError("range", table.path_of("range") + " needs two pressures, the lower one first", table.place("range"),
+                                       "range = [\"-60 Pa\", \"20 Pa\"]");
+            }
+            spec.range = {range[0], range[1]};
+        }
         study.pictures.push_back(std::move(spec));
     }
     std::set<std::string> meshes;

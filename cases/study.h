@@ -48,8 +48,8 @@ struct BodySpec {
 struct PictureSpec {
     std::string name;
     Conditions where;
-    std::string array = "pressure";
-    std::vector<std::string> views;  ///< "bottom", "top", "side", "front", "iso"
+    std::vector<std::string> views;  ///< as postproc::possible_views names them: "pressure-underbody", ...; empty: all
+    std::optional<std::pair<double, double>> range;  ///< Pa, of the colours of pressure, so that pictures can be compared
 };
 
 /// [[mesh_uncertainty]]: cases that differ in their mesh only.

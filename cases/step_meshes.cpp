@@ -1,0 +1,82 @@
+// Mesh uncertainty: the same case on several meshes.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cases/engine.h"
+#include "core/text.h"
+#include "postproc/uncertainty.h"
+
+namespace underbody::cases {
+
+namespace {
+
+struct MeshRow {
+    double cells = 0;
+    std::size_t row = 0;
+};
+
+/// The rows of the loads that belong to the group, coarse to fine.
+std::vector<MeshRow> rows_of(const Engine& engine, const MeshSpec& spec) {
+    const core::Table& loads = engine.results.loads;
+    std::vector<MeshRow> rows;
+    if (loads.rows() == 0) {
+        return rows;
+    }
+    const auto& names = loads.text("case");
+    for (const Case* entry : engine.study.select(spec.where)) {
+        const auto mesh = entry->conditions.text(spec.column);
+        const auto found = std::find(names.begin(), names.end(), entry->name);
+        for (const auto& [name, cells] : spec.cells) {
+            if (mesh == name && found != names.end()) {
+                rows.push_back({cells, static_cast<std::size_t>(found - names.begin())});
+            }
+        }
+    }
+    std::sort(rows.begin(), rows.end(), [](const MeshRow& a, const MeshRow& b) { return a.cells < b.cells; });
+    return rows;
+}
+
+std::string compute_mesh(const Engine& engine, const MeshSpec& spec, const std::vector<MeshRow>& rows) {
+    nlohmann::json document = {{"quantities", nlohmann::json::object()}, {"cells", nlohmann::json::array()}};
+    for (const auto& row : rows) {
+        document["cells"].push_back(row.cells);
+    }
+    for (const auto& quantity : spec.quantities) {
+        const auto& column = engine.results.loads.numbers(quantity);
+        std::vector<postproc::MeshValue> values;
+        nlohmann::json shown = nlohmann::json::array();
+        for (const auto& row : rows) {
+            values.push_back({postproc::mesh_size(row.cells), column[row.row]});
+            shown.push_back(column[row.row]);
+        }
+        nlohmann::json found;
+        postproc::to_json(found, postproc::mesh_uncertainty(values));
+        found["values"] = shown;
+        document["quantities"][quantity] = std::move(found);
+    }
+    return document.dump();
+}
+
+}  // namespace
+
+void run_meshes(Engine& engine) {
+    for (const auto& spec : engine.study.mesh_uncertainties) {
+        const auto rows = rows_of(engine, spec);
+        if (rows.size() < 2) {
+            engine.fail("mesh", spec.name, "fewer than two of its meshes have loads");
+            continue;
+        }
+        Key key("mesh", {"postproc", "cases"});
+        for (const auto& row : rows) {
+            key.add(row.cells);
+            for (const auto& quantity : spec.quantities) {
+                key.add(quantity).add(engine.results.loads.numbers(quantity)[row.row]);
+            }
+        }
+        if (const auto made = engine.make("mesh", spec.name, key, [&] { return compute_mesh(engine, spec, rows); })) {
+            engine.add_document("mesh/" + spec.name, *made);
+        }
+    }
+}
+
+}  // namespace underbody::cases
