@@ -94,7 +94,7 @@ private:
         };
         const std::int32_t fore = crossing(x + radius), aft = crossing(x - radius);
         b_.straight[static_cast<std::size_t>(fore)].z = b_.straight[static_cast<std::size_t>(aft)].z = 0;
-        features_.push_back(b_.chain(fore, aft, curve, length()));
+        features_.push_back(b_.chain(fore, aft, curve, length(), 6));
     }
 
     void make_symmetry_line() {

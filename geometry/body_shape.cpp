@@ -6,7 +6,7 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
-#include "geometry/exact_body.h"
+#include "geometry/loading.h"
 
 namespace underbody::geometry {
 
@@ -81,6 +81,7 @@ BodyShape shape_from(const core::TomlTable& root, const std::string& name) {
 BodyShape read_shape(const std::filesystem::path& path) {
     const core::TomlTable root = core::read_toml(path);
     BodyShape shape = shape_from(root, path.stem().string());
+    loading_from(root);  // a typo in [mass] is an error here too
     root.finish();
     return shape;
 }
@@ -88,6 +89,7 @@ BodyShape read_shape(const std::filesystem::path& path) {
 BodyShape parse_shape(std::string_view text, const std::string& source) {
     const core::TomlTable root = core::read_toml_text(text, source);
     BodyShape shape = shape_from(root, std::filesystem::path(source).stem().string());
+    loading_from(root);
     root.finish();
     return shape;
 }

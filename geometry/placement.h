@@ -2,8 +2,11 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "core/figure.h"
 #include "geometry/surface_mesh.h"
 
 namespace underbody::geometry {
@@ -26,5 +29,28 @@ struct Clearance {
     std::string patch;    ///< of a triangle that has it
 };
 Clearance clearance(const SurfaceMesh& body, const Placement& placement);
+
+/// The angles, about the centre of the base at a gap, at which the body first touches the ground; nothing when it does
+/// not within 60 degrees. rad.
+struct ContactAngles {
+    std::optional<double> nose_up;    ///< the tail touches
+    std::optional<double> nose_down;  ///< positive number: so many rad nose down
+    std::optional<double> roll;
+};
+ContactAngles contact_angles(const SurfaceMesh& body, double gap);
+
+/// Under side of a placed body against the height above the ground: how much of it (seen from below, m^2) lies lower.
+struct AreaBelow {
+    std::vector<double> height;  ///< m
+    std::vector<double> area;    ///< m^2
+};
+AreaBelow underside_area(const SurfaceMesh& body, const Placement& placement, double up_to, std::size_t points = 200);
+core::Figure underside_figure(const SurfaceMesh& body, const Placement& placement, double up_to);
+
+/// The gap under the base as a map seen from above (x forward to the right, y to port upward), mm.
+core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement);
+
+void to_json(nlohmann::json& json, const Clearance& clearance);
+void to_json(nlohmann::json& json, const ContactAngles& angles);
 
 }  // namespace underbody::geometry

@@ -126,7 +126,8 @@ Chain SurfaceBuilder::add(const std::vector<Vec3>& points) {
     return chain;
 }
 
-std::vector<Vec3> along(const std::function<Vec3(double)>& curve, const std::function<double(const Vec3&)>& length) {
+std::vector<Vec3> along(const std::function<Vec3(double)>& curve, const std::function<double(const Vec3&)>& length,
+                        int least) {
     constexpr int samples = 200;
     std::vector<double> steps(samples + 1, 0.0);
     Vec3 last = curve(0);
@@ -136,7 +137,7 @@ std::vector<Vec3> along(const std::function<Vec3(double)>& curve, const std::fun
             steps[static_cast<std::size_t>(i) - 1] + norm(next - last) / length(0.5 * (next + last));
         last = next;
     }
-    const int count = std::max(1, static_cast<int>(std::lround(steps.back())));
+    const int count = std::max(least, static_cast<int>(std::lround(steps.back())));
     std::vector<Vec3> points{curve(0)};
     std::size_t j = 0;
     for (int i = 1; i < count; ++i) {
@@ -152,8 +153,8 @@ std::vector<Vec3> along(const std::function<Vec3(double)>& curve, const std::fun
 }
 
 Chain SurfaceBuilder::chain(std::int32_t from, std::int32_t to, const std::function<Vec3(double)>& curve,
-                            const std::function<double(const Vec3&)>& length) {
-    const std::vector<Vec3> points = along(curve, length);
+                            const std::function<double(const Vec3&)>& length, int least) {
+    const std::vector<Vec3> points = along(curve, length, least);
     Chain result{from};
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
         result.push_back(add(points[i]));

@@ -55,7 +55,7 @@ public:
     /// A chain along `curve` (w from 0 to 1, unbent points) between two points that are there, at the local edge
     /// length.
     Chain chain(std::int32_t from, std::int32_t to, const std::function<Vec3(double)>& curve,
-                const std::function<double(const Vec3&)>& length);
+                const std::function<double(const Vec3&)>& length, int least = 1);
     /// The same, on the hull.
     Chain chain(std::int32_t from, std::int32_t to, const std::function<Vec3(double)>& curve);
 
@@ -79,7 +79,8 @@ public:
 };
 
 /// Points along a curve where the local edge length is used up; both ends included.
-std::vector<Vec3> along(const std::function<Vec3(double)>& curve, const std::function<double(const Vec3&)>& length);
+std::vector<Vec3> along(const std::function<Vec3(double)>& curve, const std::function<double(const Vec3&)>& length,
+                        int least = 1);
 
 /// Hull below the midplane with its creases, and the outline of the base. Returns the chains that the other parts need.
 struct LowerHull {
