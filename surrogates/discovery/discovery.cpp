@@ -24,6 +24,9 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& d
                                                  core::content_hash_of_file(model.file));
     }
     for (const dynamics::MeasuredRun& run : data.runs) {
+        if (!std::filesystem::exists(run.file)) {
+            continue;  // made in memory
+        }
         result.model.lineage.made_from.push_back("run " + run.file.filename().string() + ", content " +
                                                  core::content_hash_of_file(run.file));
     }

@@ -30,7 +30,7 @@ Calibration heave_calibration() {
     c.form_share = 0.01;
     c.unknown_share = 0.12;
     c.unknown_p = 1e-4;
-    c.pair_share = 0.04;
+    c.pair_share = 0.1;
     c.pair_gain = 40;
     c.origin = "tests/bench/discovery, heave runs";
     return c;
@@ -268,7 +268,8 @@ private:
     }
 
     void smooth_corrections() {
-        const std::vector<std::vector<Variable>> sets{{Variable::gap},
+        const std::vector<std::vector<Variable>> sets{{},
+                                                      {Variable::gap},
                                                       {Variable::heave_velocity},
                                                       {Variable::time},
                                                       {Variable::input_force},

@@ -26,7 +26,7 @@ namespace {
 /// Set on the bench of tests/bench/discovery; see its README for the data sets.
 Calibration static_calibration() {
     Calibration c;
-    c.gate = 0.01;
+    c.gate = 0.002;
     c.form_share = 0.01;
     c.unknown_share = 0.12;
     c.unknown_p = 0.002;
@@ -50,6 +50,7 @@ public:
         }
         progress_.report(0.1, "fitting the effects of the catalogue");
         fit_singles();
+        whiten();
         progress_.report(0.4, "testing what is left");
         open_gate();
         if (gate_ < calibration_.gate) {
@@ -112,6 +113,39 @@ private:
         fitted_.resize(candidates.size());
         core::parallel_for(candidates.size(), [&](std::size_t i) { fitted_[i] = fitted(candidates[i]); }, progress_);
         singles_ = fitted_.size();
+    }
+
+    /// Noise whose neighbours in time go together would pass for drift and the like: what the best effect and a smooth function of
+    /// time leave is looked at, and if it is coloured everything is judged again after whitening.
+    void whiten() {
+        const std::size_t best = best_hypothesis(fitted_, 1);
+        std::vector<double> left = best < fitted_.size() ? fitted_[best].fit.residuals : null_residuals_;
+        const StaticStructure structure(experiment_, train_);
+        for (const StaticStructure::Test& test : structure.tests()) {
+            // coloured noise alone makes a slow wave over time; only what is far more than that is no colour
+            const bool slow = test.variables.front() == Channel::time;
+            if (test.variables.size() == 1 && (!slow || explained_square(test.basis, left) > 80)) {
+                take_out(test.basis, left);
+            }
+        }
+        if (experiment_.find_colour(train_, left)) {
+            result_.problems.push_back({core::Problem::Severity::note,
+                                        "neighbouring readings share part of their noise (coloured noise): whitened before anything was judged", {}});
+            fit_singles();
+        }
+    }
+
+    static void take_out(const DesignMatrix& basis, std::vector<double>& y) {
+        for (std::size_t k = 0; k < basis.columns; ++k) {
+            const double* column = basis.values.data() + k * basis.rows;
+            double dot = 0;
+            for (std::size_t i = 0; i < y.size(); ++i) {
+                dot += column[i] * y[i];
+            }
+            for (std::size_t i = 0; i < y.size(); ++i) {
+                y[i] -= dot * column[i];
+            }
+        }
     }
 
     FittedHypothesis fitted(const Hypothesis& hypothesis) const {
@@ -264,9 +298,9 @@ private:
                 variables.push_back(channel);
             }
         }
-        std::vector<double> residuals = null_residuals_;
-        for (std::size_t i = 0; i < train_.size(); ++i) {
-            residuals[i] *= experiment_.sigma(experiment_.observations()[train_[i]]);
+        std::vector<double> residuals;
+        for (const std::size_t i : train_) {
+            residuals.push_back(experiment_.observations()[i].value - experiment_.predict(experiment_.observations()[i], {}));
         }
         for (std::size_t q = 0; q < experiment_.quantities().size(); ++q) {
             uses_.push_back(smooth_correction(experiment_, train_, variables, q, residuals));

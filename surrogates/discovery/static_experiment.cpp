@@ -1,5 +1,6 @@
 #include "surrogates/discovery/static_experiment.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -309,6 +310,74 @@ void StaticExperiment::residuals(const std::vector<std::size_t>& chosen, const s
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Observation& one = observations_[chosen[i]];
         out[i] = (one.value - predict(one, uses)) / sigma(one);
+    }
+    whiten(chosen, out.data());
+}
+
+bool StaticExperiment::find_colour(const std::vector<std::size_t>& chosen, const std::vector<double>& residuals) {
+    constexpr std::size_t order = 4;
+    colour_.assign(quantities_.size(), {});
+    bool found = false;
+    for (std::size_t q = 0; q < quantities_.size(); ++q) {
+        std::vector<double> own;
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            if (observations_[chosen[i]].quantity == q) {
+                own.push_back(residuals[i]);
+            }
+        }
+        if (own.size() < 40) {
+            continue;
+        }
+        const double n = static_cast<double>(own.size());
+        double portmanteau = 0;
+        Eigen::VectorXd r(order);
+        for (std::size_t k = 1; k <= 6; ++k) {
+            const double rho = autocorrelation(own, k);
+            portmanteau += n * (n + 2) * rho * rho / (n - static_cast<double>(k));
+            if (k <= order) {
+                r(static_cast<Eigen::Index>(k) - 1) = rho;
+            }
+        }
+        if (chi_squared_tail(portmanteau, 6) > 0.003) {
+            continue;
+        }
+        Eigen::MatrixXd toeplitz(order, order);
+        for (Eigen::Index i = 0; i < toeplitz.rows(); ++i) {
+            for (Eigen::Index j = 0; j < toeplitz.cols(); ++j) {
+                toeplitz(i, j) = i == j ? 1.0 : r(std::abs(i - j) - 1);
+            }
+        }
+        const Eigen::VectorXd a = toeplitz.ldlt().solve(r);
+        const double share = 1 - a.dot(r);
+        if (share > 0.02 && share < 1) {
+            colour_[q].assign(a.data(), a.data() + order);
+            colour_[q].push_back(std::sqrt(share));
+            found = true;
+        }
+    }
+    return found;
+}
+
+void StaticExperiment::whiten(const std::vector<std::size_t>& chosen, double* values) const {
+    if (colour_.empty()) {
+        return;
+    }
+    for (std::size_t i = chosen.size(); i-- > 0;) {
+        const Observation& one = observations_[chosen[i]];
+        const std::vector<double>& colour = colour_[one.quantity];
+        if (colour.empty() || i + 1 < colour.size()) {
+            continue;
+        }
+        double value = values[i];
+        bool same = true;
+        for (std::size_t k = 1; k < colour.size(); ++k) {
+            const Observation& before = observations_[chosen[i - k]];
+            same = same && before.quantity == one.quantity && before.run == one.run;
+            value -= colour[k - 1] * values[i - k];
+        }
+        if (same) {
+            values[i] = value / colour.back();
+        }
     }
 }
 

@@ -60,7 +60,14 @@ public:
     /// Estimates noise from scatter that no smooth law of the varying channels explains, and compares it with the declared one.
     void estimate_noise();
 
-    /// (measured - predicted)/sigma of the chosen observations.
+    /// Looks for colour in residuals (neighbours in time that tell one story) and from then on whitens with it: an autoregression of
+    /// fourth order for each measured quantity (Yule and Walker), where a portmanteau test (Ljung and Box 1978) finds one.
+    /// `chosen` in the order of measurement, quantity by quantity. True if any was found.
+    bool find_colour(const std::vector<std::size_t>& chosen, const std::vector<double>& residuals);
+    /// Applies the whitening to values at the chosen observations.
+    void whiten(const std::vector<std::size_t>& chosen, double* values) const;
+
+    /// (measured - predicted)/sigma of the chosen observations, whitened.
     void residuals(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses, std::vector<double>& out) const;
     /// Best numbers of a hypothesis from the chosen observations, over all its starts.
     [[nodiscard]] FittedHypothesis fit(const Hypothesis& hypothesis, const std::vector<std::size_t>& chosen) const;
@@ -78,6 +85,7 @@ private:
     std::size_t set_points_ = 0;
     std::map<std::string, NoiseFigure> noise_;
     core::Problems problems_;
+    std::vector<std::vector<double>> colour_;  ///< per quantity: autoregression and, last, the innovation's share; empty: white
 };
 
 }  // namespace underbody::discovery

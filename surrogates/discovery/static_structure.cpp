@@ -82,7 +82,10 @@ DesignMatrix of_quantity(const DesignMatrix& matrix, std::size_t quantity, std::
 StaticStructure::StaticStructure(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen)
     : quantities_(experiment.quantities().size()) {
     const std::vector<Channel>& varying = experiment.varying();
-    const auto add = [&](const std::vector<Channel>& variables, const DesignMatrix& matrix) {
+    const auto add = [&](const std::vector<Channel>& variables, DesignMatrix matrix) {
+        for (std::size_t k = 0; k < matrix.columns; ++k) {
+            experiment.whiten(chosen, matrix.values.data() + k * matrix.rows);
+        }
         for (std::size_t q = 0; q < quantities_; ++q) {
             DesignMatrix basis = orthonormal(of_quantity(matrix, q, quantities_));
             if (basis.columns > 0 && basis.columns * quantities_ * 4 < chosen.size()) {

@@ -1,0 +1,343 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/random.h"
+#include "tests/bench/discovery/plants.h"
+
+namespace underbody::bench {
+
+namespace {
+
+constexpr double mass = 3.954, weight = 0.03, linear = 0.02, quadratic = 6.0, pi = 3.14159265358979;
+constexpr double fine = 0.004;  // s, step of the plant (second-order, midpoint)
+
+/// All that a plant may have beyond the declared model, in forms of its own.
+struct Extra {
+    std::string name;
+    double a = 0;   ///< strength
+    double b = 0;   ///< a shape, drawn by seed
+    double c = 0;
+};
+
+struct Plant {
+    std::vector<Extra> extras;
+    double lag = 0, input_delay = 0, sensor_delay = 0, bias = 0;
+
+    double inertia(double h, double& slope) const {
+        double m = mass;
+        slope = 0;
+        for (const Extra& e : extras) {
+            if (e.name == "added_mass") {
+                m += e.a;
+            } else if (e.name == "gap_dependent_added_mass") {
+                const double grow = e.a * std::exp(-h / e.b);
+                m += grow;
+                slope -= grow / e.b;
+            }
+        }
+        return m;
+    }
+
+    double force(double t, double h, double w, double u, double history) const {
+        double lift = jet_lift(h);
+        double relative = w;
+        double f = -weight;
+        double felt = u;
+        for (const Extra& e : extras) {
+            const std::string& n = e.name;
+            if (n == "ambient_heave_current") relative = w - e.a;
+            else if (n == "surface_roughness") lift *= 1 + e.a * (e.b - h) / (e.b + h);
+            else if (n == "declared_parameter") lift *= 1 + e.a;
+            else if (n == "constant_force") f += e.a;
+            else if (n == "coulomb_friction") f -= e.a * (1 + 0.15 * std::exp(-w * w / 1.6e-5)) * std::tanh(w / 8e-4);
+            else if (n == "linear_damping") f -= e.a * w / (1 + 1.5 * std::abs(w));
+            else if (n == "quadratic_damping") f -= e.a * std::copysign(std::pow(std::abs(w), 1.93), w);
+            else if (n == "squeeze_film_damping") f -= e.a * w / std::pow(h + 6e-4, 2.9);
+            else if (n == "tether_stiffness") f -= e.a * (h - e.b) * (1 + 0.1 * (h - e.b));
+            else if (n == "periodic_disturbance") f += e.a * (std::sin(2 * pi * e.b * t + e.c) + 0.08 * std::sin(4 * pi * e.b * t));
+            else if (n == "input_gain") felt *= 1 + e.a;
+            else if (n == "input_dead_zone") {
+                const double x = std::abs(felt) / e.a;
+                felt = std::copysign(x > 1.6 ? std::abs(felt) - e.a : e.a * 0.6 * std::pow(std::max(0.0, (x - 0.4) / 1.2), 2), felt);
+            } else if (n == "bump") f += e.a * std::exp(-std::pow((h - e.b) / 0.03, 2));
+            else if (n == "wiggle") f += e.a * std::sin(w / 0.012 * (1 + e.b));
+            else if (n == "cross") f += e.a * w * std::sin(h / 0.035);
+            else if (n == "warming") f += e.a * std::tanh((t - 18 - 10 * e.b) / 4);
+            else if (n == "one_sided") f -= e.a * std::max(0.0, w) * (1 + 20 * std::max(0.0, w));
+            else if (n == "rectifier") f += e.a * std::abs(u - 0.035) / 0.03;
+        }
+        (void)history;
+        const double drag = linear * relative + quadratic * relative * std::abs(relative);
+        double slope = 0;
+        inertia(h, slope);
+        return f + lift + felt - drag - 0.5 * slope * w * w;
+    }
+};
+
+struct Track {
+    std::vector<double> time, gap, velocity, input;   ///< at the sampling times; true gap and velocity
+    std::vector<double> sensed, sensed_velocity;      ///< what a perfect reading would be
+};
+
+/// One closed-loop run. `style` 0: steps under a soft controller; 1: sines under a stiffer one.
+Track one_run(const Plant& plant, double rate, double seconds, int style, core::Random& random) {
+    const double dt = 1 / rate;
+    const int sub = std::max(1, static_cast<int>(std::lround(dt / fine)));
+    const double step = dt / sub;
+    const double begin = 0.03 + 0.1 * random.uniform() * (1 + random.uniform());
+    double h = begin, w = 0, integral = 0, felt = 0, held = 0;
+    double estimate = h, slope = 0;
+    std::vector<double> commands;
+    const double stiff = style == 0 ? 0.25 + 0.2 * random.uniform() : 0.7 + 0.4 * random.uniform();
+    const double damp = 2 * 0.5 * std::sqrt(stiff * mass);
+    double phases[6], rates[6];
+    for (int k = 0; k < 6; ++k) {
+        phases[k] = 2 * pi * random.uniform();
+        rates[k] = (style == 0 ? 0.15 : 0.3) * (0.3 + random.uniform()) * (1 + 0.6 * k);
+    }
+    double target = begin;
+    double next_step = 2 + 6 * random.uniform();
+    Track track;
+    std::vector<double> past_h, past_w;
+    // Basset's memory by ten exponentials, rates a factor of three apart
+    double memory[10] = {};
+    double history = 0;
+    for (const Extra& e : plant.extras) {
+        history = e.name == "history_force" ? e.a : history;
+    }
+    const int samples = static_cast<int>(std::lround(seconds * rate));
+    for (int k = 0; k < samples; ++k) {
+        const double t = k * dt;
+        double reference = target;
+        if (style == 0 && t > next_step) {
+            target = 0.03 + 0.24 * random.uniform();
+            next_step = t + 4 + 7 * random.uniform();
+        }
+        if (style == 1) {
+            reference = 0.14 + 0.09 * std::sin(rates[0] * t + phases[0]) + 0.03 * std::sin(rates[2] * t + phases[2]);
+        }
+        // an observer of its own, fed by a noisy reading
+        const double reading = h + 2e-4 * random.normal();
+        const double innovation = reading - estimate;
+        estimate += slope * dt + 0.15 * innovation * dt * 50;
+        slope += 0.25 * innovation * dt * 50;
+        integral = std::clamp(integral + 0.02 * (reference - estimate) * dt, -0.05, 0.05);
+        double u = weight - 0.7 * jet_lift(std::max(estimate, 0.003)) + stiff * std::clamp(reference - estimate, -0.08, 0.08) - damp * slope + integral;
+        u += 0.006 * std::sin(rates[4] * 3 * t + phases[4]) + 0.004 * std::sin(rates[5] * 5 * t + phases[5]);
+        u = std::clamp(u, -0.2, 0.25);
+        commands.push_back(u);
+        track.time.push_back(t);
+        track.gap.push_back(h);
+        track.velocity.push_back(w);
+        track.input.push_back(u);
+        for (int s = 0; s < sub; ++s) {
+            const double now = t + s * step;
+            const double late = now - plant.input_delay;
+            const int index = std::clamp(static_cast<int>(std::floor(late / dt + 1e-9)), 0, k);
+            held = commands[static_cast<std::size_t>(index)];
+            felt = plant.lag > 0 ? felt + (held - felt) * (1 - std::exp(-step / plant.lag)) : held;
+            if (k == 0 && s == 0) {
+                felt = held;
+                for (double& m : memory) {
+                    m = 0;
+                }
+            }
+            double slope_of_mass = 0;
+            double basset = 0, extra_mass = 0;
+            double rate_of = 0.01;
+            if (history > 0) {
+                for (double& m : memory) {
+                    const double weight_of = history * std::log(3.0) * std::sqrt(rate_of / pi);
+                    basset -= weight_of * m;
+                    rate_of *= 3;
+                }
+                extra_mass = history * 2 * std::log(3.0) / std::sqrt(rate_of * pi);
+            }
+            const auto rates_of = [&](double hh, double ww, double tt) {
+                const double m = plant.inertia(hh, slope_of_mass) + extra_mass;
+                return (plant.force(tt, hh, ww, felt, 0) + basset) / m;
+            };
+            const double a1 = rates_of(h, w, now);
+            const double hm = h + 0.5 * step * w, wm = w + 0.5 * step * a1;
+            const double a2 = rates_of(hm, wm, now + 0.5 * step);
+            if (history > 0) {
+                rate_of = 0.01;
+                for (double& m : memory) {
+                    const double decay = std::exp(-rate_of * step);
+                    m = m * decay + a2 * (1 - decay) / rate_of;   // integral of a exp(-rate (t-s))
+                    rate_of *= 3;
+                }
+            }
+            h += step * wm;
+            w += step * a2;
+        }
+    }
+    track.sensed.resize(track.gap.size());
+    for (std::size_t k = 0; k < track.gap.size(); ++k) {
+        const double t = track.time[k] - plant.sensor_delay;
+        const double place = std::clamp(t / dt, 0.0, static_cast<double>(track.gap.size() - 1));
+        const std::size_t i = std::min(static_cast<std::size_t>(place), track.gap.size() - 2);
+        const double part = place - static_cast<double>(i);
+        track.sensed[k] = track.gap[i] + part * (track.gap[i + 1] - track.gap[i]) + plant.bias;
+    }
+    return track;
+}
+
+/// A run that keeps clear of the ground: the body would touch and the rig's owner would throw the run away.
+Track run(const Plant& plant, double rate, double seconds, int style, core::Random& random) {
+    Track track;
+    for (int attempt = 0; attempt < 40; ++attempt) {
+        track = one_run(plant, rate, seconds, style, random);
+        const auto [low, high] = std::minmax_element(track.gap.begin(), track.gap.end());
+        if (*low > 0.012 && *high < 0.6) {
+            return track;
+        }
+    }
+    return track;
+}
+
+/// RMS error of the declared model over windows of two seconds from the sensed state: the strength of what it lacks.
+double declared_error(const std::vector<Track>& tracks) {
+    const Plant bare;
+    double sum = 0, count = 0;
+    for (const Track& track : tracks) {
+        const double dt = track.time[1] - track.time[0];
+        const int window = static_cast<int>(2 / dt);
+        for (int first = static_cast<int>(1 / dt); first + window < static_cast<int>(track.time.size()); first += window) {
+            const auto f = static_cast<std::size_t>(first);
+            double h = track.sensed[f], w = (track.sensed[f + 1] - track.sensed[f - 1]) / (2 * dt);
+            for (int k = 0; k < window; ++k) {
+                const auto i = static_cast<std::size_t>(first + k);
+                const double a1 = bare.force(0, h, w, track.input[i], 0) / mass;
+                const double hm = h + 0.5 * dt * w, wm = w + 0.5 * dt * a1;
+                const double a2 = bare.force(0, hm, wm, track.input[i], 0) / mass;
+                h += dt * wm;
+                w += dt * a2;
+                const double d = h - track.sensed[i + 1];
+                sum += d * d;
+                count += 1;
+            }
+        }
+    }
+    return std::sqrt(sum / std::max(count, 1.0));
+}
+
+Plant plant_of(const std::vector<std::string>& names, const std::vector<double>& strength, const std::vector<double>& shape) {
+    Plant plant;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const double a = strength[i], r = shape[i];
+        if (names[i] == "input_delay") plant.input_delay = std::abs(a);
+        else if (names[i] == "actuator_lag") plant.lag = std::abs(a);
+        else if (names[i] == "gap_sensor_delay") plant.sensor_delay = std::abs(a);
+        else if (names[i] == "gap_sensor_bias") plant.bias = a;
+        else if (names[i] == "gap_dependent_added_mass") plant.extras.push_back({names[i], std::abs(a), 0.03 + 0.05 * r, 0});
+        else if (names[i] == "surface_roughness") plant.extras.push_back({names[i], std::abs(a), 0.06 + 0.08 * r, 0});
+        else if (names[i] == "tether_stiffness") plant.extras.push_back({names[i], std::abs(a), 0.05 + 0.15 * r, 0});
+        else if (names[i] == "periodic_disturbance") plant.extras.push_back({names[i], std::abs(a), 0.15 + 1.2 * r * r, 6.28 * r});
+        else if (names[i] == "bump") plant.extras.push_back({names[i], a, 0.06 + 0.12 * r, 0});
+        else if (names[i] == "constant_force" || names[i] == "ambient_heave_current" || names[i] == "added_mass" || names[i] == "input_gain" ||
+                 names[i] == "declared_parameter")
+            plant.extras.push_back({names[i], a, r, 0});
+        else plant.extras.push_back({names[i], std::abs(a), r, 0});
+    }
+    return plant;
+}
+
+core::Table table_of(const Track& track, const Case& wanted, core::Random& random) {
+    std::vector<double> gap, velocity;
+    double slow = 0;
+    const double dt = track.time[1] - track.time[0];
+    const double phi = std::exp(-dt / 0.3);
+    // white noise per reading is given at 50 Hz; a faster logger reads with the same white noise
+    for (std::size_t k = 0; k < track.time.size(); ++k) {
+        slow = k == 0 ? random.normal() : phi * slow + std::sqrt(1 - phi * phi) * random.normal();
+        const double noise = wanted.coloured ? 0.7 * random.normal() + 0.7 * slow : random.normal();
+        gap.push_back(track.sensed[k] + 2e-4 * noise);
+        velocity.push_back(track.velocity[k] + 1e-3 * random.normal());
+    }
+    core::Table table;
+    table.source = "bench";
+    table.add_numbers("time", "s", track.time);
+    table.add_numbers("gap", "m", gap);
+    if (wanted.velocity) {
+        table.add_numbers("heave_velocity", "m/s", velocity);
+    }
+    table.add_numbers("input_force", "N", track.input);
+    return table;
+}
+
+}  // namespace
+
+double jet_lift(double h) {
+    return 0.05 * std::exp(-h / 0.003) - 0.038 * std::exp(-std::pow((h - 0.026) / 0.055, 2)) + 0.0082 * std::exp(-std::pow((h - 0.46) / 0.24, 2));
+}
+
+Sample make_heave(const Case& wanted) {
+    core::Random random(wanted.seed * 7919 + 17);
+    std::vector<std::string> laws = wanted.names;
+    if (laws == std::vector<std::string>{"unknown"}) {
+        laws = {wanted.law};
+    }
+    std::vector<double> strength(laws.size()), shape(laws.size());
+    const double target = wanted.level * 2e-4;
+    for (std::size_t i = 0; i < laws.size(); ++i) {
+        const double sign = random.uniform() < 0.5 ? -1 : 1;
+        shape[i] = random.uniform();
+        strength[i] = sign * 1e-4;
+        if (laws[i].find("delay") != std::string::npos || laws[i] == "actuator_lag" || laws[i] == "added_mass" ||
+            laws[i] == "gap_dependent_added_mass" || laws[i] == "linear_damping" || laws[i] == "declared_parameter" ||
+            laws[i] == "input_gain" || laws[i] == "surface_roughness") {
+            strength[i] = sign * 0.02;
+        } else if (laws[i] == "quadratic_damping" || laws[i] == "one_sided" || laws[i] == "cross" || laws[i] == "history_force") {
+            strength[i] = sign * 0.3;
+        } else if (laws[i] == "squeeze_film_damping") {
+            strength[i] = sign * 3e-6;
+        } else if (laws[i] == "input_dead_zone") {
+            strength[i] = 0.004;
+        }
+        // each alone to its level: the response is nearly linear in the strength, a few secant steps do
+        for (int round = 0; round < 4; ++round) {
+            std::vector<Track> probe;
+            for (int k = 0; k < 3; ++k) {
+                core::Random own(wanted.seed * 31 + 5, static_cast<std::uint64_t>(k));
+                probe.push_back(run(plant_of({laws[i]}, {strength[i]}, {shape[i]}), 50, 40, 0, own));
+            }
+            const double error = declared_error(probe);
+            strength[i] *= std::clamp(target / std::max(error, 1e-9), 0.02, 50.0);
+        }
+    }
+    const Plant plant = plant_of(laws, strength, shape);
+    Sample sample;
+    sample.names = wanted.names;
+    sample.strength = strength.empty() ? 0 : strength.front();
+    if (!laws.empty() && wanted.names.front() == "unknown") {
+        sample.depends_on = wanted.law == "bump" ? std::vector<std::string>{"gap"}
+                            : wanted.law == "cross" ? std::vector<std::string>{"gap", "heave_velocity"}
+                            : wanted.law == "warming" ? std::vector<std::string>{"time"}
+                            : wanted.law == "rectifier" ? std::vector<std::string>{"input_force"}
+                                                        : std::vector<std::string>{"heave_velocity"};
+    }
+    for (const int style : {0, 1}) {
+        dynamics::Measurements& data = style == 0 ? sample.train : sample.test;
+        data.kind = dynamics::MeasurementKind::time_series;
+        data.title = wanted.text();
+        if (wanted.declared_noise > 0) {
+            data.noise["gap"] = 2e-4 * wanted.declared_noise;
+            if (wanted.velocity) {
+                data.noise["heave_velocity"] = 1e-3 * wanted.declared_noise;
+            }
+        }
+        for (int k = 0; k < (style == 0 ? 8 : 4); ++k) {
+            core::Random own(wanted.seed * 101 + static_cast<std::uint64_t>(style) * 17, static_cast<std::uint64_t>(k));
+            dynamics::MeasuredRun one;
+            one.name = (style == 0 ? "run-" : "test-") + std::to_string(k + 1);
+            one.table = table_of(run(plant, wanted.rate, 40, style, own), wanted, own);
+            one.use = style == 0 ? dynamics::RunUse::train : dynamics::RunUse::test;
+            data.runs.push_back(std::move(one));
+        }
+    }
+    return sample;
+}
+
+}  // namespace underbody::bench

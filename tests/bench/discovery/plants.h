@@ -1,0 +1,50 @@
+// Data sets with known truth for the bench of discovery. The plants, their integrator and the form of each law are this bench's own:
+// nothing of the program's catalogue is used, only its types for measurements and tables.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "surrogates/dynamics/measurements.h"
+
+namespace underbody::bench {
+
+struct Case {
+    std::string family;                    ///< heave, glide, jet
+    std::vector<std::string> names;        ///< true effects; empty: clean; "unknown": out of the catalogue
+    std::string law;                       ///< which out-of-catalogue law
+    double level = 1;                      ///< strength in units of the noise (heave: error of a 2 s prediction; static: RMS)
+    bool velocity = false;                 ///< heave velocity measured as well
+    bool coloured = false;                 ///< sensor noise with a correlation time of 0.3 s beside the white
+    double declared_noise = 1;             ///< declared noise over the true one; 0: not declared
+    double rate = 50;                      ///< Hz
+    std::uint64_t seed = 1;
+    [[nodiscard]] std::string text() const;
+};
+
+struct Sample {
+    dynamics::Measurements train;
+    dynamics::Measurements test;           ///< another controller and excitation (heave), other set points (static)
+    std::vector<std::string> names;
+    std::vector<std::string> depends_on;   ///< of an unknown law
+    double strength = 0;                   ///< first parameter of the true law
+};
+
+/// Writes model.toml and its tables for a family into a folder; returns the model file.
+std::filesystem::path write_declared_model(const std::string& family, const std::filesystem::path& folder);
+
+Sample make_sample(const Case& wanted);
+Sample make_heave(const Case& wanted);
+Sample make_static(const Case& wanted);
+
+std::vector<std::string> effects_of(const std::string& family);
+std::vector<std::string> unknown_laws(const std::string& family);
+
+// the declared physics, as this bench computes it
+double jet_lift(double gap);
+double glide_lift(double gap);
+double glide_drag(double gap);
+
+}  // namespace underbody::bench
