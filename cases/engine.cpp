@@ -80,7 +80,7 @@ void Engine::figure(const std::string& name, const Key& key, const std::function
         return;
     }
     Key with_renderer = Key("figure", {"studio/figures"});
-    with_renderer.add(key.digest());
+    with_renderer.add(key.digest()).add(name);
     // Captions travel with the picture: JSON head, then the PNG.
     const auto value = make("figure", name, with_renderer, [&] {
         const core::Figure figure = work();
@@ -96,7 +96,7 @@ void Engine::picture(const std::string& kind, const std::string& name, const Key
         return;
     }
     Key of_picture(kind, {"postproc"});
-    of_picture.add(key.digest());
+    of_picture.add(key.digest()).add(name);
     if (const auto value = make(kind, name, of_picture, work)) {
         unpack(kind + "/" + name, *value);
     }

@@ -79,8 +79,8 @@ private:
         std::vector<HtmlPage::Fact> facts;
         facts.push_back({std::to_string(engine_.results.loads.rows()), "CFD cases"});
         for (const auto& spec : engine_.study.verifications) {
-            if (const auto check = document("verify/" + spec.table.filename().string())) {
-                facts.push_back({percent(number_in(*check, "worst"), 2), "largest difference from the solver's own force"});
+            if (const auto check = document("verify/" + spec.name)) {
+                facts.push_back({percent(number_in(*check, "worst"), 2), "largest difference from the solver's own " + spec.name});
             }
         }
         for (const auto& spec : engine_.study.tables) {
@@ -103,6 +103,7 @@ private:
                 for (const auto& effect : found->value("effects", json::array())) {
                     names += (names.empty() ? "" : ", ") + text_in(effect, "name");
                 }
+                std::replace(names.begin(), names.end(), '_', ' ');
                 facts.push_back({names.empty() ? text_in(*found, "verdict") : names, "missing in the model of '" + spec.name + "'"});
             }
         }
@@ -158,10 +159,11 @@ private:
         std::vector<std::vector<std::string>> rows;
         for (const auto& point : table.value("equilibria", json::array())) {
             const double sigma = number_in(point, "sigma");
+            const bool stable = point.value("stable", false);
             rows.push_back({shown(number_in(point, "gap"), "m", "mm"), std::isfinite(sigma) && sigma > 0 ? shown(sigma, "m", "mm", 2) : "-",
-                            point.value("stable", false) ? "stable" : "unstable", shown(number_in(point, "stiffness"), "N/m", "N/m"),
-                            shown(number_in(point, "frequency"), "Hz", "Hz"),
-                            shown(number_in(point, "kick_velocity"), "m/s", "mm/s")});
+                            stable ? "stable" : "unstable", shown(number_in(point, "stiffness"), "N/m", "N/m"),
+                            stable ? shown(number_in(point, "frequency"), "Hz", "Hz") : "-",
+                            stable ? shown(number_in(point, "kick_velocity"), "m/s", "mm/s") : "-"});
         }
         if (rows.empty()) {
             page_.paragraph("At a net weight of " + shown(net_weight, "N", "N") + " N the lift balances it nowhere in the range.");
@@ -261,6 +263,7 @@ private:
             page_.pictures(pictures);
             if (const auto found = document("discovery/" + spec.name)) {
                 discovery(*found);
+                page_.link("discovery/" + spec.name + "/report.html", "The whole discovery: residuals, alternatives, consequence, next experiment");
             }
         }
     }
@@ -299,12 +302,12 @@ private:
     void trust() {
         page_.section("How far to trust the numbers");
         for (const auto& spec : engine_.study.verifications) {
-            if (const auto check = document("verify/" + spec.table.filename().string())) {
-                page_.paragraph("Our loads against the solver's own (" + spec.table.filename().string() + "): " +
-                                std::to_string(check->at("rows").size()) + " forces, the worst differs by " +
+            if (const auto check = document("verify/" + spec.name)) {
+                page_.paragraph("Our loads against the solver's own " + spec.name + " (" + spec.table.filename().string() + "): " +
+                                std::to_string(check->at("rows").size()) + " values compared; beyond twice what the run itself swings by, the worst differs by " +
                                 percent(number_in(*check, "worst")) + " of the force's size (" + text_in(*check, "worst_case") +
                                 "); allowed " + percent(number_in(*check, "tolerance")) + ", beyond it " +
-                                std::to_string(check->value("failed", 0)) + ".");
+                                std::to_string(check->value("failed", 0)) + ". The files hold node values; face values would agree to rounding.");
             }
         }
         std::vector<std::vector<std::string>> rows;

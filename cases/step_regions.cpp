@@ -14,6 +14,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The model as files beside the report, so that the user can go on with it.
+void write_model_once(Engine& engine, const RegionSpec& spec, const dynamics::Model& model, const Key& region_key) {
+    const fs::path file = engine.report_folder() / "models" / spec.name / "model.toml";
+    Key key("model", {});
+    key.add(region_key.digest()).add(file.string());
+    bool written = false;
+    const auto write = [&] {
+        dynamics::write_model(model, file);
+        written = true;
+        return file.string();
+    };
+    if (engine.make("model", spec.name, key, write) && !written && !fs::exists(file)) {
+        write();
+    }
+}
+
 void run_one_region(Engine& engine, const RegionSpec& spec) {
     const core::TemporaryFolder scratch;
     const dynamics::Model model = region_model(engine.study, spec, engine.results, scratch.path());
@@ -44,15 +60,7 @@ void run_one_region(Engine& engine, const RegionSpec& spec) {
         return dynamics::region_figure(*region);
     });
     if (engine.options.write_report) {
-        const fs::path folder = engine.report_folder() / "models" / spec.name;
-        const fs::path file = folder / "model.toml";
-        const auto written = engine.make("model", spec.name, key, [&] {
-            dynamics::write_model(model, file);
-            return file.string();
-        });
-        if (written && (*written != file.string() || !fs::exists(file))) {
-            dynamics::write_model(model, file);
-        }
+        write_model_once(engine, spec, model, key);
     }
 }
 

@@ -122,7 +122,7 @@ void run_table(Engine& engine, const TableSpec& spec) {
         if (spec.net_weight) {
             options.equilibria = equilibrium_options(spec);
         }
-        options.title = spec.name;
+        options.title = spec.name + " (" + spec.where.label() + ")";
         return tables::figure(table, options);
     });
 }
@@ -181,7 +181,7 @@ std::string compute_comparison(const CompareSpec& spec,
             beyond += std::abs(va.value - vb.value) > 2 * std::hypot(va.sigma, vb.sigma) ? 1 : 0;
         }
         remarks.push_back("'" + spec.tables.front() + "' and '" + spec.tables[i] + "' differ by more than twice their errors over " +
-                          core::format_number(100.0 * beyond / (samples + 1), 2) + " % of the gaps from " +
+                          std::to_string(100 * beyond / (samples + 1)) + " % of the gaps from " +
                           core::format_number(1e3 * lower, 3) + " to " + core::format_number(1e3 * upper, 3) + " mm.");
     }
     return nlohmann::json({{"rows", rows}, {"remarks", remarks}}).dump();

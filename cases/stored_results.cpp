@@ -69,7 +69,7 @@ StudyResults stored_results(const Study& study, const RunOptions& options) {
         reader.picture(results, "figure", "mesh/" + mesh.name);
     }
     for (const auto& spec : study.verifications) {
-        reader.document(results, "verify", spec.table.filename().string());
+        reader.document(results, "verify", spec.name);
     }
     for (const auto& table : study.tables) {
         reader.document(results, "table", table.name);

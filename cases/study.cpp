@@ -302,9 +302,12 @@ Study Study::open(const fs::path& path) {
         spec.discover = table.boolean_or("discover", false);
         study.measurements.push_back(std::move(spec));
     }
+    std::set<std::string> verifications;
     for (const auto& table : root.tables("verify")) {
         VerifySpec spec;
+        spec.name = unique_name(table, verifications);
         spec.table = table.file("table");
+        spec.where = read_conditions(table.table_or_empty("where"));
         spec.quantities = table.strings("quantities");
         spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
         study.verifications.push_back(std::move(spec));

@@ -101,9 +101,11 @@ struct CompareSpec {
 
 /// [[verify]]: a table of the solver's own forces, one row a case.
 struct VerifySpec {
+    std::string name;
     std::filesystem::path table;
+    Conditions where;                 ///< only cases that fit
     std::vector<std::string> quantities;
-    double tolerance = 0.01;  ///< of the force's size
+    double tolerance = 0.01;  ///< of the force's size; a column QUANTITY_scatter of the report widens it by twice itself
 };
 
 /// What `study.toml` says, checked. Immutable.

@@ -162,7 +162,7 @@ int verify(Shell& shell, const StudyArguments& arguments) {
     nlohmann::json json = nlohmann::json::object();
     std::size_t failed = 0;
     for (const auto& spec : study.verifications) {
-        const std::string name = spec.table.filename().string();
+        const std::string& name = spec.name;
         const auto* document = results.document("verify/" + name);
         if (document == nullptr) {
             ++failed;
@@ -171,7 +171,7 @@ int verify(Shell& shell, const StudyArguments& arguments) {
         json[name] = nlohmann::json::parse(*document);
         const auto& check = json[name];
         failed += check.at("failed").get<std::size_t>();
-        shell.print(name + ": " + std::to_string(check.at("rows").size()) + " forces compared, worst " +
+        shell.print(name + ": " + std::to_string(check.at("rows").size()) + " values compared, worst " +
                     core::format_number(100 * check.at("worst").get<double>(), 3) + " % of the force's size (" +
                     check.at("worst_case").get<std::string>() + "), allowed " +
                     core::format_number(100 * check.at("tolerance").get<double>(), 3) + " %, " +

@@ -132,7 +132,7 @@ TEST(Text, Base64MatchesRfc4648) {
 
 TEST(Locale, NumbersAreReadAndWrittenAlikeUnderAGermanLocale) {
     const TemporaryFolder folder;
-    const test::Run made = test::run_program(
+    const test::ProgramRun made = test::run_program(
         "localedef", {"-i", "de_DE", "-f", "UTF-8", (folder.path() / "de_DE.UTF-8").string()});
     if (made.exit_code == 127) {
         GTEST_SKIP() << "skipped: localedef is not installed";

@@ -11,7 +11,7 @@ namespace {
 
 TEST(BodyCommand, MakesTheBodyOfAShape) {
     const core::TemporaryFolder folder;
-    const Run run = run_underbody(
+    const ProgramRun run = run_underbody(
         {"body", (source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--out", "evie.stl", "--json"},
         folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
@@ -28,7 +28,7 @@ TEST(BodyCommand, RefusesAShapeThatCannotBe) {
     const core::TemporaryFolder folder;
     std::ofstream(folder.path() / "s.toml")
         << "[body]\nlength='203.2 mm'\nwidth='-152 mm'\nheight='145 mm'\nbase_cut=0.75\n";
-    const Run run = run_underbody({"body", "s.toml", "--out", "s.stl"}, folder.path());
+    const ProgramRun run = run_underbody({"body", "s.toml", "--out", "s.stl"}, folder.path());
     EXPECT_EQ(run.exit_code, 3);
     EXPECT_THAT(run.errors, testing::HasSubstr("s.toml:3"));
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "s.stl"));

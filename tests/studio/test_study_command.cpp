@@ -28,7 +28,7 @@ protected:
     core::TemporaryFolder scratch;
     fs::path study = scratch.path() / "cube";
     void SetUp() override { write_small_study(study); }
-    Run run(std::vector<std::string> more = {}) {
+    ProgramRun run(std::vector<std::string> more = {}) {
         std::vector<std::string> arguments = {"study", "run", study.string(), "--no-pictures", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_underbody(arguments);
@@ -36,7 +36,7 @@ protected:
 };
 
 TEST_F(StudyCommand, TurnsFieldsIntoLoadsTableEquilibriaMapExportAndReport) {
-    const Run first = run();
+    const ProgramRun first = run();
     ASSERT_EQ(first.exit_code, 0) << first.errors;
     const json results = json::parse(first.output);
     EXPECT_EQ(results.at("failed"), 0);
@@ -55,7 +55,7 @@ TEST_F(StudyCommand, TurnsFieldsIntoLoadsTableEquilibriaMapExportAndReport) {
         total += entry.at("fraction").get<double>();
     }
     EXPECT_NEAR(total, 1, 1e-9);
-    EXPECT_EQ(results.at("results").at("verify/forces.csv").at("failed"), 0);
+    EXPECT_EQ(results.at("results").at("verify/solver").at("failed"), 0);
     const std::string report = core::read_file(study / "report" / "index.html");
     EXPECT_THAT(report, HasSubstr("a cube"));
     EXPECT_THAT(report, HasSubstr("data:image/png;base64,"));
@@ -82,7 +82,7 @@ TEST_F(StudyCommand, RecomputesNothingWhenNothingChangedAndOnlyWhatChangedOtherw
 
 TEST_F(StudyCommand, AWrongFileFailsAloneAndIsNamedWithItsLine) {
     core::write_file(study / "fields" / "cube-h3.csv", core::read_file(study / "fields" / "cube-h3.csv") + "0, 1, 99\n");
-    const Run result = run();
+    const ProgramRun result = run();
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_THAT(result.errors, HasSubstr("cube-h3.csv:"));
     const json results = json::parse(result.output);
@@ -94,7 +94,7 @@ TEST_F(StudyCommand, AWrongFileFailsAloneAndIsNamedWithItsLine) {
 TEST_F(StudyCommand, VerifyEndsWithFourWhenTheSolverDisagrees) {
     EXPECT_EQ(run_underbody({"study", "verify", study.string()}).exit_code, 0);
     core::write_file(study / "forces.csv", "gap [mm], lift_force [N], drag_force [N]\n1, 0.7, 0\n");
-    const Run result = run_underbody({"study", "verify", study.string()});
+    const ProgramRun result = run_underbody({"study", "verify", study.string()});
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.output, HasSubstr("cube-h1"));
 }
@@ -106,7 +106,7 @@ TEST_F(StudyCommand, AReadOnlyFolderIsToldWithTheWayOut) {
     } else {
         ::chmod(study.c_str(), 0500);
     }
-    const Run result = run();
+    const ProgramRun result = run();
     ::chmod(study.c_str(), 0700);
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_THAT(result.errors, HasSubstr("--store"));
@@ -131,7 +131,7 @@ TEST_F(StudyCommand, AKilledRunLosesNothingAndTheNextOneFinishes) {
             EXPECT_THAT(core::read_file(study / "report" / "index.html"), testing::EndsWith("</html>\n"));
         }
     }
-    const Run result = run();
+    const ProgramRun result = run();
     ASSERT_EQ(result.exit_code, 0) << result.errors;
     EXPECT_EQ(json::parse(result.output).at("failed"), 0);
 }
@@ -160,21 +160,21 @@ TEST_F(StudyCommand, CtrlCEndsWithOneHundredAndThirty) {
 TEST_F(StudyCommand, AddsCasesOnlyWhenTheStudyStaysRight) {
     core::write_file(study / "more" / "ball-h2.csv", cube_field(0.002, 1));
     const std::string before = core::read_file(study / "study.toml");
-    const Run wrong = run_underbody({"study", "add", study.string(), "--files", "none/*.csv"});
+    const ProgramRun wrong = run_underbody({"study", "add", study.string(), "--files", "none/*.csv"});
     EXPECT_EQ(wrong.exit_code, 3);
     EXPECT_EQ(core::read_file(study / "study.toml"), before);
-    const Run right = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5m/s"});
+    const ProgramRun right = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5m/s"});
     EXPECT_EQ(right.exit_code, 0) << right.errors;
     EXPECT_THAT(run_underbody({"study", "list", study.string()}).output, HasSubstr("ball-h2"));
 }
 
 TEST(CommandLine, TellsWrongUseFromWrongInput) {
     EXPECT_EQ(run_underbody({}).exit_code, 2);
-    const Run typo = run_underbody({"studdy"});
+    const ProgramRun typo = run_underbody({"studdy"});
     EXPECT_EQ(typo.exit_code, 2);
     EXPECT_THAT(typo.errors, HasSubstr("'underbody study'"));
     EXPECT_EQ(run_underbody({"study", "run"}).exit_code, 2);
-    const Run missing = run_underbody({"study", "run", "/no/such/folder", "--json"});
+    const ProgramRun missing = run_underbody({"study", "run", "/no/such/folder", "--json"});
     EXPECT_EQ(missing.exit_code, 3);
     EXPECT_TRUE(json::parse(missing.output).contains("error"));
     EXPECT_EQ(run_underbody({"--help"}).exit_code, 0);

@@ -39,7 +39,7 @@ void write_small_study(const std::filesystem::path& folder) {
     core::write_file(folder / "study.toml",
                      "title = \"a cube\"\n"
                      "[[case]]\nfiles = \"fields/{variant}-h{gap:mm}.csv\"\nconditions.speed = \"0.5 m/s\"\n"
-                     "[[verify]]\ntable = \"forces.csv\"\nquantities = [\"lift_force\", \"drag_force\"]\n"
+                     "[[verify]]\nname = \"solver\"\ntable = \"forces.csv\"\nquantities = [\"lift_force\", \"drag_force\"]\n"
                      "[[table]]\nname = \"lift\"\nquantity = \"lift_force\"\naxes = [\"gap\"]\nwhere = { variant = \"cube\", speed = 0.5 }\n"
                      "net_weight = \"0.35 N\"\nvirtual_mass = \"4 kg\"\nexports = [\"c\", \"csv\"]\n"
                      "[[region]]\nname = \"map\"\nmodel = \"glide.toml\"\nforces = [\"lift\"]\n"

@@ -23,12 +23,12 @@ fs::path shared_folder() {
     return source_folder().parent_path() / "shared";
 }
 
-Run run_underbody(const std::vector<std::string>& arguments, const fs::path& folder,
+ProgramRun run_underbody(const std::vector<std::string>& arguments, const fs::path& folder,
                   const std::map<std::string, std::string>& environment) {
     return run_program((program_folder() / "underbody").string(), arguments, folder, environment);
 }
 
-Run run_program(const std::string& program, const std::vector<std::string>& arguments, const fs::path& folder,
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments, const fs::path& folder,
                 const std::map<std::string, std::string>& environment) {
     const core::TemporaryFolder scratch("underbody-test");
     const fs::path output = scratch.path() / "stdout";
@@ -54,7 +54,7 @@ Run run_program(const std::string& program, const std::vector<std::string>& argu
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    Run run;
+    ProgramRun run;
     run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     run.output = core::read_file(output);
     run.errors = core::read_file(errors);

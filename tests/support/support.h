@@ -25,16 +25,16 @@ std::filesystem::path program_folder();
         GTEST_SKIP() << "skipped: " << (path) << " is not here (set UNDERBODY_SHARED to the folder that has it)"; \
     }
 
-struct Run {
+struct ProgramRun {
     int exit_code = 0;
     std::string output;  ///< stdout
     std::string errors;  ///< stderr
 };
 
 /// Runs `underbody` with the arguments in a folder; no shell between.
-Run run_underbody(const std::vector<std::string>& arguments, const std::filesystem::path& folder = {},
+ProgramRun run_underbody(const std::vector<std::string>& arguments, const std::filesystem::path& folder = {},
                   const std::map<std::string, std::string>& environment = {});
-Run run_program(const std::string& program, const std::vector<std::string>& arguments,
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
                 const std::filesystem::path& folder = {}, const std::map<std::string, std::string>& environment = {});
 
 }  // namespace underbody::test
