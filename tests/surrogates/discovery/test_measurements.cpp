@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include "core/file.h"
+#include "surrogates/dynamics/measurements.h"
+
+using namespace underbody;
+using namespace underbody::dynamics;
+
+namespace {
+
+class MeasurementFiles : public testing::Test {
+protected:
+    void write(const std::string& name, const std::string& text) { core::write_file(folder_.path() / name, text); }
+    core::InputError failure() {
+        try {
+            (void)read_measurements(folder_.path());
+        } catch (const core::InputError& error) {
+            return error;
+        }
+        ADD_FAILURE() << "nothing was refused";
+        return core::InputError("", "");
+    }
+    core::TemporaryFolder folder_{"measurements"};
+};
+
+}  // namespace
+
+TEST_F(MeasurementFiles, AreReadWithUnitsNoiseAndConditionsOfEachRun) {
+    write("dataset.toml", "kind = \"time_series\"\n[noise]\ngap = \"0.2 mm\"\ntemperature = \"0.1 degC\"\n[conditions]\nspeed = \"0.5 m/s\"\njet_voltage = \"9 V\"\n"
+                          "[[run]]\nfile = \"a.csv\"\nconditions.jet_voltage = \"10 V\"\nuse = \"test\"\n[[run]]\nfile = \"b.csv\"\n");
+    write("a.csv", "time [s], gap [mm], input_force [mN]\n0, 10, 1\n0.02, 11,\n0.04, , 3\n");
+    write("b.csv", "time [s], gap [m]\n0, 1\n0.02, 1.1\n0.05, 1.2\n");
+    const Measurements data = read_measurements(folder_.path());
+    ASSERT_EQ(data.runs.size(), 2U);
+    EXPECT_DOUBLE_EQ(*data.declared_noise("gap"), 2e-4);
+    EXPECT_NEAR(*data.declared_noise("temperature"), 0.1, 1e-12);   // a difference, not a point on the scale
+    EXPECT_FALSE(data.declared_noise("heave_velocity"));
+    EXPECT_EQ(data.runs[0].use, RunUse::test);
+    EXPECT_EQ(data.runs[1].use, RunUse::automatic);
+    EXPECT_DOUBLE_EQ(data.runs[0].conditions.at("jet_voltage"), 10);
+    EXPECT_DOUBLE_EQ(data.runs[1].values("jet_voltage").at(2), 9);
+    EXPECT_DOUBLE_EQ(data.runs[0].values("gap").at(0), 0.01);
+    EXPECT_TRUE(data.all_have("speed"));
+    EXPECT_FALSE(data.all_have("input_force"));
+}
+
+TEST_F(MeasurementFiles, SayWhereTimeRunsBackwards) {
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n");
+    write("a.csv", "time [s], gap [m]\n0, 1\n0.02, 1\n0.01, 1\n");
+    const core::InputError error = failure();
+    EXPECT_NE(error.message().find("runs backwards"), std::string::npos);
+    EXPECT_EQ(error.place().line, 4);
+    EXPECT_NE(error.hint().find("two runs"), std::string::npos);
+}
+
+TEST_F(MeasurementFiles, RefuseWhatCannotBeMeant) {
+    write("a.csv", "time [s], gap [m]\n0, 1\n0.02, 1\n0.03, 1\n");
+    write("dataset.toml", "kind = \"timeseries\"\n[[run]]\nfile = \"a.csv\"\n");
+    EXPECT_NE(failure().hint().find("time_series"), std::string::npos);
+    write("dataset.toml", "kind = \"time_series\"\n[noise]\ngapp = \"1 mm\"\n[[run]]\nfile = \"a.csv\"\n");
+    EXPECT_NE(failure().hint().find("gap"), std::string::npos);
+    write("dataset.toml", "kind = \"time_series\"\n[noise]\ngap = \"-1 mm\"\n[[run]]\nfile = \"a.csv\"\n");
+    EXPECT_NE(failure().message().find("not positive"), std::string::npos);
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"./a.csv\"\n");
+    EXPECT_NE(failure().message().find("twice"), std::string::npos);
+    write("dataset.toml", "kind = \"time_series\"\n");
+    EXPECT_NE(failure().message().find("without a run"), std::string::npos);
+    write("dataset.toml", "kind = \"static\"\n[[run]]\nfile = \"a.csv\"\n");
+    EXPECT_NE(failure().message().find("force"), std::string::npos);
+}

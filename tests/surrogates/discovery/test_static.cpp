@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "make_data.h"
+#include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/residual.h"
+
+using namespace underbody;
+using namespace underbody::discovery;
+
+namespace {
+
+Discovery found_on(const std::function<double(double, double)>& truth, std::uint64_t seed, bool figures = false) {
+    core::TemporaryFolder folder("static");
+    test::write_bench(folder.path(), truth, seed);
+    DiscoverOptions options;
+    options.figures = figures;
+    return discover(dynamics::read_model(folder.path() / "model.toml"), dynamics::read_measurements(folder.path()), options);
+}
+
+double declared(double gap, double voltage) { return test::lift_of(gap) * voltage * voltage / 100; }
+
+}  // namespace
+
+TEST(StaticDiscovery, SaysNoneOnCleanDataAndLeavesTheModelAlone) {
+    int false_alarms = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const Discovery found = found_on(declared, seed);
+        false_alarms += found.verdict != "none";
+        if (found.verdict == "none") {
+            EXPECT_TRUE(found.effects.empty());
+            EXPECT_TRUE(found.model.effects.empty());
+            EXPECT_EQ(found.error.front().before.rmse, found.error.front().after.rmse);
+            EXPECT_FALSE(found.limits.empty());
+        }
+    }
+    EXPECT_LE(false_alarms, 1);
+}
+
+TEST(StaticDiscovery, NamesABiasAGapOffsetAndADeadZoneWithTheirSizes) {
+    const Discovery bias = found_on([](double h, double v) { return declared(h, v) + 0.004; }, 3);
+    ASSERT_EQ(bias.verdict, "effect");
+    EXPECT_EQ(bias.effects.at(0).name, "force_bias");
+    EXPECT_NEAR(bias.effects.at(0).parameters.at(0).value, 0.004, 4 * bias.effects.at(0).parameters.at(0).sigma + 1e-5);
+    EXPECT_LT(bias.error.front().after.rmse, 0.5 * bias.error.front().before.rmse);
+    const Discovery offset = found_on([](double h, double v) { return declared(h + 0.006, v); }, 4);
+    ASSERT_EQ(offset.verdict, "effect");
+    EXPECT_EQ(offset.effects.at(0).name, "gap_offset");
+    const Discovery pump = found_on([](double h, double v) { return declared(h, std::max(0.0, v - 2) * 10 / 8); }, 5);
+    ASSERT_EQ(pump.verdict, "effect");
+    EXPECT_EQ(pump.effects.at(0).name, "pump_curve");
+}
+
+TEST(StaticDiscovery, CallsWhatTheCatalogueLacksUnknownAndSaysOnWhatItDepends) {
+    const Discovery found = found_on([](double h, double v) { return declared(h, v) + 0.006 * std::exp(-std::pow(std::log(h / 0.03), 2) / 0.15); }, 6, true);
+    EXPECT_EQ(found.verdict, "unknown");
+    EXPECT_EQ(found.depends_on, std::vector<std::string>{"gap"});
+    EXPECT_LT(found.error.front().after.rmse, found.error.front().before.rmse);
+    ASSERT_EQ(found.model.effects.size(), 1U);
+    EXPECT_TRUE(found.model.effects.front().table.has_value());
+    EXPECT_GE(found.figures.size(), 3U);
+}
+
+TEST(StaticDiscovery, FindsOutThatADeclaredNoiseIsWrong) {
+    core::TemporaryFolder folder("static");
+    test::write_bench(folder.path(), declared, 8);
+    dynamics::Measurements data = dynamics::read_measurements(folder.path());
+    data.noise["lift_force"] = 0.0005;   // half the truth: everything would look real
+    const Discovery found = discover(dynamics::read_model(folder.path() / "model.toml"), data);
+    EXPECT_EQ(found.verdict, "none");
+    EXPECT_NE(found.noise.at("lift_force").from.find("wrong"), std::string::npos);
+    EXPECT_NEAR(found.noise.at("lift_force").value, 0.001, 1.5e-4);
+}
+
+TEST(StaticDiscovery, WritesEverythingAndItsModelIsReadBack) {
+    core::TemporaryFolder folder("static");
+    test::write_bench(folder.path(), [](double h, double v) { return declared(h, v) + 0.004; }, 3);
+    const dynamics::Model model = dynamics::read_model(folder.path() / "model.toml");
+    const dynamics::Measurements data = dynamics::read_measurements(folder.path());
+    const Discovery found = discover(model, data);
+    write_discovery(found, model, data, folder.path() / "found", {});
+    const nlohmann::json json = nlohmann::json::parse(core::read_file(folder.path() / "found" / "discovery.json"));
+    for (const char* key : {"verdict", "effects", "alternatives", "depends_on", "noise", "error", "consequence", "next_experiment"}) {
+        EXPECT_TRUE(json.contains(key)) << key;
+    }
+    EXPECT_EQ(json["effects"][0]["name"], "force_bias");
+    EXPECT_EQ(json["effects"][0]["parameters"]["bias"]["unit"], "N");
+    EXPECT_GT(json["error"]["in_noise"]["before"], json["error"]["in_noise"]["after"]);
+    const dynamics::Model again = dynamics::read_model(folder.path() / "found" / "model.toml");
+    ASSERT_EQ(again.effects.size(), 1U);
+    EXPECT_EQ(again.effects.front().name, "force_bias");
+    EXPECT_NE(core::read_file(folder.path() / "found" / "report.html").find("force_bias"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "found" / "next-experiment.csv"));
+}
+
+TEST(StaticDiscovery, GivesTheSameBytesTwice) {
+    const auto truth = [](double h, double v) { return declared(h, v) * 1.15; };
+    EXPECT_EQ(to_json(found_on(truth, 9)).dump(), to_json(found_on(truth, 9)).dump());
+}
