@@ -30,6 +30,7 @@ struct Arguments {
     std::size_t draws = 0;
     std::uint64_t seed = 1;
     bool safe = false;
+    bool through_contact = false;
     std::vector<std::string> variants;
 };
 
@@ -44,9 +45,11 @@ dynamics::RegionOptions options_of(const Arguments& a) {
     options.columns = static_cast<std::size_t>(*columns);
     options.rows = static_cast<std::size_t>(*rows);
     options.duration = core::parse_in(a.duration, "s");
-    for (const core::NamedValue& value : core::parse_assignments(a.conditions)) {
+    for (const core::NamedValue& value :
+         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         options.held.set(value.name, value.value);
     }
+    options.through_contact = a.through_contact;
     if (!a.escape.empty()) {
         options.escape_gap = core::parse_in(a.escape, "m");
     }
@@ -209,6 +212,8 @@ void add_region_command(CLI::App& app, Shell& shell) {
     command->add_option("--draws", a->draws, "probability map: so many draws of the force tables from their error");
     command->add_option("--seed", a->seed, "seed of the draws");
     command->add_option("--with", a->variants, "further models to lay over the first");
+    command->add_flag("--through-contact", a->through_contact,
+                      "heave and pitch: go on after touching the ground; contact is then to come to rest on it");
     command->add_flag("--safe", a->safe, "the largest ellipse and box of safe starts about each attractor");
     command->footer(
         "Examples:\n"
@@ -218,6 +223,8 @@ void add_region_command(CLI::App& app, Shell& shell) {
         "  underbody region model.toml --draws 100 --out probability.png      the error of the force table as a chance "
         "to be safe\n"
         "  underbody region smooth.toml --with rough.toml --out both.png\n"
+        "  underbody region model.toml --axes gap=1mm:30mm,pitch=-4deg:4deg    heave and pitch together (needs a "
+        "pitch_moment table)\n"
         "Classes: each attractor by name (A is nearest the ground), contact, escape, cycle, undecided in the time "
         "given.");
     shell.on(command, [a, &shell] { return run(*a, shell); });

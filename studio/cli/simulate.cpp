@@ -72,7 +72,8 @@ int run(const Arguments& a, Shell& shell) {
             inputs.held.set(value.name, value.value);
         }
     }
-    for (const core::NamedValue& value : core::parse_assignments(a.conditions)) {
+    for (const core::NamedValue& value :
+         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         inputs.held.set(value.name, value.value);
     }
     if (std::isnan(gap)) {

@@ -187,6 +187,7 @@ void to_json(nlohmann::json& json, const Trajectory& trajectory);
 struct HeaveEquilibrium {
     std::string name;  ///< "A", "B", ... for attractors from the ground up; "U1", ... for unstable ones
     double gap = 0;
+    double pitch = 0;       ///< rad, of heave and pitch together; 0 in heave alone
     bool stable = false;
     double stiffness = 0;  ///< -dF/dh, N/m
     double frequency = 0;  ///< rad/s, sqrt(k/M), 0 when unstable

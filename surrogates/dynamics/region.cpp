@@ -14,11 +14,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-[[noreturn]] void refuse_axes(const std::string& why) {
-    throw core::InputError("range", why, {}, "for instance --axes gap=0:0.5,heave_velocity=-0.1:0.1");
-}
-
-/// 0 when the name is not an axis.
+/// nullptr when the name is not an axis.
 const core::NamedRange* axis_of(const RegionOptions& options, const std::string& name) {
     for (const core::NamedRange& axis : options.axes) {
         if (axis.name == name) {
@@ -26,26 +22,6 @@ const core::NamedRange* axis_of(const RegionOptions& options, const std::string&
         }
     }
     return nullptr;
-}
-
-void check_options(const RegionOptions& options) {
-    if (options.axes.size() != 2 || options.axes[0].name == options.axes[1].name) {
-        refuse_axes("a region needs two different axes");
-    }
-    for (const core::NamedRange& axis : options.axes) {
-        if (axis.name != "gap" && axis.name != "heave_velocity") {
-            refuse_axes("'" + axis.name + "' cannot be an axis of this region");
-        }
-        if (!(axis.upper > axis.lower) || !std::isfinite(axis.lower) || !std::isfinite(axis.upper)) {
-            refuse_axes("axis " + axis.name + " needs a lower and a higher bound");
-        }
-    }
-    if (options.columns < 1 || options.rows < 1 || options.columns * options.rows > 100000000) {
-        refuse_axes("a region has between one and 100 million starts");
-    }
-    if (!(options.duration > 0)) {
-        refuse_axes("the time of motion must be positive");
-    }
 }
 
 }  // namespace
@@ -78,82 +54,6 @@ HeaveRegionSetup::HeaveRegionSetup(const Model& model, const RegionOptions& opti
 }
 
 namespace {
-
-/// Which states the two axes are, and the value of the one that is held.
-struct Starts {
-    bool gap_first = true;
-    bool has_gap = true, has_velocity = true;
-    double gap = 0, velocity = 0;
-};
-
-Starts starts_of(const RegionOptions& options) {
-    Starts s;
-    s.gap_first = options.axes[0].name == "gap";
-    return s;
-}
-
-std::vector<End> grid_ends(const HeaveRegionSetup& setup, const RegionOptions& o, const Starts& s,
-                           core::Progress& progress) {
-    const std::size_t columns = o.columns, rows = o.rows;
-    std::vector<double> gap(columns * rows), velocity(columns * rows);
-    for (std::size_t j = 0; j < rows; ++j) {
-        for (std::size_t i = 0; i < columns; ++i) {
-            const double x = o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (static_cast<double>(i) + 0.5) /
-                                                   static_cast<double>(columns);
-            const double y = o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) * (static_cast<double>(j) + 0.5) /
-                                                   static_cast<double>(rows);
-            gap[j * columns + i] = s.gap_first ? x : y;
-            velocity[j * columns + i] = s.gap_first ? y : x;
-        }
-    }
-    std::vector<End> ends(columns * rows);
-    setup.ends->of(gap, velocity, ends, progress);
-    return ends;
-}
-
-/// Fractions of the area: cells beside another class count by a finer grid of starts within them.
-std::vector<double> fractions(const HeaveRegionSetup& setup, const RegionOptions& o, const Starts& s,
-                              const std::vector<End>& ends, core::Progress& progress) {
-    constexpr std::size_t fine = 4;
-    const std::size_t columns = o.columns, rows = o.rows;
-    std::vector<double> sums(setup.ends->classes().size(), 0.0);
-    std::vector<std::size_t> edge;
-    for (std::size_t j = 0; j < rows; ++j) {
-        for (std::size_t i = 0; i < columns; ++i) {
-            const int own = ends[j * columns + i].index;
-            const auto other = [&](std::size_t ii, std::size_t jj) { return ends[jj * columns + ii].index != own; };
-            const bool at_edge = o.refine && ((i > 0 && other(i - 1, j)) || (i + 1 < columns && other(i + 1, j)) ||
-                                              (j > 0 && other(i, j - 1)) || (j + 1 < rows && other(i, j + 1)));
-            if (at_edge) {
-                edge.push_back(j * columns + i);
-            } else {
-                sums[static_cast<std::size_t>(own)] += 1;
-            }
-        }
-    }
-    std::vector<double> gap(edge.size() * fine * fine), velocity(gap.size());
-    const double dx = (o.axes[0].upper - o.axes[0].lower) / static_cast<double>(columns);
-    const double dy = (o.axes[1].upper - o.axes[1].lower) / static_cast<double>(rows);
-    for (std::size_t k = 0; k < edge.size(); ++k) {
-        for (std::size_t f = 0; f < fine * fine; ++f) {
-            const double x = o.axes[0].lower + dx * (static_cast<double>(edge[k] % columns) +
-                                                     (static_cast<double>(f % fine) + 0.5) / fine);
-            const double y = o.axes[1].lower + dy * (static_cast<double>(edge[k] / columns) +
-                                                     (static_cast<double>(f / fine) + 0.5) / fine);
-            gap[k * fine * fine + f] = s.gap_first ? x : y;
-            velocity[k * fine * fine + f] = s.gap_first ? y : x;
-        }
-    }
-    std::vector<End> refined(gap.size());
-    setup.ends->of(gap, velocity, refined, progress);
-    for (const End& end : refined) {
-        sums[static_cast<std::size_t>(end.index)] += 1.0 / (fine * fine);
-    }
-    for (double& sum : sums) {
-        sum /= static_cast<double>(columns * rows);
-    }
-    return sums;
-}
 
 struct BackwardRate {
     const HeavePlant* plant;
@@ -252,21 +152,6 @@ void add_flow(const HeaveRegionSetup& setup, const RegionOptions& o, bool gap_fi
     }
 }
 
-/// Keeps attractors and the classes that occur; renumbers the cells.
-void keep_seen_classes(StabilityRegion& region, const std::vector<EndClass>& all, const std::vector<double>& sums) {
-    std::vector<int> renamed(all.size(), -1);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (sums[i] > 0 || all[i].kind == EndKind::attractor) {
-            renamed[i] = static_cast<int>(region.classes.size());
-            region.classes.push_back(all[i]);
-            region.classes.back().fraction = sums[i];
-        }
-    }
-    for (int& index : region.index) {
-        index = renamed[static_cast<std::size_t>(index)];
-    }
-}
-
 std::string rule_text(const std::string& rule) {
     if (rule == "energy") {
         return "a start belongs to an attractor once its energy is below the rim of the attractor's well, which it "
@@ -300,12 +185,18 @@ void add_remarks(StabilityRegion& region, const Model& model) {
 }  // namespace
 
 StabilityRegion stability_region(const Model& model, const RegionOptions& options, core::Progress& progress) {
-    check_options(options);
+    check_region_options(options);
+    if (!axis_of(options, "gap") || !axis_of(options, "heave_velocity")) {
+        return pitch_region(model, options, progress);
+    }
     const HeaveRegionSetup setup(model, options);
-    const Starts starts = starts_of(options);
+    const bool gap_first = options.axes[0].name == "gap";
     progress.report(0.02, "finding where starts end");
-    const std::vector<End> ends = grid_ends(setup, options, starts, progress);
-    const std::vector<double> sums = fractions(setup, options, starts, ends, progress);
+    const RegionBatch batch = [&](std::span<const double> x, std::span<const double> y, std::span<End> out) {
+        setup.ends->of(gap_first ? x : y, gap_first ? y : x, out, progress);
+    };
+    const std::vector<End> ends = region_grid(options, batch);
+    const std::vector<double> sums = region_fractions(options, batch, ends, setup.ends->classes().size());
     StabilityRegion region;
     region.axes = options.axes;
     region.columns = options.columns;
@@ -324,12 +215,12 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
         region.time.push_back(static_cast<float>(end.time));
     }
     keep_seen_classes(region, setup.ends->classes(), sums);
-    const core::NamedRange& gaps = starts.gap_first ? options.axes[0] : options.axes[1];
+    const core::NamedRange& gaps = gap_first ? options.axes[0] : options.axes[1];
     const double inside =
         std::max(0.0, std::min(gaps.upper, region.table_upper) - std::max(gaps.lower, region.table_lower));
     region.outside_fraction = region.table_upper < 1e299 ? std::max(0.0, 1 - inside / (gaps.upper - gaps.lower)) : 0.0;
-    add_boundaries(setup, options, starts.gap_first, region);
-    add_flow(setup, options, starts.gap_first, region);
+    add_boundaries(setup, options, gap_first, region);
+    add_flow(setup, options, gap_first, region);
     add_remarks(region, model);
     return region;
 }

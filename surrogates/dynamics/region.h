@@ -42,7 +42,8 @@ struct RegionOptions {
     double tolerance = 1e-8;  ///< relative to the size of the axes
     double escape_gap =
         std::numeric_limits<double>::quiet_NaN();  ///< NaN: upper end of the tables or of the axes, whichever is higher
-    bool refine = true;                            ///< areas and boundary refined below the grid
+    bool refine = true;  ///< areas refined below the grid
+    bool through_contact = false;  ///< heave and pitch: go on after a touch; contact is then to come to rest on the ground
 };
 
 struct RegionBoundary {

@@ -1,6 +1,8 @@
 // What the files of the stability region share.
 #pragma once
 
+#include <functional>
+
 #include "surrogates/dynamics/region.h"
 
 namespace underbody::dynamics {
@@ -12,5 +14,23 @@ struct HeaveRegionSetup {
     std::unique_ptr<HeaveEnds> ends;
     HeaveRegionSetup(const Model& model, const RegionOptions& options, const std::vector<double>* start_gaps = nullptr);
 };
+
+/// Ends of starts given by their values along the two axes.
+using RegionBatch = std::function<void(std::span<const double> x, std::span<const double> y, std::span<End> out)>;
+
+/// Throws core::InputError for axes, sizes or a duration that cannot be.
+void check_region_options(const RegionOptions& options);
+/// One start at the centre of each cell.
+std::vector<End> region_grid(const RegionOptions& options, const RegionBatch& batch);
+/// Fractions of the area: cells beside another class count by a finer grid of starts within them.
+std::vector<double> region_fractions(const RegionOptions& options, const RegionBatch& batch,
+                                     const std::vector<End>& ends, std::size_t classes);
+/// Keeps attractors and the classes that occur; renumbers the cells.
+void keep_seen_classes(StabilityRegion& region, const std::vector<EndClass>& all, const std::vector<double>& sums);
+/// Lines between cells of different class, for motions whose boundary is not traced otherwise.
+void add_cell_boundaries(StabilityRegion& region);
+
+/// Regions of heave and pitch together: axes two of gap, heave_velocity, pitch, pitch_rate.
+StabilityRegion pitch_region(const Model& model, const RegionOptions& options, core::Progress& progress);
 
 }  // namespace underbody::dynamics
