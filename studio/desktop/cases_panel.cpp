@@ -28,8 +28,8 @@ public:
             return mine.toDouble() < others.toDouble();
         }
         static const QCollator natural = [] {
-            QCollator collator;
-            collator.setNumericMode(true);  // h2 before h10
+            QCollator collator(QLocale(QLocale::English));  // the C locale cannot
+            collator.setNumericMode(true);                  // h2 before h10
             return collator;
         }();
         return natural.compare(text(column), other.text(column)) < 0;
@@ -61,7 +61,7 @@ double load_of(const cases::StudyResults& results, const std::string& name, cons
 QString status_of(const Session& session, const cases::Case& one, bool has_loads) {
     std::error_code code;
     if (!std::filesystem::exists(one.file, code)) {
-        return "file missing";
+        return "no file";
     }
     for (const auto& step : session.results.steps) {
         if (step.kind == "loads" && step.name == one.name && !step.error.empty()) {
@@ -132,7 +132,7 @@ void CasesTree::show_session(const SessionPointer& session) {
         item->setText(status_column, status);
         item->setToolTip(name_column, qt(one.conditions.label()) + "\n" + qt(one.file.string()) + why(*session, one));
         item->setToolTip(status_column, item->toolTip(name_column));
-        if (status == "failed" || status == "file missing") {
+        if (status == "failed" || status == "no file") {
             item->setForeground(status_column, QColor(178, 40, 10));
         } else if (status == "not run") {
             item->setForeground(status_column, QColor(130, 130, 130));
@@ -150,8 +150,9 @@ void CasesTree::show_session(const SessionPointer& session) {
     setSortingEnabled(true);
     sortByColumn(name_column, Qt::AscendingOrder);
     resizeColumnToContents(name_column);
+    header()->resizeSection(name_column, std::min(210, header()->sectionSize(name_column)));
     for (int column = gap_column; column < column_count; ++column) {
-        header()->resizeSection(column, column < lift_column ? 46 : 62);
+        header()->resizeSection(column, column < lift_column ? 44 : 56);
     }
     blockSignals(blocked);
 }

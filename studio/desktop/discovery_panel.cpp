@@ -8,6 +8,7 @@
 #include <QSignalBlocker>
 #include <QTextBrowser>
 #include <QUrl>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -36,17 +37,39 @@ QString value(const json& object, const char* key, int digits = 3) {
     return at->is_number() ? html(core::format_number(at->get<double>(), digits)) : html(at->dump());
 }
 
-QString unit_of(const json& object) {
-    const auto at = object.find("unit");
-    return at != object.end() && at->is_string() ? html(pretty_unit(at->get<std::string>())) : QString();
+/// A number in the unit that people read it in: millimetres for what is given in metres.
+struct Shown {
+    double factor = 1;
+    std::string unit;
+};
+Shown shown_in(const json& object) {
+    const std::string unit = object.is_object() && object.contains("unit") && object["unit"].is_string()
+                                 ? object["unit"].get<std::string>()
+                                 : "";
+    return unit == "m" ? Shown{1000, "mm"} : unit == "m/s" ? Shown{1000, "mm/s"} : Shown{1, unit};
+}
+
+QString scaled(const json& object, const char* key, double factor, int digits) {
+    const auto at = object.find(key);
+    return at != object.end() && at->is_number() ? html(core::format_number(factor * at->get<double>(), digits))
+                                                 : QString();
+}
+
+QString probability(const json& effect) {
+    const double chance = effect.value("probability", std::nan(""));
+    return std::isnan(chance) ? QString()
+           : chance < 0.001   ? QString("&lt; 0.001")
+                              : html(core::format_number(chance, 3));
 }
 
 QString parameters(const json& effect) {
     QString text;
-    for (const auto& [name, one] : effect.value("parameters", json::object()).items()) {
-        text += (text.isEmpty() ? "" : "<br>") + html(name) + " = " + value(one, "value", 4);
-        const QString sigma = value(one, "sigma", 2);
-        text += (sigma.isEmpty() || sigma == "0" ? "" : " ± " + sigma) + " " + unit_of(one);
+    const json all = effect.value("parameters", json::object());
+    for (const auto& [name, one] : all.items()) {
+        const Shown shown = shown_in(one);
+        text += (text.isEmpty() ? "" : "<br>") + html(name) + " = " + scaled(one, "value", shown.factor, 4);
+        const QString sigma = scaled(one, "sigma", shown.factor, 2);
+        text += (sigma.isEmpty() || sigma == "0" ? "" : " ± " + sigma) + " " + html(pretty_unit(shown.unit));
     }
     return text;
 }
@@ -61,7 +84,7 @@ QString effect_rows(const json& effects, const char* last_key, const QString& la
         last_title + "</th></tr>";
     for (const auto& effect : effects) {
         text += "<tr><td><b>" + value(effect, "name") + "</b></td><td>" + parameters(effect) + "</td><td align=right>" +
-                value(effect, "probability", 3) + "</td><td>" + value(effect, last_key) + "</td></tr>";
+                probability(effect) + "</td><td>" + value(effect, last_key) + "</td></tr>";
     }
     return text + "</table>";
 }
@@ -70,13 +93,15 @@ QString error_line(const json& error) {
     if (!error.is_object() || !error.contains("before")) {
         return {};
     }
+    const Shown shown = shown_in(error);
     const auto interval = [&](const char* which) {
         const json& one = error.at(which);
-        return value(one, "rmse", 3) + " (" + value(one, "low", 3) + " … " + value(one, "high", 3) + ")";
+        return scaled(one, "rmse", shown.factor, 3) + " (" + scaled(one, "low", shown.factor, 3) + " … " +
+               scaled(one, "high", shown.factor, 3) + ")";
     };
     QString text = "<p>Error of " + value(error, "channel") + " on data held out from every fit: <b>" +
                    interval("before") + "</b> → <b>" + (error.contains("after") ? interval("after") : QString("–")) +
-                   "</b> " + unit_of(error);
+                   "</b> " + html(pretty_unit(shown.unit));
     if (error.contains("in_noise")) {
         text += "; in standard deviations of the noise " + value(error["in_noise"], "before", 3) + " → " +
                 value(error["in_noise"], "after", 3);
@@ -175,8 +200,9 @@ void DiscoveryPanel::show_measurement() {
         }
         const QImage image = QImage::fromData(reinterpret_cast<const uchar*>(png.data()), static_cast<int>(png.size()));
         const QString url = "picture://" + QString::fromStdString(key).toHtmlEscaped();
-        page_->document()->addResource(QTextDocument::ImageResource, QUrl(url), image);
-        page += QString("<p><img src='%1' width='%2'></p>").arg(url).arg(std::min(width, 900));
+        page_->document()->addResource(QTextDocument::ImageResource, QUrl(url),
+                                       image.scaledToWidth(std::min(width, 900), Qt::SmoothTransformation));
+        page += QString("<p><img src='%1'></p>").arg(url);
     }
     page_->setHtml(page);
 }

@@ -1,6 +1,7 @@
 #include "studio/desktop/force_panel.h"
 
 #include <QBoxLayout>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
@@ -79,7 +80,9 @@ void ForcePanel::build() {
     list_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     list_->verticalHeader()->hide();
     list_->horizontalHeader()->setStretchLastSection(true);
-    list_->setMaximumHeight(150);
+    list_->setMaximumHeight(130);
+    list_->verticalHeader()->setDefaultSectionSize(22);
+    list_->setSelectionBehavior(QAbstractItemView::SelectRows);
     right->addWidget(list_);
     plot_->show_text("Open a study with force tables");
 }
@@ -109,8 +112,14 @@ void ForcePanel::build_controls(QFormLayout& form) {
     mass_->setSingleStep(0.1);
     mass_->setToolTip("Mass and added mass in heave: for the frequency and the largest kick");
     form.addRow("Virtual mass", mass_);
+    logarithmic_ = new QCheckBox("&logarithmic axis");
+    form.addRow(logarithmic_);
+    connect(logarithmic_, &QCheckBox::toggled, this, [this] { redraw(); });
     connect(choice_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] { choose_table(); });
     connect(view_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] {
+        if (table_) {
+            suggest_scale();
+        }
         fill_held();
         redraw();
     });
@@ -206,8 +215,17 @@ void ForcePanel::show_table() {
                         .arg(table_->points().rows())
                         .arg(range));
     fill_axes();
+    suggest_scale();
     fill_held();
     redraw();
+}
+
+/// A gap over more than one and a half decades wants a logarithmic axis.
+void ForcePanel::suggest_scale() {
+    const auto& axis = table_->axes()[tables::axis_index(*table_, view_axis())];
+    const QSignalBlocker quiet(logarithmic_);
+    logarithmic_->setEnabled(axis.lower > 0);
+    logarithmic_->setChecked(axis.lower > 0 && axis.upper > 30 * axis.lower);
 }
 
 void ForcePanel::fill_axes() {
@@ -278,6 +296,7 @@ void ForcePanel::redraw() {
     const QStringList view = view_->currentData().toStringList();
     tables::FigureOptions options;
     options.axis = view_axis();
+    options.logarithmic = logarithmic_->isEnabled() && logarithmic_->isChecked();
     for (const auto& held : held_) {
         options.held.emplace_back(held.name, held.value());
         const auto* quantity = core::find_quantity(held.name);
@@ -352,7 +371,7 @@ void ForcePanel::export_table(const std::filesystem::path& path) { core::write_c
 
 void ForcePanel::demonstrate() {
     if (table_ && weight_->isEnabled()) {
-        weight_->setValue(weight_->value() / 2);
+        weight_->setValue(weight_->value() * 95 / 100);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "studio/desktop/panel.h"
 
+class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
 class QFormLayout;
@@ -50,6 +51,7 @@ private:
     void choose_table();
     void show_table();
     void fill_axes();
+    void suggest_scale();
     void fill_held();
     void redraw();
     void list_equilibria();
@@ -60,6 +62,7 @@ private:
     cases::TableSpec spec_;
     QComboBox* choice_ = nullptr;
     QComboBox* view_ = nullptr;
+    QCheckBox* logarithmic_ = nullptr;
     QSlider* weight_ = nullptr;
     QDoubleSpinBox* weight_box_ = nullptr;
     QDoubleSpinBox* mass_ = nullptr;

@@ -111,7 +111,7 @@ void MainWindow::build_cases() {
     problems_dock_->setObjectName("problems_dock");
     problems_dock_->setWidget(problems_);
     addDockWidget(Qt::BottomDockWidgetArea, problems_dock_);
-    resizeDocks({cases_dock_}, {470}, Qt::Horizontal);
+    resizeDocks({cases_dock_}, {490}, Qt::Horizontal);
     resizeDocks({problems_dock_}, {110}, Qt::Vertical);
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
 }

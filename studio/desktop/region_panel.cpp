@@ -351,7 +351,7 @@ void RegionPanel::show_trajectory() {
     emit remark(QString("from %1 mm, %2 mm/s: %3 after %4 s")
                     .arg(number(1000 * trajectory_->gap.front(), 3))
                     .arg(number(1000 * trajectory_->heave_velocity.front(), 3))
-                    .arg(qt(trajectory_->end))
+                    .arg(trajectory_->end == "time" ? QString("still moving") : qt(trajectory_->end))
                     .arg(time));
 }
 
@@ -368,15 +368,20 @@ void RegionPanel::export_table(const std::filesystem::path& path) {
 }
 
 void RegionPanel::demonstrate() {
-    if (!region_) {
+    if (!region_ || region_->axes[0].name != "gap" || region_->axes[1].name != "heave_velocity") {
         return;
     }
-    const auto& x = region_->axes[0];
-    const auto& y = region_->axes[1];
+    // A small kick away from the first equilibrium that holds, or from the middle of the map.
+    double gap = 0.5 * (region_->axes[0].lower + region_->axes[0].upper);
+    for (const auto& equilibrium : region_->equilibria) {
+        if (equilibrium.stable) {
+            gap = equilibrium.gap;
+            break;
+        }
+    }
     const core::Figure figure = dynamics::region_figure(*region_);
-    const auto unit_of = [](const std::string& axis) { return axis == "gap" ? "m" : "m/s"; };
-    start_from(core::convert(x.lower + 0.3 * (x.upper - x.lower), unit_of(x.name), figure.x.unit),
-               core::convert(y.lower + 0.7 * (y.upper - y.lower), unit_of(y.name), figure.y.unit));
+    start_from(core::convert(gap, "m", figure.x.unit),
+               0.05 * core::convert(region_->axes[1].upper, "m/s", figure.y.unit));
 }
 
 }  // namespace underbody::studio

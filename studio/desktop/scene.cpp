@@ -19,8 +19,11 @@
 #include <vtkProperty.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
+#include <vtkReverseSense.h>
 #include <vtkScalarBarActor.h>
 #include <vtkTextProperty.h>
+#include <vtkTransform.h>
+#include <vtkTransformPolyDataFilter.h>
 
 #include <QBuffer>
 #include <QImage>
@@ -67,6 +70,7 @@ struct Scene::Parts {
         std::size_t zone = 0;
         vtkSmartPointer<vtkPolyDataMapper> mapper;
         vtkSmartPointer<vtkActor> actor;
+        vtkSmartPointer<vtkPolyDataMapper> mirrored_mapper;
         vtkSmartPointer<vtkActor> mirrored;
     };
     std::vector<Surface> surfaces;
@@ -113,6 +117,29 @@ std::array<double, 3> direction(const std::string& axis, std::array<double, 3> f
     std::array<double, 3> result{};
     result[static_cast<std::size_t>(axis[1] - 'x')] = axis[0] == '-' ? -1 : 1;
     return result;
+}
+
+vtkSmartPointer<vtkPolyDataMapper> new_mapper(vtkLookupTable* colours) {
+    auto mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
+    mapper->SetLookupTable(colours);
+    mapper->UseLookupTableScalarRangeOn();
+    mapper->InterpolateScalarsBeforeMappingOn();
+    return mapper;
+}
+
+/// The surface seen in a mirror through the origin, its faces turned so that they still look outward.
+vtkSmartPointer<vtkPolyData> in_mirror(vtkPolyData* surface, const std::string& axis) {
+    vtkNew<vtkTransform> transform;
+    transform->Scale(axis == "x" ? -1 : 1, axis == "y" ? -1 : 1, axis == "z" ? -1 : 1);
+    vtkNew<vtkTransformPolyDataFilter> filter;
+    filter->SetInputData(surface);
+    filter->SetTransform(transform);
+    vtkNew<vtkReverseSense> reverse;
+    reverse->SetInputConnection(filter->GetOutputPort());
+    reverse->ReverseCellsOn();
+    reverse->ReverseNormalsOff();
+    reverse->Update();
+    return reverse->GetOutput();
 }
 
 void dress_text(vtkTextProperty& text, int size) {
@@ -192,24 +219,22 @@ void Scene::show(std::shared_ptr<const postproc::Field> field, bool refit) {
         }
         Parts::Surface surface;
         surface.zone = i;
-        surface.mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
         // Smooth to the eye; points and faces keep their numbers, so that a click finds its value.
         vtkNew<vtkPolyDataNormals> normals;
         normals->SetInputData(zone.surface);
         normals->SplittingOff();
         normals->ConsistencyOff();
         normals->Update();
+        surface.mapper = new_mapper(p.colours);
         surface.mapper->SetInputData(normals->GetOutput());
-        surface.mapper->SetLookupTable(p.colours);
-        surface.mapper->UseLookupTableScalarRangeOn();
-        surface.mapper->InterpolateScalarsBeforeMappingOn();
+        surface.mirrored_mapper = new_mapper(p.colours);
         surface.actor = vtkSmartPointer<vtkActor>::New();
         surface.actor->SetMapper(surface.mapper);
         surface.actor->GetProperty()->SetColor(0.72, 0.76, 0.8);
         surface.actor->GetProperty()->SetAmbient(0.62);
         surface.actor->GetProperty()->SetDiffuse(0.42);
         surface.mirrored = vtkSmartPointer<vtkActor>::New();
-        surface.mirrored->SetMapper(surface.mapper);
+        surface.mirrored->SetMapper(surface.mirrored_mapper);
         surface.mirrored->SetProperty(surface.actor->GetProperty());
         surface.mirrored->SetVisibility(false);
         p.renderer->AddActor(surface.actor);
@@ -263,16 +288,21 @@ void Scene::colour_by(const Choice& choice, bool whole_range) {
     for (auto& surface : p.surfaces) {
         const auto* info = choice.name.empty() ? nullptr : p.info(surface);
         vtkDataArray* array = info != nullptr ? array_of(p.field->zones[surface.zone], *info) : nullptr;
+        // The component along the mirror has the other sign behind it: better plain than wrong.
+        const bool across = choice.component >= 0 && p.mirror == std::string(1, "xyz"[choice.component]);
         surface.mapper->SetScalarVisibility(array != nullptr);
+        surface.mirrored_mapper->SetScalarVisibility(array != nullptr && !across);
         if (array == nullptr) {
             continue;
         }
-        if (info->on == Location::nodes) {
-            surface.mapper->SetScalarModeToUsePointFieldData();
-        } else {
-            surface.mapper->SetScalarModeToUseCellFieldData();
+        for (const auto& mapper : {surface.mapper, surface.mirrored_mapper}) {
+            if (info->on == Location::nodes) {
+                mapper->SetScalarModeToUsePointFieldData();
+            } else {
+                mapper->SetScalarModeToUseCellFieldData();
+            }
+            mapper->SelectColorArray(info->name.c_str());
         }
-        surface.mapper->SelectColorArray(info->name.c_str());
         if (visible(surface.zone)) {
             for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
                 const double value = value_of(*array, i, choice.component);
@@ -322,9 +352,12 @@ void Scene::show_edges(bool edges) {
 }
 
 void Scene::mirror(const std::string& axis) {
+    const bool other = axis != parts_->mirror;
     parts_->mirror = axis;
-    for (const auto& surface : parts_->surfaces) {
-        surface.mirrored->SetScale(axis == "x" ? -1 : 1, axis == "y" ? -1 : 1, axis == "z" ? -1 : 1);
+    for (auto& surface : parts_->surfaces) {
+        if (!axis.empty() && (other || surface.mirrored_mapper->GetInput() == nullptr)) {
+            surface.mirrored_mapper->SetInputData(in_mirror(surface.mapper->GetInput(), axis));
+        }
         surface.mirrored->SetVisibility(!axis.empty() && visible(surface.zone));
     }
 }

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "studio/desktop/catalogue.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/panel.h"
@@ -60,6 +61,12 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& study, con
         panel->demonstrate();
         settle(window);
         save(window, folder / (name + "-used.png"));
+    }
+    show_effect_catalogue(&window);
+    settle(window);
+    if (auto* catalogue = window.findChild<QDialog*>("catalogue")) {
+        save(*catalogue, folder / "effects.png");
+        catalogue->close();
     }
     window.show_panel(window.panels().front());
     settle(window);

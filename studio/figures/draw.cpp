@@ -15,7 +15,11 @@ namespace {
 const QColor axis_colour(90, 90, 90);
 const QColor text_colour(40, 40, 40);
 
-QString words(const std::string& text) { return QString::fromStdString(text); }
+/// Text as people write it: names of quantities without their underscores ("lift_force"; "C_L" stays).
+QString words(const std::string& text) {
+    static const QRegularExpression underscore("(?<=[a-z][a-z])_(?=[a-z][a-z])");
+    return QString::fromStdString(text).replace(underscore, " ");
+}
 
 /// Numbers with a real minus sign and no leftover of rounding at zero.
 template <class Ticker>

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-test::Run run_studio(const std::vector<std::string>& arguments,
-                     const std::map<std::string, std::string>& environment = {}) {
+test::ProgramRun run_studio(const std::vector<std::string>& arguments,
+                            const std::map<std::string, std::string>& environment = {}) {
     std::map<std::string, std::string> all = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}, {"LIBGL_ALWAYS_SOFTWARE", "1"}};
     all.insert(environment.begin(), environment.end());
     return test::run_program((test::program_folder() / "underbody-studio").string(), arguments, {}, all);
