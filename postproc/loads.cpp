@@ -469,8 +469,11 @@ private:
     }
 
     [[nodiscard]] NamedLoads named(const Wrench& wrench) const {
-        return {dot(wrench.force, axes_.up),          -dot(wrench.force, axes_.forward), dot(wrench.force, axes_.starboard),
-                dot(wrench.moment, axes_.starboard),  dot(wrench.moment, axes_.forward), -dot(wrench.moment, axes_.up)};
+        const Vector astern = {-axes_.forward[0], -axes_.forward[1], -axes_.forward[2]};
+        const Vector down = {-axes_.up[0], -axes_.up[1], -axes_.up[2]};
+        // 0.0 + makes minus zero plain zero.
+        return {0.0 + dot(wrench.force, axes_.up),         0.0 + dot(wrench.force, astern),         0.0 + dot(wrench.force, axes_.starboard),
+                0.0 + dot(wrench.moment, axes_.starboard), 0.0 + dot(wrench.moment, axes_.forward), 0.0 + dot(wrench.moment, down)};
     }
 
     void add_up() {

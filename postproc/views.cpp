@@ -383,11 +383,18 @@ private:
         scene.height = options_.height;
         const std::string array = name.substr(0, name.find('-'));
         bool shared = false;
+        const auto own = scene.range;
         for (const auto& [key, range] : options_.ranges) {
             if (key == name || (key == array && !shared) || (key == "velocity" && array == "speed" && !shared)) {
                 scene.range = range;
                 shared = shared || key == name;
             }
+        }
+        if (scene.range != own) {  // what was said of a range of its own holds no more
+            if (const auto at = composed.caption.find(" Colours end at"); at != std::string::npos) {
+                composed.caption.resize(at);
+            }
+            composed.caption += " Colours over the range given.";
         }
         if (scene.range) {
             scene.range = drawn_range(*scene.range, scene.colours);
@@ -431,7 +438,7 @@ View drawn(Composed composed, const std::string& name) {
     view.name = name;
     view.title = composed.scene.title;
     view.range = range_of(composed.scene);
-    view.caption = composed.caption + " " + composed.scene.value_name + " from " + core::format_number(view.range.first, 4) + " to " +
+    view.caption = composed.caption + " Colours: " + composed.scene.value_name + " from " + core::format_number(view.range.first, 4) + " to " +
                    core::format_number(view.range.second, 4) + " " + composed.scene.value_unit + ".";
     view.png = draw_png(composed.scene);
     return view;

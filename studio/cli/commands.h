@@ -16,6 +16,8 @@ using AddCommand = void (*)(CLI::App& app, Shell& shell);
     X(info) \
     X(import) \
     X(loads) \
+    X(views) \
+    X(probe) \
     X(discover) \
     X(simulate) \
     X(predict) \

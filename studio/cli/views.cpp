@@ -1,0 +1,194 @@
+// underbody views FILE... --out FOLDER: pictures of a case, or of several with one range and camera.
+#include "postproc/views.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "postproc/field.h"
+#include "postproc/loads.h"
+#include "postproc/probe.h"
+#include "studio/cli/commands.h"
+#include "studio/cli/field_options.h"
+#include "studio/cli/shell.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    std::vector<std::string> files;
+    std::string out = "views";
+    std::vector<std::string> names;
+    std::vector<std::string> ranges;
+    std::string symmetry, base = "*base*", forward = "+x", up = "+z", difference;
+    int width = 1200, height = 800;
+    bool list = false;
+    FieldOptions field;
+};
+
+postproc::ViewOptions view_options(const Options& given) {
+    postproc::ViewOptions options;
+    options.forward = postproc::axis_from(given.forward);
+    options.up = postproc::axis_from(given.up);
+    options.symmetry = given.symmetry;
+    options.zones = given.field.zones;
+    options.base = given.base;
+    options.width = given.width;
+    options.height = given.height;
+    for (const auto& text : given.ranges) {  // pressure=-100:50, in SI or with units
+        const auto equals = text.find('=');
+        const auto colon = text.find(':', equals);
+        if (equals == std::string::npos || colon == std::string::npos) {
+            throw core::UsageError("usage", "--range '" + text + "' is no NAME=LOW:HIGH", {}, "for instance --range pressure=-200:100");
+        }
+        const auto low = core::parse_quantity(text.substr(equals + 1, colon - equals - 1));
+        const auto high = core::parse_quantity(text.substr(colon + 1));
+        const auto si = [](const core::Quantity& q) { return q.unit.empty() ? q.value : core::convert(q.value, q.unit, core::si_unit(q.unit)); };
+        options.ranges.emplace_back(text.substr(0, equals), std::pair{si(low), si(high)});
+    }
+    return options;
+}
+
+std::string stem_of(const std::string& file) {
+    std::string stem = fs::path(file).filename().string();
+    for (const char* ending : {".gz", ".csv", ".cas", ".h5", ".case", ".encas", ".cgns", ".vtp", ".vtu"}) {
+        if (stem.ends_with(ending)) {
+            stem.resize(stem.size() - std::string(ending).size());
+        }
+    }
+    return stem;
+}
+
+/// Writes pictures and remembers what was written.
+class Album {
+public:
+    Album(Shell& shell, const Options& given) : shell_(shell), given_(given) {}
+
+    void keep(const postproc::View& view, const std::string& prefix) {
+        const fs::path path = fs::path(given_.out) / (prefix + view.name + ".png");
+        core::write_file(path, view.png);
+        shell_.print("wrote " + path.string() + ": " + view.caption);
+        written_.push_back({{"file", path.string()}, {"name", view.name}, {"title", view.title}, {"caption", view.caption}, {"range", {view.range.first, view.range.second}}});
+    }
+
+    void keep(const core::Figure& figure, const std::string& name, const std::string& prefix) {
+        const fs::path path = fs::path(given_.out) / (prefix + name + ".png");
+        write_picture(figure, path);
+        shell_.print("wrote " + path.string() + ": " + figure.caption);
+        written_.push_back({{"file", path.string()}, {"name", name}, {"title", figure.title}, {"caption", figure.caption}});
+    }
+
+    [[nodiscard]] nlohmann::json json() const { return {{"views", written_}}; }
+
+private:
+    Shell& shell_;
+    const Options& given_;
+    nlohmann::json written_ = nlohmann::json::array();
+};
+
+bool has_profile(const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), "streamlines-gap") != names.end();  // a volume, a velocity and a base
+}
+
+void draw_case(Shell& shell, const Options& given, const postproc::Field& field, const postproc::ViewOptions& shared, const std::string& prefix, Album& album) {
+    postproc::ViewOptions options = shared;
+    options.case_name = stem_of(field.files.front());
+    auto possible = postproc::possible_views(field, options);
+    if (has_profile(possible)) {
+        possible.emplace_back("profile-gap");
+    }
+    if (possible.empty()) {
+        throw core::InputError("view", "the field has no surface with a pressure to draw", {field.files.front(), {}, {}, {}});
+    }
+    for (const auto& name : given.names) {
+        if (std::find(possible.begin(), possible.end(), name) == possible.end()) {
+            throw core::InputError("view", "there is no view '" + name + "' of this field", {field.files.front(), {}, {}, {}}, core::did_you_mean(name, possible));
+        }
+    }
+    for (const auto& name : given.names.empty() ? possible : given.names) {
+        shell.progress().check();
+        if (given.list) {
+            shell.print(name);
+        } else if (name == "profile-gap") {
+            postproc::GapOptions gap;
+            gap.forward = options.forward;
+            gap.up = options.up;
+            gap.symmetry = options.symmetry;
+            gap.base = options.base;
+            core::Figure figure = postproc::gap_profile_figure(field, gap, shell.progress());
+            figure.title += ", " + options.case_name;
+            album.keep(figure, name, prefix);
+        } else {
+            album.keep(postproc::view(field, name, options, shell.progress()), prefix);
+        }
+    }
+}
+
+int run(Shell& shell, const Options& given) {
+    const Batch batch = find_files(given.files, "");
+    std::vector<postproc::Field> fields;
+    for (const auto& file : batch.files) {
+        fields.push_back(postproc::read_field(file.path, given.field.read_options(), shell.progress()));
+        shell.show(fields.back().problems);
+    }
+    Album album(shell, given);
+    postproc::ViewOptions options = view_options(given);
+    if (!given.difference.empty()) {
+        if (fields.size() != 2) {
+            throw core::UsageError("usage", "--difference compares two files", {}, "underbody views A B --difference pressure");
+        }
+        album.keep(postproc::difference_view(fields[0], fields[1], given.difference, options, shell.progress()), "");
+    } else {
+        if (fields.size() > 1) {
+            std::vector<const postproc::Field*> all;
+            for (const auto& field : fields) {
+                all.push_back(&field);
+            }
+            options = postproc::shared_view_options(all, options, shell.progress());
+        }
+        for (const auto& field : fields) {
+            draw_case(shell, given, field, options, fields.size() > 1 ? stem_of(field.files.front()) + "-" : "", album);
+        }
+    }
+    if (shell.json) {
+        shell.print_json(album.json());
+    }
+    return done;
+}
+
+}  // namespace
+
+void add_views_command(CLI::App& app, Shell& shell) {
+    auto* command = app.add_subcommand("views", "pictures of a field: underbody, hull, symmetry plane, gap; needs no display");
+    auto o = std::make_shared<Options>();
+    command->add_option("files", o->files, "CFD files, or patterns of names; several share colours and camera")->required();
+    command->add_option("-o,--out", o->out, "folder for the pictures")->capture_default_str();
+    command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',');
+    command->add_flag("--list", o->list, "only say which views the file allows");
+    command->add_option("--difference", o->difference, "draw the second file less the first one: pressure, wall_shear");
+    command->add_option("--range", o->ranges, "colour range: pressure=-200:100");
+    command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane");
+    command->add_option("--base", o->base, "zone that is the base")->capture_default_str();
+    command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
+    command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
+    command->add_option("--width", o->width, "pixels")->check(CLI::Range(64, 8192))->capture_default_str();
+    command->add_option("--height", o->height, "pixels")->check(CLI::Range(64, 8192))->capture_default_str();
+    o->field.add_to(*command);
+    command->footer(
+        "Examples:\n"
+        "  underbody views body.csv --symmetry y --out pictures\n"
+        "  underbody views case.cas.gz --zones base,hull --symmetry y --view speed-symmetry,streamlines-gap\n"
+        "  underbody views h2.csv h5.csv --symmetry y                    one range and camera for both\n"
+        "  underbody views coarse.csv fine.csv --symmetry y --difference pressure");
+    shell.on(command, [&shell, o] { return run(shell, *o); });
+}
+
+}  // namespace underbody::studio
