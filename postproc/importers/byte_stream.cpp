@@ -18,7 +18,7 @@ namespace underbody::postproc {
 
 namespace {
 
-constexpr std::size_t window_size = std::size_t{4} << 20;
+constexpr std::size_t largest_window_size = std::size_t{4} << 20;
 constexpr std::uint64_t largest_ratio = 1032;  // of deflate
 
 bool is_gzip(std::string_view head) { return head.size() >= 2 && head[0] == '\x1f' && head[1] == '\x8b'; }
@@ -264,8 +264,9 @@ ByteStream::ByteStream(const std::filesystem::path& path) : name_(path.string())
         source_ = std::make_unique<GzipSource<Source>>(path, size);
     } else {
         source_ = std::make_unique<PlainSource<Source>>(path, size);
+        window_size_ = static_cast<std::size_t>(std::clamp<std::uint64_t>(size, 64, largest_window_size));
     }
-    window_.reset(new char[window_size]);
+    window_.reset(new char[window_size_]);
     base_ = here_ = end_ = window_.get();
 }
 
@@ -284,11 +285,11 @@ bool ByteStream::refill(std::size_t count) {
     std::memmove(window_.get(), here_, kept);
     here_ = base_;
     end_ = base_ + kept;
-    while (static_cast<std::size_t>(end_ - here_) < window_size) {
+    while (static_cast<std::size_t>(end_ - here_) < window_size_) {
         char* target = window_.get() + (end_ - base_);
-        const std::size_t got = source_->read(target, window_size - static_cast<std::size_t>(end_ - base_));
+        const std::size_t got = source_->read(target, window_size_ - static_cast<std::size_t>(end_ - base_));
         end_ += got;
-        if (got == 0 || static_cast<std::size_t>(end_ - here_) >= std::max(count, window_size / 2)) {
+        if (got == 0 || static_cast<std::size_t>(end_ - here_) >= std::max(count, window_size_ / 2)) {
             break;
         }
     }
@@ -305,7 +306,7 @@ void ByteStream::read(void* target, std::size_t count) {
     out += first;
     count -= first;
     // Long bodies go straight to where they are wanted.
-    while (count >= window_size && source_) {
+    while (count > window_size_ && source_) {
         const std::size_t got = source_->read(out, count);
         if (got == 0) {
             throw core::InputError("format", "the file ends too early", place());
@@ -331,7 +332,7 @@ void ByteStream::skip(std::uint64_t count) {
     const std::uint64_t first = std::min<std::uint64_t>(count, static_cast<std::uint64_t>(end_ - here_));
     here_ += first;
     count -= first;
-    if (count > window_size && source_) {
+    if (count > window_size_ && source_) {
         const std::uint64_t done = source_->skip(count);
         window_start_ += static_cast<std::uint64_t>(here_ - base_) + done;
         here_ = end_ = base_;

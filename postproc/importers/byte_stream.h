@@ -59,6 +59,7 @@ private:
     std::string name_;
     std::unique_ptr<Source> source_;
     std::unique_ptr<char[]> window_;
+    std::size_t window_size_ = std::size_t{4} << 20;
     const char* base_ = nullptr;  ///< first byte of the window
     const char* here_ = nullptr;
     const char* end_ = nullptr;

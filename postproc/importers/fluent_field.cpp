@@ -1,11 +1,5 @@
 // A Fluent mesh with its values becomes zones with VTK data.
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkDoubleArray.h>
-#include <vtkIdTypeArray.h>
-#include <vtkPoints.h>
-#include <vtkTypeInt32Array.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <array>
@@ -18,31 +12,13 @@
 #include "core/text.h"
 #include "postproc/importers/face_mesh.h"
 #include "postproc/importers/fluent_settings.h"
+#include "postproc/importers/vtk_arrays.h"
 
 namespace underbody::postproc {
 
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
-/// VTK takes the memory over.
-template <typename Array, typename T>
-vtkSmartPointer<Array> given_to_vtk(Buffer<T>&& buffer, int components = 1) {
-    using Value = typename Array::ValueType;
-    static_assert(sizeof(Value) == sizeof(T));
-    auto array = vtkSmartPointer<Array>::New();
-    array->SetNumberOfComponents(components);
-    const auto size = static_cast<vtkIdType>(buffer.size());
-    array->SetArray(reinterpret_cast<Value*>(buffer.release()), size, 0, Array::VTK_DATA_ARRAY_DELETE);
-    return array;
-}
-
-vtkSmartPointer<vtkPoints> points_from(Buffer<double>&& coordinates) {
-    auto points = vtkSmartPointer<vtkPoints>::New();
-    points->SetDataType(VTK_DOUBLE);
-    points->SetData(given_to_vtk<vtkDoubleArray>(std::move(coordinates), 3));
-    return points;
-}
 
 /// The faces or cells of a zone: which ids they have, in order.
 using Ids = Buffer<std::uint64_t>;

@@ -4,7 +4,9 @@
 #define UNDERBODY_IMPORTERS(X) \
     X(cfd_post_csv) \
     X(fluent_legacy) \
-    X(fluent_hdf5)
+    X(fluent_hdf5) \
+    X(ensight) \
+    X(cgns)
 
 namespace underbody::postproc {
 

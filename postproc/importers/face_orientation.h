@@ -1,0 +1,37 @@
+// Which way boundary faces look, found from the volume cells behind them.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "postproc/importers/element_zone.h"
+
+namespace underbody::postproc {
+
+/// The faces of some surfaces that are also faces of a volume with the same numbering of nodes.
+class BoundaryFaces {
+public:
+    BoundaryFaces(const std::vector<ElementPart>& surfaces, const ElementPart& volume);
+
+    /// Turns the faces of a surface so that their right-hand normals point into the volume.
+    /// True if a cell was found behind every face.
+    bool turn_into_volume(ElementPart& surface, const Buffer<double>& points) const;
+
+private:
+    /// Corners of a face, sorted (the four lowest), tell it from others.
+    struct Key {
+        std::int64_t nodes[4] = {-1, -1, -1, -1};
+        bool operator==(const Key& other) const = default;
+    };
+    struct Hash {
+        std::size_t operator()(const Key& key) const;
+    };
+    static Key key_of(const std::int64_t* nodes, std::size_t count);
+    void note(const std::int64_t* nodes, std::size_t count, std::size_t cell);
+
+    const ElementPart& volume_;
+    std::unordered_map<Key, std::int64_t, Hash> cells_;  ///< face -> a cell behind it, -1: none yet
+};
+
+}  // namespace underbody::postproc

@@ -1,0 +1,371 @@
+#include "postproc/importers/reports.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/file.h"
+#include "core/text.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+constexpr std::size_t most_columns = 4096;
+
+/// The words of a line: quoted ones whole; blanks, tabs, commas and brackets between.
+std::vector<std::string> words_of(std::string_view line) {
+    std::vector<std::string> words;
+    std::string word;
+    bool quoted = false;
+    const auto finish = [&](bool keep_empty) {
+        if (!word.empty() || keep_empty) {
+            words.push_back(word);
+        }
+        word.clear();
+    };
+    for (const char c : line) {
+        if (c == '"') {
+            if (quoted) {
+                finish(true);
+            }
+            quoted = !quoted;
+        } else if (quoted) {
+            word += c;
+        } else if (c == ' ' || c == '\t' || c == ',' || c == '(' || c == ')' || c == '\r') {
+            finish(false);
+        } else {
+            word += c;
+        }
+    }
+    finish(false);
+    return words;
+}
+
+/// A number as solvers write it, with "nan(ind)" and "1.#INF" among them.
+std::optional<double> number_of(const std::string& word) {
+    if (const auto value = core::parse_number(word)) {
+        return value;
+    }
+    const std::string lower = core::lower_case(word);
+    if (lower.starts_with("nan") || lower.starts_with("-nan") || lower.find("#ind") != std::string::npos ||
+        lower.find("#qnan") != std::string::npos) {
+        return std::nan("");
+    }
+    if (lower.find("#inf") != std::string::npos) {
+        return HUGE_VAL;
+    }
+    return {};
+}
+
+std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& words) {
+    std::vector<double> numbers;
+    for (const auto& word : words) {
+        const auto value = number_of(word);
+        if (!value) {
+            return {};
+        }
+        numbers.push_back(*value);
+    }
+    return numbers;
+}
+
+/// Rows by the first column; the last one of a number counts.
+class Rows {
+public:
+    void add(std::vector<double> row) {
+        if (!rows_.empty() && row[0] <= rows_.rbegin()->first) {
+            ++repeated_;
+        }
+        rows_[row[0]] = std::move(row);
+    }
+    [[nodiscard]] bool empty() const { return rows_.empty(); }
+    void into(Monitor& monitor) const {
+        monitor.values.assign(monitor.columns.size(), {});
+        std::size_t odd = 0;
+        for (const auto& [key, row] : rows_) {
+            for (std::size_t c = 0; c < monitor.columns.size(); ++c) {
+                monitor.values[c].push_back(row[c]);
+                odd += std::isfinite(row[c]) ? 0 : 1;
+            }
+        }
+        if (repeated_ > 0) {
+            monitor.problems.push_back(
+                {core::Problem::Severity::note,
+                 std::to_string(repeated_) + " rows repeat or go back, as after a restart: the last ones count",
+                 {monitor.file, {}, {}, {}}});
+        }
+        if (odd > 0) {
+            monitor.problems.push_back({core::Problem::Severity::warning,
+                                        std::to_string(odd) + " values are not finite: the solution has diverged",
+                                        {monitor.file, {}, {}, {}}});
+        }
+    }
+
+private:
+    std::map<double, std::vector<double>> rows_;
+    std::size_t repeated_ = 0;
+};
+
+[[noreturn]] void fail(const std::string& file, std::int64_t line, const std::string& what) {
+    throw core::InputError("format", what, {file, line, {}, {}});
+}
+
+/// "  iter  continuity  x-velocity ...  time/iter": the names between.
+bool is_residual_header(const std::vector<std::string>& words) {
+    return words.size() > 2 && words[0] == "iter" && words[1] == "continuity";
+}
+
+/// The table of residuals that a transcript interrupts with messages.
+Monitor read_transcript(const std::string& file, std::string_view bytes) {
+    Monitor monitor;
+    monitor.file = file;
+    monitor.title = "residuals";
+    Rows rows;
+    bool in_table = false;
+    for (const auto line : core::split(bytes, '\n')) {
+        auto words = words_of(line);
+        if (is_residual_header(words)) {
+            if (words.back() == "time/iter") {
+                words.pop_back();
+            }
+            if (monitor.columns.empty()) {
+                monitor.columns = words;
+            }
+            in_table = words == monitor.columns;
+            continue;
+        }
+        if (!in_table || words.size() < monitor.columns.size()) {
+            continue;
+        }
+        words.resize(monitor.columns.size());
+        auto row = numbers_of(words);
+        if (row && core::parse_integer(words[0])) {
+            rows.add(std::move(*row));
+        }
+    }
+    if (rows.empty()) {
+        throw core::InputError("format", "the transcript holds no residuals", {file, {}, {}, {}});
+    }
+    rows.into(monitor);
+    return monitor;
+}
+
+Monitor read_table(const std::string& file, std::string_view bytes) {
+    Monitor monitor;
+    monitor.file = file;
+    Rows rows;
+    std::int64_t number = 0;
+    std::vector<std::vector<std::string>> heads;
+    for (const auto raw : core::split(bytes, '\n')) {
+        ++number;
+        const auto line = core::trimmed(raw);
+        if (line.empty() || line.front() == '#') {
+            continue;
+        }
+        auto words = words_of(line);
+        if (words.size() > most_columns) {
+            fail(file, number, "a line with more than " + std::to_string(most_columns) + " columns");
+        }
+        auto row = numbers_of(words);
+        if (!row || row->empty()) {
+            // A head; after a restart it may come again.
+            if (rows.empty() || line.front() == '"' || line.front() == '(') {
+                heads.push_back(std::move(words));
+                if (heads.size() > 16) {
+                    fail(file, number, "no table begins within the first lines");
+                }
+                continue;
+            }
+            fail(file, number, "expected numbers, found '" + std::string(line.substr(0, 40)) + "'");
+        }
+        if (rows.empty()) {
+            for (const auto& head : heads) {
+                if (head.size() == row->size()) {
+                    monitor.columns = head;
+                } else if (head.size() == 1 && monitor.title.empty()) {
+                    monitor.title = head[0];
+                }
+            }
+            if (monitor.columns.empty() && row->size() == 2) {
+                monitor.columns = {"Iteration", heads.empty() ? "value" : heads.back().back()};
+            }
+            if (monitor.columns.empty()) {
+                fail(file, number, "a row of " + std::to_string(row->size()) + " numbers without their names");
+            }
+        }
+        if (row->size() != monitor.columns.size()) {
+            fail(file, number,
+                 "a row of " + std::to_string(row->size()) + " numbers where there are " +
+                     std::to_string(monitor.columns.size()) + " columns");
+        }
+        if (std::isnan((*row)[0])) {
+            fail(file, number, "a row without its iteration");
+        }
+        rows.add(std::move(*row));
+    }
+    if (rows.empty()) {
+        throw core::InputError("format", "there is no table of numbers in this file", {file, {}, {}, {}});
+    }
+    rows.into(monitor);
+    return monitor;
+}
+
+std::array<double, 3> triple_after(std::string_view line, std::size_t at) {
+    std::array<double, 3> result{};
+    const std::size_t open = line.find('(', at);
+    const std::size_t close = line.find(')', open == std::string_view::npos ? 0 : open);
+    if (open != std::string_view::npos && close != std::string_view::npos) {
+        const auto numbers = numbers_of(words_of(line.substr(open, close - open)));
+        for (std::size_t k = 0; numbers && k < std::min<std::size_t>(3, numbers->size()); ++k) {
+            result[k] = (*numbers)[k];
+        }
+    }
+    return result;
+}
+
+/// Six numbers, or six triples, at the end of a line that begins with a zone's name.
+void add_row(std::vector<ForceReport>& reports, std::size_t first, std::string_view line) {
+    auto words = words_of(line);
+    for (const std::size_t per_entry : {std::size_t{3}, std::size_t{1}}) {
+        const std::size_t count = 6 * per_entry;
+        if (words.size() <= count) {
+            continue;
+        }
+        const auto numbers = numbers_of({words.end() - static_cast<std::ptrdiff_t>(count), words.end()});
+        if (!numbers) {
+            continue;
+        }
+        std::string zone;
+        for (std::size_t i = 0; i + count < words.size(); ++i) {
+            zone += (i > 0 ? " " : "") + words[i];
+        }
+        if (per_entry == 3 && reports.size() < first + 3) {
+            for (std::size_t k = reports.size() - first; k < 3; ++k) {
+                reports.push_back(reports[first]);
+            }
+            for (std::size_t k = 0; k < 3; ++k) {
+                reports[first + k].direction = {};
+                reports[first + k].direction[k] = 1;
+            }
+        }
+        for (std::size_t k = 0; k < per_entry; ++k) {
+            const auto at = [&](std::size_t i) { return (*numbers)[i * per_entry + k]; };
+            reports[first + k].rows.push_back({zone, at(0), at(1), at(2), at(3), at(4), at(5)});
+        }
+        return;
+    }
+}
+
+}  // namespace
+
+const std::vector<double>* Monitor::find(const std::string& column) const {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        if (columns[c] == column) {
+            return &values[c];
+        }
+    }
+    return nullptr;
+}
+
+const ReportedForce* ForceReport::net() const {
+    for (const auto& row : rows) {
+        if (row.zone == "Net") {
+            return &row;
+        }
+    }
+    return nullptr;
+}
+
+Monitor read_monitor(const std::filesystem::path& path) {
+    const core::MappedFile file(path);
+    // A transcript has the header of its residuals on a line of its own, further down.
+    std::size_t lines = 0;
+    for (const auto line : core::split(file.bytes().substr(0, std::size_t{4} << 20), '\n')) {
+        if (is_residual_header(words_of(line)) && line.find(',') == std::string_view::npos) {
+            return read_transcript(file.name(), file.bytes());
+        }
+        if (++lines > 200000) {
+            break;
+        }
+    }
+    return read_table(file.name(), file.bytes());
+}
+
+Plot read_plot(const std::filesystem::path& path) {
+    const core::MappedFile file(path);
+    Plot plot;
+    std::int64_t number = 0;
+    bool open = false;
+    for (const auto raw : core::split(file.bytes(), '\n')) {
+        ++number;
+        const auto line = core::trimmed(raw);
+        if (line.empty()) {
+            continue;
+        }
+        const auto words = words_of(line);
+        if (line.starts_with("(title")) {
+            plot.title = words.size() > 1 ? words[1] : "";
+        } else if (line.starts_with("(labels")) {
+            plot.x_label = words.size() > 1 ? words[1] : "";
+            plot.y_label = words.size() > 2 ? words[2] : "";
+        } else if (line.starts_with("((xy/key/label")) {
+            if (open) {
+                fail(file.name(), number, "a curve begins within another");
+            }
+            plot.curves.push_back({words.size() > 1 ? words[1] : "", {}, {}});
+            open = true;
+        } else if (line.front() == ')') {
+            open = false;
+        } else {
+            const auto numbers = numbers_of(words);
+            if (!open || !numbers || numbers->size() != 2) {
+                fail(file.name(), number,
+                     "expected two numbers of a curve, found '" + std::string(line.substr(0, 40)) + "'");
+            }
+            plot.curves.back().x.push_back((*numbers)[0]);
+            plot.curves.back().y.push_back((*numbers)[1]);
+        }
+    }
+    if (open) {
+        fail(file.name(), number, "the file ends within a curve");
+    }
+    if (plot.curves.empty()) {
+        throw core::InputError("format", "there are no curves in this file", {file.name(), {}, {}, {}});
+    }
+    return plot;
+}
+
+std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
+    const core::MappedFile file(path);
+    std::vector<ForceReport> reports;
+    std::size_t first = 0;
+    bool reading = false;
+    for (const auto raw : core::split(file.bytes(), '\n')) {
+        const auto line = core::trimmed(raw);
+        if (line == "Forces" || line == "Moments" || line.starts_with("Forces - ") || line.starts_with("Moments - ")) {
+            ForceReport report;
+            report.moments = line.starts_with("Moments");
+            if (report.moments) {
+                report.centre = triple_after(line, line.find("Center"));
+                report.direction =
+                    triple_after(line, line.find("Axis") == std::string_view::npos ? line.size() : line.find("Axis"));
+            } else {
+                report.direction = triple_after(line, line.find("Direction"));
+            }
+            first = reports.size();
+            reports.push_back(report);
+            reading = true;
+        } else if (reading && !line.empty() && line.front() != '-') {
+            add_row(reports, first, line);
+            reading = !line.starts_with("Net");
+        }
+    }
+    std::erase_if(reports, [](const ForceReport& report) { return report.rows.empty(); });
+    if (reports.empty()) {
+        throw core::InputError("format", "there is no force report in this file", {file.name(), {}, {}, {}});
+    }
+    return reports;
+}
+
+}  // namespace underbody::postproc

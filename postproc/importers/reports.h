@@ -1,0 +1,70 @@
+// What a solver writes beside its fields: report files (monitors), transcripts, plots, force reports.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace underbody::postproc {
+
+/// A table of histories: the first column counts iterations or time steps, every other one is a quantity.
+/// Units are the solver's: these files do not state any.
+struct Monitor {
+    std::string file;
+    std::string title;
+    std::vector<std::string> columns;
+    std::vector<std::vector<double>> values;  ///< one list a column, all of the same length
+    core::Problems problems;                  ///< restarts that repeat iterations, values that are not finite
+
+    /// nullptr when there is no such column.
+    [[nodiscard]] const std::vector<double>* find(const std::string& column) const;
+};
+
+/// Fluent report files (.out, `*-rfile.out`), monitors of Fluent 12 and older (two columns without header), tables with
+/// one line of names (.csv), and the residuals in a transcript (.trn). Found by content. After a restart the first
+/// column repeats or jumps back: the last value counts. Throws InputError with line.
+Monitor read_monitor(const std::filesystem::path& path);
+
+/// One curve of a Fluent .xy plot. Points come in the order of the file, which need not be that of the curve.
+struct PlotCurve {
+    std::string name;
+    std::vector<double> x;
+    std::vector<double> y;
+};
+struct Plot {
+    std::string title;
+    std::string x_label;
+    std::string y_label;
+    std::vector<PlotCurve> curves;
+};
+/// Throws InputError with line.
+Plot read_plot(const std::filesystem::path& path);
+
+/// One row of a force or moment report.
+struct ReportedForce {
+    std::string zone;  ///< "Net" for the sum
+    double pressure = 0;
+    double viscous = 0;
+    double total = 0;
+    double pressure_coefficient = 0;
+    double viscous_coefficient = 0;
+    double total_coefficient = 0;
+};
+/// "Forces - Direction Vector (1 0 0)" and "Moments - Moment Center (...) Moment Axis (...)".
+struct ForceReport {
+    bool moments = false;
+    std::array<double, 3> direction{};  ///< direction of the forces, or axis of the moments
+    std::array<double, 3> centre{};     ///< of the moments
+    std::vector<ReportedForce> rows;    ///< N or N m, as the report says by default
+
+    [[nodiscard]] const ReportedForce* net() const;
+};
+/// All reports of a text; those with a vector for each entry ("(0.1 0.2 0.3)") become three reports along x, y, z.
+std::vector<ForceReport> read_force_reports(const std::filesystem::path& path);
+
+}  // namespace underbody::postproc

@@ -1,0 +1,39 @@
+// Buffers become VTK arrays without a copy. Only for .cpp files: it brings VTK's headers.
+#pragma once
+
+#include <vtkCellArray.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkDoubleArray.h>
+#include <vtkIdTypeArray.h>
+#include <vtkPoints.h>
+#include <vtkTypeInt32Array.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <string>
+#include <utility>
+
+#include "postproc/field.h"
+#include "postproc/importers/buffer.h"
+
+namespace underbody::postproc {
+
+/// VTK takes the memory over.
+template <typename Array, typename T>
+vtkSmartPointer<Array> given_to_vtk(Buffer<T>&& buffer, int components = 1) {
+    using Value = typename Array::ValueType;
+    static_assert(sizeof(Value) == sizeof(T));
+    auto array = vtkSmartPointer<Array>::New();
+    array->SetNumberOfComponents(components);
+    const auto size = static_cast<vtkIdType>(buffer.size());
+    array->SetArray(reinterpret_cast<Value*>(buffer.release()), size, 0, Array::VTK_DATA_ARRAY_DELETE);
+    return array;
+}
+
+inline vtkSmartPointer<vtkPoints> points_from(Buffer<double>&& coordinates) {
+    auto points = vtkSmartPointer<vtkPoints>::New();
+    points->SetDataType(VTK_DOUBLE);
+    points->SetData(given_to_vtk<vtkDoubleArray>(std::move(coordinates), 3));
+    return points;
+}
+
+}  // namespace underbody::postproc
