@@ -42,7 +42,7 @@ double ErrorModel::sigma(const double* point, const double* beyond) const noexce
         if (!cell_error_[k].empty()) {
             result += cell_error_[k][cell[k]] * 4 * fraction[k] * (1 - fraction[k]);
         }
-        result += beyond != nullptr ? std::abs(beyond[k]) * growth_[k] : 0;
+        result += beyond != nullptr ? std::abs(beyond[k]) * growth_[k][beyond[k] < 0 ? 0 : 1] : 0;
     }
     for (std::size_t corner = 0; corner < std::size_t{1} << n; ++corner) {
         double weight = 1;

@@ -22,8 +22,9 @@ public:
 
     /// One number a cell along axis k: the standard error of the interpolation in the middle of the cell.
     void set_cell_error(std::size_t k, std::vector<double> error);
-    /// How fast the standard deviation grows beyond the ends of axis k, per SI unit of the axis.
-    void set_growth(std::size_t k, double per_unit) { growth_[k] = per_unit; }
+    /// How fast the standard deviation grows below and above the ends of axis k, per SI unit of the axis.
+    using Growth = std::array<double, 2>;
+    void set_growth(std::size_t k, Growth per_unit) { growth_[k] = per_unit; }
 
     /// Zero everywhere?
     [[nodiscard]] bool empty() const { return sigma_.empty(); }
@@ -33,13 +34,13 @@ public:
     [[nodiscard]] const std::vector<GridAxis>& axes() const { return axes_; }
     [[nodiscard]] const std::vector<double>& node_sigma() const { return sigma_; }
     [[nodiscard]] const std::vector<double>& cell_error(std::size_t k) const { return cell_error_[k]; }
-    [[nodiscard]] double growth(std::size_t k) const { return growth_[k]; }
+    [[nodiscard]] const Growth& growth(std::size_t k) const { return growth_[k]; }
 
 private:
     std::vector<GridAxis> axes_;
     std::vector<double> sigma_;
     std::array<std::vector<double>, CubicGrid::max_axes> cell_error_;
-    std::array<double, CubicGrid::max_axes> growth_{};
+    std::array<Growth, CubicGrid::max_axes> growth_{};
 };
 
 }  // namespace underbody::tables

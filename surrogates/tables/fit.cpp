@@ -6,18 +6,75 @@
 #include <vector>
 
 #include "core/random.h"
+#include "core/text.h"
 #include "surrogates/tables/force_table_impl.h"
 
 namespace underbody::tables {
 
 using core::InputError;
 
-std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options) {
-    if (!points.full_grid) {
-        throw InputError("grid", "the points do not fill a grid, which interpolation needs" + (points.missing.empty() ? "" : ": " + points.missing),
-                         {points.table.source, {}, {}, {}}, "fit a Gaussian process, or add the missing set points");
+namespace {
+
+double root_mean_square(const std::vector<double>& misses, const std::vector<double>& where_known) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < misses.size(); ++i) {
+        if (!std::isnan(where_known[i])) {
+            sum += misses[i] * misses[i];
+            ++count;
+        }
     }
-    return fit_interpolation(points, options);
+    return count == 0 ? std::nan("") : std::sqrt(sum / static_cast<double>(count));
+}
+
+}  // namespace
+
+std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options) {
+    using Kind = FitOptions::Kind;
+    if (options.kind == Kind::gaussian_process) {
+        return fit_gaussian_process(points, options, nullptr);
+    }
+    const bool automatic = options.kind == Kind::automatic;
+    if (!points.full_grid) {
+        if (!automatic) {
+            throw InputError("grid", "the points do not fill a grid, which interpolation needs" + (points.missing.empty() ? "" : ": " + points.missing),
+                             {points.table.source, {}, {}, {}}, "fit a Gaussian process, or add the missing set points");
+        }
+        return fit_gaussian_process(points, options, nullptr);
+    }
+    auto interpolated = fit_interpolation(points, options);
+    const auto say = [&](const std::string& text) { interpolated->remarks.push_back({core::Problem::Severity::note, text, {points.table.source, {}, {}, {}}}); };
+    if (!automatic) {
+        return interpolated;
+    }
+    if (!points.has_sigma()) {
+        say("interpolated: the points fill a grid and state no errors, so they are taken as exact");
+        return interpolated;
+    }
+    if (points.x.size() > 2500 || points.x.size() < points.axes.size() + 3) {
+        say(points.x.size() > 2500 ? "interpolated: a full grid of this size needs no smoothing" : "interpolated: too few points to judge by leaving one out");
+        return interpolated;
+    }
+    const auto known = interpolation_misses(points);
+    const double of_interpolation = root_mean_square(known, known);
+    if (std::isnan(of_interpolation)) {
+        say("interpolated: no point lies inside the grid, so nothing can be left out");
+        return interpolated;
+    }
+    std::vector<double> misses;
+    auto process = fit_gaussian_process(points, options, &misses);
+    if (misses.size() != known.size()) {
+        return interpolated;
+    }
+    const double of_process = root_mean_square(misses, known);
+    const std::string scores = "leave-one-out error " + core::format_number(of_process, 3) + " " + points.unit + " by Gaussian process, " +
+                               core::format_number(of_interpolation, 3) + " " + points.unit + " by interpolation";
+    if (of_process < of_interpolation) {
+        process->remarks.push_back({core::Problem::Severity::note, "Gaussian process chosen: " + scores, {points.table.source, {}, {}, {}}});
+        return process;
+    }
+    say("interpolated: " + scores);
+    return interpolated;
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "surrogates/tables/error_model.h"
 #include "surrogates/tables/force_table.h"
 #include "surrogates/tables/set_points.h"
 
@@ -14,6 +15,17 @@ std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, cons
 
 /// A table that `export --format csv` wrote, taken back as it was; nothing when the table is not one of those (or not of this quantity).
 std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, const std::string& quantity, const FitOptions& options);
+
+/// Beyond its ends a table knows nothing but that the force may go on as steeply as it came: the larger of the steepest end slope
+/// and the mean slope over the whole axis, per unit of the axis.
+ErrorModel::Growth end_growth(const CubicGrid& grid, std::size_t k);
+
+/// Leave-one-out errors of the monotone interpolation at the inner points of a full grid (along each axis the mean prediction of the
+/// lines through the point), in the order of the points; NaN at the ends of every axis.
+std::vector<double> interpolation_misses(const SetPoints& points);
+
+/// Gaussian process, any points. `score` (may be null) gets its leave-one-out errors, in the order of the points.
+std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& points, const FitOptions& options, std::vector<double>* misses);
 
 /// Exact interpolation of a full grid.
 std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, const FitOptions& options);

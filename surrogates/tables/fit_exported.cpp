@@ -100,7 +100,7 @@ std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, c
             result->error.set_cell_error(k, facts["cell_error"][k].get<std::vector<double>>());
         }
         if (facts.contains("growth") && facts["growth"].size() == grid.size()) {
-            result->error.set_growth(k, facts["growth"][k].get<double>());
+            result->error.set_growth(k, facts["growth"][k].get<ErrorModel::Growth>());
         }
     }
     return result;

@@ -12,14 +12,16 @@ namespace underbody::tables {
 
 namespace {
 
-/// What the interpolation misses at a point of a line when that point is left out. The error in the joined cell of
-/// width H shrinks at least as the square of the width, so a cell of width h beside the point misses (h/H)^2 of it.
+/// What the interpolation misses at a point of a line when that point is left out. Smooth data would let the error of the joined cell
+/// of width H shrink with its square or faster, points that just resolve the curve only in proportion: a cell of width h
+/// beside the point is taken to miss (h/H)^1.5 of it, and no cell less than half of what is usual on its line.
 std::vector<double> cell_errors(SlopeRule rule, const std::vector<double>& x, const std::vector<double>& y) {
     const std::size_t n = x.size();
     std::vector<double> error(n - 1, 0.0);
     if (n < 3) {
         return error;
     }
+    double usual = 0;
     for (std::size_t left_out = 1; left_out + 1 < n; ++left_out) {
         std::vector<double> rest_x, rest_y;
         // Nine points around it see all that its neighbours' slopes use.
@@ -35,9 +37,18 @@ std::vector<double> cell_errors(SlopeRule rule, const std::vector<double>& x, co
         const double miss = std::abs(without.value(&x[left_out], nullptr) - y[left_out]);
         const double width = x[left_out + 1] - x[left_out - 1];
         for (const std::size_t cell : {left_out - 1, left_out}) {
-            const double share = (x[cell + 1] - x[cell]) / width;
-            error[cell] = std::max(error[cell], miss * share * share);
+            error[cell] = std::max(error[cell], miss * std::pow((x[cell + 1] - x[cell]) / width, 1.5));
         }
+        usual += miss * miss / static_cast<double>(n - 2);
+    }
+    // Where few points turn a curve sharply the misses can be small by luck: no cell is surer than a quarter of what its bend
+    // (secant differences) would move a straight line twice over; at the ends the bend is known on one side only.
+    const auto bend = [&](std::size_t i) { return std::abs((y[i + 1] - y[i]) / (x[i + 1] - x[i]) - (y[i] - y[i - 1]) / (x[i] - x[i - 1])); };
+    for (std::size_t cell = 0; cell + 1 < n; ++cell) {
+        const double left = cell > 0 ? bend(cell) : 2 * bend(1);
+        const double right = cell + 2 < n ? bend(cell + 1) : 2 * bend(n - 2);
+        const double from_bend = 0.25 * (x[cell + 1] - x[cell]) * std::max(left, right);
+        error[cell] = std::max({error[cell], 0.5 * std::pow(0.5, 1.5) * std::sqrt(usual), from_bend});
     }
     return error;
 }
@@ -67,6 +78,60 @@ std::vector<double> cell_errors(SlopeRule rule, const CubicGrid& grid, const std
 }
 
 }  // namespace
+
+std::vector<double> interpolation_misses(const SetPoints& points) {
+    const std::size_t n = points.axes.size();
+    std::vector<double> misses(points.x.size(), std::nan(""));
+    for (std::size_t node = 0; node < points.order.size(); ++node) {
+        double sum = 0;
+        bool inner = true;
+        std::size_t stride = 1;
+        for (std::size_t k = n; k-- > 0 && inner;) {
+            const auto& x = points.axes[k].points;
+            const std::size_t i = node / stride % x.size();
+            inner = i > 0 && i + 1 < x.size();
+            if (inner) {
+                std::vector<double> rest_x, rest_y;
+                for (std::size_t j = i >= 5 ? i - 5 : 0; j < std::min(x.size(), i + 6); ++j) {
+                    if (j != i) {
+                        rest_x.push_back(x[j]);
+                        rest_y.push_back(points.value[points.order[node + j * stride - i * stride]]);
+                    }
+                }
+                sum += CubicGrid({rest_x}, rest_y, SlopeRule::monotone).value(&x[i], nullptr);
+            }
+            stride *= x.size();
+        }
+        if (inner) {
+            misses[points.order[node]] = sum / static_cast<double>(n) - points.value[points.order[node]];
+        }
+    }
+    return misses;
+}
+
+ErrorModel::Growth end_growth(const CubicGrid& grid, std::size_t k) {
+    const std::size_t n = grid.dimensions();
+    std::size_t stride = 1;
+    for (std::size_t j = n; j-- > k + 1;) {
+        stride *= grid.axis(j).size();
+    }
+    const auto& x = grid.axis(k).points();
+    const double span = x.back() - x.front();
+    // Slope over the last tenth of the points, at least one cell.
+    const std::size_t m = std::max<std::size_t>(1, (x.size() - 1) / 10);
+    double low = INFINITY, high = -INFINITY, below = 0, above = 0;
+    for (std::size_t node = 0; node < grid.nodes(); ++node) {
+        const auto value = [&](std::size_t i) { return grid.hermite()[i << n]; };
+        low = std::min(low, value(node));
+        high = std::max(high, value(node));
+        if (node / stride % x.size() == 0) {
+            below = std::max(below, std::abs(value(node + m * stride) - value(node)) / (x[m] - x[0]));
+            const std::size_t last = node + (x.size() - 1) * stride;
+            above = std::max(above, std::abs(value(last) - value(last - m * stride)) / (x.back() - x[x.size() - 1 - m]));
+        }
+    }
+    return {std::max(below, (high - low) / span), std::max(above, (high - low) / span)};
+}
 
 std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, const FitOptions& options) {
     auto table = std::make_shared<ForceTable::Impl>();
@@ -98,9 +163,7 @@ std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, con
     table->error = ErrorModel(grid, std::move(sigma));
     for (std::size_t k = 0; k < n; ++k) {
         table->error.set_cell_error(k, cell_errors(table->rule, table->surface, values, k));
-        // Beyond the ends the table knows nothing but that the force may go on as steeply as it did on average.
-        const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        table->error.set_growth(k, (*high - *low) / (points.axes[k].upper - points.axes[k].lower));
+        table->error.set_growth(k, end_growth(table->surface, k));
     }
     return table;
 }

@@ -277,9 +277,10 @@ private:
             if (has_cells(k)) {
                 out_ += "    sigma += " + name_ + "_cell" + id + "[cell[" + id + "]] * " + number(4) + " * t[" + id + "] * (" + one + " - t[" + id + "]);\n";
             }
-            if (g_.error.growth(k) != 0) {
-                out_ += "    sigma += " + number(g_.error.growth(k)) + " * (result->beyond[" + id + "] < " + number(0) + " ? -result->beyond[" + id + "] : result->beyond[" +
-                        id + "]);\n";
+            const auto& growth = g_.error.growth(k);
+            if (growth[0] != 0 || growth[1] != 0) {
+                out_ += "    sigma += result->beyond[" + id + "] * (result->beyond[" + id + "] < " + number(0) + " ? " + number(-growth[0]) + " : " + number(growth[1]) +
+                        ");\n";
             }
         }
         out_ += "    result->sigma = sigma;\n";

@@ -112,7 +112,8 @@ ErrorModel mirrored_error(const ErrorModel& error, const CubicGrid& to, unsigned
     }
     ErrorModel result(carrier.points(), std::move(sigma));
     for (std::size_t k = 0; k < to.dimensions(); ++k) {
-        result.set_growth(k, error.growth(k));
+        const auto& growth = error.growth(k);
+        result.set_growth(k, (mirrored >> k & 1) != 0 ? ErrorModel::Growth{growth[1], growth[0]} : growth);
         auto cells = error.cell_error(k);
         if (!cells.empty()) {
             if ((mirrored >> k & 1) != 0) {

@@ -20,7 +20,7 @@ void export_json(const ExportGrid& grid, const std::filesystem::path& path, Expo
         "lower end: value (1-t)^2 (1+2t), slope h t (1-t)^2; for the upper end: value t^2 (3-2t), slope -h t^2 (1-t). The value is the sum over the "
         "corners of the cell and over m of hermite[node][m] times the product over the axes k of the slope function where bit k of m is set and of "
         "the value function where it is not. The last axis runs fastest in hermite and sigma. sigma: multilinear between the nodes, plus over the "
-        "axes cell_error[k][cell] * 4 t (1-t), plus growth[k] * distance outside.";
+        "axes cell_error[k][cell] * 4 t (1-t), plus growth[k][0] * distance below or growth[k][1] * distance above its ends.";
     json["axes"] = nlohmann::ordered_json::array();
     for (const auto& axis : grid.axes) {
         json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"points", axis.points}});

@@ -220,7 +220,7 @@ struct JsonTable {
             if (!j["cell_error"][k].empty()) {
                 sigma += j["cell_error"][k][cell[k]].get<double>() * 4 * t[k] * (1 - t[k]);
             }
-            sigma += j["growth"][k].get<double>() * std::abs(p[k] - x[k]);
+            sigma += j["growth"][k][p[k] < x[k] ? 0 : 1].get<double>() * std::abs(p[k] - x[k]);
         }
         double value = 0;
         for (std::size_t corner = 0; corner < std::size_t{1} << n; ++corner) {
