@@ -81,7 +81,7 @@ TrainingOptions training_options(const Arguments& a, const SeparatedPlant& plant
         "--excitation");
     o.gap_lower = std::max(plant.lower, plant.contact_gap);
     o.gap_upper = plant.upper;
-    for (const core::NamedRange& r : core::parse_ranges(a.region)) {
+    for (const core::NamedRange& r : a.region.empty() ? std::vector<core::NamedRange>{} : core::parse_ranges(a.region)) {
         if (r.name == "gap") {
             o.gap_lower = r.lower;
             o.gap_upper = r.upper;
@@ -158,7 +158,7 @@ struct Learned {
 
 Learned learn_model(const Arguments& a, const dynamics::Model& declared, LearnOptions options, Shell& shell) {
     dynamics::Conditions held;
-    for (const core::NamedValue& v : core::parse_assignments(a.conditions)) {
+    for (const core::NamedValue& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         held.set(v.name, v.value);
     }
     const SeparatedPlant plant = separate(declared, held);

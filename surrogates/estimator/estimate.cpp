@@ -357,7 +357,7 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
             if (u.restart[k]) {
                 runner.start(y, e);
             } else {
-                const double input = u.input.empty() ? 0 : 0.5 * (u.input[k - 1] + u.input[k]);
+                const double input = u.input.empty() ? 0 : u.input[k - 1];
                 runner.step(y, &input, e);
             }
             FilterEstimate row;
@@ -393,6 +393,7 @@ RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& rema
         return s;
     }
     s.input = run.values("input_force");
+    s.held = true;  // as dynamics::predict takes recorded inputs
     std::size_t bridged = 0, last = s.input.size();
     for (std::size_t i = 0; i < s.input.size(); ++i) {
         if (!std::isfinite(s.input[i])) {

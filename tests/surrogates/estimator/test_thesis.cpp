@@ -1,0 +1,48 @@
+// The study of the thesis: every figure is drawn, every claim has numbers and a verdict that the physics page stands behind.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "surrogates/estimator/thesis.h"
+
+namespace underbody::estimator {
+namespace {
+
+TEST(ThesisStudy, DrawsItsFiguresAndJudgesItsClaims) {
+    const ThesisStudy study = thesis_study();
+    for (const char* number : {"7-7a", "7-7b", "7-13", "7-14", "7-15", "7-16", "7-17a", "7-17b", "7-18a", "7-18b", "7-19a", "7-19b", "7-20",
+                               "7-21", "7-22", "8-2a", "8-2b", "8-3", "8-5", "8-6", "8-7a", "8-7d", "8-8", "8-9a", "8-9b", "8-10", "8-11",
+                               "8-12", "8-13", "8-14a", "8-14b", "8-14d", "8-14e", "8-14f"}) {
+        const core::Figure* f = study.figure(number);
+        ASSERT_NE(f, nullptr) << number;
+        EXPECT_FALSE(f->title.empty());
+        for (const auto& curve : f->curves) {
+            EXPECT_EQ(curve.x.size(), curve.y.size());
+            EXPECT_FALSE(curve.x.empty());
+            EXPECT_TRUE(std::all_of(curve.y.begin(), curve.y.end(), [](double v) { return std::isfinite(v); })) << number << curve.name;
+        }
+    }
+    const auto verdict = [&](const std::string& id) {
+        for (const Claim& c : study.claims) {
+            if (c.id == id) {
+                return c.verdict;
+            }
+        }
+        return std::string("missing");
+    };
+    EXPECT_EQ(verdict("7-rank"), "reproduces");
+    EXPECT_EQ(verdict("7-methods"), "does not reproduce");
+    EXPECT_EQ(verdict("7.28"), "does not reproduce");
+    EXPECT_EQ(verdict("8-observable"), "does not reproduce");
+    EXPECT_EQ(verdict("8-14-hold"), "reproduces");
+    EXPECT_EQ(verdict("8.55"), "does not reproduce");
+    EXPECT_GE(study.claims.size(), 25U);
+    EXPECT_EQ(study.claims_table().rows(), study.claims.size());
+    for (const Claim& c : study.claims) {
+        EXPECT_FALSE(c.computed.empty()) << c.id;
+    }
+}
+
+}  // namespace
+}  // namespace underbody::estimator
