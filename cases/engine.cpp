@@ -203,7 +203,7 @@ StudyResults run_study(const Study& study, const RunOptions& options, core::Prog
         {0.25, "pictures", run_pictures},      {0.40, "mesh uncertainty", run_meshes},
         {0.42, "verification", run_verifications}, {0.45, "force tables", run_tables},
         {0.55, "comparison", run_comparisons}, {0.60, "stability maps", run_regions},
-        {0.75, "measurements", run_measurements}, {0.97, "report", write_report},
+        {0.75, "measurements", run_measurements}, {0.90, "thesis", run_thesis},            {0.97, "report", write_report},
     };
     for (const auto& stage : stages) {
         progress.report(stage.at, stage.what);

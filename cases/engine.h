@@ -80,6 +80,7 @@ void run_tables(Engine& engine);        // step_tables.cpp
 void run_comparisons(Engine& engine);   // step_tables.cpp
 void run_regions(Engine& engine);       // step_regions.cpp
 void run_measurements(Engine& engine);  // step_measurements.cpp
+void run_thesis(Engine& engine);        // step_thesis.cpp
 void write_report(Engine& engine);      // report.cpp
 
 }  // namespace underbody::cases

@@ -1,6 +1,7 @@
 // The report: one self-contained page that a person wants to read, from the documents of the steps.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cases/code_version.h"
@@ -48,6 +49,7 @@ public:
         comparisons();
         regions();
         measurements();
+        thesis();
         trust();
         loads();
         provenance();
@@ -77,7 +79,9 @@ private:
 
     void key_figures() {
         std::vector<HtmlPage::Fact> facts;
-        facts.push_back({std::to_string(engine_.results.loads.rows()), "CFD cases"});
+        if (!engine_.study.cases.empty()) {
+            facts.push_back({std::to_string(engine_.results.loads.rows()), "CFD cases"});
+        }
         for (const auto& spec : engine_.study.verifications) {
             if (const auto check = document("verify/" + spec.name)) {
                 facts.push_back({percent(number_in(*check, "worst"), 2), "largest difference from the solver's own " + spec.name});
@@ -107,7 +111,18 @@ private:
                 facts.push_back({names.empty() ? text_in(*found, "verdict") : names, "missing in the model of '" + spec.name + "'"});
             }
         }
-        page_.facts(facts);
+        if (const auto thesis = document("thesis/thesis")) {
+            std::map<std::string, int> counts;
+            for (const auto& claim : thesis->value("claims", json::array())) {
+                ++counts[text_in(claim, "verdict")];
+            }
+            for (const auto& [verdict, count] : counts) {
+                facts.push_back({std::to_string(count), "claims: " + verdict});
+            }
+        }
+        if (!facts.empty()) {
+            page_.facts(facts);
+        }
     }
 
     void failures() {
@@ -299,7 +314,30 @@ private:
         }
     }
 
+    void thesis() {
+        const auto found = document("thesis/thesis");
+        if (!found) {
+            return;
+        }
+        page_.section("The thesis, claim by claim");
+        std::vector<std::vector<std::string>> rows;
+        for (const auto& claim : found->value("claims", json::array())) {
+            rows.push_back({text_in(claim, "where"), text_in(claim, "statement"), text_in(claim, "computed"), text_in(claim, "verdict")});
+        }
+        page_.table({"where", "the thesis says", "we compute", "verdict"}, rows);
+        page_.section("Its figures, drawn from our own runs");
+        for (const auto& name : found->value("figure_names", json::array())) {
+            if (auto picture = figure("thesis/" + name.get<std::string>())) {
+                picture->caption = "Figure " + name.get<std::string>() + ". " + picture->caption;
+                page_.picture(*picture);
+            }
+        }
+    }
+
     void trust() {
+        if (engine_.study.cases.empty()) {
+            return;
+        }
         page_.section("How far to trust the numbers");
         for (const auto& spec : engine_.study.verifications) {
             if (const auto check = document("verify/" + spec.name)) {

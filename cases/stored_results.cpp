@@ -95,6 +95,9 @@ StudyResults stored_results(const Study& study, const RunOptions& options) {
             }
         }
     }
+    if (study.thesis) {
+        reader.document(results, "thesis", "thesis");
+    }
     return results;
 }
 

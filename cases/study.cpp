@@ -302,6 +302,7 @@ Study Study::open(const fs::path& path) {
         spec.discover = table.boolean_or("discover", false);
         study.measurements.push_back(std::move(spec));
     }
+    study.thesis = root.boolean_or("thesis", false);
     std::set<std::string> verifications;
     for (const auto& table : root.tables("verify")) {
         VerifySpec spec;

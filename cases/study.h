@@ -131,6 +131,7 @@ public:
     std::vector<RegionSpec> regions;
     std::vector<MeasurementSpec> measurements;
     std::vector<VerifySpec> verifications;
+    bool thesis = false;              ///< redraw the thesis's figures of chapters 7 and 8 and check its statements
     std::vector<CompareSpec> comparisons;
 
     [[nodiscard]] std::vector<const Case*> select(const Conditions& where) const;
