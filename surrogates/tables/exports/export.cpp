@@ -20,6 +20,9 @@ const std::vector<Exporter>& exporters() {
         {{"c", ".h", "C99 header: no heap, no library, constant time; double or float"}, export_c},
         {{"csv", ".csv", "table with slopes and error that this program reads back exactly"}, export_csv},
         {{"json", ".json", "grid, Hermite data and error"}, export_json},
+        {{"mat", ".mat", "MATLAB and Octave: .mat and a .m that looks it up"}, export_mat},
+        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"}, export_jsbsim},
+        {{"fmu", ".fmu", "FMU 2.0, model exchange and co-simulation, Linux x86-64, source included"}, export_fmu},
     };
     return all;
 }

@@ -46,5 +46,8 @@ std::string identifier(const std::string& text);
 void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_csv(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_json(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
+void export_mat(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
+void export_jsbsim(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
+void export_fmu(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 
 }  // namespace underbody::tables

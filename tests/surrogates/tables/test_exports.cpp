@@ -1,10 +1,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <dlfcn.h>
+#include <matio.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -311,6 +316,205 @@ TEST(Exports, InTheDownFrameTurnTheirSigns) {
         const double down = -v;
         EXPECT_NEAR(ned.value(&down), -table.value(&v), 1e-14);
         EXPECT_NEAR(ned.at({&down, 1}).slope[0], table.at({&v, 1}).slope[0], 1e-12);
+    }
+}
+
+TEST(Exports, OfMatReadBackByMatioAndByOctave) {
+    core::TemporaryFolder folder;
+    const auto table = two_axes();
+    const auto result = export_table(table, "mat", folder.path() / "lift.mat");
+    ASSERT_EQ(result.files.size(), 2u);
+    mat_t* file = Mat_Open((folder.path() / "lift.mat").c_str(), MAT_ACC_RDONLY);
+    ASSERT_NE(file, nullptr);
+    std::map<std::string, std::vector<double>> read;
+    for (const char* name : {"x0", "x1", "hermite", "sigma", "growth", "cell_error0", "cell_error1"}) {
+        matvar_t* v = Mat_VarRead(file, name);
+        ASSERT_NE(v, nullptr) << name;
+        const auto* data = static_cast<const double*>(v->data);
+        read[name].assign(data, data + v->nbytes / sizeof(double));
+        Mat_VarFree(v);
+    }
+    Mat_Close(file);
+    // Through the JSON evaluator, which knows the same words.
+    nlohmann::json j;
+    for (int k = 0; k < 2; ++k) {
+        j["axes"].push_back({{"points", read["x" + std::to_string(k)]}});
+        j["cell_error"].push_back(read["cell_error" + std::to_string(k)]);
+        j["growth"].push_back({read["growth"][k], read["growth"][2 + k]});
+    }
+    j["sigma"] = read["sigma"];
+    for (std::size_t i = 0; i < read["hermite"].size(); i += 4) {
+        j["hermite"].push_back(std::vector<double>(&read["hermite"][i], &read["hermite"][i] + 4));
+    }
+    const JsonTable by_matio{j};
+    const auto points = random_points(table, 2000);
+    for (int i = 0; i < 2000; ++i) {
+        const auto e = table.at({&points[i * 2], 2});
+        const auto [value, sigma] = by_matio.at(&points[i * 2]);
+        ASSERT_NEAR(value, e.value, 1e-12 * (1 + std::abs(e.value)));
+        ASSERT_NEAR(sigma, e.sigma, 1e-12 * (1 + e.sigma));
+    }
+    if (!have("octave-cli") && !have("octave")) {
+        GTEST_SKIP() << "skipped: Octave is not installed; the .m file was not run";
+    }
+    core::write_file(folder.path() / "points.bin", {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(double)});
+    const std::string script = "f=fopen('points.bin');p=reshape(fread(f,'double'),2,[])';fclose(f);[v,s,g,o]=lift_at(p);f=fopen('out.bin','w');fwrite(f,[v s g o]','double');fclose(f);";
+    ASSERT_EQ(std::system(("cd '" + folder.path().string() + "' && $(command -v octave-cli || command -v octave) --eval \"" + script + "\" > /dev/null 2>&1").c_str()), 0);
+    const std::string bytes = core::read_file(folder.path() / "out.bin");
+    ASSERT_EQ(bytes.size(), 2000 * 5 * sizeof(double));
+    std::vector<double> out(10000);
+    std::memcpy(out.data(), bytes.data(), bytes.size());
+    for (int i = 0; i < 2000; ++i) {
+        const auto e = table.at({&points[i * 2], 2});
+        ASSERT_NEAR(out[5 * i], e.value, 1e-12 * (1 + std::abs(e.value)));
+        ASSERT_NEAR(out[5 * i + 3], e.sigma, 1e-12 * (1 + e.sigma));
+    }
+}
+
+/// Linear interpolation in the tables of the XML as JSBSim does it, for one or two axes.
+TEST(Exports, OfJsbsimInterpolateLinearlyWithinWhatTheySay) {
+    core::TemporaryFolder folder;
+    for (const auto& table : {one_axis(), two_axes()}) {
+        const auto result = export_table(table, "jsbsim", folder.path() / "t.xml");
+        const std::string xml = core::read_file(folder.path() / "t.xml");
+        const std::size_t at = xml.find("<function name=\"underbody/lift_force\">");
+        ASSERT_NE(at, std::string::npos);
+        const std::size_t begin = xml.find("<tableData>", at) + 11;
+        std::istringstream lines(xml.substr(begin, xml.find("</tableData>", begin) - begin));
+        const std::size_t n = table.axes().size();
+        std::vector<double> x, y;
+        std::vector<std::vector<double>> f;
+        std::string line;
+        std::getline(lines, line);
+        while (std::getline(lines, line)) {
+            std::istringstream numbers(line);
+            std::vector<double> row;
+            for (double v; numbers >> v;) {
+                row.push_back(v);
+            }
+            if (row.empty()) {
+                continue;
+            }
+            if (n == 2 && y.empty()) {
+                y = row;
+                continue;
+            }
+            x.push_back(row.front());
+            f.emplace_back(row.begin() + 1, row.end());
+        }
+        const auto cell = [](const std::vector<double>& points, double v, double& t) {
+            std::size_t i = 0;
+            while (i + 2 < points.size() && v >= points[i + 1]) {
+                ++i;
+            }
+            t = std::clamp((v - points[i]) / (points[i + 1] - points[i]), 0.0, 1.0);
+            return i;
+        };
+        const auto points = random_points(table, 10000);
+        for (int i = 0; i < 10000; ++i) {
+            const double* p = &points[i * n];
+            double t = 0, u = 0;
+            const std::size_t a = cell(x, p[0], t);
+            double value = 0;
+            if (n == 1) {
+                value = (1 - t) * f[a][0] + t * f[a + 1][0];
+            } else {
+                const std::size_t b = cell(y, p[1], u);
+                value = (1 - t) * ((1 - u) * f[a][b] + u * f[a][b + 1]) + t * ((1 - u) * f[a + 1][b] + u * f[a + 1][b + 1]);
+            }
+            ASSERT_NEAR(value, table.value(p), 1.6 * result.error);
+        }
+        EXPECT_LT(result.error, 0.01);
+    }
+}
+
+/// Entries of a zip of stored files.
+std::map<std::string, std::string> unzipped(const std::string& zip) {
+    std::map<std::string, std::string> entries;
+    const auto number = [&](std::size_t at, int bytes) {
+        std::size_t v = 0;
+        for (int i = bytes; i-- > 0;) {
+            v = v << 8 | static_cast<unsigned char>(zip[at + i]);
+        }
+        return v;
+    };
+    for (std::size_t at = 0; number(at, 4) == 0x04034b50;) {
+        const std::size_t size = number(at + 18, 4), name = number(at + 26, 2);
+        entries[zip.substr(at + 30, name)] = zip.substr(at + 30 + name, size);
+        at += 30 + name + size;
+    }
+    return entries;
+}
+
+TEST(Exports, OfFmuAreLoadedAndEvaluateLikeTheTable) {
+    core::TemporaryFolder folder;
+    for (const auto& table : {one_axis(), two_axes()}) {
+        const auto path = folder.path() / "lift.fmu";
+        const auto result = export_table(table, "fmu", path);
+        const std::string first = core::read_file(path);
+        export_table(table, "fmu", path);
+        EXPECT_TRUE(first == core::read_file(path)) << "the same table must give the same bytes";
+        if (have("python3")) {
+            EXPECT_EQ(std::system(("python3 -c \"import zipfile,xml.dom.minidom as m;z=zipfile.ZipFile('" + path.string() +
+                                   "');assert z.testzip() is None;m.parseString(z.read('modelDescription.xml'))\"").c_str()),
+                      0);
+        }
+        const auto entries = unzipped(first);
+        ASSERT_TRUE(entries.contains("modelDescription.xml"));
+        ASSERT_TRUE(entries.contains("sources/fmu.c"));
+        if (!entries.contains("binaries/linux64/lift_force.so")) {
+            GTEST_SKIP() << "skipped: no C compiler, so the FMU has no binary";
+        }
+        const std::string& xml = entries.at("modelDescription.xml");
+        const std::size_t g = xml.find("guid=\"") + 6;
+        const std::string guid = xml.substr(g, xml.find('"', g) - g);
+        core::write_file(folder.path() / "lift.so", entries.at("binaries/linux64/lift_force.so"));
+        void* library = ::dlopen((folder.path() / "lift.so").c_str(), RTLD_NOW | RTLD_LOCAL);
+        ASSERT_NE(library, nullptr) << ::dlerror();
+        using Instantiate = void* (*)(const char*, int, const char*, const char*, const void*, int, int);
+        using Real = int (*)(void*, const unsigned*, std::size_t, double*);
+        using Step = int (*)(void*, double, double, int);
+        using Plain = int (*)(void*);
+        using Free = void (*)(void*);
+        const auto instantiate = reinterpret_cast<Instantiate>(::dlsym(library, "fmi2Instantiate"));
+        const auto get = reinterpret_cast<Real>(::dlsym(library, "fmi2GetReal"));
+        const auto set = reinterpret_cast<Real>(::dlsym(library, "fmi2SetReal"));
+        const auto step = reinterpret_cast<Step>(::dlsym(library, "fmi2DoStep"));
+        const auto enter = reinterpret_cast<Plain>(::dlsym(library, "fmi2EnterInitializationMode"));
+        const auto leave = reinterpret_cast<Plain>(::dlsym(library, "fmi2ExitInitializationMode"));
+        const auto free_instance = reinterpret_cast<Free>(::dlsym(library, "fmi2FreeInstance"));
+        ASSERT_NE(instantiate, nullptr);
+        EXPECT_EQ(instantiate("x", 1, "wrong", "", nullptr, 0, 0), nullptr);
+        const std::size_t n = table.axes().size();
+        for (const int type : {0, 1}) {  // model exchange, co-simulation
+            void* instance = instantiate("x", type, guid.c_str(), "", nullptr, 0, 0);
+            ASSERT_NE(instance, nullptr);
+            ASSERT_EQ(enter(instance), 0);
+            ASSERT_EQ(leave(instance), 0);
+            auto points = random_points(table, 10000);
+            const unsigned inputs[4] = {0, 1, 2, 3};
+            for (int i = 0; i < 10000; ++i) {
+                ASSERT_EQ(set(instance, inputs, n, &points[i * n]), 0);
+                if (type == 1) {
+                    ASSERT_EQ(step(instance, 0.1 * i, 0.1, 1), 0);
+                }
+                std::vector<unsigned> outputs;
+                for (unsigned k = 0; k < n + 3; ++k) {
+                    outputs.push_back(static_cast<unsigned>(n) + k);
+                }
+                std::vector<double> out(n + 3);
+                ASSERT_EQ(get(instance, outputs.data(), outputs.size(), out.data()), 0);
+                const auto e = table.at({&points[i * n], n});
+                ASSERT_NEAR(out[0], e.value, 1e-12 * (1 + std::abs(e.value)));
+                ASSERT_NEAR(out[1 + n], e.sigma, 1e-12 * (1 + e.sigma));
+                ASSERT_EQ(out[2 + n] != 0, e.outside);
+                for (std::size_t k = 0; k < n; ++k) {
+                    ASSERT_NEAR(out[1 + k], e.slope[k], 1e-9 * (1 + std::abs(e.slope[k])));
+                }
+            }
+            free_instance(instance);
+        }
+        ::dlclose(library);
     }
 }
 

@@ -1,0 +1,342 @@
+// FMU 2.0 for model exchange and co-simulation: the C header of the table with the standard's functions around it.
+// FMI Specification 2.0.4. Inputs are the axes; outputs the value, its slopes, its error and whether the point lies outside.
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/text.h"
+#include "surrogates/tables/exports/export_grid.h"
+#include "surrogates/tables/exports/zip.h"
+
+extern char** environ;
+
+namespace underbody::tables {
+
+namespace {
+
+/// The functions of the standard; NAME, AXES, OUTPUTS and EVALUATE are written in front.
+constexpr const char* wrapper = R"(
+#include <stdlib.h>
+#include <string.h>
+
+/* Types of FMI 2.0 (fmi2TypesPlatform.h, fmi2FunctionTypes.h). */
+typedef void* fmi2Component;
+typedef void* fmi2ComponentEnvironment;
+typedef void* fmi2FMUstate;
+typedef unsigned int fmi2ValueReference;
+typedef double fmi2Real;
+typedef int fmi2Integer;
+typedef int fmi2Boolean;
+typedef char fmi2Char;
+typedef const fmi2Char* fmi2String;
+typedef char fmi2Byte;
+typedef enum { fmi2OK, fmi2Warning, fmi2Discard, fmi2Error, fmi2Fatal, fmi2Pending } fmi2Status;
+typedef enum { fmi2ModelExchange, fmi2CoSimulation } fmi2Type;
+typedef enum { fmi2DoStepStatus, fmi2PendingStatus, fmi2LastSuccessfulTime, fmi2Terminated } fmi2StatusKind;
+typedef struct {
+    void (*logger)(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String, ...);
+    void* (*allocateMemory)(size_t, size_t);
+    void (*freeMemory)(void*);
+    void (*stepFinished)(fmi2ComponentEnvironment, fmi2Status);
+    fmi2ComponentEnvironment componentEnvironment;
+} fmi2CallbackFunctions;
+typedef struct {
+    fmi2Boolean newDiscreteStatesNeeded, terminateSimulation, nominalsOfContinuousStatesChanged, valuesOfContinuousStatesChanged, nextEventTimeDefined;
+    fmi2Real nextEventTime;
+} fmi2EventInfo;
+
+#if defined(__GNUC__)
+#define EXPORTED __attribute__((visibility("default")))
+#else
+#define EXPORTED
+#endif
+#define UNUSED(x) (void)(x)
+
+typedef struct {
+    double input[AXES];
+    double time;
+} Instance;
+
+EXPORTED const char* fmi2GetTypesPlatform(void) { return "default"; }
+EXPORTED const char* fmi2GetVersion(void) { return "2.0"; }
+
+EXPORTED fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources, const fmi2CallbackFunctions* functions,
+                                       fmi2Boolean visible, fmi2Boolean logging) {
+    Instance* instance;
+    UNUSED(name); UNUSED(type); UNUSED(resources); UNUSED(functions); UNUSED(visible); UNUSED(logging);
+    if (guid == NULL || strcmp(guid, GUID) != 0) {
+        return NULL;
+    }
+    instance = (Instance*)malloc(sizeof(Instance));
+    if (instance != NULL) {
+        memcpy(instance->input, start_values, sizeof(start_values));
+        instance->time = 0;
+    }
+    return instance;
+}
+EXPORTED void fmi2FreeInstance(fmi2Component c) { free(c); }
+EXPORTED fmi2Status fmi2Reset(fmi2Component c) {
+    memcpy(((Instance*)c)->input, start_values, sizeof(start_values));
+    return fmi2OK;
+}
+
+EXPORTED fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
+    const Instance* instance = (const Instance*)c;
+    double out[OUTPUTS];
+    size_t i;
+    int evaluated = 0;
+    for (i = 0; i < n; ++i) {
+        if (vr[i] < AXES) {
+            value[i] = instance->input[vr[i]];
+        } else if (vr[i] < AXES + OUTPUTS) {
+            if (!evaluated) {
+                evaluate(instance->input, out);
+                evaluated = 1;
+            }
+            value[i] = out[vr[i] - AXES];
+        } else {
+            return fmi2Error;
+        }
+    }
+    return fmi2OK;
+}
+EXPORTED fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
+    size_t i;
+    for (i = 0; i < n; ++i) {
+        if (vr[i] >= AXES) {
+            return fmi2Error;
+        }
+        ((Instance*)c)->input[vr[i]] = value[i];
+    }
+    return fmi2OK;
+}
+EXPORTED fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
+                                                 size_t n_known, const fmi2Real d_known[], fmi2Real d_unknown[]) {
+    double out[OUTPUTS];
+    size_t i, j;
+    evaluate(((const Instance*)c)->input, out);
+    for (i = 0; i < n_unknown; ++i) {
+        d_unknown[i] = 0;
+        if (unknown[i] != AXES) {
+            return fmi2Error; /* slopes are known for the value only */
+        }
+        for (j = 0; j < n_known; ++j) {
+            if (known[j] >= AXES) {
+                return fmi2Error;
+            }
+            d_unknown[i] += out[1 + known[j]] * d_known[j];
+        }
+    }
+    return fmi2OK;
+}
+
+#define NOTHING(name, parameters, unused) EXPORTED fmi2Status name parameters { unused; return fmi2OK; }
+#define NONE_OF(name, type) \
+    EXPORTED fmi2Status name(fmi2Component c, const fmi2ValueReference vr[], size_t n, type value) { UNUSED(c); UNUSED(vr); UNUSED(value); return n == 0 ? fmi2OK : fmi2Error; }
+NONE_OF(fmi2GetInteger, fmi2Integer*)
+NONE_OF(fmi2GetBoolean, fmi2Boolean*)
+NONE_OF(fmi2GetString, fmi2String*)
+NONE_OF(fmi2SetInteger, const fmi2Integer*)
+NONE_OF(fmi2SetBoolean, const fmi2Boolean*)
+NONE_OF(fmi2SetString, const fmi2String*)
+NOTHING(fmi2SetDebugLogging, (fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]), UNUSED(c); UNUSED(on); UNUSED(n); UNUSED(categories))
+NOTHING(fmi2SetupExperiment, (fmi2Component c, fmi2Boolean t_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean s_defined, fmi2Real stop),
+        UNUSED(t_defined); UNUSED(tolerance); UNUSED(s_defined); UNUSED(stop); ((Instance*)c)->time = start)
+NOTHING(fmi2EnterInitializationMode, (fmi2Component c), UNUSED(c))
+NOTHING(fmi2ExitInitializationMode, (fmi2Component c), UNUSED(c))
+NOTHING(fmi2Terminate, (fmi2Component c), UNUSED(c))
+
+/* The state is the inputs and the time. */
+EXPORTED fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
+    if (*state == NULL) {
+        *state = malloc(sizeof(Instance));
+    }
+    if (*state == NULL) {
+        return fmi2Error;
+    }
+    memcpy(*state, c, sizeof(Instance));
+    return fmi2OK;
+}
+EXPORTED fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) { memcpy(c, state, sizeof(Instance)); return fmi2OK; }
+EXPORTED fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) { UNUSED(c); free(*state); *state = NULL; return fmi2OK; }
+EXPORTED fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) { UNUSED(c); UNUSED(state); *size = sizeof(Instance); return fmi2OK; }
+EXPORTED fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
+    UNUSED(c);
+    if (size < sizeof(Instance)) {
+        return fmi2Error;
+    }
+    memcpy(bytes, state, sizeof(Instance));
+    return fmi2OK;
+}
+EXPORTED fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
+    if (size < sizeof(Instance) || fmi2GetFMUstate(c, state) != fmi2OK) {
+        return fmi2Error;
+    }
+    memcpy(*state, bytes, sizeof(Instance));
+    return fmi2OK;
+}
+
+/* Model exchange: no states, no events. */
+NOTHING(fmi2EnterEventMode, (fmi2Component c), UNUSED(c))
+NOTHING(fmi2EnterContinuousTimeMode, (fmi2Component c), UNUSED(c))
+NOTHING(fmi2SetTime, (fmi2Component c, fmi2Real time), ((Instance*)c)->time = time)
+EXPORTED fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) { UNUSED(c); memset(info, 0, sizeof(*info)); return fmi2OK; }
+EXPORTED fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_set, fmi2Boolean* event, fmi2Boolean* terminate) {
+    UNUSED(c); UNUSED(no_set);
+    *event = 0;
+    *terminate = 0;
+    return fmi2OK;
+}
+#define NO_STATES(name, type) EXPORTED fmi2Status name(fmi2Component c, type x, size_t n) { UNUSED(c); UNUSED(x); return n == 0 ? fmi2OK : fmi2Error; }
+NO_STATES(fmi2SetContinuousStates, const fmi2Real*)
+NO_STATES(fmi2GetContinuousStates, fmi2Real*)
+NO_STATES(fmi2GetDerivatives, fmi2Real*)
+NO_STATES(fmi2GetEventIndicators, fmi2Real*)
+NO_STATES(fmi2GetNominalsOfContinuousStates, fmi2Real*)
+
+/* Co-simulation: the outputs follow the inputs at once. */
+EXPORTED fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_set) { UNUSED(no_set); ((Instance*)c)->time = time + step; return fmi2OK; }
+NOTHING(fmi2CancelStep, (fmi2Component c), UNUSED(c))
+EXPORTED fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Integer order[], const fmi2Real value[]) {
+    UNUSED(c); UNUSED(vr); UNUSED(order); UNUSED(value);
+    return n == 0 ? fmi2OK : fmi2Error;
+}
+EXPORTED fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Integer order[], fmi2Real value[]) {
+    UNUSED(c); UNUSED(vr); UNUSED(order); UNUSED(value);
+    return n == 0 ? fmi2OK : fmi2Error;
+}
+EXPORTED fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status* value) { UNUSED(c); UNUSED(s); *value = fmi2OK; return fmi2Discard; }
+EXPORTED fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real* value) {
+    if (s == fmi2LastSuccessfulTime) {
+        *value = ((Instance*)c)->time;
+        return fmi2OK;
+    }
+    return fmi2Discard;
+}
+EXPORTED fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer* value) { UNUSED(c); UNUSED(s); *value = 0; return fmi2Discard; }
+EXPORTED fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean* value) { UNUSED(c); UNUSED(s); *value = 0; return fmi2Discard; }
+EXPORTED fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String* value) { UNUSED(c); UNUSED(s); *value = ""; return fmi2Discard; }
+)";
+
+std::string source(const ExportGrid& grid, const std::string& guid) {
+    const std::size_t n = grid.axes.size();
+    std::string text = "/* " + grid.origin.front() + "; FMU 2.0, model exchange and co-simulation. */\n#include \"table.h\"\n";
+    text += "#define GUID \"" + guid + "\"\n#define AXES " + std::to_string(n) + "u\n#define OUTPUTS " + std::to_string(n + 3) + "u\n";
+    text += "static const double start_values[AXES] = {";
+    for (std::size_t k = 0; k < n; ++k) {
+        text += (k == 0 ? "" : ", ") + core::format_number(0.5 * (grid.axes[k].points.front() + grid.axes[k].points.back()));
+    }
+    text += "};\nstatic void evaluate(const double* input, double* out) {\n    " + grid.name + "_real point[AXES];\n    " + grid.name + "_result r;\n    unsigned k;\n";
+    text += "    for (k = 0; k < AXES; ++k) {\n        point[k] = (" + grid.name + "_real)input[k];\n    }\n    " + grid.name + "_at(point, &r);\n";
+    text += "    out[0] = (double)r.value;\n    for (k = 0; k < AXES; ++k) {\n        out[1 + k] = (double)r.slope[k];\n    }\n";
+    text += "    out[1 + AXES] = (double)r.sigma;\n    out[2 + AXES] = r.outside;\n}\n";
+    return text + wrapper;
+}
+
+std::string description(const ExportGrid& grid, const std::string& guid) {
+    const std::size_t n = grid.axes.size();
+    std::string origin;
+    for (const auto& line : grid.origin) {
+        origin += (origin.empty() ? "" : ". ") + line;
+    }
+    const auto escaped = [](const std::string& t) { return core::escape_html(t); };
+    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"2.0\" modelName=\"" + grid.name + "\" guid=\"" + guid +
+                      "\" description=\"" + escaped(origin) + "\" generationTool=\"Underbody\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">\n";
+    for (const char* kind : {"ModelExchange", "CoSimulation"}) {
+        xml += std::string("  <") + kind + " modelIdentifier=\"" + grid.name + "\" providesDirectionalDerivative=\"true\" canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\"" +
+               (kind[0] == 'C' ? " canHandleVariableCommunicationStepSize=\"true\"" : "") + ">\n    <SourceFiles>\n      <File name=\"fmu.c\"/>\n    </SourceFiles>\n  </" + kind + ">\n";
+    }
+    std::vector<std::string> units;
+    std::string variables;
+    std::size_t reference = 0;
+    const auto variable = [&](const std::string& name, const std::string& unit, const std::string& what, bool input, double start) {
+        variables += "    <ScalarVariable name=\"" + name + "\" valueReference=\"" + std::to_string(reference++) + "\" description=\"" + escaped(what) + "\" causality=\"" +
+                     (input ? "input" : "output") + "\" variability=\"continuous\">\n      <Real unit=\"" + escaped(unit) + "\"" +
+                     (input ? " start=\"" + core::format_number(start) + "\"" : "") + "/>\n    </ScalarVariable>\n";
+        for (const auto& known : units) {
+            if (known == unit) {
+                return;
+            }
+        }
+        units.push_back(unit);
+    };
+    for (const auto& axis : grid.axes) {
+        variable(axis.name, axis.unit, "axis, " + core::format_number(axis.points.front(), 6) + " to " + core::format_number(axis.points.back(), 6), true,
+                 0.5 * (axis.points.front() + axis.points.back()));
+    }
+    variable(grid.quantity, grid.unit, grid.meaning.empty() ? grid.quantity : grid.meaning, false, 0);
+    for (const auto& axis : grid.axes) {
+        variable(grid.quantity + "_per_" + axis.name, grid.unit + "/(" + axis.unit + ")", "slope", false, 0);
+    }
+    variable(grid.quantity + "_sigma", grid.unit, "one standard deviation", false, 0);
+    variable(grid.quantity + "_outside", "1", "1 when the point lies outside the table", false, 0);
+    xml += "  <UnitDefinitions>\n";
+    for (const auto& unit : units) {
+        xml += "    <Unit name=\"" + escaped(unit) + "\"/>\n";
+    }
+    xml += "  </UnitDefinitions>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"/>\n  <ModelVariables>\n" + variables + "  </ModelVariables>\n  <ModelStructure>\n";
+    for (const char* list : {"Outputs", "InitialUnknowns"}) {
+        xml += std::string("    <") + list + ">\n";
+        for (std::size_t i = n + 1; i <= reference; ++i) {
+            std::string inputs;
+            for (std::size_t k = 1; k <= n; ++k) {
+                inputs += (k == 1 ? "" : " ") + std::to_string(k);
+            }
+            xml += "      <Unknown index=\"" + std::to_string(i) + "\" dependencies=\"" + inputs + "\"/>\n";
+        }
+        xml += std::string("    </") + list + ">\n";
+    }
+    return xml + "  </ModelStructure>\n</fmiModelDescription>\n";
+}
+
+/// Compiles in a folder with relative names, so that the bytes do not depend on where. False when there is no compiler or it failed.
+bool compiled(const std::filesystem::path& folder) {
+    std::string script = "cd \"$0\" && exec cc -std=c99 -O2 -fPIC -shared -fvisibility=hidden -Wl,--build-id=none -s -o table.so fmu.c";
+    std::string shell = "sh";
+    std::string option = "-c";
+    std::string where = folder.string();
+    char* arguments[] = {shell.data(), option.data(), script.data(), where.data(), nullptr};
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+    pid_t child = 0;
+    const int failed = posix_spawnp(&child, "sh", &actions, nullptr, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    int status = 1;
+    return failed == 0 && waitpid(child, &status, 0) == child && status == 0;
+}
+
+}  // namespace
+
+void export_fmu(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result) {
+    core::TemporaryFolder folder("underbody-fmu");
+    ExportResult ignored;
+    export_c(grid, folder.path() / "table.h", ignored);
+    const std::string header = core::read_file(folder.path() / "table.h");
+    const std::string hash = core::content_hash(header);
+    const std::string guid = "{" + hash.substr(0, 8) + "-" + hash.substr(8, 4) + "-" + hash.substr(12, 4) + "-" + hash.substr(16, 4) + "-" + hash.substr(20, 12) + "}";
+    const std::string code = source(grid, guid);
+    core::write_file(folder.path() / "fmu.c", code);
+    std::vector<std::pair<std::string, std::string>> entries = {{"modelDescription.xml", description(grid, guid)}};
+#if defined(__x86_64__)
+    if (compiled(folder.path())) {
+        entries.emplace_back("binaries/linux64/" + grid.name + ".so", core::read_file(folder.path() / "table.so"));
+    } else {
+        result.remarks.push_back({core::Problem::Severity::warning,
+                                  "there is no working C compiler 'cc': the FMU holds its source only (sources/), no binary for Linux", {}});
+    }
+#else
+    result.remarks.push_back({core::Problem::Severity::warning, "this machine is not x86-64: the FMU holds its source only (sources/)", {}});
+#endif
+    entries.emplace_back("sources/fmu.c", code);
+    entries.emplace_back("sources/table.h", header);
+    core::write_file(path, zip_archive(entries, "Underbody"));
+}
+
+}  // namespace underbody::tables
