@@ -100,6 +100,7 @@ class Painter {
 public:
     explicit Painter(const Scene& scene) : scene_(scene), axes_(scene.camera) {
         range_ = drawn_range(scene.range.value_or(range_of_values()), scene.colours);
+        unit_ = std::min(scene.height / 800.0, scene.width / 1100.0);
     }
 
     std::string paint() {
@@ -110,8 +111,8 @@ public:
         if (window_->SupportsOpenGL() == 0) {
             throw core::SystemError("display", "the display cannot draw (no OpenGL)", {}, "install the Debian package libgl1-mesa-dri, or unset DISPLAY so that Xvfb is used");
         }
-        const double right = has_bar() ? 1 - bar_space / scene_.width : 1;
-        const double top = 1 - (scene_.title.empty() ? 0 : title_space / scene_.height);
+        const double right = has_bar() ? 1 - bar_space * unit_ / scene_.width : 1;
+        const double top = 1 - (scene_.title.empty() ? 0 : title_space * unit_ / scene_.height);
         main_->SetViewport(0, 0, right, top);
         main_->SetBackground(1, 1, 1);
         width_ = right * scene_.width;
@@ -138,8 +139,11 @@ public:
     }
 
 private:
-    static constexpr double bar_space = 150;
-    static constexpr double title_space = 84;
+    // Measures in units of 1/800 of the height: words stay readable when the picture is shown small.
+    static constexpr double bar_space = 196;
+    static constexpr double title_space = 108;
+    static constexpr double title_size = 36;
+    static constexpr double number_size = 25;
 
     [[nodiscard]] bool has_bar() const { return !scene_.value_name.empty(); }
 
@@ -341,25 +345,23 @@ private:
 
     // ---- words and scales, in pixels from the lower left ----
 
-    void text(const std::string& words, double x, double y, int size, bool bold, double grey, int align = 0) {
+    /// `x`, `y` in pixels, `size` in units; `align`: -1 left, 0 centred, 1 right.
+    void text(const std::string& words, double x, double y, double size, bool bold, double grey, int align) {
         vtkNew<vtkTextActor> actor;
         actor->SetInput(words.c_str());
         actor->SetPosition(x, y);
         auto* property = actor->GetTextProperty();
         property->SetFontFamilyToArial();
-        property->SetFontSize(size);
+        property->SetFontSize(std::max(6, static_cast<int>(std::lround(size * unit_))));
         property->SetBold(bold ? 1 : 0);
         property->SetColor(grey, grey, grey);
-        property->SetJustification(align < 0 ? VTK_TEXT_LEFT : align > 0 ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
-        if (align == 2) {
-            property->SetJustificationToCentered();
-        }
-        property->SetVerticalJustificationToBottom();
+        property->SetJustification(align < 0 ? VTK_TEXT_LEFT : align > 0 ? VTK_TEXT_RIGHT : VTK_TEXT_CENTERED);
+        property->SetVerticalJustificationToCentered();
         over_->AddViewProp(actor);
     }
 
     void shapes(const std::vector<Point>& points, const std::vector<std::vector<vtkIdType>>& polygons, const std::vector<std::vector<vtkIdType>>& lines,
-                const std::vector<std::array<double, 3>>& colours, float width = 1.5F) {
+                const std::vector<std::array<double, 3>>& colours, double width) {
         vtkNew<vtkPolyData> data;
         data->SetPoints(points_of(points));
         vtkNew<vtkUnsignedCharArray> rgb;
@@ -382,14 +384,14 @@ private:
         mapper->SetInputData(data);
         vtkNew<vtkActor2D> actor;
         actor->SetMapper(mapper);
-        actor->GetProperty()->SetLineWidth(width);
+        actor->GetProperty()->SetLineWidth(static_cast<float>(std::max(1.0, width * unit_)));
         over_->AddViewProp(actor);
     }
 
     void write_words() {
         if (!scene_.title.empty()) {
-            text(scene_.title, 24, scene_.height - 44, 24, true, 0.1);
-            text(scene_.subtitle, 24, scene_.height - 72, 17, false, 0.35);
+            text(scene_.title, 24 * unit_, scene_.height - 34 * unit_, title_size, true, 0.1, -1);
+            text(scene_.subtitle, 24 * unit_, scene_.height - 78 * unit_, number_size, false, 0.35, -1);
         }
         if (has_bar()) {
             draw_bar();
@@ -403,10 +405,10 @@ private:
     }
 
     void draw_bar() {
-        const double left = scene_.width - bar_space + 30;
-        const double wide = 24;
-        const double bottom = 0.14 * scene_.height;
-        const double top = scene_.height - title_space - 60;
+        const double left = scene_.width - (bar_space - 30) * unit_;
+        const double wide = 30 * unit_;
+        const double bottom = 0.12 * scene_.height;
+        const double top = scene_.height - (title_space + 76) * unit_;
         constexpr int steps = 128;
         std::vector<Point> points;
         std::vector<std::vector<vtkIdType>> polygons;
@@ -419,47 +421,47 @@ private:
             polygons.push_back({first, first + 1, first + 2, first + 3});
             colours.push_back(colour_at(scene_.colours, (i + 0.5) / steps));
         }
-        shapes(points, polygons, {}, colours);
+        shapes(points, polygons, {}, colours, 1);
         std::vector<Point> frame = {{left, bottom, 0}, {left + wide, bottom, 0}, {left + wide, top, 0}, {left, top, 0}};
         std::vector<std::vector<vtkIdType>> lines = {{0, 1, 2, 3, 0}};
         std::vector<std::array<double, 3>> greys = {{0.3, 0.3, 0.3}};
         for (const double tick : round_ticks(range_.first, range_.second, 6)) {
             const double y = bottom + (top - bottom) * (tick - range_.first) / (range_.second - range_.first);
             const auto first = static_cast<vtkIdType>(frame.size());
-            frame.insert(frame.end(), {{left + wide, y, 0}, {left + wide + 6, y, 0}});
+            frame.insert(frame.end(), {{left + wide, y, 0}, {left + wide + 8 * unit_, y, 0}});
             lines.push_back({first, first + 1});
             greys.push_back({0.3, 0.3, 0.3});
-            text(core::format_number(std::abs(tick) < 1e-12 * (range_.second - range_.first) ? 0.0 : tick, 6), left + wide + 11, y - 9, 16, false, 0.15);
+            const bool zero = std::abs(tick) < 1e-12 * (range_.second - range_.first);
+            text(core::format_number(zero ? 0.0 : tick, 5), left + wide + 14 * unit_, y, number_size, false, 0.15, -1);
         }
-        shapes(frame, {}, lines, greys, 1.2F);
-        const std::string unit_text = scene_.value_unit.empty() || scene_.value_unit == "1" ? std::string() : " [" + scene_.value_unit + "]";
-        const std::string heading = scene_.value_name + unit_text;
-        if (heading.size() > 15 && !unit_text.empty()) {  // too wide for one line
-            text(scene_.value_name, scene_.width - 14, top + 36, 16, true, 0.15, 1);
-            text(unit_text, scene_.width - 14, top + 16, 16, true, 0.15, 1);
-        } else {
-            text(heading, scene_.width - 14, top + 20, 17, true, 0.15, 1);
+        shapes(frame, {}, lines, greys, 1.2);
+        const double right = scene_.width - 16 * unit_;
+        text(scene_.value_name, right, top + 58 * unit_, number_size, true, 0.15, 1);
+        if (!scene_.value_unit.empty() && scene_.value_unit != "1") {
+            text("[" + scene_.value_unit + "]", right, top + 28 * unit_, number_size, false, 0.15, 1);
         }
     }
 
     void draw_scale() {
         const double pixels_per_metre = height_ / (2 * scale_);
-        const double length = round_below(0.22 * width_ / pixels_per_metre);
+        const double length = round_below(0.24 * width_ / pixels_per_metre);
         const double pixels = length * pixels_per_metre;
-        const double x = 28;
-        const double y = 26;
-        shapes({{x, y, 0}, {x + pixels, y, 0}, {x, y - 5, 0}, {x, y + 5, 0}, {x + pixels, y - 5, 0}, {x + pixels, y + 5, 0}}, {}, {{0, 1}, {2, 3}, {4, 5}},
-               {{0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}}, 2);
-        const std::string label = length < 0.9995e-3   ? core::format_number(length * 1e6, 3) + " um"
-                                  : length < 0.9995    ? core::format_number(length * 1e3, 3) + " mm"
-                                                       : core::format_number(length, 3) + " m";
-        text(label, x + pixels + 10, y - 9, 16, false, 0.1);
+        const double x = 28 * unit_;
+        const double y = 30 * unit_;
+        const double tick = 7 * unit_;
+        const std::array<double, 3> black = {0.1, 0.1, 0.1};
+        shapes({{x, y, 0}, {x + pixels, y, 0}, {x, y - tick, 0}, {x, y + tick, 0}, {x + pixels, y - tick, 0}, {x + pixels, y + tick, 0}}, {}, {{0, 1}, {2, 3}, {4, 5}},
+               {black, black, black}, 2.5);
+        const std::string label = length < 0.9995e-3 ? core::format_number(length * 1e6, 3) + " um"
+                                  : length < 0.9995  ? core::format_number(length * 1e3, 3) + " mm"
+                                                     : core::format_number(length, 3) + " m";
+        text(label, x + pixels + 14 * unit_, y, number_size, false, 0.1, -1);
     }
 
     void draw_axes() {
-        const double x = width_ - 74;
-        const double y = 80;
-        const double length = 42;
+        const double x = width_ - 88 * unit_;
+        const double y = 92 * unit_;
+        const double length = 50 * unit_;
         std::vector<Point> points = {{x, y, 0}};
         std::vector<std::vector<vtkIdType>> lines;
         std::vector<std::array<double, 3>> colours;
@@ -469,16 +471,17 @@ private:
             axis[k] = 1;
             const double dx = dot(axis, axes_.right);
             const double dy = dot(axis, axes_.up);
-            if (std::hypot(dx, dy) < 0.12) {
+            const double seen = std::hypot(dx, dy);
+            if (seen < 0.12) {
                 continue;  // it looks at the viewer
             }
             points.push_back({x + length * dx, y + length * dy, 0});
             lines.push_back({0, static_cast<vtkIdType>(points.size() - 1)});
             colours.push_back(tints[k]);
-            const double reach = (length + 13) / std::hypot(dx, dy) * std::hypot(dx, dy);
-            text(scene_.axis_names[k], x + reach * dx + 10 * dx / std::hypot(dx, dy) * (1 - std::hypot(dx, dy)), y + reach * dy - 9, 15, false, 0.2, 2);
+            const double reach = length + 16 * unit_ / seen;
+            text(scene_.axis_names[k], x + reach * dx, y + reach * dy, 22, false, 0.2, 0);
         }
-        shapes(points, {}, lines, colours, 2.2F);
+        shapes(points, {}, lines, colours, 2.6);
     }
 
     std::string png() {
@@ -503,7 +506,7 @@ private:
     const Scene& scene_;
     ViewAxes axes_;
     std::pair<double, double> range_;
-    double width_ = 0, height_ = 0, scale_ = 1;
+    double width_ = 0, height_ = 0, scale_ = 1, unit_ = 1;
     vtkNew<vtkRenderWindow> window_;
     vtkNew<vtkRenderer> back_;
     vtkNew<vtkRenderer> main_;

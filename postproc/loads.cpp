@@ -1,8 +1,12 @@
 #include "postproc/loads.h"
 
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +65,7 @@ Mirror mirror_from(const std::string& text) {
 /// One zone, ready to be summed.
 struct Part {
     const Zone* zone = nullptr;
+    vtkSmartPointer<vtkPolyData> polygons;
     std::unique_ptr<SurfaceArrays> surface;
     FaceValues values;
     std::vector<double> own_pressure;
@@ -115,6 +120,13 @@ private:
         };
         axes_.forward = unit(options_.forward, "forward");
         axes_.up = unit(options_.up, "up");
+        if (field_.dimension == 2) {
+            note("two-dimensional: forces and moments are per metre depth");
+            if (std::abs(axes_.up[2]) > 0.5) {
+                axes_.up = {0, 1, 0};
+                note("two-dimensional: up is +y");
+            }
+        }
         if (std::abs(dot(axes_.forward, axes_.up)) > 1e-6) {
             throw core::UsageError("usage", "forward and up are not perpendicular", {}, "for instance --forward +x --up +z");
         }
@@ -135,7 +147,62 @@ private:
 
     // ---- what is summed ----
 
-    static bool is_surface(const Zone& zone) { return zone.surface != nullptr && zone.surface->GetNumberOfPolys() > 0; }
+    static bool has_polygons(const Zone& zone) { return zone.surface->GetNumberOfPolys() > 0; }
+    [[nodiscard]] bool is_surface(const Zone& zone) const {
+        return zone.surface != nullptr && (has_polygons(zone) || (field_.dimension == 2 && zone.surface->GetNumberOfLines() > 0));
+    }
+
+    /// The lines of a plane case as a strip of one metre depth: sums over it are forces per metre. The normal of a line
+    /// n0 -> n1 that looks into the fluid is z x t.
+    static vtkSmartPointer<vtkPolyData> extruded(const Zone& zone) {
+        vtkPolyData& lines = *zone.surface;
+        const vtkIdType nodes = lines.GetNumberOfPoints();
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        for (const double z : {-0.5, 0.5}) {
+            for (vtkIdType i = 0; i < nodes; ++i) {
+                double x[3];
+                lines.GetPoint(i, x);
+                points->InsertNextPoint(x[0], x[1], z);
+            }
+        }
+        vtkNew<vtkCellArray> quads;
+        vtkNew<vtkIdList> ids;
+        std::vector<vtkIdType> from;  // the line each quad came from
+        for (vtkIdType c = 0; c < lines.GetNumberOfLines(); ++c) {
+            lines.GetLines()->GetCellAtId(c, ids);
+            for (vtkIdType i = 0; i + 1 < ids->GetNumberOfIds(); ++i) {
+                const vtkIdType a = ids->GetId(i);
+                const vtkIdType b = ids->GetId(i + 1);
+                quads->InsertNextCell({a, a + nodes, b + nodes, b});
+                from.push_back(lines.GetNumberOfVerts() + c);
+            }
+        }
+        auto result = vtkSmartPointer<vtkPolyData>::New();
+        result->SetPoints(points);
+        result->SetPolys(quads);
+        for (const char* name : {"pressure", "kinematic_pressure", "pressure_absolute", "wall_shear"}) {
+            if (auto* on_lines = lines.GetCellData()->GetArray(name)) {
+                auto copy = vtk::TakeSmartPointer(on_lines->NewInstance());
+                copy->SetName(name);
+                copy->SetNumberOfComponents(on_lines->GetNumberOfComponents());
+                for (const auto line : from) {
+                    copy->InsertNextTuple(line, on_lines);
+                }
+                result->GetCellData()->AddArray(copy);
+            }
+            if (auto* on_nodes = lines.GetPointData()->GetArray(name)) {
+                auto copy = vtk::TakeSmartPointer(on_nodes->NewInstance());
+                copy->SetName(name);
+                copy->SetNumberOfComponents(on_nodes->GetNumberOfComponents());
+                for (vtkIdType i = 0; i < 2 * nodes; ++i) {
+                    copy->InsertNextTuple(i % nodes, on_nodes);
+                }
+                result->GetPointData()->AddArray(copy);
+            }
+        }
+        return result;
+    }
 
     [[nodiscard]] std::vector<const Zone*> wanted_zones() const {
         std::vector<const Zone*> zones;
@@ -143,7 +210,7 @@ private:
         const bool walls = std::any_of(field_.zones.begin(), field_.zones.end(), [](const Zone& z) { return z.kind == ZoneKind::wall; });
         for (const auto& zone : field_.zones) {
             names.push_back(zone.name);
-            const bool by_kind = walls ? zone.kind == ZoneKind::wall : zone.surface != nullptr && zone.volume == nullptr && zone.kind != ZoneKind::line;
+            const bool by_kind = walls ? zone.kind == ZoneKind::wall : zone.surface != nullptr && zone.volume == nullptr && (zone.kind != ZoneKind::line || field_.dimension == 2);
             if (options_.zones.empty() ? by_kind : matches_any(options_.zones, zone.name)) {
                 zones.push_back(&zone);
             }
@@ -167,7 +234,8 @@ private:
             }
             Part part;
             part.zone = zone;
-            part.surface = std::make_unique<SurfaceArrays>(*zone->surface);
+            part.polygons = has_polygons(*zone) ? zone->surface : extruded(*zone);
+            part.surface = std::make_unique<SurfaceArrays>(*part.polygons);
             take_pressure(part);
             take_shear(part);
             parts_.push_back(std::move(part));
@@ -188,21 +256,21 @@ private:
         }
     }
 
-    static vtkDataArray* array_of(const Zone& zone, const char* name, bool& on_nodes) {
+    static vtkDataArray* array_of(const Part& part, const char* name, bool& on_nodes) {
         on_nodes = false;
-        if (auto* array = zone.surface->GetCellData()->GetArray(name)) {
+        if (auto* array = part.polygons->GetCellData()->GetArray(name)) {
             return array;
         }
         on_nodes = true;
-        return zone.surface->GetPointData()->GetArray(name);
+        return part.polygons->GetPointData()->GetArray(name);
     }
 
     void take_pressure(Part& part) {
         bool on_nodes = true;
         double scale = 1;
-        vtkDataArray* array = array_of(*part.zone, "pressure", on_nodes);
+        vtkDataArray* array = array_of(part, "pressure", on_nodes);
         if (array == nullptr) {
-            array = array_of(*part.zone, "kinematic_pressure", on_nodes);
+            array = array_of(part, "kinematic_pressure", on_nodes);
             const auto density = options_.references.density ? options_.references.density : field_.density;
             if (array != nullptr && !density) {
                 throw InputError("missing", "zone '" + part.zone->name + "' has p/rho instead of a pressure, and the file does not say the density", place(),
@@ -211,7 +279,7 @@ private:
             scale = density.value_or(1);
         }
         if (array == nullptr) {
-            array = array_of(*part.zone, "pressure_absolute", on_nodes);
+            array = array_of(part, "pressure_absolute", on_nodes);
         }
         if (array == nullptr) {
             std::vector<std::string> names;
@@ -232,7 +300,7 @@ private:
 
     void take_shear(Part& part) {
         bool on_nodes = true;
-        vtkDataArray* array = array_of(*part.zone, "wall_shear", on_nodes);
+        vtkDataArray* array = array_of(part, "wall_shear", on_nodes);
         if (array == nullptr || array->GetNumberOfComponents() != 3) {
             warn("zone '" + part.zone->name + "' has no wall shear vector: its viscous part is left out");
             return;
@@ -446,7 +514,7 @@ private:
         for (const auto& part : parts_) {
             zones.push_back({part.zone->name, part.surface.get(), part.sums, part.zone->normals_into_fluid});
         }
-        const Facing facing = settle_facing(zones, mirror_.axis, half_reference_);
+        const Facing facing = settle_facing(zones, mirror_.axis < 0 && field_.dimension == 2 ? 2 : mirror_.axis, half_reference_);
         result_.orientation = facing.how;
         result_.problems.insert(result_.problems.end(), facing.problems.begin(), facing.problems.end());
         for (std::size_t i = 0; i < parts_.size(); ++i) {

@@ -1,9 +1,11 @@
 #include "postproc/loads_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/text.h"
 #include "core/units.h"
 
 namespace underbody::postproc {
@@ -41,13 +43,114 @@ std::string si_unit_of(const std::string& name, const std::string& written) {
     return written.empty() ? "1" : core::si_unit(written);
 }
 
+/// The six named loads of a result.
+std::vector<LoadsColumn> six(const LoadsResult& result) {
+    auto row = table_row(result);
+    row.resize(6);
+    return row;
+}
+
+/// What must agree for two cases to be one case on two meshes.
+std::string set_point_of(const LoadsCase& one) {
+    std::string key;
+    for (const auto& [name, value] : one.texts) {
+        if (name != "mesh") {
+            key += name + "=" + value + ";";
+        }
+    }
+    const auto loads = six(one.loads);
+    for (const auto& [name, value] : one.numbers) {
+        const bool load = std::any_of(loads.begin(), loads.end(), [&](const LoadsColumn& c) { return c.name == name; });
+        if (!load && core::find_quantity(name) != nullptr) {
+            key += name + "=" + core::format_number(value, 9) + ";";
+        }
+    }
+    return key;
+}
+
+double scatter_of(const LoadsCase& one, const std::string& name) { return value_of(one.numbers, name + "_scatter", 0.0); }
+
+LoadsCase study_of(const std::vector<const LoadsCase*>& group, const std::string& column) {
+    const LoadsCase* finest = group.front();
+    for (const LoadsCase* one : group) {
+        if (value_of(one->numbers, column, 0.0) > value_of(finest->numbers, column, 0.0)) {
+            finest = one;
+        }
+    }
+    LoadsCase result = *finest;
+    const auto names = six(finest->loads);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::vector<MeshValue> values;
+        for (const LoadsCase* one : group) {
+            values.push_back({mesh_size(value_of(one->numbers, column, 0.0)), six(one->loads)[i].value});
+        }
+        double mesh = 0;
+        if (values.size() > 1) {
+            result.meshes.emplace_back(names[i].name, mesh_uncertainty(values));
+            mesh = result.meshes.back().second.standard_uncertainty;
+        }
+        const double scatter = scatter_of(*finest, names[i].name);
+        if (values.size() > 1 || scatter > 0) {
+            result.sigmas.emplace_back(names[i].name, combined(std::vector<double>{mesh, scatter}));
+        }
+    }
+    return result;
+}
+
 }  // namespace
+
+std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const std::string& column) {
+    std::vector<std::pair<std::string, std::vector<const LoadsCase*>>> groups;
+    for (const auto& one : cases) {
+        const bool has = std::any_of(one.numbers.begin(), one.numbers.end(), [&](const auto& n) { return n.first == column; });
+        if (!has) {
+            std::vector<std::string> names;
+            for (const auto& number : one.numbers) {
+                names.push_back(number.first);
+            }
+            throw core::InputError("missing", "no number of cells '" + column + "' is known of this case", {one.file, {}, {}, {}}, core::did_you_mean(column, names));
+        }
+        const std::string key = set_point_of(one);
+        auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == key; });
+        if (found == groups.end()) {
+            groups.push_back({key, {}});
+            found = groups.end() - 1;
+        }
+        found->second.push_back(&one);
+    }
+    std::vector<LoadsCase> result;
+    for (const auto& group : groups) {
+        result.push_back(study_of(group.second, column));
+    }
+    return result;
+}
+
+std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases) {
+    std::vector<Comparison> result;
+    for (const auto& one : cases) {
+        const double lift = value_of(one.numbers, "lift_force", one.loads.named.lift_force);
+        const double drag = value_of(one.numbers, "drag_force", one.loads.named.drag_force);
+        const double side = value_of(one.numbers, "side_force", one.loads.named.side_force);
+        const double force = std::hypot(lift, drag, side);
+        const double length = std::sqrt(std::max(one.loads.area, 0.0));
+        for (const auto& load : table_row(one.loads)) {
+            const bool stated = std::any_of(one.numbers.begin(), one.numbers.end(), [&](const auto& n) { return n.first == load.name; });
+            if (!stated || load.name == "closure") {
+                continue;
+            }
+            const double scale = load.unit == "N m" ? force * length : force;
+            const double other = value_of(one.numbers, load.name, 0.0);
+            result.push_back({one.file, load.name, load.value, other, scale > 0 ? std::abs(load.value - other) / scale : 0});
+        }
+    }
+    return result;
+}
 
 core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<std::pair<std::string, std::string>>& written_units) {
     core::Table table;
     const std::vector<LoadsColumn> loads = cases.empty() ? std::vector<LoadsColumn>() : table_row(cases.front().loads);
     const auto free_name = [&](const std::string& name) {
-        const bool taken = name == "file" || std::any_of(loads.begin(), loads.end(), [&](const LoadsColumn& c) { return c.name == name; });
+        const bool taken = name == "file" || name == "closure" || std::any_of(loads.begin(), loads.end(), [&](const LoadsColumn& c) { return c.name == name || c.name + "_sigma" == name; });
         return taken ? name + "_stated" : name;
     };
     for (const auto& name : names_in(cases, [](const LoadsCase& c) -> const auto& { return c.texts; })) {
@@ -71,6 +174,14 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
             values.push_back(table_row(one.loads)[i].value);
         }
         table.add_numbers(loads[i].name, loads[i].unit, std::move(values));
+        const auto has_sigma = [&](const LoadsCase& c) { return std::any_of(c.sigmas.begin(), c.sigmas.end(), [&](const auto& s) { return s.first == loads[i].name; }); };
+        if (std::any_of(cases.begin(), cases.end(), has_sigma)) {
+            std::vector<double> sigmas;
+            for (const auto& one : cases) {
+                sigmas.push_back(value_of(one.sigmas, loads[i].name, std::numeric_limits<double>::quiet_NaN()));
+            }
+            table.add_numbers(loads[i].name + "_sigma", loads[i].unit, std::move(sigmas));
+        }
     }
     std::vector<std::string> files;
     for (const auto& one : cases) {
@@ -90,6 +201,15 @@ nlohmann::json loads_table_json(const std::vector<LoadsCase>& cases) {
         }
         for (const auto& [name, value] : one.numbers) {
             entry["conditions"][name] = value;
+        }
+        if (!one.sigmas.empty()) {
+            entry["sigma"] = nlohmann::json::object();
+            for (const auto& [name, value] : one.sigmas) {
+                entry["sigma"][name] = value;
+            }
+        }
+        for (const auto& [name, study] : one.meshes) {
+            entry["mesh_uncertainty"][name] = study;
         }
         files.push_back(std::move(entry));
     }

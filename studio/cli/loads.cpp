@@ -23,6 +23,7 @@ struct Options {
     std::string manifest, out;
     std::string reference, base = "*base*", forward = "+x", up = "+z", symmetry, fluid = "automatic";
     std::string density, speed, length, width, height, reference_pressure;
+    std::string mesh_study, check;
     int stations = 0;
     bool accept_problems = false;
     FieldOptions field;
@@ -97,6 +98,27 @@ void print(Shell& shell, const postproc::LoadsResult& result) {
     shell.print("sides: " + result.orientation);
 }
 
+/// The loads against those that the manifest states; exit code 4 when one is further off than allowed.
+int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double allowed) {
+    const auto comparisons = postproc::compare_with_stated(cases);
+    if (comparisons.empty()) {
+        throw core::InputError("missing", "nothing to check against: the manifest states no loads", {}, "columns such as lift_force, drag_force, pitch_moment");
+    }
+    double worst = 0;
+    int failed = 0;
+    for (const auto& one : comparisons) {
+        worst = std::max(worst, one.of_force);
+        if (one.of_force > allowed) {
+            ++failed;
+            shell.warn(one.file + ": " + one.quantity + " is " + core::format_number(one.value, 5) + ", stated " + core::format_number(one.stated, 5) + ": " +
+                       core::format_number(100 * one.of_force, 3) + " % of the force apart");
+        }
+    }
+    shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " + core::format_number(100 * worst, 3) + " % of the force apart, " +
+               std::to_string(failed) + " beyond " + core::format_number(100 * allowed, 3) + " %");
+    return failed > 0 ? check_failed : done;
+}
+
 int run(Shell& shell, const Options& given) {
     const Batch batch = find_files(given.files, given.manifest);
     if (batch.files.empty()) {
@@ -112,8 +134,17 @@ int run(Shell& shell, const Options& given) {
         read.surfaces_only = true;
         const postproc::Field field = postproc::read_field(file.path, read, shell.progress());
         shell.show(field.problems);
-        cases.push_back({file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress())});
+        cases.push_back({file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {}, {}});
         shell.show(cases.back().loads.problems);
+    }
+    const int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
+    if (!given.mesh_study.empty()) {
+        cases = postproc::mesh_studies(cases, given.mesh_study);
+        for (const auto& one : cases) {
+            for (const auto& [name, study] : one.meshes) {
+                shell.detail(one.file + ": " + name + ": " + study.text);
+            }
+        }
     }
     const bool table = batch.files.size() > 1 || !given.manifest.empty() || !given.out.empty();
     if (!given.out.empty()) {
@@ -129,7 +160,7 @@ int run(Shell& shell, const Options& given) {
         text.pop_back();
         shell.print(text);
     }
-    return done;
+    return verdict;
 }
 
 }  // namespace
@@ -152,6 +183,8 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("--length", o->length, "for coefficients (default: of the bounding box)");
     command->add_option("--width", o->width, "for coefficients");
     command->add_option("--height", o->height, "for coefficients");
+    command->add_option("--mesh-study", o->mesh_study, "condition with the number of cells: cases that differ in it alone become one, with NAME_sigma")->type_name("COLUMN");
+    command->add_option("--check", o->check, "compare with the loads that the manifest states; exit code 4 when further apart than this share of the force (0.01, \"1 %\")");
     command->add_option("--stations", o->stations, "running integral along the body in so many steps (--json)")->check(CLI::Range(0, 10000));
     command->add_flag("--accept-problems", o->accept_problems, "go on although the file has errors such as faces without area");
     o->field.add_to(*command);
@@ -161,7 +194,8 @@ void add_loads_command(CLI::App& app, Shell& shell) {
         "  underbody loads body.csv --zones 'hull*,base' --reference \"0,0,5 mm\" --json\n"
         "  underbody loads case.cas.h5 --density \"998 kg/m^3\" --speed \"0.5 m/s\" --length \"203.2 mm\"\n"
         "  underbody loads 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --symmetry y --out loads.csv\n"
-        "  underbody loads --manifest forces.csv --symmetry y");
+        "  underbody loads --manifest forces.csv --symmetry y --check 0.01\n"
+        "  underbody loads --manifest forces.csv --symmetry y --mesh-study cells --out loads.csv");
     shell.on(command, [&shell, o] { return run(shell, *o); });
 }
 

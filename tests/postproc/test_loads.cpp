@@ -388,9 +388,69 @@ TEST(Loads, GiveCoefficientsAndTheRunningIntegral) {
     EXPECT_EQ(json["pressure"]["force"].size(), 3U);
 }
 
+TEST(Loads, OfAPlaneCaseArePerMetreDepth) {
+    // A circle of lines, p = -rho g y: buoyancy per metre is rho g times the polygon's area.
+    constexpr int count = 90;
+    for (const bool known : {true, false}) {
+        Zone zone;
+        zone.name = "cylinder";
+        zone.kind = ZoneKind::wall;
+        zone.normals_into_fluid = known;
+        zone.surface = vtkSmartPointer<vtkPolyData>::New();
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        vtkNew<vtkCellArray> lines;
+        vtkNew<vtkDoubleArray> pressure;
+        pressure->SetName("pressure");
+        for (int i = 0; i < count; ++i) {
+            const double at = 2 * M_PI * i / count;
+            const double next = 2 * M_PI * (i + 1) / count;
+            points->InsertNextPoint(0.1 * std::cos(at), 0.1 * std::sin(at), 0);
+            // z x t looks out of the circle when it is run through clockwise.
+            lines->InsertNextCell({static_cast<vtkIdType>((i + 1) % count), static_cast<vtkIdType>(i)});
+            pressure->InsertNextValue(-rho * g * 0.05 * (std::sin(at) + std::sin(next)));
+        }
+        zone.surface->SetPoints(points);
+        zone.surface->SetLines(lines);
+        zone.surface->GetCellData()->AddArray(pressure);
+        zone.arrays = {{"pressure", "Pa", "SV_P", "", Location::faces, 1}};
+        Field field = field_of({zone});
+        field.dimension = 2;
+        const auto result = loads(field, about({}));
+        const double area = 0.5 * count * 0.01 * std::sin(2 * M_PI / count);
+        EXPECT_NEAR(result.total.force[1], rho * g * area, 1e-9);
+        EXPECT_NEAR(result.named.lift_force, rho * g * area, 1e-9);
+        EXPECT_LT(result.closure, 1e-12);
+        EXPECT_EQ(result.values_from, "faces");
+    }
+}
+
+TEST(LoadsTable, MakesOneCaseOfItsMeshes) {
+    const auto with_lift = [](double cells, double lift, double gap) {
+        LoadsCase one;
+        one.file = "cells-" + std::to_string(cells);
+        one.numbers = {{"gap", gap}, {"cells", cells}, {"lift_force", lift}, {"lift_force_scatter", 0.003}};
+        one.texts = {{"variant", "ellipse"}, {"mesh", "any"}};
+        one.loads.named.lift_force = lift;
+        return one;
+    };
+    const auto studies = mesh_studies({with_lift(57280, 0.274, 0.005), with_lift(374400, 0.242, 0.005), with_lift(138544, 0.270, 0.005), with_lift(138544, 0.4, 0.002)});
+    ASSERT_EQ(studies.size(), 2U);
+    EXPECT_EQ(studies[0].loads.named.lift_force, 0.242);
+    EXPECT_EQ(studies[0].meshes[0].second.verdict, MeshVerdict::diverging);
+    EXPECT_NEAR(studies[0].sigmas[0].second, std::hypot(0.032 / std::sqrt(3), 0.003), 1e-12);
+    EXPECT_NEAR(studies[1].sigmas[0].second, 0.003, 1e-12);
+    const core::Table table = loads_table(studies);
+    EXPECT_NEAR(table.numbers("lift_force_sigma")[0], studies[0].sigmas[0].second, 1e-15);
+    EXPECT_THROW(mesh_studies(studies, "clls"), core::InputError);
+    const auto comparisons = compare_with_stated(studies);
+    ASSERT_EQ(comparisons.size(), 2U);
+    EXPECT_EQ(comparisons[0].of_force, 0);
+}
+
 TEST(LoadsTable, HasOneRowACaseWithItsConditions) {
     const auto result = loads(box(false, false));
-    const core::Table table = loads_table({{"a.csv", {{"gap", 0.005}}, {{"variant", "ellipse"}}, result}, {"b.csv", {{"gap", 0.01}, {"lift_force", 1.0}}, {}, result}}, {{"gap", "mm"}});
+    const core::Table table = loads_table({{"a.csv", {{"gap", 0.005}}, {{"variant", "ellipse"}}, result, {}, {}}, {"b.csv", {{"gap", 0.01}, {"lift_force", 1.0}}, {}, result, {}, {}}}, {{"gap", "mm"}});
     EXPECT_EQ(table.rows(), 2U);
     EXPECT_EQ(table.find("gap")->written_unit, "mm");
     EXPECT_EQ(table.numbers("gap")[1], 0.01);
