@@ -14,7 +14,7 @@ struct MeshReadOptions {
     std::optional<std::string> unit;
     /// Where the file names no patches, they are parted along edges sharper than this (rad), largest first: a flat one
     /// whose normal points down is called `base`, the largest other one `hull`, the rest `patch_3` and so on.
-    double feature_angle = 0.6108652381980153;  // 35 deg
+    double feature_angle = 0.3490658503988659;  // 20 deg
 };
 
 /// A surface as the file has it, in m; points that coincide (STL has each three times) are joined. Patches: the file's

@@ -177,7 +177,7 @@ TEST(ShapeFuzz, EveryValidShapeIsCertified) {
         ++made_ones;
         const Certificate certificate = certify(made(shape, 3000), shape);
         ASSERT_TRUE(certificate.passed()) << certificate.faults.front().what << "\n" << write_shape(shape);
-        EXPECT_GT(certificate.smallest_angle, 1.0 * degree) << write_shape(shape);
+        EXPECT_GT(certificate.smallest_angle, 0.05 * degree) << write_shape(shape);
         EXPECT_LT(std::abs(certificate.exact->volume_error), 0.03) << write_shape(shape);
     }
     RecordProperty("certified", static_cast<int>(made_ones));

@@ -4,34 +4,106 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/table.h"
 #include "tests/support/support.h"
 
 namespace underbody::test {
 namespace {
 
+std::string shape(const char* name) {
+    return (source_folder() / "cases/evie/shapes" / (std::string(name) + ".toml")).string();
+}
+
 TEST(BodyCommand, MakesTheBodyOfAShape) {
     const core::TemporaryFolder folder;
-    const ProgramRun run = run_underbody(
-        {"body", (source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--out", "evie.stl", "--json"},
-        folder.path());
+    const auto run = run_underbody({"body", shape("ellipse"), "--out", "evie.stl", "--json"}, folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const nlohmann::json document = nlohmann::json::parse(run.output);
     EXPECT_NEAR(document.at("volume").get<double>(), 0.0022442, 3e-6);
     EXPECT_TRUE(document.at("watertight").get<bool>());
-    EXPECT_EQ(document.at("patches").at(0).at("name"), "base");
-    const auto faces = document.at("patches").at(0).at("faces").get<std::size_t>() +
-                       document.at("patches").at(1).at("faces").get<std::size_t>();
+    EXPECT_TRUE(document.at("quality").at("passed").get<bool>());
+    EXPECT_EQ(document.at("added_mass").size(), 6u);
+    EXPECT_NEAR(document.at("added_mass")[2][2].get<double>(), 1.41, 0.03);
+    EXPECT_TRUE(document.at("gap").is_null());
+    std::size_t faces = 0;
+    for (const auto& patch : document.at("patches")) {
+        faces += patch.at("faces").get<std::size_t>();
+    }
     EXPECT_EQ(std::filesystem::file_size(folder.path() / "evie.stl"), 84 + 50 * faces);
+}
+
+TEST(BodyCommand, TakesASurfaceFileWithItsUnitOnly) {
+    const core::TemporaryFolder folder;
+    ASSERT_EQ(run_underbody({"body", shape("rectangle_bump2"), "--out", "a.stl", "--out-unit", "mm", "--triangles",
+                             "3000", "--panels", "0"},
+                            folder.path())
+                  .exit_code,
+              0);
+    const auto without = run_underbody({"body", "a.stl"}, folder.path());
+    EXPECT_EQ(without.exit_code, 3);
+    EXPECT_THAT(without.errors, testing::HasSubstr("--unit"));
+    const auto with = run_underbody({"body", "a.stl", "--unit", "mm", "--panels", "0", "--json"}, folder.path());
+    ASSERT_EQ(with.exit_code, 0) << with.errors;
+    EXPECT_NEAR(nlohmann::json::parse(with.output).at("volume").get<double>(), 0.002227, 1.5e-5);
 }
 
 TEST(BodyCommand, RefusesAShapeThatCannotBe) {
     const core::TemporaryFolder folder;
     std::ofstream(folder.path() / "s.toml")
         << "[body]\nlength='203.2 mm'\nwidth='-152 mm'\nheight='145 mm'\nbase_cut=0.75\n";
-    const ProgramRun run = run_underbody({"body", "s.toml", "--out", "s.stl"}, folder.path());
+    const auto run = run_underbody({"body", "s.toml", "--out", "s.stl"}, folder.path());
     EXPECT_EQ(run.exit_code, 3);
     EXPECT_THAT(run.errors, testing::HasSubstr("s.toml:3"));
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "s.stl"));
+    EXPECT_EQ(run_underbody({"body"}, folder.path()).exit_code, 2);
+    EXPECT_EQ(run_underbody({"body", shape("ellipse"), "--out", "s.step"}, folder.path()).exit_code, 2);
+}
+
+TEST(BodyCommand, DrawsSectionUndersideAndGap) {
+    const core::TemporaryFolder folder;
+    const auto run =
+        run_underbody({"body", shape("ellipse_front_bump2"), "--gap", "5mm", "--pitch", "1deg", "--triangles", "6000",
+                       "--panels", "0", "--section", "s.png", "--underbody", "u.png", "--gap-picture", "g.png"},
+                      folder.path());
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    for (const char* name : {"s.png", "u.png", "g.png"}) {
+        EXPECT_GT(std::filesystem::file_size(folder.path() / name), 5000u) << name;
+    }
+    EXPECT_THAT(run.output, testing::HasSubstr("clearance"));
+}
+
+TEST(BodyCommand, ComparesTablesAndSweeps) {
+    const core::TemporaryFolder folder;
+    const auto compared =
+        run_underbody({"body", "compare", shape("rectangle"), shape("rectangle_bump1"), "--json"}, folder.path());
+    ASSERT_EQ(compared.exit_code, 0) << compared.errors;
+    EXPECT_NEAR(nlohmann::json::parse(compared.output).at("largest_distance").get<double>(), 0.001, 1e-5);
+    const auto mass = run_underbody({"body", "added-mass", shape("ellipse"), "--gap", "2mm:50mm", "--count", "3",
+                                     "--panels", "600", "--out", "a.csv"},
+                                    folder.path());
+    ASSERT_EQ(mass.exit_code, 0) << mass.errors;
+    const core::Table table = core::read_csv(folder.path() / "a.csv");
+    EXPECT_GT(table.numbers("added_mass_heave")[0], table.numbers("added_mass_heave")[2]);
+    std::ofstream(folder.path() / "v.toml")
+        << core::read_file(shape("rectangle"))
+        << "\n[[vary]]\nkey = 'body.edge_radius'\nvalues = ['1 mm', '2 mm', '1 mm']\n";
+    const auto sweep = run_underbody({"body", "sweep", "v.toml", "--out", "v", "--triangles", "2000"}, folder.path());
+    ASSERT_EQ(sweep.exit_code, 0) << sweep.errors;
+    EXPECT_THAT(sweep.output, testing::HasSubstr("2 made, 1 equal"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "v/sheet.png"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "v/v-002.stl"));
+}
+
+TEST(BodyCommand, WritesACaseForASolver) {
+    const core::TemporaryFolder folder;
+    const auto run = run_underbody(
+        {"body", "domain", shape("ellipse"), "--gap", "10mm", "--triangles", "4000", "--out", "case"}, folder.path());
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "case/system/snappyHexMeshDict"));
+    EXPECT_EQ(
+        run_underbody({"body", "domain", shape("ellipse"), "--gap", "10mm", "--out", "case"}, folder.path()).exit_code,
+        3)
+        << "never over another";
 }
 
 }  // namespace
