@@ -26,7 +26,8 @@ using AddCommand = void (*)(CLI::App& app, Shell& shell);
     X(export) \
     X(study) \
     X(learn) \
-    X(estimate)
+    X(estimate) \
+    X(linear)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

@@ -12,6 +12,7 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
+#include "surrogates/dynamics/feedback.h"
 
 namespace underbody::studio {
 
@@ -27,12 +28,36 @@ struct Arguments {
     std::string table;
     std::string starts;
     std::string escape;
+    std::string feedback;
     std::size_t draws = 0;
     std::uint64_t seed = 1;
     bool safe = false;
     bool through_contact = false;
     std::vector<std::string> variants;
 };
+
+dynamics::HeaveFeedback feedback_of(const std::string& text) {
+    dynamics::HeaveFeedback feedback;
+    const std::vector<core::QuantityName> known{{"gap_gain", "N/m", "", ""},
+                                                {"velocity_gain", "N s/m", "", ""},
+                                                {"reference", "m", "", ""},
+                                                {"limit", "N", "", ""}};
+    for (const core::NamedValue& value : core::parse_assignments(text, known)) {
+        if (value.name == "gap_gain") {
+            feedback.gap_gain = value.value;
+        } else if (value.name == "velocity_gain") {
+            feedback.velocity_gain = value.value;
+        } else if (value.name == "reference") {
+            feedback.reference = value.value;
+        } else if (value.name == "limit") {
+            feedback.limit = value.value;
+        } else {
+            throw core::UsageError("name", "feedback has no '" + value.name + "'", {},
+                                   "gap_gain, velocity_gain, reference, limit");
+        }
+    }
+    return feedback;
+}
 
 dynamics::RegionOptions options_of(const Arguments& a) {
     dynamics::RegionOptions options;
@@ -50,6 +75,9 @@ dynamics::RegionOptions options_of(const Arguments& a) {
         options.held.set(value.name, value.value);
     }
     options.through_contact = a.through_contact;
+    if (!a.feedback.empty()) {
+        options.feedback = std::make_shared<dynamics::HeaveFeedback>(feedback_of(a.feedback));
+    }
     if (!a.escape.empty()) {
         options.escape_gap = core::parse_in(a.escape, "m");
     }
@@ -204,6 +232,8 @@ void add_region_command(CLI::App& app, Shell& shell) {
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
     command->add_option("--escape", a->escape,
                         "gap above which the body counts as gone (default: end of the table or of the axis)");
+    command->add_option("--feedback", a->feedback,
+                        "close the loop: gap_gain=10,velocity_gain=9,reference=20mm,limit=0.05N (SI or with units)");
     command->add_option("--out", a->out, "the map as a picture (.png, .pdf)");
     command->add_option("--table", a->table, "class and time of every start as a table (CSV)");
     command->add_option(

@@ -230,6 +230,9 @@ double HeavePlant::static_force(double h, const Moment& moment) const {
     if (!table_corrections_.empty()) {
         force += table_corrections(h, 0, moment);
     }
+    for (const HeaveTerms::ExtraTerm& extra : terms.extras) {
+        force += extra.force(extra.parameters, moment.t, h, 0);
+    }
     return force;
 }
 

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/dormand_prince.h"
+#include "surrogates/dynamics/feedback.h"
 #include "surrogates/dynamics/region_parts.h"
 
 namespace underbody::dynamics {
@@ -29,6 +30,9 @@ const core::NamedRange* axis_of(const RegionOptions& options, const std::string&
 HeaveRegionSetup::HeaveRegionSetup(const Model& model, const RegionOptions& options,
                                    const std::vector<double>* start_gaps)
     : plant(model, options.held) {
+    if (options.feedback) {
+        close_loop(plant, *options.feedback);
+    }
     const core::NamedRange* gap_axis = axis_of(options, "gap");
     const core::NamedRange* velocity_axis = axis_of(options, "heave_velocity");
     contact_gap = plant.terms.contact_gap;

@@ -34,6 +34,8 @@ struct End {
     double time = 0;  ///< s: of contact or escape; for an attractor, when the motion could no longer leave its well
 };
 
+struct HeaveFeedback;  // surrogates/dynamics/feedback.h
+
 struct RegionOptions {
     std::vector<core::NamedRange> axes;  ///< two of: gap, heave_velocity, pitch, pitch_rate (SI)
     std::size_t columns = 200, rows = 200;
@@ -43,6 +45,7 @@ struct RegionOptions {
     double escape_gap =
         std::numeric_limits<double>::quiet_NaN();  ///< NaN: upper end of the tables or of the axes, whichever is higher
     bool refine = true;  ///< areas refined below the grid
+    std::shared_ptr<const HeaveFeedback> feedback;  ///< heave: the loop closed by it; none: open loop
     bool through_contact = false;  ///< heave and pitch: go on after a touch; contact is then to come to rest on the ground
 };
 

@@ -1,9 +1,7 @@
 // Heave and pitch coupled, with contact, and their regions.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <iostream>
 
 #include "surrogates/dynamics/heave_pitch.h"
 #include "surrogates/dynamics/region.h"
@@ -105,10 +103,7 @@ TEST(HeavePitch, ItsRegionAgreesWithCvodeAndIsSymmetric) {
     options.columns = 30;
     options.rows = 30;
     options.refine = false;
-    const auto begin = std::chrono::steady_clock::now();
     const StabilityRegion region = stability_region(model, options);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    std::cout << "900 starts: " << seconds << " s\n";
     const HeavePitch plant(model);
     TrajectoryOptions one;
     one.stop_at_contact = true;

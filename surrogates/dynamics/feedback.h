@@ -1,0 +1,39 @@
+// Feedback on heave, and equilibria against a condition: what closed-loop maps and design plots need.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/figure.h"
+#include "surrogates/dynamics/heave.h"
+#include "surrogates/dynamics/linear.h"
+
+namespace underbody::dynamics {
+
+/// u = -velocity_gain w - gap_gain (h - reference), up, limited to +-limit (0: no limit).
+struct HeaveFeedback {
+    double gap_gain = 0;       ///< N/m
+    double velocity_gain = 0;  ///< N s/m
+    double reference = 0;      ///< m
+    double limit = 0;          ///< N
+};
+/// Adds the feedback to a plant; without a limit it is a spring and a damper, so that the energy argument of the region
+/// still holds.
+void close_loop(HeavePlant& plant, const HeaveFeedback& feedback);
+
+/// LQR gains of heave at a gap: states (heave_velocity, gap), weights q = (q_w, q_h), r, on M dw/dt = -k (h - h0) - d w
+/// + u.
+HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,
+                        double input_weight);
+
+/// Equilibria for a range of one condition (jet_voltage, speed, ...).
+struct EquilibriumSweep {
+    Channel channel = Channel::jet_voltage;
+    std::vector<double> value;
+    std::vector<std::vector<HeaveEquilibrium>> equilibria;
+};
+EquilibriumSweep equilibrium_sweep(const Model& model, const Conditions& held, Channel channel, double lower,
+                                   double upper, std::size_t count);
+core::Figure equilibrium_figure(const EquilibriumSweep& sweep);
+
+}  // namespace underbody::dynamics
