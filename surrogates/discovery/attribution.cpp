@@ -38,7 +38,7 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
         if (one.hypothesis.names.size() > best.hypothesis.names.size()) {
             continue;  // a second effect that did not earn its place
         }
-        const double weight = one.hypothesis.prior * std::exp(-0.5 * (one.score() - best.score()) / temperature);
+        const double weight = one.hypothesis.prior * std::exp(-0.5 * ((one.cost - best.cost) / temperature + one.occam - best.occam));
         Attribution::Share& share = by_names[one.hypothesis.names];
         if (weight > share.probability) {
             share = {i, weight};

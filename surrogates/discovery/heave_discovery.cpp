@@ -112,10 +112,10 @@ private:
     }
 
     void fit_null() {
-        null_noise_ = experiment_->noise();
-        null_cost_ = experiment_->fit_process({}, null_noise_);
-        null_by_record_.clear();
-        null_cost_ = experiment_->evaluate({}, nullptr, null_noise_, null_innovations_, &null_by_record_);
+        HeaveNoise noise = experiment_->noise();
+        experiment_->fit_process({}, noise);
+        experiment_->fit_noise({}, noise);
+        set_null(noise);
     }
 
     HeaveExperiment::Result fitted(const Hypothesis& hypothesis, const HeaveNoise& begin) const {
@@ -175,21 +175,35 @@ private:
         experiment_->set_hold(true);
     }
 
-    /// Coloured sensor noise would pass for an effect: it is looked for beside the best explanation, and if it is there
-    /// everything is judged again with it.
+    /// Coloured sensor noise would pass for an effect, and an effect for coloured noise: it was looked for beside the declared model,
+    /// now beside the best explanation; if the answer is another one, everything is judged again.
     void colour_noise() {
-        HeaveNoise noise = noises_[best_single_];
-        const FittedHypothesis& best = fitted_[best_single_];
-        if (!experiment_->fit_noise(best.hypothesis.with(best.fit.parameters), noise)) {
-            return;
+        for (int round = 0; round < 2; ++round) {
+            HeaveNoise noise = noises_[best_single_];
+            const FittedHypothesis& best = fitted_[best_single_];
+            const double before = null_noise_.slow;
+            const bool coloured = experiment_->fit_noise(best.hypothesis.with(best.fit.parameters), noise);
+            if (!coloured && before == 0) {
+                return;
+            }
+            if (coloured && before > 0 && noise.slow < 1.6 * before && noise.slow > before / 1.6) {
+                return;
+            }
+            HeaveNoise null = noise;
+            null.process = null_noise_.process;
+            if (!coloured) {
+                null.gap = experiment_->noise().gap;
+            }
+            set_null(null);
+            fit_singles();
         }
-        HeaveNoise null = noise;
-        null.process = null_noise_.process;
-        experiment_->fit_process({}, null);
-        null_noise_ = null;
+    }
+
+    void set_null(HeaveNoise noise) {
+        experiment_->fit_process({}, noise);
+        null_noise_ = noise;
         null_by_record_.clear();
         null_cost_ = experiment_->evaluate({}, nullptr, null_noise_, null_innovations_, &null_by_record_);
-        fit_singles();
     }
 
     /// What each effect does to the innovations when it is small, as orthonormal columns.
@@ -344,7 +358,9 @@ private:
             progress_);
         const std::size_t best = best_hypothesis(found, 2);
         const double gain = fitted_[best_single_].score() - found[best].score();
-        if (gain < calibration_.pair_gain || gain < calibration_.pair_share * found[best].explained) {
+        // two effects of one kind may be one effect whose law has another form than the catalogue's: that needs more to be believed
+        const double share = calibration_.pair_share * (one_kind(found[best].hypothesis.names) ? 3 : 1);
+        if (gain < calibration_.pair_gain || gain < share * found[best].explained) {
             return;
         }
         const SmoothFit rest = smooth_rest(found[best], noises[best]);
@@ -353,6 +369,17 @@ private:
             noises_.insert(noises_.end(), noises.begin(), noises.end());
             rest_ = rest;
         }
+    }
+
+    static bool one_kind(const std::vector<std::string>& names) {
+        static const std::vector<std::set<std::string>> kinds{
+            {"linear_damping", "quadratic_damping", "squeeze_film_damping", "coulomb_friction", "history_force"},
+            {"added_mass", "gap_dependent_added_mass", "history_force"},
+            {"constant_force", "tether_stiffness", "surface_roughness", "gap_sensor_bias", "declared_parameter"},
+            {"input_gain", "input_dead_zone", "input_delay", "actuator_lag", "gap_sensor_delay"}};
+        return std::any_of(kinds.begin(), kinds.end(), [&](const std::set<std::string>& kind) {
+            return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return kind.count(name) > 0; });
+        });
     }
 
     void decide() {

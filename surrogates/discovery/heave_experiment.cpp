@@ -173,7 +173,7 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
             HeaveNoise trial = noise;
             trial.slow = size * noise.gap;
             trial.slow_time = time;
-            for (const double share : {1.0, 0.01}) {
+            for (const double share : {1.0, 1e-2, 1e-4, 1e-7}) {
                 trial.process = std::max(process_floor, noise.process * share);
                 attempt(trial);
             }
@@ -183,7 +183,7 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
         noise.slow = 0;
         return false;
     }
-    for (double factor = 2.5; factor > 1.1; factor = std::sqrt(factor)) {
+    for (double factor = 3; factor > 1.1; factor = std::sqrt(factor)) {
         for (int round = 0; round < 2; ++round) {
             for (double HeaveNoise::*number : {&HeaveNoise::slow, &HeaveNoise::slow_time, &HeaveNoise::process, &HeaveNoise::gap}) {
                 for (const double f : {factor, 1 / factor}) {
@@ -259,7 +259,7 @@ HeaveExperiment::Result HeaveExperiment::fit(const Hypothesis& hypothesis, const
     result.fitted.hypothesis = hypothesis;
     result.fitted.fit = std::move(best);
     result.fitted.cost = result.fitted.fit.cost;
-    result.fitted.occam = occam_factor(hypothesis, result.fitted.fit);
+    result.fitted.occam = occam_factor(hypothesis, readings());
     std::vector<double> innovations;
     evaluate(hypothesis.with(result.fitted.fit.parameters), nullptr, best_noise, innovations, &result.fitted.cost_of_group);
     return result;

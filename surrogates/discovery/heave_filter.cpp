@@ -164,12 +164,15 @@ private:
 };
 
 /// Where the motion begins, roughly: a straight line through the first second.
-void first_guess(const HeaveRecord& record, double& h, double& w) {
+void first_guess(const HeaveRecord& record, double& h, double& w, double& span) {
+    double low = 1e300, high = -1e300;
     double n = 0, st = 0, sy = 0, stt = 0, sty = 0;
     const double begin = record.time.front();
     for (std::size_t k = 0; k < record.time.size() && record.time[k] - begin < 0.6; ++k) {
         if (std::isfinite(record.gap[k])) {
             const double t = record.time[k] - begin;
+            low = std::min(low, record.gap[k]);
+            high = std::max(high, record.gap[k]);
             n += 1;
             st += t;
             sy += record.gap[k];
@@ -180,6 +183,7 @@ void first_guess(const HeaveRecord& record, double& h, double& w) {
     const double determinant = n * stt - st * st;
     w = determinant > 1e-12 ? (n * sty - st * sy) / determinant : 0;
     h = n > 0 ? (sy - w * st) / n : 0.1;
+    span = n > 0 ? high - low : 0;
 }
 
 /// Three states: gap, velocity, coloured noise of the gap sensor. Symmetric covariance in six numbers.
@@ -273,12 +277,13 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
     transform_input(record, explanation, input);
     double h = 0;
     double w = 0;
-    first_guess(record, h, w);
+    double span = 0;
+    first_guess(record, h, w, span);
     h -= terms.sensor_bias;
     equation.start_history(w);
     double n = 0;
     const double slow = noise.slow * noise.slow;
-    Covariance p{1e-4, 0, 0, 1e-4, 0, slow};
+    Covariance p{std::max(1e-4, span * span), 0, 0, std::max(1e-4, span * span), 0, slow};
     const double delay = terms.sensor_delay;
     double log_determinant = 0;
     const auto update = [&](double residual, double ch, double cw, double cn, double variance) {
@@ -381,10 +386,11 @@ SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation&
     std::vector<Vector> predicted(n), filtered(n);
     std::vector<Matrix> predicted_p(n), filtered_p(n), transition(n);
     Vector x{};
-    first_guess(record, x[0], x[1]);
+    double span = 0;
+    first_guess(record, x[0], x[1], span);
     x[0] -= explanation.terms.sensor_bias;
     equation.start_history(x[1]);
-    Matrix p{1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e-2};
+    Matrix p{std::max(1e-4, span * span), 0, 0, 0, std::max(1e-4, span * span), 0, 0, 0, 1e-2};
     const auto measure = [&](double residual, const Vector& c, double variance) {
         Vector pc{};
         for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,5 @@
 #include "surrogates/discovery/hypothesis.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -158,9 +157,20 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool /*ve
         }
         Hypothesis hypothesis = make(info, {""}, "");
         hypothesis.starts.clear();
+        if (info.name == "periodic_disturbance") {
+            hypothesis.prior = 0.01;  // some hundred frequencies were looked at
+        }
         const auto start = [&](const std::vector<std::vector<double>>& values) { hypothesis.starts = values; };
         if (info.name == "gap_dependent_added_mass") {
             start({{0.5, 0.02}, {0.5, 0.06}, {0.5, 0.2}});
+            // the law with which inertia grows is not one law; with the far value free the catalogue's form bends to others
+            Hypothesis bent = hypothesis;
+            bent.form = "far inertia free as well";
+            add_use(bent, dynamics::effect("added_mass").info(), "");
+            for (std::vector<double>& begin : bent.starts) {
+                begin.push_back(0);
+            }
+            list.push_back(std::move(bent));
         } else if (info.name == "surface_roughness") {
             start({{0.1, 0.1, 0.03}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.3}});
         } else if (info.name == "tether_stiffness") {
@@ -224,25 +234,8 @@ Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hy
     return both;
 }
 
-double occam_factor(const Hypothesis& hypothesis, const Fit& fit) {
-    const Eigen::Index n = static_cast<Eigen::Index>(hypothesis.parameters.size());
-    if (n == 0) {
-        return 0;
-    }
-    Eigen::MatrixXd covariance(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        for (Eigen::Index j = 0; j < n; ++j) {
-            covariance(i, j) = fit.covariance[static_cast<std::size_t>(i * n + j)] /
-                               (hypothesis.parameters[static_cast<std::size_t>(i)].typical *
-                                hypothesis.parameters[static_cast<std::size_t>(j)].typical);
-        }
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance, Eigen::EigenvaluesOnly);
-    double sum = 0;
-    for (Eigen::Index k = 0; k < n; ++k) {
-        sum += std::log1p(1 / std::max(eigen.eigenvalues()(k), 1e-18));
-    }
-    return sum;
+double occam_factor(const Hypothesis& hypothesis, std::size_t data) {
+    return static_cast<double>(hypothesis.parameters.size()) * std::log(static_cast<double>(std::max<std::size_t>(data, 2)));
 }
 
 }  // namespace underbody::discovery

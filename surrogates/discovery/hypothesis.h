@@ -53,7 +53,8 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool velo
 /// Both at once. Parameters of `a` start at `start_a` (fitted), those of `b` where they stand.
 Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b);
 
-/// Prior volume that a fit leaves, as -2 log: sum of log(1 + (typical/sigma)^2) over the principal directions of its curvature.
-double occam_factor(const Hypothesis& hypothesis, const Fit& fit);
+/// What free numbers cost, as -2 log (Schwarz 1978): their number times log of the number of data. Laws that say the same then cost
+/// the same whatever their units.
+double occam_factor(const Hypothesis& hypothesis, std::size_t data);
 
 }  // namespace underbody::discovery

@@ -408,7 +408,7 @@ FittedHypothesis StaticExperiment::fit(const Hypothesis& hypothesis, const std::
         }
     }
     best.cost = best.fit.cost;
-    best.occam = occam_factor(hypothesis, best.fit);
+    best.occam = occam_factor(hypothesis, chosen.size());
     return best;
 }
 

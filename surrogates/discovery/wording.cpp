@@ -31,8 +31,10 @@ FoundEffect found_effect(const FittedHypothesis& fitted, double probability) {
         const bool several = std::count_if(fitted.hypothesis.uses.begin(), fitted.hypothesis.uses.end(),
                                            [&](const auto& other) { return other.name == use.name; }) > 1;
         const double sigma = std::isfinite(fitted.fit.sigma[j]) ? fitted.fit.sigma[j] : 0;
+        const bool helper = fitted.hypothesis.names.size() == 1 && use.name != effect.name;
         effect.parameters.push_back({several && !use.quantity.empty() ? use.quantity + "." + fitted.hypothesis.parameters[j].name
-                                                                      : fitted.hypothesis.parameters[j].name,
+                                     : helper ? use.name + "." + fitted.hypothesis.parameters[j].name
+                                              : fitted.hypothesis.parameters[j].name,
                                      fitted.fit.parameters[j], sigma, fitted.hypothesis.parameters[j].unit});
         effect.uses[slot.use].sigmas[slot.value] = sigma;
     }

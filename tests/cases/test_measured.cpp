@@ -1,0 +1,22 @@
+// Studies of third-party measurements, held to what is known of each (shared/measured/README.md).
+#include <gtest/gtest.h>
+
+#include "cases/measured/studies.h"
+#include "tests/support/support.h"
+
+using namespace underbody;
+
+TEST(MeasuredStudies, ABearingDeclaredViscousLacksATorqueThatNoSpeedChanges) {
+    UNDERBODY_NEEDS_SHARED("measured/rm2_tow_tank");
+    const cases::MeasuredStudy study = cases::bearing_study(cases::measured_folder(test::shared_folder()));
+    EXPECT_EQ(study.found.verdict, "effect") << study.found.sentence;
+    // one direction of rotation only: Coulomb's torque is a constant there, which an offset of the speed would be as well: a tie
+    bool bias = false;
+    for (const auto* list : {&study.found.effects, &study.found.alternatives}) {
+        for (const discovery::FoundEffect& effect : *list) {
+            bias = bias || (effect.name.find("force_bias") != std::string::npos && effect.probability > 0.2);
+        }
+    }
+    EXPECT_TRUE(bias) << study.found.sentence;
+    EXPECT_LT(study.found.error.front().after.rmse, study.found.error.front().before.rmse);
+}
