@@ -111,7 +111,7 @@ TEST(Desktop, TeachesItsUseAndItsKeys) {
 
 TEST(Desktop, SaysThatThereIsNoDisplayInsteadOfAborting) {
     for (const char* display : {"", ":7654", "nonsense"}) {
-        const auto run = run_studio({}, {{"DISPLAY", display}});
+        const auto run = run_studio({}, {{"DISPLAY", display}, {"QT_QPA_PLATFORM", "xcb"}});
         EXPECT_EQ(run.exit_code, 3) << display;
         EXPECT_NE(run.errors.find("no display"), std::string::npos) << run.errors;
         EXPECT_NE(run.errors.find("--screenshot"), std::string::npos) << run.errors;
@@ -149,7 +149,7 @@ TEST(Desktop, ShowsAStudyInEveryPanel) {
     ASSERT_EQ(run.exit_code, 0) << run.errors;
 
     const QImage empty = picture(shots / "empty.png");
-    for (const char* name : {"body", "forces", "stability", "discovery"}) {
+    for (const char* name : {"body", "forces", "stability", "discovery", "pictures"}) {
         const QImage image = picture(shots / (std::string(name) + ".png"));
         EXPECT_EQ(image.width(), 1200);
         EXPECT_EQ(image.height(), 800);
