@@ -121,6 +121,10 @@ private:
     HeaveExperiment::Result fitted(const Hypothesis& hypothesis, const HeaveNoise& begin) const {
         HeaveExperiment::Result result = experiment_->fit(hypothesis, begin);
         result.fitted.explained = null_cost_ - result.fitted.cost;
+        const FitParameter& chief = hypothesis.parameters.front();
+        if (result.fitted.fit.parameters.front() >= chief.upper - 1e-9 * std::abs(chief.upper)) {
+            result.fitted.hypothesis.prior *= 1e-4;  // driven against the bound of what physics allows: it stands in for something else
+        }
         result.fitted.explained_by_group = null_by_record_;
         for (std::size_t r = 0; r < null_by_record_.size(); ++r) {
             result.fitted.explained_by_group[r] -= result.fitted.cost_of_group[r];

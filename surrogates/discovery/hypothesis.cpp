@@ -161,6 +161,10 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool /*ve
             hypothesis.prior = 0.01;  // some hundred frequencies were looked at
         }
         const auto start = [&](const std::vector<std::vector<double>>& values) { hypothesis.starts = values; };
+        if (info.name == "gap_sensor_delay" || info.name == "input_delay" || info.name == "actuator_lag") {
+            // a reading later than that is no reading; the filter's expansion in the delay ends there as well
+            hypothesis.parameters.front().upper = std::min(hypothesis.parameters.front().upper, info.name == "gap_sensor_delay" ? 0.5 : 5.0);
+        }
         if (info.name == "gap_dependent_added_mass") {
             start({{0.5, 0.02}, {0.5, 0.06}, {0.5, 0.2}});
             // the law with which inertia grows is not one law; with the far value free the catalogue's form bends to others

@@ -20,3 +20,16 @@ TEST(MeasuredStudies, ABearingDeclaredViscousLacksATorqueThatNoSpeedChanges) {
     EXPECT_TRUE(bias) << study.found.sentence;
     EXPECT_LT(study.found.error.front().after.rmse, study.found.error.front().before.rmse);
 }
+
+TEST(MeasuredStudies, HeavyBallsFallByTheirWeightAloneAndBasketballsDoNot) {
+    UNDERBODY_NEEDS_SHARED("measured/ball_drops");
+    for (const cases::MeasuredStudy& study : cases::ball_drop_studies(cases::measured_folder(test::shared_folder()))) {
+        if (study.name.find("Golf") != std::string::npos || study.name.find("Bowling") != std::string::npos) {
+            EXPECT_EQ(study.found.verdict, "none") << study.name << ": " << study.found.sentence;
+        }
+        if (study.name.find("Basketball") != std::string::npos || study.name.find("Tennis") != std::string::npos) {
+            EXPECT_NE(study.found.verdict, "none") << study.name;
+            EXPECT_LT(study.found.error.front().after.rmse, 0.5 * study.found.error.front().before.rmse) << study.name;
+        }
+    }
+}
