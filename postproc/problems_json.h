@@ -1,34 +1,13 @@
 // Findings of importers and checks as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "core/error.h"
 
 namespace underbody::postproc {
 
-inline nlohmann::json json_of(const core::Problems& problems) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const auto& problem : problems) {
-        const char* word = problem.severity == core::Problem::Severity::note      ? "note"
-                           : problem.severity == core::Problem::Severity::warning ? "warning"
-                                                                                  : "error";
-        nlohmann::json entry = {{"severity", word}, {"message", problem.message}};
-        if (!problem.place.file.empty()) {
-            entry["file"] = problem.place.file;
-        }
-        if (problem.place.line) {
-            entry["line"] = *problem.place.line;
-        }
-        if (problem.place.column) {
-            entry["column"] = *problem.place.column;
-        }
-        if (problem.place.byte) {
-            entry["byte"] = *problem.place.byte;
-        }
-        list.push_back(std::move(entry));
-    }
-    return list;
-}
+/// [{severity, message, file, line, column, byte}]; what is not known is left out.
+nlohmann::json json_of(const core::Problems& problems);
 
 }  // namespace underbody::postproc
