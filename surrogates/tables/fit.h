@@ -16,6 +16,9 @@ std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, cons
 /// A table that `export --format csv` wrote, taken back as it was; nothing when the table is not one of those (or not of this quantity).
 std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, const std::string& quantity, const FitOptions& options);
 
+/// Slope-sign changes of a full grid with errors that those errors do not support (less than two joint standard deviations high).
+core::Problems kinks(const SetPoints& points);
+
 /// Beyond its ends a table knows nothing but that the force may go on as steeply as it came: the larger of the steepest end slope
 /// and the mean slope over the whole axis, per unit of the axis.
 ErrorModel::Growth end_growth(const CubicGrid& grid, std::size_t k);

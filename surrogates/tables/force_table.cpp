@@ -38,7 +38,11 @@ ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity
             return ForceTable(std::move(exported));
         }
     }
-    return ForceTable(fit_points(set_points(table, quantity, options), options));
+    SetPoints points = set_points(table, quantity, options);
+    for (auto& kink : kinks(points)) {
+        points.remarks.push_back(std::move(kink));
+    }
+    return ForceTable(fit_points(points, options));
 }
 
 double ForceTable::value(const double* point, double* slope) const noexcept { return impl_->surface.value(point, slope); }

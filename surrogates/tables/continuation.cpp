@@ -1,0 +1,500 @@
+#include "surrogates/tables/continuation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "surrogates/tables/figures.h"
+
+namespace underbody::tables {
+
+namespace {
+
+/// Net force over gap and parameter.
+class NetForce {
+public:
+    NetForce(const ForceTable& table, const ContinuationOptions& options) : table_(table), options_(options) {
+        axis_ = options.base.axis.empty() && table.axes().size() == 1 ? 0 : axis_index(table, options.base.axis.empty() ? "gap" : options.base.axis);
+        Held held = options.base.held;
+        for (std::size_t k = 0; k < table.axes().size(); ++k) {
+            if (table.axes()[k].name == options.parameter && k != axis_) {
+                parameter_axis_ = k;
+                held.emplace_back(options.parameter, options.lower);
+            }
+        }
+        point_ = held_point(table, axis_, held);
+        const bool weight = options.parameter == "net_weight";
+        const auto* known = core::find_quantity(options.parameter);
+        if (!weight && parameter_axis_ == none && (known == nullptr || options.parameter == table.axes()[axis_].name)) {
+            throw core::UsageError("parameter", "'" + options.parameter + "' is no parameter to continue along", {},
+                                   core::did_you_mean(options.parameter, {"net_weight", "speed", "jet_voltage", "pitch"}));
+        }
+        unit = weight ? "N" : parameter_axis_ != none ? table.axes()[parameter_axis_].unit : known->unit;
+        if (parameter_axis_ != none) {
+            const auto& a = table.axes()[parameter_axis_];
+            const double room = 1e-9 * (a.upper - a.lower);
+            if (options.lower < a.lower - room || options.upper > a.upper + room) {
+                throw core::UsageError("range", "the table covers " + a.name + " from " + std::to_string(a.lower) + " to " + std::to_string(a.upper) + " " + a.unit + " only");
+            }
+        }
+    }
+
+    double operator()(double gap, double parameter, double* slope = nullptr) {
+        point_[axis_] = gap;
+        double weight = options_.base.net_weight;
+        double scale = options_.base.scale;
+        if (options_.parameter == "net_weight") {
+            weight = parameter;
+        } else if (parameter_axis_ != none) {
+            point_[parameter_axis_] = parameter;
+        } else {
+            scale *= std::pow(std::abs(parameter / options_.reference), options_.exponent);
+        }
+        std::array<double, max_axes> s{};
+        const double v = scale * table_.value(point_.data(), slope != nullptr ? s.data() : nullptr) - weight;
+        if (slope != nullptr) {
+            *slope = scale * s[axis_];
+        }
+        return v;
+    }
+    [[nodiscard]] std::size_t axis() const { return axis_; }
+    std::string unit;
+
+private:
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+    const ForceTable& table_;
+    const ContinuationOptions& options_;
+    std::size_t axis_ = 0;
+    std::size_t parameter_axis_ = none;
+    std::vector<double> point_;
+};
+
+double bisected(const std::function<double(double)>& f, double low, double high) {
+    const bool rising = f(high) > f(low);
+    for (int i = 0; i < 80 && high - low > 1e-15 * (std::abs(low) + std::abs(high)); ++i) {
+        const double middle = 0.5 * (low + high);
+        ((f(middle) > 0) == rising ? high : low) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+struct Crossing {
+    double gap, parameter;
+};
+
+/// Level line of zero by marching squares; crossings on the edges of the grid are exact roots.
+class Contour {
+public:
+    Contour(NetForce& force, std::vector<double> gaps, std::vector<double> parameters) : f_(force), h_(std::move(gaps)), p_(std::move(parameters)) {}
+
+    std::vector<std::vector<Crossing>> lines(core::Progress& progress) {
+        std::vector<double> value(h_.size() * p_.size());
+        for (std::size_t i = 0; i < h_.size(); ++i) {
+            progress.check();
+            for (std::size_t j = 0; j < p_.size(); ++j) {
+                value[i * p_.size() + j] = f_(h_[i], p_[j]);
+            }
+        }
+        const auto at = [&](std::size_t i, std::size_t j) { return value[i * p_.size() + j] >= 0; };
+        for (std::size_t i = 0; i + 1 < h_.size(); ++i) {
+            for (std::size_t j = 0; j + 1 < p_.size(); ++j) {
+                std::vector<std::size_t> edges;  // bottom, right, top, left of the cell: ids shared by neighbours
+                if (at(i, j) != at(i + 1, j)) {
+                    edges.push_back(along_gap(i, j));
+                }
+                if (at(i + 1, j) != at(i + 1, j + 1)) {
+                    edges.push_back(along_parameter(i + 1, j));
+                }
+                if (at(i, j + 1) != at(i + 1, j + 1)) {
+                    edges.push_back(along_gap(i, j + 1));
+                }
+                if (at(i, j) != at(i, j + 1)) {
+                    edges.push_back(along_parameter(i, j));
+                }
+                for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {
+                    link_[edges[e]].push_back(edges[e + 1]);
+                    link_[edges[e + 1]].push_back(edges[e]);
+                }
+            }
+        }
+        return joined();
+    }
+
+private:
+    [[nodiscard]] std::size_t along_gap(std::size_t i, std::size_t j) const { return 2 * (i * p_.size() + j); }
+    [[nodiscard]] std::size_t along_parameter(std::size_t i, std::size_t j) const { return 2 * (i * p_.size() + j) + 1; }
+
+    Crossing root(std::size_t edge) {
+        const std::size_t node = edge / 2;
+        const std::size_t i = node / p_.size();
+        const std::size_t j = node % p_.size();
+        if (edge % 2 == 0) {
+            return {bisected([&](double h) { return f_(h, p_[j]); }, h_[i], h_[i + 1]), p_[j]};
+        }
+        return {h_[i], bisected([&](double p) { return f_(h_[i], p); }, p_[j], p_[j + 1])};
+    }
+
+    std::vector<std::vector<Crossing>> joined() {
+        std::map<std::size_t, bool> seen;
+        std::vector<std::vector<Crossing>> lines;
+        const auto follow = [&](std::size_t start) {
+            std::vector<Crossing> line;
+            std::size_t edge = start;
+            while (true) {
+                seen[edge] = true;
+                line.push_back(root(edge));
+                std::size_t next = edge;
+                for (const std::size_t other : link_[edge]) {
+                    if (!seen[other]) {
+                        next = other;
+                        break;
+                    }
+                }
+                if (next == edge) {
+                    break;
+                }
+                edge = next;
+            }
+            lines.push_back(std::move(line));
+        };
+        for (const auto& [edge, others] : link_) {
+            if (others.size() == 1 && !seen[edge]) {
+                follow(edge);
+            }
+        }
+        for (const auto& [edge, others] : link_) {
+            if (!seen[edge]) {
+                follow(edge);
+            }
+        }
+        return lines;
+    }
+
+    NetForce& f_;
+    std::vector<double> h_, p_;
+    std::map<std::size_t, std::vector<std::size_t>> link_;
+};
+
+std::vector<double> spaced(double low, double high, int steps) {
+    std::vector<double> x;
+    for (int i = 0; i <= steps; ++i) {
+        x.push_back(i == steps ? high : low + (high - low) * i / steps);
+    }
+    return x;
+}
+
+/// Where between two points of a branch the slope of the force vanishes on the curve: Newton on (force, slope) = 0 by differences.
+Fold fold_between(NetForce& f, const BranchPoint& a, const BranchPoint& b, double h_scale, double p_scale) {
+    double h = 0.5 * (a.gap + b.gap);
+    double p = 0.5 * (a.parameter + b.parameter);
+    const double dh = 1e-6 * h_scale;
+    const double dp = 1e-6 * p_scale;
+    for (int i = 0; i < 40; ++i) {
+        double s = 0, s_h = 0, s_p = 0, s_b = 0;
+        const double v = f(h, p, &s);
+        const double v_p = (f(h, p + dp, &s_p) - f(h, p - dp, &s_b)) / (2 * dp);
+        const double slope_p = (s_p - s_b) / (2 * dp);
+        f(h + dh, p, &s_h);
+        f(h - dh, p, &s_b);
+        const double slope_h = (s_h - s_b) / (2 * dh);
+        const double det = s * slope_p - v_p * slope_h;
+        if (det == 0) {
+            break;
+        }
+        const double step_h = (v * slope_p - v_p * s) / det;
+        const double step_p = (s * s - v * slope_h) / det;
+        const double reach = std::max(std::abs(step_h) / (2 * std::abs(b.gap - a.gap) + dh), std::abs(step_p) / (2 * std::abs(b.parameter - a.parameter) + 1e3 * dp));
+        const double share = reach > 1 ? 1 / reach : 1;
+        h -= share * step_h;
+        p -= share * step_p;
+        if (std::abs(step_h) < 1e-12 * h_scale && std::abs(step_p) < 1e-12 * p_scale) {
+            break;
+        }
+    }
+    return {p, h};
+}
+
+}  // namespace
+
+EquilibriumCurve continue_equilibria(const ForceTable& table, const ContinuationOptions& options, core::Progress& progress) {
+    if (!(options.lower < options.upper)) {
+        throw core::UsageError("range", "the range of " + options.parameter + " has its ends swapped or no width");
+    }
+    NetForce force(table, options);
+    const TableAxis& axis = table.axes()[force.axis()];
+    std::vector<double> gaps = axis.lower > 0 && axis.upper / axis.lower > 4 ? std::vector<double>{} : spaced(axis.lower, axis.upper, options.steps);
+    for (int i = 0; gaps.size() <= static_cast<std::size_t>(options.steps); ++i) {
+        gaps.push_back(i == options.steps ? axis.upper : axis.lower * std::pow(axis.upper / axis.lower, static_cast<double>(i) / options.steps));
+    }
+    EquilibriumCurve curve;
+    curve.parameter = options.parameter;
+    curve.parameter_unit = force.unit;
+    curve.axis = axis.name;
+    curve.axis_unit = axis.unit;
+    for (const auto& line : Contour(force, std::move(gaps), spaced(options.lower, options.upper, options.steps)).lines(progress)) {
+        Branch branch;
+        for (const auto& c : line) {
+            double slope = 0;
+            force(c.gap, c.parameter, &slope);
+            branch.push_back({c.parameter, c.gap, -slope, slope < 0 ? Stability::stable : Stability::unstable});
+        }
+        for (std::size_t i = 0; i + 1 < branch.size(); ++i) {
+            if (branch[i].stability != branch[i + 1].stability) {
+                curve.folds.push_back(fold_between(force, branch[i], branch[i + 1], axis.upper - axis.lower, options.upper - options.lower));
+            }
+        }
+        curve.branches.push_back(std::move(branch));
+    }
+    std::sort(curve.folds.begin(), curve.folds.end(), [](const Fold& a, const Fold& b) { return a.parameter < b.parameter; });
+    return curve;
+}
+
+core::Figure continuation_figure(const ForceTable& table, const EquilibriumCurve& curve) {
+    core::Figure figure;
+    figure.title = "equilibria against " + curve.parameter;
+    figure.x = {curve.parameter, curve.parameter_unit, 0, 0, false};
+    figure.y = {curve.axis, shown_unit(table, curve.axis), 0, 0, false};
+    const auto shown = core::conversion(curve.axis_unit, figure.y.unit);
+    bool named[2] = {false, false};
+    for (const auto& branch : curve.branches) {
+        for (std::size_t i = 0; i < branch.size();) {
+            core::FigureCurve part;
+            const bool stable = branch[i].stability == Stability::stable;
+            std::size_t j = i;
+            while (j < branch.size() && (branch[j].stability == Stability::stable) == stable) {
+                part.x.push_back(branch[j].parameter);
+                part.y.push_back(shown(branch[j].gap));
+                ++j;
+            }
+            part.name = named[stable] ? "" : stable ? "stable" : "unstable";
+            named[stable] = true;
+            part.colour = core::palette(stable ? 2 : 5);
+            part.dashed = !stable;
+            figure.curves.push_back(std::move(part));
+            i = j;
+        }
+    }
+    core::FigurePoints folds;
+    folds.name = "fold";
+    folds.shape = core::FigurePoints::Shape::diamond;
+    for (const auto& f : curve.folds) {
+        folds.x.push_back(f.parameter);
+        folds.y.push_back(shown(f.gap));
+    }
+    if (!folds.x.empty()) {
+        figure.points.push_back(std::move(folds));
+    }
+    return figure;
+}
+
+void to_json(nlohmann::json& json, const EquilibriumCurve& curve) {
+    json = nlohmann::json{{"parameter", curve.parameter}, {"parameter_unit", curve.parameter_unit}, {"axis", curve.axis}, {"axis_unit", curve.axis_unit}};
+    json["folds"] = nlohmann::json::array();
+    for (const auto& f : curve.folds) {
+        json["folds"].push_back({{curve.parameter, f.parameter}, {curve.axis, f.gap}});
+    }
+    json["branches"] = nlohmann::json::array();
+    for (const auto& branch : curve.branches) {
+        nlohmann::json list = nlohmann::json::array();
+        for (const auto& b : branch) {
+            list.push_back({{curve.parameter, b.parameter}, {curve.axis, b.gap}, {"stiffness", b.stiffness}, {"stable", b.stability == Stability::stable}});
+        }
+        json["branches"].push_back(std::move(list));
+    }
+}
+
+std::vector<PitchWindow> pitch_windows(const ForceTable& moment, const Held& held) {
+    const std::size_t axis = axis_index(moment, "pitch");
+    std::vector<double> point = held_point(moment, axis, held);
+    const auto at = [&](double pitch, double& slope) {
+        std::array<double, max_axes> s{};
+        point[axis] = pitch;
+        const double m = moment.value(point.data(), s.data());
+        slope = s[axis];
+        return m;
+    };
+    std::vector<PitchWindow> windows;
+    const auto& a = moment.axes()[axis];
+    const int samples = 2000;
+    double last_slope = 0;
+    double last = a.lower;
+    at(a.lower, last_slope);
+    const auto edge = [&](double low, double high) {
+        return bisected(
+            [&](double p) {
+                double s = 0;
+                at(p, s);
+                return s;
+            },
+            low, high);
+    };
+    bool open = last_slope < 0;
+    PitchWindow window;
+    window.lower = a.lower;
+    for (int i = 1; i <= samples; ++i) {
+        const double pitch = i == samples ? a.upper : a.lower + (a.upper - a.lower) * i / samples;
+        double slope = 0;
+        at(pitch, slope);
+        const bool restoring = slope < 0;
+        if (restoring && !open) {
+            window = {};
+            window.lower = edge(last, pitch);
+        }
+        if (open && (!restoring || i == samples)) {
+            window.upper = restoring ? a.upper : edge(last, pitch);
+            windows.push_back(window);
+        }
+        open = restoring;
+        last = pitch;
+    }
+    for (auto& w : windows) {
+        w.side = w.lower > 0 ? "nose up" : w.upper < 0 ? "nose down" : "level";
+        w.stiffness = -1;
+        w.trim_lower = INFINITY;
+        w.trim_upper = -INFINITY;
+        for (int i = 0; i <= 200; ++i) {
+            double slope = 0;
+            const double pitch = w.lower + (w.upper - w.lower) * i / 200;
+            const double torque = -at(pitch, slope);
+            w.trim_lower = std::min(w.trim_lower, torque);
+            w.trim_upper = std::max(w.trim_upper, torque);
+            if (-slope > w.stiffness) {
+                w.stiffness = -slope;
+                w.best_pitch = pitch;
+                w.trim_torque = torque;
+            }
+        }
+    }
+    return windows;
+}
+
+core::Figure pitch_figure(const ForceTable& moment, const Held& held) {
+    FigureOptions options;
+    options.axis = "pitch";
+    options.held = held;
+    options.title = "pitch moment against pitch, nose up positive";
+    core::Figure figure = curve_figure(moment, options);
+    const auto x = core::conversion("rad", figure.x.unit);
+    for (const auto& w : pitch_windows(moment, held)) {
+        core::FigureLine line;
+        line.vertical = true;
+        line.colour = core::palette(2);
+        line.at = x(w.lower);
+        line.label = w.side + ": stable";
+        figure.lines.push_back(line);
+        line.at = x(w.upper);
+        line.label.clear();
+        figure.lines.push_back(line);
+    }
+    return figure;
+}
+
+void to_json(nlohmann::json& json, const PitchWindow& w) {
+    json = nlohmann::json{{"lower", w.lower},         {"upper", w.upper},           {"side", w.side},           {"best_pitch", w.best_pitch},
+                          {"stiffness", w.stiffness}, {"trim_torque", w.trim_torque}, {"trim_lower", w.trim_lower}, {"trim_upper", w.trim_upper}};
+}
+
+std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options) {
+    struct Side {
+        const ForceTable& table;
+        std::size_t gap, pitch;
+        std::vector<double> point;
+        double at(double h, double p, double* slope) {
+            point[gap] = h;
+            point[pitch] = p;
+            std::array<double, max_axes> s{};
+            const double v = table.value(point.data(), s.data());
+            slope[0] = s[gap];
+            slope[1] = s[pitch];
+            return v;
+        }
+    };
+    const auto side = [&](const ForceTable& table) {
+        Side s{table, axis_index(table, "gap"), axis_index(table, "pitch"), {}};
+        Held held = options.held;
+        held.emplace_back("gap", table.axes()[s.gap].lower);
+        held.emplace_back("pitch", table.axes()[s.pitch].lower);
+        s.point = held_point(table, {}, held);
+        return s;
+    };
+    Side force = side(lift);
+    Side torque = side(moment);
+    const auto& fg = lift.axes()[force.gap];
+    const auto& fp = lift.axes()[force.pitch];
+    const auto& mg = moment.axes()[torque.gap];
+    const auto& mp = moment.axes()[torque.pitch];
+    const double h0 = std::max(fg.lower, mg.lower), h1 = std::min(fg.upper, mg.upper);
+    const double p0 = std::max(fp.lower, mp.lower), p1 = std::min(fp.upper, mp.upper);
+    std::vector<CoupledEquilibrium> found;
+    if (!(h0 < h1) || !(p0 < p1)) {
+        throw core::UsageError("range", "lift and moment have no common range of gap and pitch");
+    }
+    const int n = 60;
+    const bool log = h0 > 0 && h1 / h0 > 4;
+    const auto gap_at = [&](double t) { return log ? h0 * std::pow(h1 / h0, t) : h0 + (h1 - h0) * t; };
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+            double h = gap_at((i + 0.5) / n);
+            double p = p0 + (p1 - p0) * (j + 0.5) / n;
+            double fs[2], ms[2];
+            bool converged = false;
+            for (int k = 0; k < 30; ++k) {
+                const double f = force.at(h, p, fs) - options.net_weight;
+                const double m = torque.at(h, p, ms) + options.trim_torque;
+                const double det = fs[0] * ms[1] - fs[1] * ms[0];
+                if (det == 0) {
+                    break;
+                }
+                const double dh = (f * ms[1] - fs[1] * m) / det;
+                const double dp = (fs[0] * m - f * ms[0]) / det;
+                // From the middle of its cell a start may walk a few cells, no further: every equilibrium has starts near it.
+                if (k == 0 && (std::abs(dh) > 6 * (gap_at(std::min(1.0, (i + 1.0) / n)) - gap_at(static_cast<double>(i) / n)) || std::abs(dp) > 6 * (p1 - p0) / n)) {
+                    break;
+                }
+                h -= dh;
+                p -= dp;
+                if (h < h0 || h > h1 || p < p0 || p > p1) {
+                    break;
+                }
+                if (std::abs(dh) < 1e-13 * (h1 - h0) && std::abs(dp) < 1e-13 * (p1 - p0)) {
+                    converged = true;
+                    break;
+                }
+            }
+            const bool known = std::any_of(found.begin(), found.end(), [&](const auto& e) {
+                return std::abs(e.gap - h) < 1e-7 * (h1 - h0) && std::abs(e.pitch - p) < 1e-7 * (p1 - p0);
+            });
+            if (!converged || known) {
+                continue;
+            }
+            CoupledEquilibrium e;
+            e.gap = h;
+            e.pitch = p;
+            force.at(h, p, fs);
+            torque.at(h, p, ms);
+            e.stiffness = {{{-fs[0], -fs[1]}, {-ms[0], -ms[1]}}};
+            const bool masses = options.virtual_mass > 0 && options.virtual_inertia > 0;
+            const double a = e.stiffness[0][0] / (masses ? options.virtual_mass : 1), b = e.stiffness[0][1] / (masses ? options.virtual_mass : 1);
+            const double c = e.stiffness[1][0] / (masses ? options.virtual_inertia : 1), d = e.stiffness[1][1] / (masses ? options.virtual_inertia : 1);
+            const std::complex<double> root = std::sqrt(std::complex<double>((a - d) * (a - d) / 4 + b * c));
+            e.eigenvalues = {(a + d) / 2 - root, (a + d) / 2 + root};
+            e.kind = root.imag() != 0 ? "flutter" : e.eigenvalues[0].real() > 0 ? "stable" : "divergent";
+            found.push_back(e);
+        }
+    }
+    std::sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
+    return found;
+}
+
+void to_json(nlohmann::json& json, const CoupledEquilibrium& e) {
+    json = nlohmann::json{{"gap", e.gap}, {"pitch", e.pitch}, {"stiffness", e.stiffness}, {"kind", e.kind}, {"stable", e.kind == "stable"}};
+    for (const auto& v : e.eigenvalues) {
+        json["eigenvalues"].push_back({{"real", v.real()}, {"imaginary", v.imag()}});
+    }
+}
+
+}  // namespace underbody::tables

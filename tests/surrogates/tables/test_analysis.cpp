@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "surrogates/tables/compare.h"
+#include "surrogates/tables/continuation.h"
+#include "surrogates/tables/select.h"
+#include "tests/support/support.h"
+#include "tests/surrogates/tables/tables_support.h"
+
+namespace underbody {
+namespace {
+
+using namespace tables;
+using test::csv;
+using ::testing::HasSubstr;
+
+ForceTable monotone(const core::Table& table, const std::string& quantity = "lift_force") {
+    FitOptions options;
+    options.kind = FitOptions::Kind::interpolation;
+    return ForceTable::fit(table, quantity, options);
+}
+
+ForceTable spline(const core::Table& table, const std::string& quantity = "lift_force") {
+    FitOptions options;
+    options.kind = FitOptions::Kind::spline;
+    return ForceTable::fit(table, quantity, options);
+}
+
+TEST(Continuation, FindsTheFoldsOfRefAAlongTheWeight) {
+    ContinuationOptions options;
+    options.parameter = "net_weight";
+    options.lower = -0.03;
+    options.upper = 0.03;
+    const auto curve = continue_equilibria(test::ref_a_spline(), options);
+    ASSERT_EQ(curve.folds.size(), 2u);
+    EXPECT_NEAR(curve.folds[0].parameter, -0.014450036, 1e-8);
+    EXPECT_NEAR(curve.folds[0].gap, 0.070125905, 1e-6);
+    EXPECT_NEAR(curve.folds[1].parameter, 0.020000084, 1e-8);
+    EXPECT_NEAR(curve.folds[1].gap, 0.45096077, 1e-6);
+    // Every point of it is a balance.
+    const auto table = test::ref_a_spline();
+    for (const auto& branch : curve.branches) {
+        for (const auto& b : branch) {
+            ASSERT_NEAR(table.value(&b.gap), b.parameter, 1e-9);
+        }
+    }
+    EXPECT_EQ(continuation_figure(table, curve).points.size(), 1u);
+}
+
+TEST(Continuation, FollowsSpeedSquared) {
+    // F = (1 - h) u^2 = 0.5: h = 1 - 0.5/u^2.
+    const auto table = monotone(csv("gap [m], lift_force [N]\n0, 1\n0.5, 0.5\n1, 0\n"));
+    ContinuationOptions options;
+    options.base.net_weight = 0.5;
+    options.parameter = "speed";
+    options.lower = 0.2;
+    options.upper = 3;
+    const auto curve = continue_equilibria(table, options);
+    ASSERT_EQ(curve.branches.size(), 1u);
+    EXPECT_TRUE(curve.folds.empty());
+    for (const auto& b : curve.branches[0]) {
+        EXPECT_NEAR(b.gap, 1 - 0.5 / (b.parameter * b.parameter), 1e-9);
+        EXPECT_EQ(b.stability, Stability::stable);
+    }
+    std::swap(options.lower, options.upper);
+    EXPECT_THROW(continue_equilibria(table, options), core::UsageError);
+}
+
+TEST(Pitch, HasItsStableWindowsAndTheTorqueThatTrimsThem) {
+    // M = 4 p^3 - 0.1 p... restoring where 12 p^2 < 0.1.
+    std::vector<double> p, m;
+    for (int i = -40; i <= 40; ++i) {
+        p.push_back(i * 0.005);
+        m.push_back(4 * std::pow(p.back(), 3) - 0.1 * p.back() + 0.002);
+    }
+    core::Table data;
+    data.add_numbers("pitch", "rad", p);
+    data.add_numbers("pitch_moment", "N m", m);
+    const auto windows = pitch_windows(spline(data, "pitch_moment"), {});
+    ASSERT_EQ(windows.size(), 1u);
+    EXPECT_NEAR(windows[0].lower, -std::sqrt(0.1 / 12), 1e-6);
+    EXPECT_NEAR(windows[0].upper, std::sqrt(0.1 / 12), 1e-6);
+    EXPECT_EQ(windows[0].side, "level");
+    EXPECT_NEAR(windows[0].best_pitch, 0, 1e-3);
+    EXPECT_NEAR(windows[0].stiffness, 0.1, 1e-4);
+    EXPECT_NEAR(windows[0].trim_torque, -0.002, 1e-5);
+}
+
+TEST(Pitch, CouplesWithHeaveAtThePointsWhereBothBalance) {
+    // F = 1 - 2 (h - 0.5) + 3 p, M = -0.5 p + 0.2 (h - 0.5): both linear, so one balance for weight 1 at (0.5, 0).
+    std::vector<double> h = {0.1, 0.3, 0.5, 0.7, 0.9}, q = {-0.2, -0.1, 0, 0.1, 0.2};
+    const auto lift = spline(test::grid_table(h, q, [](double a, double b) { return 1 - 2 * (a - 0.5) + 3 * b; }));
+    std::vector<double> g, p, m;
+    for (const double a : h) {
+        for (const double b : q) {
+            g.push_back(a);
+            p.push_back(b);
+            m.push_back(-0.5 * b + 0.2 * (a - 0.5));
+        }
+    }
+    core::Table data;
+    data.add_numbers("gap", "m", g);
+    data.add_numbers("pitch", "rad", p);
+    data.add_numbers("pitch_moment", "N m", m);
+    CoupledOptions options;
+    options.net_weight = 1;
+    const auto found = coupled_equilibria(lift, spline(data, "pitch_moment"), options);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].gap, 0.5, 1e-9);
+    EXPECT_NEAR(found[0].pitch, 0, 1e-9);
+    // K = [[2, -3], [-0.2, 0.5]]: eigenvalues 1.25 +- sqrt(0.5625 + 0.6).
+    EXPECT_NEAR(found[0].eigenvalues[0].real(), 1.25 - std::sqrt(1.1625), 1e-8);
+    EXPECT_NEAR(found[0].eigenvalues[1].real(), 1.25 + std::sqrt(1.1625), 1e-8);
+    EXPECT_EQ(found[0].kind, "stable");
+}
+
+TEST(Comparison, NamesTheWinnerAndWhereVariantsDifferBeyondTheirErrors) {
+    const auto a = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.25, .75, .01\n0.5, .5, .01\n1, 0, .01\n"));
+    const auto b = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 2, .01\n0.25, 1.5, .01\n0.5, 1, .01\n1, 0, .01\n"));
+    const auto result = compare_tables({{"flat", a}, {"steep", b}}, {});
+    EXPECT_EQ(result.winner, "steep");
+    EXPECT_TRUE(result.beyond_error);
+    ASSERT_EQ(result.differences.size(), 1u);
+    EXPECT_NEAR(result.differences[0].largest, 1, 1e-9);
+    EXPECT_NEAR(result.differences[0].beyond_error.at(0).first, 0, 1e-9);
+    EXPECT_LT(result.differences[0].beyond_error.back().second, 0.999);
+}
+
+TEST(Collapse, HoldsForTheSquareLawAndSaysTheExponentWhereItDoesNot) {
+    const auto made = [](double exponent) {
+        std::string text = "gap [mm], speed [m/s], lift_force [N], lift_force_sigma [N]\n";
+        for (const double u : {0.5, 1.0}) {
+            for (const double h : {1.0, 2.0, 3.0, 5.0, 8.0}) {
+                const double f = std::pow(u, exponent) * (1 + 2 / h);
+                text += std::to_string(h) + "," + std::to_string(u) + "," + std::to_string(f) + "," + std::to_string(0.005 * f) + "\n";
+            }
+        }
+        return csv(text);
+    };
+    EXPECT_TRUE(collapse(made(2), "lift_force", {}).holds);
+    const auto off = collapse(made(1.8), "lift_force", {});
+    EXPECT_FALSE(off.holds);
+    EXPECT_NEAR(off.exponent, 1.8, 0.01);
+}
+
+TEST(Collapse, FindsTheSharedCfdBelowTheSquareLaw) {
+    UNDERBODY_NEEDS_SHARED("cfd/forces.csv");
+    const auto points = selected_rows(core::read_csv(test::shared_folder() / "cfd/forces.csv"), "variant=ellipse, mesh=medium, pitch=0");
+    const auto result = collapse(points, "lift_force", {});
+    EXPECT_FALSE(result.holds);
+    ASSERT_EQ(result.groups.size(), 1u);
+    EXPECT_NEAR(result.groups[0].mean_ratio, 0.858, 0.005) << "its README: 14 % below the square law";
+}
+
+TEST(Kinks, AreNamedWithThePointThatCausesThem) {
+    const auto table = ForceTable::fit(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1,1,.05\n2,.8,.05\n3,.83,.05\n4,.6,.05\n5,.4,.05\n"), "lift_force");
+    std::string remarks;
+    for (const auto& r : table.remarks()) {
+        remarks += r.message + "\n";
+    }
+    EXPECT_THAT(remarks, HasSubstr("the turn at gap 2 mm"));
+    EXPECT_THAT(remarks, HasSubstr("not supported"));
+}
+
+}  // namespace
+}  // namespace underbody
