@@ -1,0 +1,131 @@
+// Probing of a block of cells with linear values: everything has a closed form.
+#include "postproc/probe.h"
+
+#include <gmock/gmock.h>
+#include <vtkCellType.h>
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <cmath>
+
+#include "postproc/field.h"
+#include "tests/support/support.h"
+
+namespace underbody::postproc {
+namespace {
+
+/// A gap of 1 m x 0.4 m x 0.1 m under a flat base: velocity -(1 + 20 z) along x, p = 5 x + z.
+Field gap_block() {
+    constexpr std::array<int, 3> n = {10, 8, 6};
+    constexpr std::array<double, 3> size = {1, 0.4, 0.1};
+    Zone volume;
+    volume.name = "water";
+    volume.kind = ZoneKind::fluid;
+    volume.volume = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkDoubleArray> velocity;
+    velocity->SetName("velocity");
+    velocity->SetNumberOfComponents(3);
+    vtkNew<vtkDoubleArray> pressure;
+    pressure->SetName("pressure");
+    const auto id = [&](int i, int j, int k) { return static_cast<vtkIdType>((k * (n[1] + 1) + j) * (n[0] + 1) + i); };
+    for (int k = 0; k <= n[2]; ++k) {
+        for (int j = 0; j <= n[1]; ++j) {
+            for (int i = 0; i <= n[0]; ++i) {
+                const double x = size[0] * (static_cast<double>(i) / n[0] - 0.5);
+                const double y = size[1] * (static_cast<double>(j) / n[1] - 0.5);
+                const double z = size[2] * k / n[2];
+                points->InsertNextPoint(x, y, z);
+                velocity->InsertNextTuple3(-(1 + 20 * z), 0, 0);
+                pressure->InsertNextValue(5 * x + z);
+            }
+        }
+    }
+    volume.volume->SetPoints(points);
+    volume.volume->Allocate(n[0] * n[1] * n[2]);
+    for (int k = 0; k < n[2]; ++k) {
+        for (int j = 0; j < n[1]; ++j) {
+            for (int i = 0; i < n[0]; ++i) {
+                const vtkIdType ids[8] = {id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
+                                          id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
+                volume.volume->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
+            }
+        }
+    }
+    volume.volume->GetPointData()->AddArray(velocity);
+    volume.volume->GetPointData()->AddArray(pressure);
+    volume.arrays = {{"velocity", "m/s", "U", "", Location::nodes, 3}, {"pressure", "Pa", "p", "", Location::nodes, 1}};
+    Zone base;
+    base.name = "base";
+    base.kind = ZoneKind::wall;
+    base.surface = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> corners;  // narrower than the water: 0.8 m x 0.2 m
+    for (const auto& [x, y] : {std::pair{-0.4, -0.1}, {0.4, -0.1}, {0.4, 0.1}, {-0.4, 0.1}}) {
+        corners->InsertNextPoint(x, y, 0.1);
+    }
+    vtkNew<vtkCellArray> face;
+    face->InsertNextCell({0, 3, 2, 1});
+    base.surface->SetPoints(corners);
+    base.surface->SetPolys(face);
+    Field field;
+    field.files = {"made"};
+    field.density = 1000;
+    field.zones = {volume, base};
+    return field;
+}
+
+TEST(Probe, InterpolatesLinearlyAndSaysWhatLiesOutside) {
+    const core::Table line = probe_line(gap_block(), {-0.3, 0.05, 0.01}, {0.9, 0.05, 0.07}, 13);
+    for (std::size_t i = 0; i < line.rows(); ++i) {
+        const double x = line.numbers("x")[i];
+        const double z = line.numbers("z")[i];
+        if (x < 0.4999) {
+            EXPECT_NEAR(line.numbers("pressure")[i], 5 * x + z, 1e-12);
+            EXPECT_NEAR(line.numbers("velocity_x")[i], -(1 + 20 * z), 1e-12);
+        } else if (x > 0.5001) {
+            EXPECT_TRUE(std::isnan(line.numbers("pressure")[i]));
+        }
+    }
+    EXPECT_NEAR(line.numbers("distance").back(), std::hypot(1.2, 0.06), 1e-12);
+    const core::Table plane = probe_plane(gap_block(), {-0.1, -0.1, 0.05}, {0.2, 0, 0}, {0, 0.2, 0}, 3, 2);
+    EXPECT_EQ(plane.rows(), 6U);
+    EXPECT_NEAR(plane.numbers("pressure")[2], 0.55, 1e-12);
+    ProbeOptions wrong;
+    wrong.arrays = {"presure"};
+    EXPECT_THROW(probe_points(gap_block(), {{0, 0, 0}}, wrong), core::InputError);
+}
+
+TEST(Probe, GivesTheFlowThroughTheGapInClosedForm) {
+    GapOptions options;
+    options.stations = 4;
+    const core::Table flow = gap_flow(gap_block(), options);
+    ASSERT_EQ(flow.rows(), 4U);
+    for (std::size_t i = 0; i < flow.rows(); ++i) {
+        EXPECT_NEAR(flow.numbers("width")[i], 0.2, 1e-7);
+        EXPECT_NEAR(flow.numbers("area")[i], 0.02, 1e-8);
+        EXPECT_NEAR(flow.numbers("bulk_velocity")[i], 2, 1e-6);  // 1 + 20 * 0.05
+        EXPECT_NEAR(flow.numbers("volume_flow")[i], 0.04, 1e-8);
+        EXPECT_NEAR(flow.numbers("mass_flow")[i], 40, 1e-5);
+        const double x = flow.numbers("position")[i];
+        EXPECT_NEAR(flow.numbers("mean_pressure")[i], 5 * x + 0.05, 1e-7);
+        // Flow mean of z: integral of (1 + 20 z) z over integral of (1 + 20 z), height 0.1.
+        EXPECT_NEAR(flow.numbers("bulk_pressure")[i], 5 * x + (0.005 + 20 * 1e-3 / 3) / 0.2, 1e-6);
+    }
+}
+
+TEST(Probe, DrawsTheProfileAcrossTheGap) {
+    const core::Figure figure = gap_profile_figure(gap_block());
+    ASSERT_EQ(figure.curves.size(), 5U);
+    const auto& curve = figure.curves[2];
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        EXPECT_NEAR(curve.x[i], 1 + 20 * curve.y[i] / 1000, 1e-9);
+    }
+    EXPECT_GT(curve.x.size(), 55U);
+}
+
+}  // namespace
+}  // namespace underbody::postproc
