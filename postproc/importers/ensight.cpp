@@ -277,6 +277,8 @@ public:
           in_(variable.file, geometry.coding(), geometry.swapped()),
           out_(out) {}
     void read();
+    /// Parts that got no values, by name.
+    [[nodiscard]] std::string without() const;
 
 private:
     void section(const std::string& line, const Part& part, PartValues& values);
@@ -316,6 +318,18 @@ void Values::read() {
         }
         section(line, *part, *values);
     }
+}
+
+std::string Values::without() const {
+    std::string names;
+    for (const auto& [number, part] : geometry_.parts) {
+        const auto found = out_.find(number);
+        const bool has =
+            found != out_.end() && std::any_of(found->second.begin(), found->second.end(),
+                                               [&](const PartValues& v) { return v.variable == variable_.name; });
+        names += has ? "" : (names.empty() ? "" : ", ") + part.elements.name;
+    }
+    return names;
 }
 
 void Values::section(const std::string& line, const Part& part, PartValues& values) {
@@ -380,6 +394,21 @@ int volume_dimension(const Geometry& geometry) {
 
 bool recognises(std::string_view head, const std::filesystem::path& /*path*/) { return is_ensight_case(head); }
 
+/// A geometry that ends before its elements looks whole: nodes that belong to none give it away.
+void mind_unused_nodes(const ElementPart& part, const std::filesystem::path& file, core::Problems& problems) {
+    std::vector<bool> used(part.points.size() / 3);
+    for (const std::int64_t node : part.nodes) {
+        used[static_cast<std::size_t>(node)] = true;
+    }
+    const auto unused = std::count(used.begin(), used.end(), false);
+    if (unused > 0 || part.elements() == 0) {
+        problems.push_back({core::Problem::Severity::warning,
+                            std::to_string(unused) + " nodes of part " + part.name +
+                                " belong to no element: is the geometry cut short?",
+                            {file.string(), {}, {}, {}}});
+    }
+}
+
 /// OpenFOAM writes p over density in incompressible cases and pressure in compressible ones, both as "p".
 void mind_openfoam(const Geometry& geometry, const ReadOptions& options, std::vector<EnsightVariable>& variables,
                    Field& field) {
@@ -433,7 +462,14 @@ Field read(const std::filesystem::path& path, const ReadOptions& options, core::
                                       {variable.file.string(), {}, {}, {}}});
             continue;
         }
-        Values(variable, geometry, values).read();
+        Values reader(variable, geometry, values);
+        reader.read();
+        if (const std::string names = reader.without(); !names.empty()) {
+            field.problems.push_back({core::Problem::Severity::note,
+                                      "'" + variable.name + "' has no values on " + names +
+                                          " (unless it lives on some parts only, the file is cut short)",
+                                      {variable.file.string(), {}, {}, {}}});
+        }
         field.files.push_back(variable.file.string());
     }
     for (const auto& [name, value] : files.constants) {
@@ -449,6 +485,7 @@ Field read(const std::filesystem::path& path, const ReadOptions& options, core::
     }
     std::vector<ElementPart> parts;
     for (auto& [number, part] : geometry.parts) {
+        mind_unused_nodes(part.elements, files.geometry, field.problems);
         parts.push_back(std::move(part.elements));
     }
     scale_parts(parts, options, field);

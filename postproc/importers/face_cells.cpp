@@ -252,7 +252,6 @@ Measure measure(const FaceMesh& mesh, const std::vector<View>& faces) {
 
 struct Sizes {
     std::uint32_t connectivity = 0;
-    std::uint32_t stream = 0;
 };
 
 /// Type and sizes of a cell whose faces are in `scratch`; its nodes stay in `scratch.nodes` (VTK's order).
@@ -273,10 +272,6 @@ unsigned char shape(int dimension, bool polyhedron, Scratch& scratch, Sizes& siz
         type = polyhedron ? static_cast<unsigned char>(vtk_polyhedron) : standard_cell(scratch.faces, nodes);
         if (type == vtk_polyhedron) {
             unique_nodes(scratch);
-            sizes.stream = 1;
-            for (const auto& face : scratch.faces) {
-                sizes.stream += 1 + face.size;
-            }
         } else {
             const std::size_t count = type == vtk_hexahedron ? 8 : type == vtk_wedge ? 6 : type == vtk_pyramid ? 5 : 4;
             scratch.nodes.assign(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(count));
@@ -284,6 +279,17 @@ unsigned char shape(int dimension, bool polyhedron, Scratch& scratch, Sizes& siz
     }
     sizes.connectivity = static_cast<std::uint32_t>(scratch.nodes.size());
     return type;
+}
+
+/// Number of faces, then per face its number of nodes and these, in an order whose normal points outward.
+void append_polyhedron(const Scratch& scratch, std::vector<std::int64_t>& stream) {
+    stream.push_back(static_cast<std::int64_t>(scratch.faces.size()));
+    for (const auto& face : scratch.faces) {
+        stream.push_back(face.size);
+        for (std::uint32_t k = 0; k < face.size; ++k) {
+            stream.push_back(static_cast<std::int64_t>(face.node(k, false)) - 1);
+        }
+    }
 }
 
 bool in_ranges(const std::vector<IdRange>& ranges, std::uint64_t id) {
@@ -385,39 +391,52 @@ CellArrays CellBuilder::build(const CellBlock& cells, core::Progress& progress) 
     struct Part {
         std::uint64_t cells = 0, connectivity = 0, stream = 0, inverted = 0, open = 0;
         double volume = 0;
+        std::vector<std::int32_t> nodes;  ///< of the block's cells, until they find their place
+        std::vector<std::int64_t> faces;
     };
     std::vector<Part> parts(blocks);
-    // First pass: types and sizes, and the measures on the way.
+    // Cells are built by blocks, whatever the number of threads, and then put one block after another.
     core::parallel_blocks(
         count, block_of_cells,
         [&](std::size_t begin, std::size_t end) {
             Scratch scratch;
             Part part;
+            part.nodes.reserve(8 * (end - begin));
             for (std::size_t i = begin; i < end; ++i) {
                 gather(cells.first + i, scratch);
                 Sizes sizes;
                 types[i] = shape(mesh_.dimension, polyhedron(i), scratch, sizes);
                 lengths[i] = sizes.connectivity;
-                part.connectivity += sizes.connectivity;
-                part.stream += sizes.stream;
                 if (scratch.faces.empty()) {
                     continue;
                 }
                 const Measure m = measure(mesh_, scratch.faces);
-                const bool is_open = !(m.opening <= 1e-6 * m.area);
                 part.volume += m.volume;
                 part.inverted += !(m.volume > 0) ? 1 : 0;
-                part.open += is_open ? 1 : 0;
-                part.cells += types[i] != vtk_empty ? 1 : 0;
+                part.open += !(m.opening <= 1e-6 * m.area) ? 1 : 0;
+                if (types[i] == vtk_empty) {
+                    continue;
+                }
+                ++part.cells;
+                for (const std::uint32_t node : scratch.nodes) {
+                    part.nodes.push_back(static_cast<std::int32_t>(node) - 1);
+                }
+                if (types[i] == vtk_polyhedron) {
+                    append_polyhedron(scratch, part.faces);
+                }
             }
-            parts[begin / block_of_cells] = part;
+            part.connectivity = part.nodes.size();
+            part.stream = part.faces.size();
+            parts[begin / block_of_cells] = std::move(part);
         },
         progress);
     CellArrays out;
     std::vector<Part> starts(blocks);
     Part total;
     for (std::size_t b = 0; b < blocks; ++b) {
-        starts[b] = total;
+        starts[b].cells = total.cells;
+        starts[b].connectivity = total.connectivity;
+        starts[b].stream = total.stream;
         total.cells += parts[b].cells;
         total.connectivity += parts[b].connectivity;
         total.stream += parts[b].stream;
@@ -435,42 +454,36 @@ CellArrays CellBuilder::build(const CellBlock& cells, core::Progress& progress) 
     out.face_stream.grow_to(total.stream);
     out.face_locations.grow_to(total.stream > 0 ? total.cells : 0);
     out.offsets[total.cells] = static_cast<std::int32_t>(total.connectivity);
-    // Second pass: fill.
     core::parallel_blocks(
         count, block_of_cells,
         [&](std::size_t begin, std::size_t end) {
-            Scratch scratch;
             const Part& start = starts[begin / block_of_cells];
+            Part& part = parts[begin / block_of_cells];
+            std::copy(part.nodes.begin(), part.nodes.end(), out.connectivity.data() + start.connectivity);
+            std::copy(part.faces.begin(), part.faces.end(), out.face_stream.data() + start.stream);
             std::size_t cell = start.cells;
-            auto connectivity = static_cast<std::size_t>(start.connectivity);
-            auto stream = static_cast<std::size_t>(start.stream);
+            std::uint64_t connectivity = start.connectivity;
+            std::uint64_t stream = 0;
             for (std::size_t i = begin; i < end; ++i) {
                 if (types[i] == vtk_empty) {
                     continue;
                 }
-                gather(cells.first + i, scratch);
-                Sizes sizes;
-                shape(mesh_.dimension, polyhedron(i), scratch, sizes);
                 out.types[cell] = types[i];
                 out.ids[cell] = cells.first + i;
                 out.offsets[cell] = static_cast<std::int32_t>(connectivity);
-                for (const std::uint32_t node : scratch.nodes) {
-                    out.connectivity[connectivity++] = static_cast<std::int32_t>(node) - 1;
-                }
+                connectivity += lengths[i];
                 if (!out.face_locations.empty()) {
-                    out.face_locations[cell] = types[i] == vtk_polyhedron ? static_cast<std::int64_t>(stream) : -1;
+                    out.face_locations[cell] =
+                        types[i] == vtk_polyhedron ? static_cast<std::int64_t>(start.stream + stream) : -1;
                 }
                 if (types[i] == vtk_polyhedron) {
-                    out.face_stream[stream++] = static_cast<std::int64_t>(scratch.faces.size());
-                    for (const auto& face : scratch.faces) {
-                        out.face_stream[stream++] = face.size;
-                        for (std::uint32_t k = 0; k < face.size; ++k) {
-                            out.face_stream[stream++] = static_cast<std::int64_t>(face.node(k, false)) - 1;
-                        }
+                    for (std::int64_t faces = part.faces[stream++]; faces > 0; --faces) {
+                        stream += static_cast<std::uint64_t>(part.faces[stream]) + 1;
                     }
                 }
                 ++cell;
             }
+            part = Part{};
         },
         progress);
     return out;

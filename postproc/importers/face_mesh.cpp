@@ -131,6 +131,10 @@ void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progre
         refuse(mesh, "more than 2^31 nodes, faces or cells: " + text(mesh.nodes) + ", " + text(mesh.faces) + ", " +
                          text(mesh.cells));
     }
+    if (mesh.nodes == 0 || mesh.faces == 0) {
+        refuse(mesh,
+               "the mesh has " + text(mesh.nodes) + " nodes and " + text(mesh.faces) + " faces: is it cut short?");
+    }
     std::uint64_t faces = 0;
     for (const auto& block : mesh.face_blocks) {
         faces += block.count;
@@ -152,7 +156,7 @@ void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progre
                              " that the file declares");
         }
     }
-    if (!mesh.cell_blocks.empty() && cells != mesh.cells) {
+    if (cells != mesh.cells) {
         refuse(mesh, "the file declares " + text(mesh.cells) + " cells but its zones hold " + text(cells));
     }
     for (const auto& block : mesh.face_blocks) {

@@ -90,6 +90,7 @@ public:
                                  std::to_string(odd_values_) + " values are not finite: the solution has diverged",
                                  {in_.name(), {}, {}, {}}});
         }
+        mind_missing_pressure();
         for (const auto& [index, times] : skipped_) {
             settings_.skipped.push_back(std::to_string(index) + " of the data" +
                                         (times > 1 ? " (" + std::to_string(times) + " times)" : ""));
@@ -99,6 +100,7 @@ public:
 
 private:
     void section();
+    void mind_missing_pressure();
     void grid_size();
     void solution(std::uint64_t index, std::size_t size);
     void values(ValueBlock& block, std::size_t size);
@@ -133,6 +135,29 @@ private:
     bool sized_ = false;
     bool swap_ = false;
 };
+
+/// Data cut off between two sections look whole: boundary zones without pressure give them away.
+void DataReader::mind_missing_pressure() {
+    if (!wants_variable(options_, "SV_P")) {
+        return;
+    }
+    std::string without;
+    for (const auto& [id, zone] : zones_) {
+        const bool found = std::any_of(values_.begin(), values_.end(), [&, zone_id = id](const ValueBlock& block) {
+            return block.zone == zone_id && block.variable == "SV_P";
+        });
+        const ZoneLabel* label = mesh_.label(id);
+        const bool solid = label != nullptr && (label->type == "solid" || label->type == "interface");
+        if (!found && !solid && !zone.inner && !(zone.cells && options_.surfaces_only) && !zone.ranges.empty()) {
+            without += (without.empty() ? "" : ", ") + (label != nullptr ? label->name : std::to_string(id));
+        }
+    }
+    if (!without.empty()) {
+        problems_.push_back({core::Problem::Severity::warning,
+                             "there is no pressure on zones " + without + ": are the data cut short?",
+                             {in_.name(), {}, {}, {}}});
+    }
+}
 
 void DataReader::section() {
     progress_.check();

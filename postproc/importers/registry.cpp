@@ -6,7 +6,12 @@
     X(fluent_legacy) \
     X(fluent_hdf5) \
     X(ensight) \
-    X(cgns)
+    X(cgns) \
+    X(vtk_xml) \
+    X(vtk_legacy) \
+    X(openfoam) \
+    X(tecplot) \
+    X(surface_file)
 
 namespace underbody::postproc {
 
