@@ -68,7 +68,8 @@ TEST_F(StudyCommand, RecomputesNothingWhenNothingChangedAndOnlyWhatChangedOtherw
     const auto report_time = fs::last_write_time(study / "report" / "index.html");
     const json again = json::parse(run().output);
     EXPECT_EQ(again.at("computed"), 0);
-    EXPECT_EQ(fs::last_write_time(study / "report" / "index.html"), report_time) << "an unchanged report is not written again";
+    EXPECT_EQ(fs::last_write_time(study / "report" / "index.html"), report_time)
+        << "an unchanged report is not written again";
     core::write_file(study / "fields" / "cube-h4.csv", cube_field(0.004, 310));
     const json changed = json::parse(run().output);
     std::vector<std::string> loads;
@@ -81,7 +82,8 @@ TEST_F(StudyCommand, RecomputesNothingWhenNothingChangedAndOnlyWhatChangedOtherw
 }
 
 TEST_F(StudyCommand, AWrongFileFailsAloneAndIsNamedWithItsLine) {
-    core::write_file(study / "fields" / "cube-h3.csv", core::read_file(study / "fields" / "cube-h3.csv") + "0, 1, 99\n");
+    core::write_file(study / "fields" / "cube-h3.csv",
+                     core::read_file(study / "fields" / "cube-h3.csv") + "0, 1, 99\n");
     const ProgramRun result = run();
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_THAT(result.errors, HasSubstr("cube-h3.csv:"));
@@ -110,7 +112,9 @@ TEST_F(StudyCommand, AReadOnlyFolderIsToldWithTheWayOut) {
     ::chmod(study.c_str(), 0700);
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_THAT(result.errors, HasSubstr("--store"));
-    EXPECT_EQ(run({"--store", (scratch.path() / "s.sqlite").string(), "--report", (scratch.path() / "r.html").string()}).exit_code, 0);
+    EXPECT_EQ(run({"--store", (scratch.path() / "s.sqlite").string(), "--report", (scratch.path() / "r.html").string()})
+                  .exit_code,
+              0);
     EXPECT_TRUE(fs::exists(scratch.path() / "r.html"));
 }
 
@@ -163,7 +167,8 @@ TEST_F(StudyCommand, AddsCasesOnlyWhenTheStudyStaysRight) {
     const ProgramRun wrong = run_underbody({"study", "add", study.string(), "--files", "none/*.csv"});
     EXPECT_EQ(wrong.exit_code, 3);
     EXPECT_EQ(core::read_file(study / "study.toml"), before);
-    const ProgramRun right = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5m/s"});
+    const ProgramRun right = run_underbody(
+        {"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5m/s"});
     EXPECT_EQ(right.exit_code, 0) << right.errors;
     EXPECT_THAT(run_underbody({"study", "list", study.string()}).output, HasSubstr("ball-h2"));
 }
