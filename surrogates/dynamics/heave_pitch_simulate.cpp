@@ -77,7 +77,7 @@ PitchTrajectory simulate(const HeavePitch& plant, const PitchState& start, const
         do {
             const double next =
                 o.output_step > 0 ? o.output_step * (std::floor(t / o.output_step * (1 + 1e-12)) + 1) : o.duration;
-            stop = o.output_step > 0 ? ode.advance(std::min(next, o.duration)) : ode.one_step(o.duration);
+            stop = o.output_step > 0 ? ode.advance(next < o.duration - 1e-6 * o.output_step ? next : o.duration) : ode.one_step(o.duration);
             t = stop.t;
             if (!stop.event) {
                 record(t, ode.state());

@@ -133,7 +133,7 @@ double Flight::rest(double t, double t_end, std::vector<double>& y, core::Progre
             return hi;
         }
         t = next;
-        while (options_.output_step > 0 && next_output_ <= t * (1 + 1e-14)) {
+        while (options_.output_step > 0 && next_output_ <= t + 1e-6 * options_.output_step) {
             record(next_output_, y.data());
             next_output_ =
                 out_.time.front() +
@@ -177,7 +177,9 @@ void Flight::fly(double gap, double velocity, double t0, core::Progress& progres
         Ode::Stop stop;
         int count = 0;
         do {
-            const double goal = options_.output_step > 0 ? std::min(t_end, next_output_) : t_end;
+            // An output that rounding puts a hair before the end is the end.
+            const bool more = options_.output_step > 0 && next_output_ < t_end - 1e-6 * options_.output_step;
+            const double goal = more ? next_output_ : t_end;
             stop = options_.output_step > 0 ? ode->advance(goal) : ode->one_step(goal);
             if (++count % 256 == 0) {
                 progress.check();

@@ -156,7 +156,7 @@ void BodyFlight::fly(const BodyState& start, core::Progress& progress) {
         const double began = t;
         do {
             const double next = options_.output_step * (std::floor(t / options_.output_step * (1 + 1e-12)) + 1);
-            stop = ode.advance(std::min(next, options_.duration));
+            stop = ode.advance(next < options_.duration - 1e-6 * options_.output_step ? next : options_.duration);
             t = stop.t;
             if (!stop.event) {
                 record(t, ode.state());

@@ -88,6 +88,22 @@ TEST(Heave, RestsOnTheGroundUntilTheInputLiftsIt) {
     EXPECT_NEAR(motion.gap.back(), 0.125 / 12 + 0.0625 * 2 + 0.25 * 2, 1e-6);
 }
 
+TEST(Heave, WritesOneRowAnOutputStep) {
+    TrajectoryOptions options;
+    for (const double step : {.1, .3, .7, 1.0 / 3}) {
+        options.duration = 60 * step;
+        options.output_step = step;
+        const Trajectory swinging = simulate(test::spring_model(100.0, 4.0, 1.0, 0), 0.15, 0, {}, options);
+        EXPECT_EQ(swinging.time.size(), 61U) << step;
+        EXPECT_DOUBLE_EQ(swinging.time.back(), options.duration);
+        InputSignals inputs;  // resting on the ground
+        inputs.time = {0, 100};
+        inputs.signals = {{Channel::input_force, {0, .1}}};
+        const Trajectory resting = simulate(test::free_model(2.0, 0.5, 0, 0), 0, 0, inputs, options);
+        EXPECT_EQ(resting.time.size(), 61U) << step;
+    }
+}
+
 TEST(Heave, EndsAtItsEquilibriumWhenAskedTo) {
     const Model model = test::spring_model(100.0, 4.0, 40.0, 0);
     TrajectoryOptions options;
