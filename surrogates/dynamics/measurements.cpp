@@ -21,8 +21,8 @@ std::map<std::string, double> read_quantities(const core::TomlTable& table, cons
             for (const core::QuantityName& name : core::quantity_names()) {
                 known.push_back(name.name);
             }
-            throw core::InputError("name", std::string(what) + " of an unknown quantity '" + key + "'", table.place(key),
-                                   core::did_you_mean(key, known));
+            throw core::InputError("name", std::string(what) + " of an unknown quantity '" + key + "'",
+                                   table.place(key), core::did_you_mean(key, known));
         }
         values[key] = table.quantity(key, quantity->unit);
     }
@@ -41,7 +41,8 @@ std::map<std::string, double> read_noise(const core::TomlTable& table) {
             }
         }
         if (!(sigma > 0)) {
-            throw core::InputError("range", "the noise of " + name + " is " + core::format_number(sigma, 6) + ", not positive",
+            throw core::InputError("range",
+                                   "the noise of " + name + " is " + core::format_number(sigma, 6) + ", not positive",
                                    table.place(name), "leave the line out and the noise is estimated from the data");
         }
     }
@@ -67,11 +68,12 @@ void check_time_series(const MeasuredRun& run) {
                                    "leave the whole row out: gaps in time are fine");
         }
         if (i > 0 && time[i] <= time[i - 1]) {
-            throw core::InputError("order",
-                                   std::string("time ") + (time[i] == time[i - 1] ? "stands still" : "runs backwards") + " from " +
-                                       core::format_number(time[i - 1], 9) + " s to " + core::format_number(time[i], 9) + " s",
-                                   run.table.place(i, "time"),
-                                   "if the logger started anew here, make two runs of the file; the other runs can be used as they are");
+            throw core::InputError(
+                "order",
+                std::string("time ") + (time[i] == time[i - 1] ? "stands still" : "runs backwards") + " from " +
+                    core::format_number(time[i - 1], 9) + " s to " + core::format_number(time[i], 9) + " s",
+                run.table.place(i, "time"),
+                "if the logger started anew here, make two runs of the file; the other runs can be used as they are");
         }
     }
 }
@@ -82,7 +84,8 @@ void check_static(const MeasuredRun& run) {
             return;
         }
     }
-    throw core::InputError("missing", "a static set needs a measured force or moment", core::Place{run.table.source, {}, {}, {}},
+    throw core::InputError("missing", "a static set needs a measured force or moment",
+                           core::Place{run.table.source, {}, {}, {}},
                            "columns such as lift_force [N], drag_force [N], pitch_moment [N m]");
 }
 
@@ -125,14 +128,16 @@ Measurements read_measurements(const std::filesystem::path& folder) {
     if (std::filesystem::is_directory(folder)) {
         file = folder / "dataset.toml";
         if (!std::filesystem::exists(file)) {
-            throw core::InputError("missing", "no dataset.toml in this folder", core::Place{folder.string(), {}, {}, {}},
+            throw core::InputError("missing", "no dataset.toml in this folder",
+                                   core::Place{folder.string(), {}, {}, {}},
                                    "a data set is a folder with dataset.toml, which names its runs");
         }
     }
     const core::TomlTable root = core::read_toml(file);
     Measurements data;
     data.folder = file.parent_path();
-    data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady : MeasurementKind::time_series;
+    data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady
+                                                                           : MeasurementKind::time_series;
     data.title = root.string_or("title", {});
     data.noise = read_noise(root.table_or_empty("noise"));
     const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
@@ -146,7 +151,8 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         }
         for (const MeasuredRun& other : data.runs) {
             if (std::filesystem::weakly_canonical(other.file) == std::filesystem::weakly_canonical(run.file)) {
-                throw core::InputError("duplicate", "the run " + run.file.string() + " is named twice", entry.place("file"),
+                throw core::InputError("duplicate", "the run " + run.file.string() + " is named twice",
+                                       entry.place("file"),
                                        "a run counted twice makes everything look twice as certain");
             }
         }

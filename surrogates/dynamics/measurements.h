@@ -17,9 +17,9 @@ enum class RunUse { automatic, train, test };
 
 /// One file of measurements.
 struct MeasuredRun {
-    std::string name;            ///< the file's name without folder and ending; distinct within a data set
+    std::string name;  ///< the file's name without folder and ending; distinct within a data set
     std::filesystem::path file;
-    core::Table table;           ///< SI, as read; missing values are NaN
+    core::Table table;                         ///< SI, as read; missing values are NaN
     std::map<std::string, double> conditions;  ///< SI; those of the data set, overridden by the run's own
     RunUse use = RunUse::automatic;
 
@@ -46,9 +46,10 @@ struct Measurements {
 };
 
 /// Reads `folder/dataset.toml` (or the file itself) and all its runs.
-/// Throws core::InputError naming file and place: no dataset.toml, unknown kind or key (with the nearest known one), no run, a
-/// file named twice, a run that does not read, a time series without `time` and `gap` or with fewer than three rows, time that
-/// stands still or runs backwards, a static set without a measured force or moment, noise that is not positive.
+/// Throws core::InputError naming file and place: no dataset.toml, unknown kind or key (with the nearest known one), no
+/// run, a file named twice, a run that does not read, a time series without `time` and `gap` or with fewer than three
+/// rows, time that stands still or runs backwards, a static set without a measured force or moment, noise that is not
+/// positive.
 Measurements read_measurements(const std::filesystem::path& folder);
 
 /// Names of the channels that a static set can measure: forces and moments.
