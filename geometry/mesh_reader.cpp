@@ -491,9 +491,11 @@ void find_patches(SurfaceMesh& mesh, double feature_angle) {
         return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
     });
     const double limit = std::cos(feature_angle);
+    // A flat base is told from a side that runs smoothly into it by lying exactly level.
+    const auto level = [](const Vec3& n) { return n.z < 0 && std::hypot(n.x, n.y) < 5e-4 * -n.z; };
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         const Vec3 m = mesh.area_vector(sides[i].triangle), n = mesh.area_vector(sides[i + 1].triangle);
-        if (sides[i].edge == sides[i + 1].edge && dot(m, n) >= limit * norm(m) * norm(n)) {
+        if (sides[i].edge == sides[i + 1].edge && dot(m, n) >= limit * norm(m) * norm(n) && level(m) == level(n)) {
             root[find(sides[i].triangle)] = find(sides[i + 1].triangle);
         }
     }

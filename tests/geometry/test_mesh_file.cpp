@@ -65,6 +65,14 @@ TEST(MeshFile, FindsPatchesByTheirSharpEdges) {
     EXPECT_NEAR(area(patch_of(back, "base")), area(patch_of(mesh, "base")), 1e-8);
 }
 
+TEST(MeshFile, TellsAFlatBaseFromSidesThatRunSmoothlyIntoIt) {
+    const core::TemporaryFolder folder;
+    const SurfaceMesh mesh = sample();  // the ends of its rectangle meet the base at a third of a degree
+    write_mesh(mesh, folder.path() / "body.stl");
+    const SurfaceMesh back = read_mesh(folder.path() / "body.stl", in("m"));
+    EXPECT_NEAR(area(patch_of(back, "base")), area(patch_of(mesh, "base")), 1e-8);
+}
+
 template <class Call>
 std::string refusal(const Call& call, const std::string& kind) {
     try {

@@ -23,7 +23,8 @@ TEST(BodyCommand, MakesTheBodyOfAShape) {
     EXPECT_TRUE(document.at("watertight").get<bool>());
     EXPECT_TRUE(document.at("quality").at("passed").get<bool>());
     EXPECT_EQ(document.at("added_mass").size(), 6u);
-    EXPECT_NEAR(document.at("added_mass")[2][2].get<double>(), 1.41, 0.03);
+    // 1.536 kg at 4000 panels; the whole ellipsoid has 1.457 (Lamb), and the sharp edge of the base adds to it.
+    EXPECT_NEAR(document.at("added_mass")[2][2].get<double>(), 1.535, 0.01);
     EXPECT_TRUE(document.at("gap").is_null());
     std::size_t faces = 0;
     for (const auto& patch : document.at("patches")) {
