@@ -1,4 +1,4 @@
-// Bodies, certificates, added mass. The peer for surfaces is gmsh 4.8 (bench_gmsh.sh).
+// Bodies, certificates, added mass.
 #include <benchmark/benchmark.h>
 
 #include "core/parallel.h"
