@@ -27,6 +27,7 @@ using AddCommand = void (*)(CLI::App& app, Shell& shell);
     X(study) \
     X(learn) \
     X(estimate) \
+    X(control) \
     X(linear)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);

@@ -2,6 +2,7 @@
 #include "surrogates/estimator/estimate.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -17,13 +18,14 @@
 #include "surrogates/dynamics/measurements.h"
 #include "surrogates/dynamics/model.h"
 #include "surrogates/dynamics/predict.h"
+#include "surrogates/estimator/information.h"
 
 namespace underbody::studio {
 
 namespace {
 
 struct Arguments {
-    std::string model, data, out, plot, poles, export_c, gap_noise, velocity_noise;
+    std::string model, data, out, plot, poles, export_c, gap_noise, velocity_noise, blind;
     std::vector<std::string> surfaces;
     estimator::EstimateOptions options;
 };
@@ -81,6 +83,27 @@ nlohmann::json identify(const Arguments& a, const dynamics::Measurements& data, 
     return list;
 }
 
+/// What the sensors can know along the gap: bounds drawn, and the filter's own statements tried on simulated runs.
+nlohmann::json along_gap(const Arguments& a, const dynamics::Model& model, const dynamics::Measurements& data,
+                         const estimator::Estimation& result, Shell& shell, std::string& text) {
+    const estimator::SeparatedPlant plant = estimator::separate(model, dynamics::signals_of(data.runs.front()).held);
+    estimator::InformationOptions o;
+    o.noise = result.noise;
+    o.drag_prior = a.options.drag_relative;
+    const auto map = estimator::information_along_gap(plant, o, shell.progress());
+    write_picture(map.figure(), a.blind);
+    const double lower = std::max(plant.lower, plant.contact_gap);
+    std::vector<double> gaps;
+    for (int i = 0; i < 6; ++i) {
+        gaps.push_back(lower + (plant.upper - lower) * (0.1 + 0.16 * i));
+    }
+    const auto consistency = estimator::consistency_along_gap(plant, result.noise, gaps, 60, 5, 0.02, 1, shell.progress());
+    const auto worst = std::max_element(consistency.nees.begin(), consistency.nees.end());
+    text += "along the gap: the ground force is blind on " + core::format_number(100 * map.blind_share, 3) +
+            " % of gaps and speeds; largest NEES " + core::format_number(*worst, 3) + " (3 is right)\n";
+    return {{"information", map}, {"consistency", consistency}};
+}
+
 int run(const Arguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
@@ -97,6 +120,10 @@ int run(const Arguments& a, Shell& shell) {
     nlohmann::json surfaces;
     if (!a.surfaces.empty()) {
         surfaces = identify(a, data, result.noise, surfaces_text);
+    }
+    nlohmann::json along;
+    if (!a.blind.empty()) {
+        along = along_gap(a, model, data, result, shell, surfaces_text);
     }
     if (!a.export_c.empty() && result.design.empty()) {
         throw core::UsageError("missing", "the extended filter has no linear form to export", {},
@@ -116,6 +143,9 @@ int run(const Arguments& a, Shell& shell) {
         nlohmann::json json = result;
         if (!a.surfaces.empty()) {
             json["surfaces"] = surfaces;
+        }
+        if (!a.blind.empty()) {
+            json["along_gap"] = along;
         }
         shell.print_json(json);
     }
@@ -158,6 +188,7 @@ void add_estimate_command(CLI::App& app, Shell& shell) {
     command->add_option("--drag-error", a->options.drag_relative, "relative deviation of the declared drag law (default 0.2)");
     command->add_flag("--smooth", a->options.smooth, "use the whole run for each moment");
     command->add_option("--surface", a->surfaces, "NAME=MODEL.toml, twice or more: which surface is under the vehicle");
+    command->add_option("--blind-zones", a->blind, "picture of what the sensors can know against gap and speed (.png, .pdf)");
     command->add_option("--export-c", a->export_c, "the linear observer as a C99 header");
     command->footer(
         "Examples:\n"

@@ -30,8 +30,9 @@ protected:
             table << i * 0.004 << ", " << lift(i * 0.004) << "\n";
         }
         std::filesystem::create_directories(folder() / "runs");
-        std::ofstream(folder() / "runs/dataset.toml") << "kind = \"time_series\"\n[noise]\ngap = \"0.1 mm\"\n[[run]]\nfile = \"a.csv\"\n"
-                                                         "[[run]]\nfile = \"b.csv\"\n";
+        std::ofstream(folder() / "runs/dataset.toml")
+            << "kind = \"time_series\"\n[noise]\ngap = \"0.1 mm\"\n[[run]]\nfile = \"a.csv\"\n"
+               "[[run]]\nfile = \"b.csv\"\n";
         write_run("a.csv", 0.6, 1);
         write_run("b.csv", 0.45, 2);
     }
@@ -80,15 +81,36 @@ TEST_F(LearnAndEstimate, PrintsTheModelWithTheKeysOthersRead) {
 }
 
 TEST_F(LearnAndEstimate, LearnsAlongTrajectoriesFromRunsAndFromAStreamedFile) {
-    for (const std::vector<std::string>& more :
-         {std::vector<std::string>{"--method", "time", "--samples", "5000"}, {"--data", "runs"}, {"--auxiliaries", "total_force"},
-          {"--samples-out", "s.npy"}, {"--moments-of", "s.npy"}, {"--dmd", "0.1 s"}, {"--correction", "p3"}, {"--offset", "equilibrium"}}) {
+    for (const std::vector<std::string>& more : {std::vector<std::string>{"--method", "time", "--samples", "5000"},
+                                                 {"--data", "runs"},
+                                                 {"--auxiliaries", "total_force"},
+                                                 {"--samples-out", "s.npy"},
+                                                 {"--moments-of", "s.npy"},
+                                                 {"--dmd", "0.1 s"},
+                                                 {"--correction", "p3"},
+                                                 {"--offset", "equilibrium"}}) {
         std::vector<std::string> arguments{"learn", "model.toml", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const auto run = test::run_underbody(arguments, folder());
         ASSERT_EQ(run.exit_code, 0) << more[0] << run.errors;
         EXPECT_TRUE(nlohmann::json::parse(run.output).contains("A"));
     }
+}
+
+TEST_F(LearnAndEstimate, HoldsAGapAndDrawsWhereTheSensorsAreBlind) {
+    const auto with = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--json"}, folder());
+    ASSERT_EQ(with.exit_code, 0) << with.errors;
+    EXPECT_NEAR(nlohmann::json::parse(with.output).at("final_gap").get<double>(), 0.6, 1e-4);
+    const auto limited = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "reduced", "--limit",
+                                              "20 mN", "--lag", "0.1 s", "--gap-noise", "0.1 mm", "--out", "loop.csv"},
+                                             folder());
+    ASSERT_EQ(limited.exit_code, 0) << limited.errors;
+    EXPECT_GT(core::read_csv(folder() / "loop.csv").rows(), 100U);
+    EXPECT_EQ(test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "ful"}, folder()).exit_code, 2);
+    const auto blind = test::run_underbody({"estimate", "model.toml", "--data", "runs", "--blind-zones", "blind.png", "--json"}, folder());
+    ASSERT_EQ(blind.exit_code, 0) << blind.errors;
+    EXPECT_TRUE(std::filesystem::exists(folder() / "blind.png"));
+    EXPECT_TRUE(nlohmann::json::parse(blind.output).at("along_gap").at("consistency").contains("nees"));
 }
 
 TEST_F(LearnAndEstimate, RefusesWrongRequestsWithThePlaceAndAHint) {
@@ -99,12 +121,15 @@ TEST_F(LearnAndEstimate, RefusesWrongRequestsWithThePlaceAndAHint) {
     EXPECT_EQ(test::run_underbody({"learn", "model.toml", "--auxiliaries", "ground_forse"}, folder()).exit_code, 3);
     EXPECT_EQ(test::run_underbody({"learn", "missing.toml"}, folder()).exit_code, 3);
     EXPECT_EQ(test::run_underbody({"learn", "model.toml", "--region", "gap=-1:0.2"}, folder()).exit_code, 3);
-    EXPECT_EQ(test::run_underbody({"estimate", "model.toml", "--data", "runs", "--observer", "reduced"}, folder()).exit_code, 3);
+    EXPECT_EQ(
+        test::run_underbody({"estimate", "model.toml", "--data", "runs", "--observer", "reduced"}, folder()).exit_code,
+        3);
     EXPECT_EQ(test::run_underbody({"estimate", "model.toml", "--data", "runs", "--poles", "x"}, folder()).exit_code, 2);
 }
 
 TEST_F(LearnAndEstimate, EstimatesTheForcesWithTheirErrorsAndLabels) {
-    const auto run = test::run_underbody({"estimate", "model.toml", "--data", "runs", "--out", "est.csv", "--json"}, folder());
+    const auto run =
+        test::run_underbody({"estimate", "model.toml", "--data", "runs", "--out", "est.csv", "--json"}, folder());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const auto json = nlohmann::json::parse(run.output);
     EXPECT_EQ(json.at("labels").at("total_force"), "observed");
@@ -121,12 +146,14 @@ TEST_F(LearnAndEstimate, EstimatesTheForcesWithTheirErrorsAndLabels) {
     }
     EXPECT_LT(std::sqrt(square / n), 1e-3);
     EXPECT_GT(inside, 0.8 * n);
-    const auto kalman = test::run_underbody(
-        {"estimate", "model.toml", "--data", "runs", "--observer", "kalman", "--export-c", "observer.h", "--out", "k.csv"}, folder());
+    const auto kalman = test::run_underbody({"estimate", "model.toml", "--data", "runs", "--observer", "kalman",
+                                             "--export-c", "observer.h", "--out", "k.csv"},
+                                            folder());
     ASSERT_EQ(kalman.exit_code, 0) << kalman.errors;
     EXPECT_TRUE(std::filesystem::exists(folder() / "observer.h"));
-    const auto surfaces = test::run_underbody(
-        {"estimate", "model.toml", "--data", "runs", "--surface", "smooth=model.toml", "--surface", "other=model.toml", "--json"}, folder());
+    const auto surfaces = test::run_underbody({"estimate", "model.toml", "--data", "runs", "--surface",
+                                               "smooth=model.toml", "--surface", "other=model.toml", "--json"},
+                                              folder());
     EXPECT_EQ(surfaces.exit_code, 0) << surfaces.errors;
 }
 
