@@ -5,6 +5,7 @@
     X(cfd_post_csv) \
     X(fluent_legacy) \
     X(fluent_hdf5) \
+    X(fluent_ascii) \
     X(ensight) \
     X(cgns) \
     X(vtk_xml) \

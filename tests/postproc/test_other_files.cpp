@@ -1,0 +1,67 @@
+// Plain VTK and surface files, Tecplot, and Fluent's ASCII tables.
+#include <gmock/gmock.h>
+#include <vtkPointData.h>
+
+#include <fstream>
+
+#include "core/file.h"
+#include "import_support.h"
+#include "tests/support/support.h"
+
+namespace underbody {
+
+using postproc::read_field;
+using ::testing::HasSubstr;
+
+namespace {
+
+std::filesystem::path written(const core::TemporaryFolder& folder, const std::string& name, const std::string& text) {
+    std::ofstream(folder.path() / name, std::ios::binary) << text;
+    return folder.path() / name;
+}
+
+const char* const triangle =
+    "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\n"
+    "POLYGONS 1 4\n3 0 1 2\nPOINT_DATA 3\nSCALARS Pressure double 1\nLOOKUP_TABLE default\n1 2 3\n";
+
+}  // namespace
+
+TEST(OtherFiles, PlainVtkAndStlComeWithCanonicalNames) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(written(folder, "tri.vtk", triangle));
+    ASSERT_EQ(field.zones.size(), 1U);
+    EXPECT_NE(field.zones[0].find("pressure"), nullptr);
+    EXPECT_NEAR(test::area_of(*field.zones[0].surface), 0.5, 1e-15);
+    const auto stl = read_field(written(folder, "tri.stl",
+                                        "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 "
+                                        "1 0\nendloop\nendfacet\nendsolid t\n"));
+    EXPECT_NEAR(test::area_of(*stl.zones.at(0).surface), 0.5, 1e-6);
+}
+
+TEST(OtherFiles, ATecplotFileOfFluentHasItsCells) {
+    UNDERBODY_NEEDS_SHARED("samples/tecplot/tecplot_ascii.dat");
+    const auto field = read_field(test::shared_folder() / "samples/tecplot/tecplot_ascii.dat");
+    EXPECT_EQ(test::cells_of(field), 120);
+    EXPECT_NE(field.zones.at(0).find("velocity"), nullptr);
+}
+
+TEST(OtherFiles, FluentsAsciiTableIsPointsAndSaysSo) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(written(
+        folder, "export.csv",
+        "nodenumber    x-coordinate    y-coordinate    z-coordinate        pressure    x-wall-shear    x-coordinate \n"
+        "         1 -3.955259915E-01  1.0E+00  2.0E+00  5.0E+00  0.5  -3.955259915E-01 \n"
+        "         2  0.0E+00  1.0E+00  2.0E+00  6.0E+00  0.25  0.0E+00 \n"));
+    EXPECT_EQ(field.format, "Fluent ASCII");
+    const auto& zone = field.zones.at(0);
+    EXPECT_EQ(zone.kind, postproc::ZoneKind::points);
+    EXPECT_EQ(zone.surface->GetNumberOfPoints(), 2);
+    EXPECT_EQ(zone.surface->GetPointData()->GetArray("pressure")->GetTuple1(1), 6);
+    EXPECT_NE(zone.find("wall_shear"), nullptr);
+    EXPECT_THAT(field.problems.back().message, HasSubstr("forces cannot be integrated"));
+    EXPECT_THAT(
+        test::refusal(written(folder, "cut.csv", "nodenumber x-coordinate y-coordinate pressure\n1 2 3 4\n2 3\n")),
+        HasSubstr("cut.csv:3"));
+}
+
+}  // namespace underbody
