@@ -1,4 +1,4 @@
-// underbody table fit | at | equilibria
+// underbody table fit | at | equilibria (and what table_analysis.cpp adds)
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
+#include "studio/cli/table_analysis.h"
 #include "studio/cli/table_options.h"
 #include "studio/figures/render.h"
 #include "surrogates/tables/equilibria.h"
@@ -213,6 +214,8 @@ void add_table_command(CLI::App& app, Shell& shell) {
         "  underbody table equilibria lift.csv --weight 0.3 --mass 3.954\n"
         "  underbody table equilibria loads.csv --weight \"30 gf\" --held pitch=1deg --picture eq.png");
     shell.on(eq_command, [&shell, eq] { return run_equilibria(shell, *eq); });
+
+    add_table_analysis(*table, shell);
 }
 
 }  // namespace underbody::studio

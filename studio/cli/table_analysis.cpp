@@ -1,0 +1,232 @@
+#include "studio/cli/table_analysis.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/shell.h"
+#include "studio/cli/table_options.h"
+#include "studio/figures/render.h"
+#include "surrogates/tables/compare.h"
+#include "surrogates/tables/continuation.h"
+#include "surrogates/tables/figures.h"
+#include "surrogates/tables/select.h"
+
+namespace underbody::studio {
+
+namespace {
+
+std::string number(double value, int digits = 5) { return core::format_number(value, digits); }
+
+struct ContinueCommand {
+    TableOptions table;
+    std::string along, weight = "0 N", held, picture, reference;
+    double exponent = 2;
+};
+
+int run_continue(Shell& shell, const ContinueCommand& command) {
+    const auto table = command.table.fit(shell);
+    const std::size_t equals = command.along.find('=');
+    const std::size_t colon = command.along.find(':');
+    if (equals == std::string::npos || colon == std::string::npos || colon < equals) {
+        throw core::UsageError("parse", "'" + command.along + "' is not of the form NAME=LOWER:UPPER", {}, "such as --along net_weight=0:0.5 or --along speed=0.2:1");
+    }
+    tables::ContinuationOptions options;
+    options.parameter = std::string(core::trimmed(command.along.substr(0, equals)));
+    const auto* known = core::find_quantity(options.parameter);
+    const std::string unit = options.parameter == "net_weight" ? "N" : known != nullptr ? known->unit : "1";
+    options.lower = core::parse_in(command.along.substr(equals + 1, colon - equals - 1), unit);
+    options.upper = core::parse_in(command.along.substr(colon + 1), unit);
+    options.base.net_weight = core::parse_in(command.weight, "N");
+    options.base.held = read_assignments(command.held);
+    options.exponent = command.exponent;
+    for (const auto& [name, value] : table.conditions()) {
+        if (name == options.parameter) {
+            options.reference = value;
+        }
+    }
+    if (!command.reference.empty()) {
+        options.reference = core::parse_in(command.reference, unit);
+    }
+    const auto curve = tables::continue_equilibria(table, options, shell.progress());
+    std::size_t points = 0;
+    for (const auto& branch : curve.branches) {
+        points += branch.size();
+    }
+    shell.print(std::to_string(curve.branches.size()) + " branches of equilibria, " + std::to_string(points) + " points, " + std::to_string(curve.folds.size()) + " folds");
+    for (const auto& fold : curve.folds) {
+        shell.print("fold at " + curve.parameter + " " + number(fold.parameter, 7) + " " + curve.parameter_unit + ", " + curve.axis + " " + number(fold.gap, 7) + " " + curve.axis_unit);
+    }
+    if (!command.picture.empty()) {
+        write_picture(tables::continuation_figure(table, curve), command.picture);
+    }
+    if (shell.json) {
+        shell.print_json(nlohmann::json(curve));
+    }
+    return done;
+}
+
+struct PitchCommand {
+    TableOptions table;
+    std::string held, weight, picture;
+};
+
+int run_pitch(Shell& shell, const PitchCommand& command) {
+    TableOptions table = command.table;
+    table.quantity = "pitch_moment";
+    const auto moment = table.fit(shell);
+    const auto held = read_assignments(command.held);
+    nlohmann::json document;
+    document["windows"] = nlohmann::json::array();
+    const bool over_gap = moment.axes().size() > 1;
+    if (!command.held.empty() || !over_gap) {
+        for (const auto& w : tables::pitch_windows(moment, held)) {
+            const auto degrees = [](double v) { return number(core::convert(v, "rad", "deg"), 4); };
+            shell.print(w.side + ": restores from " + degrees(w.lower) + " to " + degrees(w.upper) + " deg, stiffest at " + degrees(w.best_pitch) + " deg (" + number(w.stiffness, 4) +
+                        " N m/rad); trim torque there " + number(w.trim_torque, 4) + " N m nose up");
+            document["windows"].push_back(w);
+        }
+        if (document["windows"].empty()) {
+            shell.print("the pitch moment restores nowhere in the table");
+        }
+        if (!command.picture.empty()) {
+            write_picture(tables::pitch_figure(moment, held), command.picture);
+        }
+    }
+    if (!command.weight.empty()) {
+        table.quantity = "lift_force";
+        tables::CoupledOptions options;
+        options.net_weight = core::parse_in(command.weight, "N");
+        document["equilibria"] = nlohmann::json::array();
+        for (const auto& e : tables::coupled_equilibria(table.fit(shell), moment, options)) {
+            shell.print(e.kind + " balance of heave and pitch at gap " + number(e.gap) + " m, pitch " + number(core::convert(e.pitch, "rad", "deg"), 4) + " deg");
+            document["equilibria"].push_back(e);
+        }
+        if (document["equilibria"].empty()) {
+            shell.print("heave and pitch balance nowhere together");
+        }
+    }
+    if (shell.json) {
+        shell.print_json(document);
+    }
+    return done;
+}
+
+struct CompareCommand {
+    TableOptions table;
+    std::string by = "variant", measure = "restoring_slope", held, picture;
+};
+
+int run_compare(Shell& shell, const CompareCommand& command) {
+    const auto points = tables::selected_rows(core::read_csv(command.table.file), command.table.where);
+    std::vector<std::string> names;
+    for (const auto& name : points.text(command.by)) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            names.push_back(name);
+        }
+    }
+    const std::string quantity = command.table.quantity.empty() ? tables::force_columns(points).front() : command.table.quantity;
+    std::vector<std::pair<std::string, tables::ForceTable>> all;
+    for (const auto& name : names) {
+        try {
+            all.emplace_back(name, tables::ForceTable::fit(tables::selected_rows(points, command.by + "=" + name), quantity, command.table.fit_options()));
+        } catch (const core::InputError& error) {
+            shell.warn(name + " is left out: " + error.message());
+        }
+    }
+    tables::ComparisonOptions options;
+    options.held = read_assignments(command.held);
+    const std::vector<std::string> measures = {"lowest", "highest", "restoring_slope", "restoring_width"};
+    const auto at = std::find(measures.begin(), measures.end(), command.measure);
+    if (at == measures.end()) {
+        throw core::UsageError("measure", "there is no measure '" + command.measure + "'", {}, core::did_you_mean(command.measure, measures));
+    }
+    options.measure = static_cast<tables::Measure>(at - measures.begin());
+    const auto result = tables::compare_tables(all, options);
+    for (std::size_t i = 0; i < result.names.size(); ++i) {
+        shell.print(result.names[i] + ": " + result.measure + " " + number(result.values[i]) + " +- " + number(result.errors[i], 2));
+    }
+    shell.print(result.winner + " wins by " + result.measure + (result.beyond_error ? ", beyond the errors" : ", but within the errors"));
+    if (!command.picture.empty()) {
+        tables::FigureOptions figure;
+        figure.held = options.held;
+        write_picture(tables::comparison_figure(all, figure), command.picture);
+    }
+    if (shell.json) {
+        shell.print_json(nlohmann::json(result));
+    }
+    return done;
+}
+
+struct CollapseCommand {
+    TableOptions table;
+    std::string by = "speed", length, width;
+};
+
+int run_collapse(Shell& shell, const CollapseCommand& command) {
+    const auto points = tables::selected_rows(core::read_csv(command.table.file), command.table.where);
+    tables::CollapseOptions options;
+    options.by = command.by;
+    options.length = command.length.empty() ? 0 : core::parse_in(command.length, "m");
+    options.width = command.width.empty() ? 0 : core::parse_in(command.width, "m");
+    const auto result = tables::collapse(points, command.table.quantity.empty() ? tables::force_columns(points).front() : command.table.quantity, options);
+    for (const auto& g : result.groups) {
+        shell.print(result.by + " " + number(g.level) + " " + result.by_unit + ": " + std::to_string(g.points) + " points, " + number(g.mean_ratio, 4) +
+                    " of what the square law says from " + number(result.reference) + " " + result.by_unit + ", exponent " + number(g.exponent, 4));
+    }
+    shell.print(result.verdict);
+    if (shell.json) {
+        shell.print_json(nlohmann::json(result));
+    }
+    return done;
+}
+
+}  // namespace
+
+void add_table_analysis(CLI::App& table, Shell& shell) {
+    auto along = std::make_shared<ContinueCommand>();
+    CLI::App* sub = table.add_subcommand("continue", "equilibria along weight, speed, voltage or an axis, with their folds");
+    along->table.add_to(*sub);
+    sub->add_option("--along", along->along, "net_weight=0:0.5, speed=0.2:1, pitch=-2deg:2deg, ...")->required();
+    sub->add_option("--weight", along->weight, "net weight, positive sinks (default 0 N)");
+    sub->add_option("--held", along->held, "values of the other axes");
+    sub->add_option("--reference", along->reference, "speed or voltage the table was made at (default: the table's own)");
+    sub->add_option("--exponent", along->exponent, "force grows with this power of speed or voltage")->capture_default_str();
+    sub->add_option("--picture", along->picture, "writes the curve (.png, .pdf)");
+    sub->footer("Examples:\n  underbody table continue lift.csv --along net_weight=0:0.6 --picture folds.png\n  underbody table continue lift.csv --weight 0.3 --along speed=0.3:0.8 --reference 0.5");
+    shell.on(sub, [&shell, along] { return run_continue(shell, *along); });
+
+    auto pitch = std::make_shared<PitchCommand>();
+    sub = table.add_subcommand("pitch", "stable windows of pitch and their trim; with --weight, balance of heave and pitch together");
+    pitch->table.add_to(*sub);
+    sub->add_option("--held", pitch->held, "values of the other axes, such as gap=5mm");
+    sub->add_option("--weight", pitch->weight, "net weight: also finds the points where lift and pitch moment both balance");
+    sub->add_option("--picture", pitch->picture, "writes moment against pitch (.png, .pdf)");
+    sub->footer("Examples:\n  underbody table pitch forces.csv --where \"variant=ellipse, mesh=medium, speed=0.5\" --held gap=5mm");
+    shell.on(sub, [&shell, pitch] { return run_pitch(shell, *pitch); });
+
+    auto compare = std::make_shared<CompareCommand>();
+    sub = table.add_subcommand("compare", "variants of a table side by side, and which wins");
+    compare->table.add_to(*sub);
+    sub->add_option("--by", compare->by, "text column that names the variants")->capture_default_str();
+    sub->add_option("--measure", compare->measure, "lowest | highest | restoring_slope | restoring_width")->capture_default_str();
+    sub->add_option("--held", compare->held, "values of the other axes");
+    sub->add_option("--picture", compare->picture, "writes the curves (.png, .pdf)");
+    sub->footer("Examples:\n  underbody table compare forces.csv --where \"mesh=medium, pitch=0, speed=0.5\" --quantity drag_force --measure lowest");
+    shell.on(sub, [&shell, compare] { return run_compare(shell, *compare); });
+
+    auto collapse = std::make_shared<CollapseCommand>();
+    sub = table.add_subcommand("collapse", "do forces at several speeds or voltages fall on one curve?");
+    collapse->table.add_to(*sub);
+    sub->add_option("--by", collapse->by, "speed | jet_voltage")->capture_default_str();
+    sub->add_option("--length", collapse->length, "length of the body, for gap over length and C_L");
+    sub->add_option("--width", collapse->width, "width of the body, for C_L");
+    sub->footer("Examples:\n  underbody table collapse forces.csv --where \"variant=ellipse, mesh=medium, pitch=0\"");
+    shell.on(sub, [&shell, collapse] { return run_collapse(shell, *collapse); });
+}
+
+}  // namespace underbody::studio
