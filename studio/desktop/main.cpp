@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <QApplication>
+#include <QFile>
+#include <QLibraryInfo>
 #include <QStyleFactory>
 #include <QSurfaceFormat>
 #include <clocale>
@@ -40,7 +42,7 @@ int parse(int argc, char** argv, Options& options) {
         "Examples:\n"
         "  underbody-studio cases/evie                      open the shipped study\n"
         "  underbody-studio cases/evie --screenshot shots   pictures of every panel, without a display if need be\n"
-        "Keys: Ctrl+O open, Ctrl+R compute what changed, F5 reload, Ctrl+1 ... Ctrl+4 panels, U T S R O views of the\n"
+        "Keys: Ctrl+O open, Ctrl+R compute what changed, F5 reload, Ctrl+1 ... Ctrl+5 panels, U T S R O views of the\n"
         "body, Ctrl+E export picture, Ctrl+Shift+E export table, Esc cancel, F8 problems, F9 cases, F1 effects.\n"
         "Exit codes: 0 done, 1 defect of the program, 2 wrong use, 3 wrong input or no display.");
     try {
@@ -55,11 +57,17 @@ int parse(int argc, char** argv, Options& options) {
     return -1;
 }
 
+/// A Wayland session that this Qt can open a window on.
+bool has_wayland() {
+    const QString plugins = QLibraryInfo::location(QLibraryInfo::PluginsPath) + "/platforms/";
+    return !qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY") &&
+           (QFile::exists(plugins + "libqwayland-generic.so") || QFile::exists(plugins + "libqwayland-egl.so"));
+}
+
 /// Qt aborts without a display: find out before. A picture needs none of the user's: it gets one of its own.
 std::unique_ptr<underbody::core::VirtualDisplay> need_display(const Options& options) {
     using namespace underbody;
-    const bool wayland = std::getenv("WAYLAND_DISPLAY") != nullptr;
-    if (core::display_answers() || (wayland && options.screenshots.empty())) {
+    if (core::display_answers() || (options.screenshots.empty() && has_wayland())) {
         return nullptr;
     }
     if (options.screenshots.empty()) {

@@ -22,10 +22,12 @@
 #include "core/error.h"
 #include "studio/desktop/body_panel.h"
 #include "studio/desktop/cases_panel.h"
+#include "studio/desktop/catalogue.h"
 #include "studio/desktop/discovery_panel.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/icon.h"
 #include "studio/desktop/jobs.h"
+#include "studio/desktop/pictures_panel.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/region_panel.h"
 #include "studio/figures/render.h"
@@ -75,7 +77,8 @@ void MainWindow::build_panels() {
     const std::vector<std::pair<Panel*, QString>> all = {{body_, "&Body"},
                                                          {new ForcePanel(*jobs_, this), "&Forces"},
                                                          {new RegionPanel(*jobs_, this), "St&ability"},
-                                                         {new DiscoveryPanel(*jobs_, this), "&Discovery"}};
+                                                         {new DiscoveryPanel(*jobs_, this), "&Discovery"},
+                                                         {new PicturesPanel(*jobs_, this), "&Pictures"}};
     for (const auto& [panel, title] : all) {
         panels_.push_back(panel);
         tabs_->addTab(panel, title);
@@ -207,12 +210,7 @@ void MainWindow::build_view_menu() {
 void MainWindow::build_help_menu() {
     auto* menu = menuBar()->addMenu("&Help");
     menu->addAction(
-        "&Effects …", this,
-        [this] {
-            auto* panel = dynamic_cast<DiscoveryPanel*>(panels_.back());
-            panel->show_catalogue();
-        },
-        QKeySequence::HelpContents);
+        "&Effects …", this, [this] { show_effect_catalogue(this); }, QKeySequence::HelpContents);
     menu->addAction("&About", this, &MainWindow::show_about);
 }
 
