@@ -198,7 +198,10 @@ void Flight::fly(double gap, double velocity, double t0, core::Progress& progres
         if (!stop.event) {
             break;
         }
-        record(t, y.data());
+        const bool ends = stop.which[escape] != 0 || stop.which[settle] != 0 || options_.stop_at_contact;
+        if (ends || options_.output_step == 0) {
+            record(t, y.data());  // rows at a fixed step stay at that step; the event itself is among the events
+        }
         if (stop.which[escape] != 0 || stop.which[settle] != 0) {
             out_.end = stop.which[escape] != 0 ? "escape" : "equilibrium";
             note(t, out_.end.c_str(), y.data());
