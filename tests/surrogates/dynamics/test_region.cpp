@@ -47,7 +47,7 @@ TEST(Region, EveryClassAgreesWithCvodeOnRandomStarts) {
     core::Random random(7);
     core::Table starts;
     std::vector<double> gap, velocity;
-    for (int i = 0; i < 250; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         gap.push_back(random.uniform(-0.05, 1.0));
         velocity.push_back(random.uniform(-0.1, 0.1));
     }
