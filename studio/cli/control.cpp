@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -12,7 +13,7 @@
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model.h"
-#include "surrogates/estimator/closed_loop.h"
+#include "surrogates/estimator/loop_region.h"
 
 namespace underbody::studio {
 
@@ -21,47 +22,56 @@ namespace {
 using namespace estimator;
 
 struct Arguments {
-    std::string model, hold, from = "gap=0", observer = "disturbance", conditions, out, plot, region, limit, lag, step = "0.02 s", duration = "60 s",
-                       gap_noise, velocity_noise;
+    std::string model, hold, from, observer = "disturbance", conditions, out, plot, region, axes, limit, lag, step = "0.02 s", duration = "60 s",
+                       gap_noise, velocity_noise, disturbance, feedback = "measured";
     double pole1 = -1, pole2 = -1, observer_rate = 4;
+    std::size_t columns = 60, rows = 40;
     std::uint64_t seed = 1;
+    bool no_velocity = false, compare = false;
 };
 
 double quantity(const std::string& text, const char* unit, double fallback) {
     return text.empty() ? fallback : core::parse_in(text, unit);
 }
 
-/// The estimator that the loop cancels with; none for `truth` and `none`.
-std::optional<LinearFilter> filter_for(const Arguments& a, const SeparatedPlant& plant, double step) {
-    if (a.observer == "none" || a.observer == "truth") {
-        return {};
+LoopDesign design_for(const Arguments& a, const LoopOptions& o) {
+    LoopDesign d;
+    d.rate = a.observer_rate;
+    d.step = o.step;
+    d.gap_noise = o.gap_noise > 0 ? o.gap_noise : d.gap_noise;
+    d.velocity_noise = o.velocity_noise > 0 ? o.velocity_noise : d.velocity_noise;
+    d.velocity_measured = o.velocity_measured;
+    return d;
+}
+
+/// Every estimator in the same loop.
+nlohmann::json compare_estimators(const Arguments& a, const SeparatedPlant& plant, const ControlLaw& law, LoopOptions o, std::string& text) {
+    nlohmann::json list = nlohmann::json::array();
+    text += "estimator      held, mm  spread, mm  error of F_T, mN  at the limit, %\n";
+    for (const std::string& name : loop_estimators()) {
+        LoopOptions own = o;
+        std::string remark;
+        try {
+            const LoopEstimator e = design_loop_estimator(name, plant, design_for(a, o));
+            const bool gives = e.source == ForceSource::extended || name == "full" || name == "latent" || name == "kalman";
+            if (!o.velocity_measured) {
+                own.feedback = gives ? Feedback::estimated : own.feedback;
+            }
+            const LoopRun run = close_loop(plant, law, e, own);
+            nlohmann::json item = run;
+            item["estimator"] = name;
+            list.push_back(item);
+            char line[160];
+            std::snprintf(line, sizeof line, "%-12s %10.4f  %10.4f  %16.4f  %15.2f%s\n", name.c_str(), 1e3 * (law.reference_gap + run.hold_error),
+                          1e3 * run.hold_sigma, 1e3 * run.total_force_error, 100 * run.saturated,
+                          run.touched ? "  touched the ground" : run.finite ? "" : "  escaped");
+            text += line;
+        } catch (const core::InputError& error) {
+            list.push_back({{"estimator", name}, {"refused", error.what()}});
+            text += name + ": " + error.what() + "\n";
+        }
     }
-    if (a.observer == "disturbance") {
-        return disturbance_observer(plant.virtual_mass, plant.bias, a.observer_rate, step).filter;
-    }
-    TrainingOptions t;
-    t.gap_lower = std::max(plant.lower, plant.contact_gap);
-    t.gap_upper = plant.upper;
-    t.samples = 20000;
-    const TrainingSet set = training_set(plant, t);
-    const AugmentedModel model =
-        corrected(learn(moments(set.view()), set.layout), Correction::p2, heave_rows(set.layout, plant.virtual_mass, plant.bias));
-    const double r = a.observer_rate;
-    const std::vector<std::string> sensors{"heave_velocity", "gap"};
-    if (a.observer == "reduced") {
-        return reduced_observer(model, reduced_gain(model, {{-r, 0}, {-1.3 * r, 0}}), step).filter;
-    }
-    if (a.observer == "full") {
-        return full_observer(model, sensors, full_gain(model, sensors, {-r, -1.2 * r, -1.4 * r, -1.6 * r}), step).filter;
-    }
-    if (a.observer == "kalman") {
-        const double rate = model.sigma[7] * model.sigma[7] + model.sigma[8] * model.sigma[8];
-        return kalman_observer(model, sensors, {0, 0, rate, rate},
-                               {quantity(a.velocity_noise, "m/s", 1e-4), quantity(a.gap_noise, "m", 2e-4)}, step)
-            .filter;
-    }
-    throw core::UsageError("name", "--observer does not know '" + a.observer + "'", {},
-                           core::did_you_mean(a.observer, {"disturbance", "reduced", "full", "kalman", "truth", "none"}));
+    return list;
 }
 
 core::Figure figure_of(const LoopRun& run, double hold) {
@@ -82,6 +92,22 @@ core::Figure figure_of(const LoopRun& run, double hold) {
     return f;
 }
 
+nlohmann::json draw_region(const Arguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
+                           const LoopOptions& o, Shell& shell, std::string& text) {
+    LoopRegionOptions options;
+    const double lower = std::max(plant.lower, plant.contact_gap);
+    options.axes = a.axes.empty() ? std::vector<core::NamedRange>{{"gap", lower, plant.upper}, {"heave_velocity", -0.1, 0.1}}
+                                  : core::parse_ranges(a.axes);
+    options.columns = a.columns;
+    options.rows = a.rows;
+    const dynamics::StabilityRegion region = loop_region(plant, law, estimator, o, options, shell.progress());
+    core::Figure figure = dynamics::region_figure(region);
+    figure.title = "Where starts end with the loop closed";
+    write_picture(figure, a.region);
+    text = core::format_number(100 * region.fraction("held"), 4) + " % of the starts end at the gap asked for\n";
+    return region;
+}
+
 int run(const Arguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
     dynamics::Conditions held;
@@ -99,6 +125,15 @@ int run(const Arguments& a, Shell& shell) {
     o.gap_noise = quantity(a.gap_noise, "m", 0);
     o.velocity_noise = quantity(a.velocity_noise, "m/s", 0);
     o.seed = a.seed;
+    o.velocity_measured = !a.no_velocity;
+    o.feedback = a.feedback == "measured" && !a.no_velocity ? Feedback::measured : Feedback::estimated;
+    if (a.feedback != "measured" && a.feedback != "estimated") {
+        throw core::UsageError("name", "--feedback does not know '" + a.feedback + "'", {}, "measured or estimated");
+    }
+    if (!a.disturbance.empty()) {
+        const double constant = core::parse_in(a.disturbance, "N");
+        o.disturbance = [constant](double) { return constant; };
+    }
     o.gap = law.reference_gap;
     for (const core::NamedValue& v : core::parse_assignments(a.from)) {
         if (v.name != "gap" && v.name != "heave_velocity") {
@@ -112,9 +147,29 @@ int run(const Arguments& a, Shell& shell) {
     if (law.gap_gain <= 0 || law.velocity_gain <= 0) {
         throw core::UsageError("range", "the poles of the loop must lie left of zero");
     }
-    const auto filter = filter_for(a, plant, o.step);
-    const ForceSource source = filter ? ForceSource::filter : a.observer == "truth" ? ForceSource::truth : ForceSource::none;
-    const LoopRun loop = close_loop(plant, law, source, filter, o);
+    double slope = 0;
+    const double needed = std::abs(plant.ground_force(law.reference_gap, slope) + plant.bias);
+    if (needed > law.limit) {
+        shell.show({{core::Problem::Severity::warning,
+                     "the limit of " + core::format_number(1e3 * law.limit, 4) + " mN cannot hold this gap: the balance there needs " +
+                         core::format_number(1e3 * needed, 4) + " mN",
+                     {}}});
+    }
+    const auto& known = loop_estimators();
+    if (std::find(known.begin(), known.end(), a.observer) == known.end()) {
+        throw core::UsageError("name", "--observer does not know '" + a.observer + "'", {}, core::did_you_mean(a.observer, known));
+    }
+    if (a.compare) {
+        std::string text;
+        const nlohmann::json list = compare_estimators(a, plant, law, o, text);
+        if (shell.json) {
+            shell.print_json({{"estimators", list}});
+        }
+        shell.print(text);
+        return ExitCode::done;
+    }
+    const LoopEstimator estimator = design_loop_estimator(a.observer, plant, design_for(a, o));
+    const LoopRun loop = close_loop(plant, law, estimator, o);
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), loop.table());
     }
@@ -129,20 +184,17 @@ int run(const Arguments& a, Shell& shell) {
         points.push_back({{"gap", p.gap}, {"stable", p.stable}});
     }
     json["hold_without_cancellation"] = points;
+    json["observer"] = a.observer;
+    std::string region_text;
     if (!a.region.empty()) {
-        const double upper = plant.upper, lower = std::max(plant.lower, plant.contact_gap);
-        LoopOptions map = o;
-        map.gap_noise = map.velocity_noise = 0;
-        const LoopRegion region = loop_region(plant, law, source, filter, map, 120, 80, lower, upper, -0.1, 0.1, shell.progress());
-        write_picture(region.figure("Where starts end with the loop closed"), a.region);
-        json["holds_fraction"] = region.holds;
+        json["region"] = draw_region(a, plant, law, estimator, o, shell, region_text);
     }
     if (shell.json) {
         shell.print_json(json);
     }
     shell.print("gap at the end " + core::format_number(1e3 * loop.gap.back(), 6) + " mm, " + core::format_number(1e3 * law.reference_gap, 6) +
                 " mm asked for; error of the total force " + core::format_number(1e3 * loop.total_force_error, 3) + " mN rms; at the limit " +
-                core::format_number(100 * loop.saturated, 3) + " % of the time\n");
+                core::format_number(100 * loop.saturated, 3) + " % of the time\n" + region_text);
     return ExitCode::done;
 }
 
@@ -154,7 +206,7 @@ void add_control_command(CLI::App& app, Shell& shell) {
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--hold", a->hold, "the gap to hold, for instance 20mm")->required();
     command->add_option("--from", a->from, "start: gap=..., heave_velocity=...")->required();
-    command->add_option("--observer", a->observer, "disturbance (default), reduced, full, kalman, truth, or none: no cancellation");
+    command->add_option("--observer", a->observer, "disturbance (default), reduced, full, latent, kalman, extended, truth, or none: no cancellation");
     command->add_option("--pole1", a->pole1, "of the loop, 1/s (default -1)");
     command->add_option("--pole2", a->pole2, "of the loop, 1/s (default -1)");
     command->add_option("--rate", a->observer_rate, "of the observer, 1/s (default 4)");
@@ -165,14 +217,23 @@ void add_control_command(CLI::App& app, Shell& shell) {
     command->add_option("--gap-noise", a->gap_noise, "one standard deviation of the gap sensor");
     command->add_option("--velocity-noise", a->velocity_noise, "likewise of the velocity sensor");
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V");
+    command->add_flag("--no-velocity", a->no_velocity, "the gap alone is measured: feedback on the estimated velocity");
+    command->add_option("--feedback", a->feedback, "measured (default) or estimated gap and velocity");
+    command->add_option("--disturbance", a->disturbance, "a constant force that no model knows, up, for instance 3mN");
+    command->add_flag("--compare", a->compare, "every estimator in the same loop, as a table");
     command->add_option("--seed", a->seed, "seed of the noise (default 1)");
     command->add_option("--out", a->out, "the motion as a table (CSV)");
     command->add_option("--plot", a->plot, "the gap against time (.png, .pdf)");
     command->add_option("--region", a->region, "where starts end with the loop closed (.png, .pdf)");
+    command->add_option("--axes", a->axes, "of the region: gap=0:0.5,heave_velocity=-0.1:0.1 (default: the force table, 100 mm/s)");
+    command->add_option("--columns", a->columns, "of the region (default 60)");
+    command->add_option("--rows", a->rows, "of the region (default 40)");
     command->footer(
         "Examples:\n"
         "  underbody control model.toml --hold 20mm --from gap=0.25 --out loop.csv\n"
         "  underbody control model.toml --hold 20mm --from gap=0.25 --observer none --json\n"
+        "  underbody control model.toml --hold 20mm --from gap=0.25 --gap-noise 0.2mm --velocity-noise 0.2mm/s --compare\n"
+        "  underbody control model.toml --hold 50mm --from gap=0.1 --observer extended --no-velocity --disturbance 3mN\n"
         "  underbody control model.toml --hold 50mm --from gap=0.1 --limit 30mN --lag 0.2s --gap-noise 0.2mm --region loop.png\n"
         "u = -k_w w - k_h (gap - hold) - total_force_estimate - bias, gains from the two poles and the virtual mass.");
     shell.on(command, [a, &shell] { return run(*a, shell); });

@@ -19,14 +19,16 @@
 #include "surrogates/dynamics/model.h"
 #include "surrogates/dynamics/predict.h"
 #include "surrogates/estimator/information.h"
+#include "surrogates/estimator/surface_bank.h"
 
 namespace underbody::studio {
 
 namespace {
 
 struct Arguments {
-    std::string model, data, out, plot, poles, export_c, gap_noise, velocity_noise, blind;
+    std::string model, data, out, plot, poles, export_c, gap_noise, velocity_noise, blind, consistency, surface_plot;
     std::vector<std::string> surfaces;
+    double switching = 0;
     estimator::EstimateOptions options;
 };
 
@@ -57,30 +59,20 @@ estimator::Poles parse_poles(const std::string& text) {
     return poles;
 }
 
-nlohmann::json identify(const Arguments& a, const dynamics::Measurements& data, const estimator::FilterNoise& noise, std::string& text) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const auto& run : data.runs) {
-        core::Problems remarks;
-        const estimator::RunSignals signals = estimator::signals_of_run(run, remarks);
-        std::vector<estimator::Surface> surfaces;
-        for (const auto& item : a.surfaces) {
-            const std::size_t sign = item.find('=');
-            if (sign == std::string::npos) {
-                throw core::UsageError("parse", "--surface wants NAME=MODEL.toml, not '" + item + "'");
-            }
-            surfaces.push_back({item.substr(0, sign), estimator::separate(dynamics::read_model(item.substr(sign + 1)),
-                                                                          dynamics::signals_of(run).held)});
+nlohmann::json identify(const Arguments& a, const dynamics::Measurements& data, const estimator::FilterNoise& noise, std::string& text,
+                        core::Figure& figure) {
+    std::vector<std::pair<std::string, dynamics::Model>> models;
+    for (const auto& item : a.surfaces) {
+        const std::size_t sign = item.find('=');
+        if (sign == std::string::npos || sign == 0) {
+            throw core::UsageError("parse", "--surface wants NAME=MODEL.toml, not '" + item + "'");
         }
-        const auto result = estimator::identify_surface(surfaces, signals, noise);
-        nlohmann::json probability = nlohmann::json::object();
-        for (std::size_t i = 0; i < result.names.size(); ++i) {
-            probability[result.names[i]] = result.probability[i].back();
-        }
-        list.push_back({{"run", run.name}, {"surface", result.names[result.best]}, {"probability", probability}});
-        text += run.name + ": surface " + result.names[result.best] + ", probability " +
-                core::format_number(result.probability[result.best].back(), 4) + "\n";
+        models.emplace_back(item.substr(0, sign), dynamics::read_model(item.substr(sign + 1)));
     }
-    return list;
+    const estimator::SurfaceReport report = estimator::identify_surfaces(models, data, noise, a.switching);
+    text += report.text();
+    figure = report.figure();
+    return report;
 }
 
 /// What the sensors can know along the gap: bounds drawn, and the filter's own statements tried on simulated runs.
@@ -91,17 +83,23 @@ nlohmann::json along_gap(const Arguments& a, const dynamics::Model& model, const
     o.noise = result.noise;
     o.drag_prior = a.options.drag_relative;
     const auto map = estimator::information_along_gap(plant, o, shell.progress());
-    write_picture(map.figure(), a.blind);
-    const double lower = std::max(plant.lower, plant.contact_gap);
-    std::vector<double> gaps;
-    for (int i = 0; i < 6; ++i) {
-        gaps.push_back(lower + (plant.upper - lower) * (0.1 + 0.16 * i));
+    if (!a.blind.empty()) {
+        write_picture(map.figure(), a.blind);
     }
-    const auto consistency = estimator::consistency_along_gap(plant, result.noise, gaps, 60, 5, 0.02, 1, shell.progress());
-    const auto worst = std::max_element(consistency.nees.begin(), consistency.nees.end());
+    estimator::ConsistencyOptions c;
+    c.noise = result.noise;
+    const auto consistency = estimator::consistency_along_gap(plant, c, shell.progress());
+    if (!a.consistency.empty()) {
+        write_picture(consistency.figure(), a.consistency);
+    }
+    const auto observability = estimator::observability_along_gap(plant, map.gaps);
+    const auto one = static_cast<std::size_t>(std::count(observability.separate_rank.begin(), observability.separate_rank.end(), 1U));
     text += "along the gap: the ground force is blind on " + core::format_number(100 * map.blind_share, 3) +
-            " % of gaps and speeds; largest NEES " + core::format_number(*worst, 3) + " (3 is right)\n";
-    return {{"information", map}, {"consistency", consistency}};
+            " % of gaps and speeds; " + core::format_number(100 * consistency.inside, 3) + " % of mean NEES lie within " +
+            core::format_number(consistency.lower, 3) + " to " + core::format_number(consistency.upper, 3) +
+            " (95 % are right); the analytic model sees one of two forces apart at " + std::to_string(one) + " of " +
+            std::to_string(map.gaps.size()) + " gaps\n";
+    return {{"information", map}, {"consistency", consistency}, {"observability", observability}};
 }
 
 int run(const Arguments& a, Shell& shell) {
@@ -119,10 +117,14 @@ int run(const Arguments& a, Shell& shell) {
     std::string surfaces_text;
     nlohmann::json surfaces;
     if (!a.surfaces.empty()) {
-        surfaces = identify(a, data, result.noise, surfaces_text);
+        core::Figure figure;
+        surfaces = identify(a, data, result.noise, surfaces_text, figure);
+        if (!a.surface_plot.empty()) {
+            write_picture(figure, a.surface_plot);
+        }
     }
     nlohmann::json along;
-    if (!a.blind.empty()) {
+    if (!a.blind.empty() || !a.consistency.empty()) {
         along = along_gap(a, model, data, result, shell, surfaces_text);
     }
     if (!a.export_c.empty() && result.design.empty()) {
@@ -144,7 +146,7 @@ int run(const Arguments& a, Shell& shell) {
         if (!a.surfaces.empty()) {
             json["surfaces"] = surfaces;
         }
-        if (!a.blind.empty()) {
+        if (!along.is_null()) {
             json["along_gap"] = along;
         }
         shell.print_json(json);
@@ -188,7 +190,10 @@ void add_estimate_command(CLI::App& app, Shell& shell) {
     command->add_option("--drag-error", a->options.drag_relative, "relative deviation of the declared drag law (default 0.2)");
     command->add_flag("--smooth", a->options.smooth, "use the whole run for each moment");
     command->add_option("--surface", a->surfaces, "NAME=MODEL.toml, twice or more: which surface is under the vehicle");
+    command->add_option("--surface-plot", a->surface_plot, "probability of each surface over the runs (.png, .pdf)");
+    command->add_option("--switching", a->switching, "chance per second that the surface changes within a run (default 0)");
     command->add_option("--blind-zones", a->blind, "picture of what the sensors can know against gap and speed (.png, .pdf)");
+    command->add_option("--consistency", a->consistency, "picture of the filter's own statements tried on simulated runs: NEES against gap and speed");
     command->add_option("--export-c", a->export_c, "the linear observer as a C99 header");
     command->footer(
         "Examples:\n"

@@ -12,12 +12,13 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
+#include "studio/figures/render.h"
 #include "surrogates/dynamics/measurements.h"
 #include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/predict.h"
 #include "surrogates/estimator/bounds.h"
-#include "surrogates/estimator/dmd.h"
-#include "surrogates/estimator/estimate.h"
 #include "surrogates/estimator/observer.h"
+#include "surrogates/estimator/run_data.h"
 #include "surrogates/estimator/training.h"
 
 namespace underbody::studio {
@@ -28,10 +29,10 @@ using namespace estimator;
 
 struct Arguments {
     std::string model, method = "grid", fit, offset = "mean", correction = "p1", excitation = "pink", region, mesh, input_sigma, duration,
-                interval, auxiliaries, conditions, data, moments_of, samples_out, out, focus, dmd_step;
+                interval, auxiliaries, conditions, data, moments_of, samples_out, out, focus, step = "0.1 s", horizon = "10 s", plot;
     std::size_t order = 0, samples = 50000;
     std::uint64_t seed = 1;
-    bool scan = false, at_rest = false;
+    bool scan = false, at_rest = false, compare = false;
 };
 
 std::vector<std::string> split(const std::string& text, char mark) {
@@ -71,7 +72,12 @@ Value choose(const std::string& text, const std::vector<std::pair<std::string, V
 TrainingOptions training_options(const Arguments& a, const SeparatedPlant& plant) {
     TrainingOptions o;
     o.method = choose<TrainingOptions::Method>(
-        a.method, {{"grid", TrainingOptions::Method::grid}, {"time", TrainingOptions::Method::time}}, "--method");
+        a.method,
+        {{"grid", TrainingOptions::Method::grid},
+         {"time", TrainingOptions::Method::time},
+         {"dmdc", TrainingOptions::Method::grid},
+         {"edmd", TrainingOptions::Method::grid}},
+        "--method");
     o.samples = a.samples;
     o.seed = a.seed;
     o.start_at_rest = a.at_rest;
@@ -100,7 +106,14 @@ TrainingOptions training_options(const Arguments& a, const SeparatedPlant& plant
     o.duration = a.duration.empty() ? o.duration : core::parse_in(a.duration, "s");
     o.interval = a.interval.empty() ? o.interval : core::parse_in(a.interval, "s");
     if (!a.auxiliaries.empty()) {
+        if (a.method == "dmdc") {
+            throw core::UsageError("range", "--method dmdc has no auxiliary variables", {}, "take --method edmd for a dictionary");
+        }
         o.auxiliaries = split(a.auxiliaries, ',');
+    } else if (a.method == "dmdc") {
+        o.auxiliaries = {};
+    } else if (a.method == "edmd") {
+        o.auxiliaries = usual_dictionary();
     }
     if (!a.mesh.empty()) {
         const auto parts = split(a.mesh, 'x');
@@ -154,59 +167,60 @@ struct Learned {
     Moments moments;
     core::Problems remarks;
     std::vector<KnownRow> rows;
+    std::vector<PredictionError> predictions;
+    std::string tested_on;
 };
 
-Learned learn_model(const Arguments& a, const dynamics::Model& declared, LearnOptions options, Shell& shell) {
-    dynamics::Conditions held;
-    for (const core::NamedValue& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
-        held.set(v.name, v.value);
-    }
-    const SeparatedPlant plant = separate(declared, held);
-    Learned out;
-    TrainingOptions training = training_options(a, plant);
-    Layout layout{{"input_force"}, {"heave_velocity", "gap"}, 2};
-    layout.states.insert(layout.states.end(), training.auxiliaries.begin(), training.auxiliaries.end());
-    const bool forces = std::count(layout.states.begin(), layout.states.end(), "ground_force") +
-                            std::count(layout.states.begin(), layout.states.end(), "drag_force") ==
-                        2;
-    if (forces || std::count(layout.states.begin(), layout.states.end(), "total_force") == 1) {
-        out.rows = heave_rows(layout, plant.virtual_mass, plant.bias);
-    }
-    if (!a.dmd_step.empty()) {
-        out.model = learn_dmd(snapshot_pairs(plant, training, core::parse_in(a.dmd_step, "s"), shell.progress()), a.order);
-        out.moments = moments(training_set(plant, training).view());
-        return out;
-    }
-    if (!a.moments_of.empty()) {
-        out.moments = moments_of_file(a.moments_of, layout.names(), shell.progress());
+bool by_snapshots(const Arguments& a) { return a.method == "dmdc" || a.method == "edmd"; }
+
+bool has_forces(const Layout& layout) {
+    const auto count = [&](const char* name) { return std::count(layout.states.begin(), layout.states.end(), name); };
+    return count("ground_force") + count("drag_force") == 2 || count("total_force") == 1;
+}
+
+/// The model and its peers on motions that none of them has seen.
+void compare(const Arguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
+             const RunSplit& split, Learned& out, Shell& shell) {
+    const double step = core::parse_in(a.step, "s"), horizon = core::parse_in(a.horizon, "s");
+    NamedModels models;
+    std::vector<TestMotion> motions;
+    if (a.data.empty()) {
+        models = usual_peers(plant, training, step, shell.progress());
+        PredictionTest test;
+        test.horizon = horizon;
+        test.gap_lower = training.gap_lower;
+        test.gap_upper = training.gap_upper;
+        test.velocity_lower = training.velocity_lower;
+        test.velocity_upper = training.velocity_upper;
+        test.input_sigma = training.input_sigma;
+        test.seed = a.seed + 98;
+        motions = test_motions(plant, test);
+        out.tested_on = std::to_string(test.runs) + " simulated motions of " + core::format_number(horizon, 4) + " s, none in the training set";
     } else {
-        TrainingSet set = a.data.empty() ? training_set(plant, training, shell.progress())
-                                         : training_from_runs(declared, dynamics::read_measurements(a.data), {}, shell.progress());
-        layout = set.layout;
-        out.remarks = set.remarks;
-        if (!a.samples_out.empty()) {
-            write_npy(a.samples_out, set.values.data(), set.count, layout.channels());
-        }
-        out.moments = moments(set.view(), layout.names(), shell.progress());
+        const std::vector<std::string> forces{"ground_force", "drag_force"};
+        const auto train = motions_from_runs(declared, split.train, horizon, {}, shell.progress());
+        models = usual_peers(plant, training_from_runs(declared, split.train, forces, {}, shell.progress()), snapshot_pairs(train, {}, step),
+                             snapshot_pairs(train, usual_dictionary(), step));
+        motions = motions_from_runs(declared, split.test, horizon, {}, shell.progress());
+        out.tested_on = std::to_string(motions.size()) + " windows of measured runs; " + split.how;
     }
+    models.emplace_back("this model", out.model);
+    out.predictions = compare_predictions(plant, models, motions, shell.progress());
+    if (!a.plot.empty()) {
+        write_picture(prediction_figure(out.predictions, out.tested_on), a.plot);
+    }
+}
+
+TrainingSet samples_for(const Arguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
+                        const RunSplit& split, Shell& shell) {
+    return a.data.empty() ? training_set(plant, training, shell.progress())
+                          : training_from_runs(declared, split.train, training.auxiliaries, {}, shell.progress());
+}
+
+void learn_from_samples(const Arguments& a, const SeparatedPlant& plant, const TrainingOptions& training, const Layout& layout,
+                        LearnOptions options, Learned& out) {
     if (options.offset == OffsetMode::equilibrium) {
-        // The rest point nearest to the middle of the region, with no input.
-        double best = NAN, slope = 0;
-        for (int i = 0; i < 2000; ++i) {
-            const double h0 = training.gap_lower + (training.gap_upper - training.gap_lower) * i / 2000;
-            const double h1 = training.gap_lower + (training.gap_upper - training.gap_lower) * (i + 1) / 2000;
-            const double f0 = plant.ground_force(h0, slope) + plant.bias, f1 = plant.ground_force(h1, slope) + plant.bias;
-            if (f0 > 0 && f1 <= 0 && std::isnan(best)) {
-                best = h0 + (h1 - h0) * f0 / (f0 - f1);
-            }
-        }
-        if (std::isnan(best)) {
-            throw core::InputError("missing", "the model has no stable equilibrium within the region", {a.model, {}, {}, {}},
-                                   "widen --region or take --offset mean");
-        }
-        std::vector<double> row(layout.channels());
-        sample_at(plant, layout, 0, 0, best, row.data());
-        options.point.assign(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(1 + layout.states.size()));
+        options.point = equilibrium_point(plant, layout, training.gap_lower, training.gap_upper);
     }
     out.model = learn(out.moments, layout, options);
     const auto correction = choose<Correction>(
@@ -217,34 +231,88 @@ Learned learn_model(const Arguments& a, const dynamics::Model& declared, LearnOp
         }
         out.model = corrected(out.model, correction, out.rows);
     }
+}
+
+Learned learn_model(const Arguments& a, const dynamics::Model& declared, const LearnOptions& options, Shell& shell) {
+    dynamics::Conditions held;
+    for (const core::NamedValue& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
+        held.set(v.name, v.value);
+    }
+    RunSplit split;
+    if (!a.data.empty()) {
+        split = split_runs(dynamics::read_measurements(a.data), a.compare);
+        shell.show(split.train.problems);
+        if (a.conditions.empty()) {
+            held = dynamics::signals_of(split.train.runs.front()).held;
+        }
+    }
+    const SeparatedPlant plant = separate(declared, held);
+    const TrainingOptions training = training_options(a, plant);
+    Layout layout{{"input_force"}, {"heave_velocity", "gap"}, 2};
+    layout.states.insert(layout.states.end(), training.auxiliaries.begin(), training.auxiliaries.end());
+    Learned out;
+    if (has_forces(layout)) {
+        out.rows = heave_rows(layout, plant.virtual_mass, plant.bias);
+    }
+    if (!a.moments_of.empty()) {
+        if (by_snapshots(a) || !a.data.empty()) {
+            throw core::UsageError("range", "--moments-of is a training set of its own: no --data, and --method grid or time");
+        }
+        out.moments = moments_of_file(a.moments_of, layout.names(), shell.progress());
+    } else {
+        const TrainingSet set = samples_for(a, declared, plant, training, split, shell);
+        out.remarks = set.remarks;
+        if (!a.samples_out.empty()) {
+            write_npy(a.samples_out, set.values.data(), set.count, layout.channels());
+        }
+        out.moments = moments(set.view(), layout.names(), shell.progress());
+    }
+    if (by_snapshots(a)) {
+        const double step = core::parse_in(a.step, "s");
+        out.model = learn_dmd(a.data.empty() ? snapshot_pairs(plant, training, step, shell.progress())
+                                             : snapshot_pairs(motions_from_runs(declared, split.train, core::parse_in(a.horizon, "s"), {},
+                                                                                shell.progress()),
+                                                              training.auxiliaries, step),
+                              a.order);
+    } else {
+        learn_from_samples(a, plant, training, layout, options, out);
+    }
+    if (a.compare) {
+        compare(a, declared, plant, training, split, out, shell);
+    }
     return out;
 }
 
-nlohmann::json describe(const Learned& l, const LearnOptions& options, bool scan, bool dmd) {
+nlohmann::json describe(const Learned& l, const LearnOptions& options, bool scan, bool snapshots) {
     nlohmann::json json = l.model;
-    const Separability s = separability(l.model);
-    json["separability"] = s;
-    json["robustness"] = {{"j_zeta", bounds_json(l.model.j_zeta())},
-                          {"symmetric_part", symmetric_part_abscissa(l.model.j_zeta())},
-                          {"performance_ratio", l.model.j_x().largest() > 0 ? performance_ratio(l.model.j_zeta(), l.model.j_x()) : 0}};
-    if (!dmd) {
-        const DerivativeError e = derivative_error(l.model, l.moments);
-        json["derivative_error"] = {{"rms", e.rms}, {"relative", e.relative}};
-        LearnOptions best = options;
-        best.fit = Fit::least_squares;
-        best.order = 0;
-        best.offset = OffsetMode::mean;
-        AugmentedModel recommended = learn(l.moments, l.model.layout, best);
-        if (!l.rows.empty()) {
-            fix_rows(recommended, l.rows);
-        }
-        json["recommended"] = {{"fit", "least_squares with known rows"},
-                               {"A", matrix_json(recommended.A)},
-                               {"B", matrix_json(recommended.B)},
-                               {"offset", recommended.offset}};
-        if (scan) {
-            json["scan"] = scan_json(l.moments, l.model.layout, options);
-        }
+    if (l.model.layout.states.size() > l.model.layout.measured) {
+        json["separability"] = separability(l.model);
+        json["robustness"] = {{"j_zeta", bounds_json(l.model.j_zeta())},
+                              {"symmetric_part", symmetric_part_abscissa(l.model.j_zeta())},
+                              {"performance_ratio", l.model.j_x().largest() > 0 ? performance_ratio(l.model.j_zeta(), l.model.j_x()) : 0}};
+    }
+    const DerivativeError e = derivative_error(l.model, l.moments);
+    json["derivative_error"] = {{"rms", e.rms}, {"relative", e.relative}};
+    if (!l.predictions.empty()) {
+        json["predictions"] = {{"on", l.tested_on}, {"models", l.predictions}};
+    }
+    if (snapshots) {
+        return json;
+    }
+    LearnOptions best = options;
+    best.fit = Fit::least_squares;
+    best.order = 0;
+    best.offset = OffsetMode::mean;
+    AugmentedModel recommended = learn(l.moments, l.model.layout, best);
+    if (!l.rows.empty()) {
+        fix_rows(recommended, l.rows);
+    }
+    json["recommended"] = {{"fit", "least_squares with known rows"},
+                           {"A", matrix_json(recommended.A)},
+                           {"B", matrix_json(recommended.B)},
+                           {"offset", recommended.offset}};
+    if (scan) {
+        json["scan"] = scan_json(l.moments, l.model.layout, options);
     }
     return json;
 }
@@ -264,7 +332,13 @@ std::string text_of(const Learned& l) {
         }
         text += " | " + core::format_number(m.offset[i], 4) + "\n";
     }
-    return text + separability(m).explanation + "\n";
+    if (m.layout.states.size() > m.layout.measured) {
+        text += separability(m).explanation + "\n";
+    }
+    if (!l.predictions.empty()) {
+        text += "\nrms errors on " + l.tested_on + "\n" + prediction_text(l.predictions);
+    }
+    return text;
 }
 
 int run(const Arguments& a, Shell& shell) {
@@ -284,7 +358,7 @@ int run(const Arguments& a, Shell& shell) {
     const Learned learned = learn_model(a, declared, options, shell);
     shell.show(learned.remarks);
     shell.show(learned.model.remarks);
-    const nlohmann::json json = describe(learned, options, a.scan, !a.dmd_step.empty());
+    const nlohmann::json json = describe(learned, options, a.scan, by_snapshots(a));
     if (!a.out.empty()) {
         core::write_file(a.out, json.dump(2) + "\n");
     }
@@ -301,7 +375,8 @@ void add_learn_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("learn", "the data-driven linear model of velocity, gap and forces");
     auto a = std::make_shared<Arguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
-    command->add_option("--method", a->method, "training data: grid of the region (default), or time: along trajectories");
+    command->add_option("--method", a->method, "grid: samples of the region (default); time: along trajectories; dmdc, edmd: dynamic mode "
+                                                       "decomposition with control from snapshots, plain or over the auxiliaries as a dictionary");
     command->add_option("--order", a->order, "latent variables kept (default: the rank, by least squares)");
     command->add_option("--fit", a->fit, "least_squares, weighted_latent, method1, method2 (default with --order)");
     command->add_option("--offset", a->offset, "mean (default), none, equilibrium");
@@ -321,7 +396,11 @@ void add_learn_command(CLI::App& app, Shell& shell) {
     command->add_option("--data", a->data, "train on measured runs (folder with dataset.toml), smoothed by the model");
     command->add_option("--moments-of", a->moments_of, "train on samples of a NumPy file, streamed (input, states, derivatives)");
     command->add_option("--samples-out", a->samples_out, "write the training samples as a NumPy file");
-    command->add_option("--dmd", a->dmd_step, "dynamic mode decomposition with control over snapshots this far apart, for instance 0.1s");
+    command->add_option("--step", a->step, "between the snapshots of dmdc and edmd (default 0.1 s)");
+    command->add_flag("--compare", a->compare, "errors of derivatives and of long predictions on test motions (or test runs of --data), "
+                                               "beside tangent, equivalent-linear, dmdc, edmd and nonlinear models");
+    command->add_option("--horizon", a->horizon, "of the predictions (default 10 s)");
+    command->add_option("--plot", a->plot, "--compare: errors of the predicted gap (.png, .pdf)");
     command->add_option("--seed", a->seed, "seed of the samples (default 1)");
     command->add_flag("--scan", a->scan, "errors and poles at every order, in the JSON");
     command->add_option("--out", a->out, "the model as JSON");
@@ -331,6 +410,8 @@ void add_learn_command(CLI::App& app, Shell& shell) {
         "  underbody learn model.toml --method grid --order 6 --scan --out learned.json\n"
         "  underbody learn model.toml --method time --region gap=0:0.3,heave_velocity=-0.03:0.03 --correction p3\n"
         "  underbody learn model.toml --auxiliaries total_force --data runs\n"
+        "  underbody learn model.toml --method edmd --auxiliaries ground_force,gap_squared --compare --plot peers.png\n"
+        "  underbody learn model.toml --data runs --compare --horizon 5s\n"
         "States are heave_velocity, gap and the auxiliaries; the input is input_force; dx = A x + B u + offset.");
     shell.on(command, [a, &shell] { return run(*a, shell); });
 }

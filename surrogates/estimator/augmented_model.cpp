@@ -1,18 +1,11 @@
 #include "surrogates/estimator/augmented_model.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
-#include "surrogates/estimator/internal/eigen.h"
+#include "surrogates/estimator/internal/decompositions.h"
 
 namespace underbody::estimator {
-
-using internal::plain;
-using internal::plain_vector;
-using internal::view;
 
 std::vector<std::string> Layout::names() const {
     std::vector<std::string> all = inputs;
@@ -70,9 +63,9 @@ struct Normalised {
     Vector centre, sigma;              // all channels
     std::vector<std::size_t> kept;     // channels that vary
     std::vector<std::size_t> u, x, d;  // positions within `kept`
-    Eigen::MatrixXd c;                 // normalised second moments of kept channels
-    Eigen::VectorXd lambda;            // descending
-    Eigen::MatrixXd t;                 // columns: eigenvectors
+    Matrix c;                          // normalised second moments of kept channels
+    Vector lambda;                     // descending
+    Matrix t;                          // columns: eigenvectors
 };
 
 Vector centre_of(const Moments& m, const Layout& layout, const LearnOptions& options) {
@@ -132,77 +125,72 @@ Normalised normalise(const Moments& m, const Layout& layout, const LearnOptions&
     if (out.x.empty() || out.d.empty()) {
         throw core::InputError("constant", "no state varies in the samples: there is nothing to learn");
     }
-    const auto k = static_cast<Eigen::Index>(out.kept.size());
-    out.c.resize(k, k);
-    for (Eigen::Index i = 0; i < k; ++i) {
-        for (Eigen::Index j = 0; j < k; ++j) {
-            const std::size_t a = out.kept[static_cast<std::size_t>(i)], b = out.kept[static_cast<std::size_t>(j)];
-            out.c(i, j) = second(a, b) / (out.sigma[a] * out.sigma[b]);
+    const std::size_t k = out.kept.size();
+    out.c = Matrix(k, k);
+    for (std::size_t i = 0; i < k; ++i) {
+        for (std::size_t j = 0; j < k; ++j) {
+            const std::size_t a = out.kept[i], b = out.kept[j];
+            out.c(i, j) = 0.5 * (second(a, b) + second(b, a)) / (out.sigma[a] * out.sigma[b]);
         }
     }
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (out.c + out.c.transpose()));
-    out.lambda = solver.eigenvalues().reverse();
-    out.t = solver.eigenvectors().rowwise().reverse();
-    for (Eigen::Index j = 0; j < k; ++j) {  // a sign that does not depend on the library: the largest entry is positive
-        Eigen::Index at = 0;
-        out.t.col(j).cwiseAbs().maxCoeff(&at);
-        if (out.t(at, j) < 0) {
-            out.t.col(j) *= -1;
+    auto spectrum = internal::symmetric_eigen(out.c);
+    out.lambda = std::move(spectrum.values);
+    out.t = std::move(spectrum.vectors);
+    for (std::size_t j = 0; j < k; ++j) {  // a sign that does not depend on the library: the largest entry is positive
+        const Vector column = out.t.column_of(j);
+        const auto at = std::max_element(column.begin(), column.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
+        for (std::size_t i = 0; i < k && *at < 0; ++i) {
+            out.t(i, j) = -out.t(i, j);
         }
     }
     return out;
 }
 
-Eigen::MatrixXd rows_of(const Eigen::MatrixXd& m, const std::vector<std::size_t>& rows) {
-    Eigen::MatrixXd out(static_cast<Eigen::Index>(rows.size()), m.cols());
+Matrix rows_of(const Matrix& m, const std::vector<std::size_t>& rows) {
+    Matrix out(rows.size(), m.columns());
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        out.row(static_cast<Eigen::Index>(i)) = m.row(static_cast<Eigen::Index>(rows[i]));
+        out.set_row(i, m.row(rows[i]));
     }
     return out;
 }
-
-Eigen::MatrixXd pinv(const Eigen::MatrixXd& m, double tolerance) { return view(pseudo_inverse(plain(m), tolerance)); }
 
 // Regression of rows `d` on columns `e` of the normalised moments; collinear regressors get the least-norm split.
-Eigen::MatrixXd regress(const Eigen::MatrixXd& c, const std::vector<std::size_t>& d, const std::vector<std::size_t>& e) {
-    Eigen::MatrixXd cross(static_cast<Eigen::Index>(d.size()), static_cast<Eigen::Index>(e.size()));
-    Eigen::MatrixXd own(static_cast<Eigen::Index>(e.size()), static_cast<Eigen::Index>(e.size()));
+Matrix regress(const Matrix& c, const std::vector<std::size_t>& d, const std::vector<std::size_t>& e) {
+    Matrix cross(d.size(), e.size()), own(e.size(), e.size());
     for (std::size_t j = 0; j < e.size(); ++j) {
         for (std::size_t i = 0; i < d.size(); ++i) {
-            cross(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-                c(static_cast<Eigen::Index>(d[i]), static_cast<Eigen::Index>(e[j]));
+            cross(i, j) = c(d[i], e[j]);
         }
         for (std::size_t i = 0; i < e.size(); ++i) {
-            own(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-                c(static_cast<Eigen::Index>(e[i]), static_cast<Eigen::Index>(e[j]));
+            own(i, j) = c(e[i], e[j]);
         }
     }
-    return cross * pinv(own, 1e-11);
+    return cross * pseudo_inverse(own, 1e-11);
 }
 
 // Normalised law [B A] of the kept derivatives over (inputs, states).
-Eigen::MatrixXd normalised_law(const Normalised& data, Eigen::Index order, Fit fit) {
-    const Eigen::MatrixXd t = data.t.leftCols(order);
-    const Eigen::MatrixXd u = rows_of(t, data.u), v = rows_of(t, data.x), w = rows_of(t, data.d);
-    Eigen::MatrixXd s(u.rows() + v.rows(), order);
-    s << u, v;
+Matrix normalised_law(const Normalised& data, std::size_t order, Fit fit) {
+    const Matrix t = data.t.block(0, 0, data.t.rows(), order);
+    std::vector<std::size_t> e = data.u;
+    e.insert(e.end(), data.x.begin(), data.x.end());
+    const Matrix s = rows_of(t, e), w = rows_of(t, data.d);
     constexpr double cut = 1e-9;  // of the eigenvalues of I - W W', which lie in [0, 1]
     switch (fit) {
-        case Fit::method1: {
-            const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(w.rows(), w.rows()) - w * w.transpose();
-            return pinv(rest, cut) * w * s.transpose();
-        }
+        case Fit::method1:
+            return pseudo_inverse(Matrix::identity(w.rows()) - w * w.transposed(), cut) * w * s.transposed();
         case Fit::method2:
-            return w * pinv(s, std::sqrt(cut));
+            return w * pseudo_inverse(s, std::sqrt(cut));
         case Fit::weighted_latent: {
-            const Eigen::VectorXd l = data.lambda.head(order).cwiseMax(0);
-            return w * l.asDiagonal() * s.transpose() * pinv(s * l.asDiagonal() * s.transpose(), 1e-11);
+            Vector weight(data.lambda.begin(), data.lambda.begin() + static_cast<std::ptrdiff_t>(order));
+            for (double& l : weight) {
+                l = std::max(l, 0.0);
+            }
+            const Matrix weighted = Matrix::diagonal(weight) * s.transposed();
+            return w * weighted * pseudo_inverse(s * weighted, 1e-11);
         }
         case Fit::least_squares:
             break;
     }
-    std::vector<std::size_t> e = data.u;
-    e.insert(e.end(), data.x.begin(), data.x.end());
     return regress(data.c, data.d, e);
 }
 
@@ -235,27 +223,26 @@ void set_offsets(AugmentedModel& model, OffsetMode mode) {
 }
 
 // Puts a normalised law into physical units: A = Sig_dx A_n Sig_x^-1, B = Sig_dx B_n Sig_u^-1.
-void denormalise(AugmentedModel& model, const Normalised& data, const Eigen::MatrixXd& law) {
+void denormalise(AugmentedModel& model, const Normalised& data, const Matrix& law) {
     const std::size_t nu = model.layout.inputs.size(), nx = model.layout.states.size();
     model.A = Matrix(nx, nx);
     model.B = Matrix(nx, nu);
     for (std::size_t i = 0; i < data.d.size(); ++i) {
         const std::size_t row = data.kept[data.d[i]];
-        const auto r = static_cast<Eigen::Index>(i);
-        Eigen::Index column = 0;
+        std::size_t column = 0;
         for (const std::size_t j : data.u) {
-            model.B(row - nu - nx, data.kept[j]) = law(r, column++) * data.sigma[row] / data.sigma[data.kept[j]];
+            model.B(row - nu - nx, data.kept[j]) = law(i, column++) * data.sigma[row] / data.sigma[data.kept[j]];
         }
         for (const std::size_t j : data.x) {
-            model.A(row - nu - nx, data.kept[j] - nu) = law(r, column++) * data.sigma[row] / data.sigma[data.kept[j]];
+            model.A(row - nu - nx, data.kept[j] - nu) = law(i, column++) * data.sigma[row] / data.sigma[data.kept[j]];
         }
     }
 }
 
 std::size_t rank_of(const Normalised& data, double tolerance) {
     std::size_t rank = 0;
-    for (Eigen::Index i = 0; i < data.lambda.size(); ++i) {
-        rank += data.lambda[i] > tolerance * static_cast<double>(data.lambda.size()) ? 1U : 0U;
+    for (const double l : data.lambda) {
+        rank += l > tolerance * static_cast<double>(data.lambda.size()) ? 1U : 0U;
     }
     return rank;
 }
@@ -264,7 +251,7 @@ AugmentedModel frame(const Moments& m, const Layout& layout, const Normalised& d
     AugmentedModel model;
     model.layout = layout;
     model.samples = m.count;
-    model.eigenvalues = plain_vector(data.lambda);
+    model.eigenvalues = data.lambda;
     model.rank = rank_of(data, options.rank_tolerance);
     model.kept = data.kept;
     model.mean = data.centre;
@@ -285,9 +272,8 @@ AugmentedModel frame(const Moments& m, const Layout& layout, const Normalised& d
 void complete(AugmentedModel& model, const Normalised& data, std::size_t order, const LearnOptions& options) {
     model.order = order;
     model.method = name_of(options.fit);
-    const auto m = static_cast<Eigen::Index>(order);
-    model.basis = plain(data.t.leftCols(m));
-    denormalise(model, data, normalised_law(data, m, options.fit));
+    model.basis = data.t.block(0, 0, data.t.rows(), order);
+    denormalise(model, data, normalised_law(data, order, options.fit));
     set_offsets(model, options.offset);
 }
 
@@ -448,10 +434,10 @@ AugmentedModel learn_structured(const Moments& moments, const Layout& layout, co
         if (d.empty() || some.empty()) {
             continue;
         }
-        const Eigen::MatrixXd law = regress(data.c, d, some);
+        const Matrix law = regress(data.c, d, some);
         for (std::size_t j = 0; j < some.size(); ++j) {
             const std::size_t c = data.kept[some[j]];
-            const double value = law(0, static_cast<Eigen::Index>(j)) * data.sigma[nu + nx + i] / data.sigma[c];
+            const double value = law(0, j) * data.sigma[nu + nx + i] / data.sigma[c];
             (c < nu ? model.B(i, c) : model.A(i, c - nu)) = value;
         }
     }

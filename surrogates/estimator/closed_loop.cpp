@@ -4,114 +4,191 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/parallel.h"
 #include "core/random.h"
 
 namespace underbody::estimator {
 
 namespace {
 
+// Places of the estimates that the loop wants among those of a linear filter; -1: not given.
+struct Places {
+    int ground = -1, drag = -1, total = -1, gap = -1, velocity = -1;
+};
+
+Places places_in(const LinearFilter& filter) {
+    const auto find = [&](const char* name) {
+        const auto at = std::find(filter.estimates.begin(), filter.estimates.end(), name);
+        return at == filter.estimates.end() ? -1 : static_cast<int>(at - filter.estimates.begin());
+    };
+    return {find("ground_force"), find("drag_force"), find("total_force"), find("gap"), find("heave_velocity")};
+}
+
+struct Seen {
+    double ground = 0, drag = 0, total = 0, gap = 0, velocity = 0;
+};
+
+void check_loop(const LoopEstimator& e, const LoopOptions& o) {
+    if (!(o.step > 0) || !(o.duration > o.step)) {
+        throw core::InputError("range", "the loop needs a positive sample time and a duration longer than it");
+    }
+    const auto gives_velocity = [&] {
+        return e.source == ForceSource::extended || (e.filter && places_in(*e.filter).velocity >= 0);
+    };
+    if (!o.velocity_measured && o.feedback != Feedback::truth && !(o.feedback == Feedback::estimated && gives_velocity())) {
+        throw core::InputError("missing", "the feedback needs a heave velocity, and neither a sensor nor the estimator '" + e.name +
+                                              "' gives one to it", {}, "take the estimated feedback with extended, kalman or full");
+    }
+    if (e.source != ForceSource::filter) {
+        return;
+    }
+    if (!e.filter) {
+        throw core::InputError("missing", "the loop wants the forces of a filter, but there is none");
+    }
+    if (std::abs(e.filter->step - o.step) > 1e-9 * o.step) {
+        throw core::InputError("range", "the filter runs at " + std::to_string(e.filter->step) + " s, the loop at " +
+                                            std::to_string(o.step) + " s");
+    }
+    for (const auto& name : e.filter->measured) {
+        if (name != "gap" && (name != "heave_velocity" || !o.velocity_measured)) {
+            throw core::InputError("name", "the loop does not measure " + name + ", which the estimator '" + e.name + "' needs");
+        }
+    }
+}
+
+}  // namespace
+
 // What the loop keeps between samples.
-struct Loop {
+struct Loop::Impl {
     const SeparatedPlant& plant;
     const ControlLaw& law;
-    ForceSource source;
+    const LoopEstimator& estimator;
     const LoopOptions& options;
-    std::optional<FilterRunner> runner;
-    std::vector<int> sensors;  // 0: velocity, 1: gap
-    int ground = -1, drag = -1, total = -1;
+    core::Random random;
+    std::optional<FilterRunner> linear;
+    std::optional<ExtendedRunner> extended;
+    Places at;
     int substeps = 1;
+    double gap, velocity;
+    double force = 0;     // of the actuator, after its lag
+    double acted = 0;     // mean force over the last step, as a thruster model would tell the observer
+    double command = 0, disturbance = 0;
+    Seen seen;
+    std::size_t samples = 0;
 
-    Loop(const SeparatedPlant& p, const ControlLaw& l, ForceSource s, const std::optional<LinearFilter>& filter, const LoopOptions& o)
-        : plant(p), law(l), source(s), options(o) {
+    Impl(const SeparatedPlant& p, const ControlLaw& l, const LoopEstimator& e, const LoopOptions& o, double h, double w,
+         std::uint64_t stream)
+        : plant(p), law(l), estimator(e), options(o), random(o.seed, stream), gap(h), velocity(w) {
+        check_loop(e, o);
         substeps = std::max(1, static_cast<int>(std::ceil(o.step / 0.02)));
-        if (!filter) {
-            if (s == ForceSource::filter) {
-                throw core::InputError("missing", "the loop wants the forces of a filter, but there is none");
-            }
-            return;
+        if (e.source == ForceSource::filter) {
+            at = places_in(*e.filter);
+            linear.emplace(*e.filter);
+        } else if (e.source == ForceSource::extended) {
+            extended.emplace(e.believed ? *e.believed : p, e.noise);
         }
-        if (std::abs(filter->step - o.step) > 1e-9 * o.step) {
-            throw core::InputError("range", "the filter runs at " + std::to_string(filter->step) + " s, the loop at " +
-                                                std::to_string(o.step) + " s");
-        }
-        for (const auto& name : filter->measured) {
-            if (name != "heave_velocity" && name != "gap") {
-                throw core::InputError("name", "the loop measures heave_velocity and gap, not " + name);
-            }
-            sensors.push_back(name == "gap" ? 1 : 0);
-        }
-        const auto find = [&](const char* name) {
-            const auto at = std::find(filter->estimates.begin(), filter->estimates.end(), name);
-            return at == filter->estimates.end() ? -1 : static_cast<int>(at - filter->estimates.begin());
-        };
-        ground = find("ground_force");
-        drag = find("drag_force");
-        total = find("total_force");
-        runner.emplace(*filter);
     }
-};
 
-struct State {
-    double gap, velocity, force = 0;  // force: of the actuator, after its lag
-};
-
-// Moves the plant over one sample with the command held.
-void advance(const Loop& loop, State& s, double command, double disturbance) {
-    const double dt = loop.options.step / loop.substeps;
-    for (int i = 0; i < loop.substeps; ++i) {
-        double mean = command;
-        if (loop.options.actuator_lag > 0) {
-            // Mean of the lagged force over the piece: exact for its impulse, and the plant is slow against it.
-            const double tau = loop.options.actuator_lag, decay = std::exp(-dt / tau);
-            mean = command + (s.force - command) * tau / dt * (1 - decay);
-            s.force = command + (s.force - command) * decay;
+    void sense() {
+        const double h = gap + (options.gap_noise > 0 ? options.gap_noise * random.normal() : 0);
+        const double w = options.velocity_measured
+                             ? velocity + (options.velocity_noise > 0 ? options.velocity_noise * random.normal() : 0)
+                             : NAN;
+        seen.gap = h;
+        seen.velocity = w;
+        double slope = 0;
+        if (linear) {
+            sense_linear(h, w);
+        } else if (extended) {
+            FilterEstimate e;
+            if (samples == 0) {
+                extended->start(h, w);
+                extended->describe(extended->belief(), e);
+            } else {
+                extended->predict(options.step, acted);
+                extended->measure(h, w, e);
+            }
+            seen = {e.ground_force, e.drag_force, e.total_force, e.gap, e.velocity};
         } else {
-            s.force = command;
+            seen.ground = plant.ground_force(gap, slope);
+            seen.drag = plant.drag_force(velocity, slope);
+            seen.total = seen.ground - seen.drag;
         }
-        loop.plant.advance(s.gap, s.velocity, mean + disturbance, dt);
+        if (options.feedback == Feedback::measured) {
+            seen.gap = h;
+            seen.velocity = w;
+        } else if (options.feedback == Feedback::truth) {
+            seen.gap = gap;
+            seen.velocity = velocity;
+        }
     }
-}
 
-struct Estimates {
-    double ground = 0, drag = 0, total = 0;
-};
-
-// One sample: sense, estimate, command. Returns what the law asks for.
-template <typename Random>
-double command_of(Loop& loop, const State& s, double last_force, bool first, Random* random, Estimates& estimates) {
-    const double w = s.velocity + (random != nullptr ? loop.options.velocity_noise * random->normal() : 0);
-    const double h = s.gap + (random != nullptr ? loop.options.gap_noise * random->normal() : 0);
-    double slope = 0;
-    if (loop.runner) {
+    void sense_linear(double h, double w) {
         double y[FilterRunner::most_signals] = {}, e[FilterRunner::most_states] = {};
-        for (std::size_t i = 0; i < loop.sensors.size(); ++i) {
-            y[i] = loop.sensors[i] == 1 ? h : w;
+        for (std::size_t i = 0; i < estimator.filter->measured.size(); ++i) {
+            y[i] = estimator.filter->measured[i] == "gap" ? h : w;
         }
-        if (first) {
-            loop.runner->start(y, e);
+        if (samples == 0) {
+            linear->start(y, e);
         } else {
-            loop.runner->step(y, &last_force, e);
+            linear->step(y, &acted, e);
         }
-        estimates.ground = loop.ground >= 0 ? e[loop.ground] : NAN;
-        estimates.drag = loop.drag >= 0 ? e[loop.drag] : NAN;
-        estimates.total = loop.total >= 0 ? e[loop.total] : estimates.ground - estimates.drag;
-    } else {
-        estimates.ground = loop.plant.ground_force(s.gap, slope);
-        estimates.drag = loop.plant.drag_force(s.velocity, slope);
-        estimates.total = estimates.ground - estimates.drag;
+        seen.ground = at.ground >= 0 ? e[at.ground] : NAN;
+        seen.drag = at.drag >= 0 ? e[at.drag] : NAN;
+        seen.total = at.total >= 0 ? e[at.total] : seen.ground - seen.drag;
+        seen.gap = at.gap >= 0 ? e[at.gap] : h;
+        seen.velocity = at.velocity >= 0 ? e[at.velocity] : w;
     }
-    const bool noisy = loop.options.noisy_feedback;
-    double u = -loop.law.velocity_gain * (noisy ? w : s.velocity) -
-               loop.law.gap_gain * ((noisy ? h : s.gap) - loop.law.reference_gap);
-    if (loop.law.cancel && loop.source != ForceSource::none) {
-        u -= estimates.total;
+
+    void decide() {
+        double u = -law.velocity_gain * seen.velocity - law.gap_gain * (seen.gap - law.reference_gap);
+        if (law.cancel && estimator.source != ForceSource::none) {
+            u -= seen.total;
+        }
+        if (law.cancel_bias) {
+            u -= plant.bias;
+        }
+        command = std::clamp(u, -law.limit, law.limit);
     }
-    if (loop.law.cancel_bias) {
-        u -= loop.plant.bias;
+
+    // Moves the plant over one sample with the command held.
+    void move() {
+        const double dt = options.step / substeps, tau = options.actuator_lag;
+        double sum = 0;
+        for (int i = 0; i < substeps; ++i) {
+            double mean = command;
+            if (tau > 0) {
+                // Mean of the lagged force over the piece: exact for its impulse, and the plant is slow against it.
+                const double decay = std::exp(-dt / tau);
+                mean = command + (force - command) * tau / dt * (1 - decay);
+                force = command + (force - command) * decay;
+            } else {
+                force = command;
+            }
+            sum += mean;
+            plant.advance(gap, velocity, mean + disturbance, dt);
+        }
+        acted = sum / substeps;
+        ++samples;
     }
-    return std::clamp(u, -loop.law.limit, loop.law.limit);
+};
+
+Loop::Loop(const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator, const LoopOptions& options, double gap,
+           double velocity, std::uint64_t stream)
+    : impl_(std::make_unique<Impl>(plant, law, estimator, options, gap, velocity, stream)) {}
+Loop::~Loop() = default;
+
+void Loop::advance() {
+    impl_->disturbance =
+        impl_->options.disturbance ? impl_->options.disturbance(impl_->options.step * static_cast<double>(impl_->samples)) : 0;
+    impl_->sense();
+    impl_->decide();
+    impl_->move();
 }
+
+double Loop::gap() const { return impl_->gap; }
+double Loop::velocity() const { return impl_->velocity; }
+
+namespace {
 
 void summarise(LoopRun& run, const ControlLaw& law) {
     const std::size_t n = run.time.size(), tail = std::max<std::size_t>(1, n / 10);
@@ -124,7 +201,7 @@ void summarise(LoopRun& run, const ControlLaw& law) {
     run.hold_error = mean;
     run.hold_sigma = std::sqrt(std::max(0.0, square - mean * mean));
     for (std::size_t i = n / 2; i < n; ++i) {
-        const double e = run.total_estimate[i] - (run.ground_force[i] - run.drag_force[i]);
+        const double e = run.total_estimate[i] - (run.ground_force[i] - run.drag_force[i] + run.disturbance[i]);
         force += e * e;
     }
     run.total_force_error = std::sqrt(force / static_cast<double>(n - n / 2));
@@ -140,45 +217,29 @@ ControlLaw hold_at(double reference_gap, double virtual_mass, double pole1, doub
     return law;
 }
 
-LoopRun close_loop(const SeparatedPlant& plant, const ControlLaw& law, ForceSource source, const std::optional<LinearFilter>& filter,
-                   const LoopOptions& options) {
-    if (!(options.step > 0) || !(options.duration > options.step)) {
-        throw core::InputError("range", "the loop needs a positive sample time and a duration longer than it");
-    }
-    Loop loop(plant, law, source, filter, options);
-    core::Random random(options.seed);
-    const bool noise = options.velocity_noise > 0 || options.gap_noise > 0;
-    State s{options.gap, options.velocity};
+LoopRun close_loop(const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator, const LoopOptions& options) {
+    Loop loop(plant, law, estimator, options, options.gap, options.velocity);
+    const Loop::Impl& parts = loop.parts();
     LoopRun run;
     const auto samples = static_cast<std::size_t>(std::round(options.duration / options.step));
-    double last = 0;
     std::size_t limited = 0;
     for (std::size_t k = 0; k <= samples; ++k) {
-        const double t = options.step * static_cast<double>(k);
-        Estimates e;
-        const double u = command_of(loop, s, last, k == 0, noise ? &random : nullptr, e);
-        const double d = options.disturbance ? options.disturbance(t) : 0;
         double slope = 0;
-        run.time.push_back(t);
-        run.gap.push_back(s.gap);
-        run.velocity.push_back(s.velocity);
-        run.command.push_back(u);
-        run.force.push_back(s.force);
-        run.disturbance.push_back(d);
-        run.ground_force.push_back(plant.ground_force(s.gap, slope));
-        run.drag_force.push_back(plant.drag_force(s.velocity, slope));
-        run.ground_estimate.push_back(e.ground);
-        run.drag_estimate.push_back(e.drag);
-        run.total_estimate.push_back(e.total);
-        limited += std::abs(u) >= law.limit ? 1U : 0U;
-        const double before = s.force;
-        advance(loop, s, u, d);
-        // The observer is told the mean force that acted, as a thruster model would.
-        last = options.actuator_lag > 0
-                   ? u + (before - u) * options.actuator_lag / options.step * (1 - std::exp(-options.step / options.actuator_lag))
-                   : u;
-        run.touched = run.touched || s.gap <= plant.contact_gap;
-        if (!std::isfinite(s.gap) || std::abs(s.gap) > 1e6) {
+        run.time.push_back(options.step * static_cast<double>(k));
+        run.gap.push_back(loop.gap());
+        run.velocity.push_back(loop.velocity());
+        run.ground_force.push_back(plant.ground_force(loop.gap(), slope));
+        run.drag_force.push_back(plant.drag_force(loop.velocity(), slope));
+        loop.advance();
+        run.command.push_back(parts.command);
+        run.force.push_back(parts.acted);
+        run.disturbance.push_back(parts.disturbance);
+        run.ground_estimate.push_back(parts.seen.ground);
+        run.drag_estimate.push_back(parts.seen.drag);
+        run.total_estimate.push_back(parts.seen.total);
+        limited += std::abs(parts.command) >= law.limit ? 1U : 0U;
+        run.touched = run.touched || loop.gap() <= plant.contact_gap;
+        if (!std::isfinite(loop.gap()) || std::abs(loop.gap()) > 1e6) {
             run.finite = false;
             break;
         }
@@ -259,73 +320,13 @@ Separation separation(const AugmentedModel& model, const ControlLaw& law, const 
     return out;
 }
 
-LoopRegion loop_region(const SeparatedPlant& plant, const ControlLaw& law, ForceSource source,
-                       const std::optional<LinearFilter>& filter, const LoopOptions& options, std::size_t columns, std::size_t rows,
-                       double gap_lower, double gap_upper, double velocity_lower, double velocity_upper, core::Progress& progress) {
-    LoopRegion region{columns, rows, gap_lower, gap_upper, velocity_lower, velocity_upper, std::vector<int>(columns * rows), 0};
-    const auto samples = static_cast<std::size_t>(std::round(options.duration / options.step));
-    const double near = 0.02 * (gap_upper - gap_lower), far = gap_upper + (gap_upper - gap_lower);
-    core::parallel_for(
-        columns * rows,
-        [&](std::size_t cell) {
-            Loop loop(plant, law, source, filter, options);
-            State s{gap_lower + (gap_upper - gap_lower) * (static_cast<double>(cell % columns) + .5) / static_cast<double>(columns),
-                    velocity_lower +
-                        (velocity_upper - velocity_lower) * (static_cast<double>(cell / columns) + .5) / static_cast<double>(rows)};
-            double last = 0;
-            int end = -1;
-            std::size_t still = 0;
-            for (std::size_t k = 0; k < samples && end < 0; ++k) {
-                Estimates e;
-                last = command_of<core::Random>(loop, s, last, k == 0, nullptr, e);
-                advance(loop, s, last, 0);
-                still = std::abs(s.velocity) < 1e-5 ? still + 1 : 0;
-                if (s.gap <= plant.contact_gap) {
-                    end = 2;
-                } else if (!std::isfinite(s.gap) || s.gap > far) {
-                    end = 3;
-                } else if (static_cast<double>(still) * options.step > 2) {
-                    end = std::abs(s.gap - law.reference_gap) < near ? 0 : 1;
-                }
-            }
-            if (end < 0) {
-                end = std::abs(s.gap - law.reference_gap) < near ? 0 : 4;
-            }
-            region.index[cell] = end;
-        },
-        progress);
-    region.holds = static_cast<double>(std::count(region.index.begin(), region.index.end(), 0)) /
-                   static_cast<double>(region.index.size());
-    return region;
-}
-
-core::Figure LoopRegion::figure(const std::string& title) const {
-    core::Figure f;
-    f.title = title;
-    f.x = {"gap", "mm", 1e3 * gap_lower, 1e3 * gap_upper};
-    f.y = {"heave velocity", "mm/s", 1e3 * velocity_lower, 1e3 * velocity_upper};
-    core::FigureClasses classes;
-    classes.columns = columns;
-    classes.rows = rows;
-    classes.x_lower = f.x.lower;
-    classes.x_upper = f.x.upper;
-    classes.y_lower = f.y.lower;
-    classes.y_upper = f.y.upper;
-    classes.index = index;
-    classes.names = {"holds", "parks elsewhere", "touches the ground", "escapes", "undecided"};
-    for (const std::size_t c : {2U, 0U, 5U, 1U, 7U}) {
-        classes.colours.push_back(core::palette(c));
-    }
-    f.classes.push_back(classes);
-    return f;
-}
-
 core::Table LoopRun::table() const {
     core::Table t;
     t.add_numbers("time", "s", time);
     t.add_numbers("gap", "m", gap);
     t.add_numbers("heave_velocity", "m/s", velocity);
-    t.add_numbers("input_force", "N", command);
+    t.add_numbers("command", "N", command);
+    t.add_numbers("input_force", "N", force);
     t.add_numbers("disturbance", "N", disturbance);
     t.add_numbers("ground_force", "N", ground_force);
     t.add_numbers("drag_force", "N", drag_force);

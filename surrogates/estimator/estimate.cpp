@@ -1,70 +1,21 @@
 #include "surrogates/estimator/estimate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
 #include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/predict.h"
+#include "surrogates/estimator/internal/prepared_runs.h"
 
 namespace underbody::estimator {
 
+using internal::noise_for;
+using internal::note;
+using internal::prepare;
+using internal::Prepared;
+
 namespace {
-
-void note(core::Problems& problems, const std::string& text) {
-    problems.push_back({core::Problem::Severity::warning, text, {}});
-}
-
-// Plant at a run's conditions; channels that vary within the run are held at their mean.
-SeparatedPlant plant_of(const dynamics::Model& model, const dynamics::MeasuredRun& run, core::Problems& remarks) {
-    const dynamics::InputSignals signals = dynamics::signals_of(run);
-    dynamics::Conditions held = signals.held;
-    for (const auto& signal : signals.signals) {
-        if (signal.channel == dynamics::Channel::input_force) {
-            continue;
-        }
-        double sum = 0, n = 0;
-        for (const double v : signal.values) {
-            sum += std::isfinite(v) ? v : 0;
-            n += std::isfinite(v) ? 1 : 0;
-        }
-        held[signal.channel] = sum / n;
-        note(remarks, "run '" + run.name + "': " + dynamics::channel_name(signal.channel) +
-                          " varies; the force table is taken at its mean and the departure carries the rest");
-    }
-    SeparatedPlant plant = separate(model, held);
-    if (held.has(dynamics::Channel::input_force) && !run.table.find("input_force")) {
-        plant.bias += held[dynamics::Channel::input_force];
-    }
-    return plant;
-}
-
-double noise_or_estimate(const dynamics::Measurements& data, const std::string& channel, double given, bool& declared) {
-    declared = true;
-    if (given > 0) {
-        return given;
-    }
-    if (const auto noise = data.declared_noise(channel)) {
-        return *noise;
-    }
-    declared = false;
-    std::vector<double> each;
-    for (const auto& run : data.runs) {
-        if (run.has(channel)) {
-            const double sigma = dynamics::noise_of(run.table.numbers("time"), run.values(channel));
-            if (sigma > 0) {
-                each.push_back(sigma);
-            }
-        }
-    }
-    if (each.empty()) {
-        return 0;
-    }
-    std::nth_element(each.begin(), each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2), each.end());
-    return each[each.size() / 2];
-}
 
 // Columns of the result, grown sample by sample.
 struct Columns {
@@ -135,60 +86,6 @@ core::Figure forces_figure(const Columns& c, const std::string& run) {
     series("ground_force (model-dependent)", c.ground, c.ground_sigma, 1);
     series("drag_force (model-dependent)", c.drag, c.drag_sigma, 2);
     return f;
-}
-
-struct Prepared {
-    const dynamics::MeasuredRun* run;
-    SeparatedPlant plant;
-    RunSignals signals;
-};
-
-std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Measurements& data, core::Problems& remarks) {
-    if (data.kind != dynamics::MeasurementKind::time_series) {
-        throw core::InputError("kind", "the estimator needs time series; this data set is static", {data.folder.string(), {}, {}, {}},
-                               "static forces are compared by 'underbody predict'");
-    }
-    std::vector<Prepared> all;
-    for (const auto& run : data.runs) {
-        all.push_back({&run, plant_of(model, run, remarks), signals_of_run(run, remarks)});
-    }
-    for (const auto& r : all.front().plant.remarks) {
-        remarks.push_back(r);
-    }
-    return all;
-}
-
-FilterNoise noise_for(const dynamics::Measurements& data, const EstimateOptions& o, std::vector<Prepared>& runs, Estimation& out) {
-    FilterNoise noise;
-    bool declared = false;
-    noise.gap = noise_or_estimate(data, "gap", o.gap_sigma, out.gap_noise_declared);
-    noise.velocity = data.all_have("heave_velocity") ? noise_or_estimate(data, "heave_velocity", o.velocity_sigma, declared) : 0;
-    if (!(noise.gap > 0)) {
-        double size = 0;
-        for (const auto& r : runs) {
-            for (const double h : r.signals.gap) {
-                size = std::isfinite(h) ? std::max(size, std::abs(h)) : size;
-            }
-        }
-        noise.gap = std::max(1e-6 * size, 1e-9);
-        note(out.remarks, "the gap shows no noise; " + core::format_number(noise.gap, 2) + " m is taken for its resolution");
-    }
-    if (data.all_have("heave_velocity") && !(noise.velocity > 0)) {
-        noise.velocity = 1e-6;
-        note(out.remarks, "the heave velocity shows no noise; 1e-6 m/s is taken for its resolution");
-    }
-    noise.drag_relative = o.drag_relative;
-    noise.gate = o.gate;
-    noise.force_density = o.force_density;
-    if (!(noise.force_density > 0)) {
-        std::vector<RunSignals> signals;
-        for (const auto& r : runs) {
-            signals.push_back(r.signals);
-        }
-        noise.force_density = likely_force_density(runs.front().plant, signals, noise);
-        out.density_chosen = true;
-    }
-    return noise;
 }
 
 void estimate_extended(const std::vector<Prepared>& runs, const EstimateOptions& o, Estimation& out, Columns& columns,
@@ -289,11 +186,8 @@ ObserverDesign design_linear(const AugmentedModel& model, const std::vector<Prep
     }
     if (o.observer == "latent") {
         const Matrix gain = full_gain(model, sensors, stretched(o.poles, 4));
-        // Rotation: the eigenvectors of the state part of the covariance are as good as any orthonormal square T.
-        const double c = std::sqrt(.5);
-        const Matrix rotation{{c, 0, c, 0}, {0, c, 0, c}, {-c, 0, c, 0}, {0, -c, 0, c}};
         const Vector scale(model.sigma.begin() + 1, model.sigma.begin() + 5), centre(model.mean.begin() + 1, model.mean.begin() + 5);
-        return latent_observer(model, rotation, scale, centre, sensors, gain, step);
+        return latent_observer(model, usual_rotation(), scale, centre, sensors, gain, step);
     }
     // What the linear law misses of the rates acts as noise of about a second's memory.
     Vector process(4, 0.0);
@@ -384,129 +278,6 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
 
 }  // namespace
 
-RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks) {
-    RunSignals s;
-    s.time = run.table.numbers("time");
-    s.gap = run.values("gap");
-    s.velocity = run.has("heave_velocity") ? run.values("heave_velocity") : std::vector<double>{};
-    if (run.table.find("input_force") == nullptr) {
-        return s;
-    }
-    s.input = run.values("input_force");
-    s.held = true;  // as dynamics::predict takes recorded inputs
-    std::size_t bridged = 0, last = s.input.size();
-    for (std::size_t i = 0; i < s.input.size(); ++i) {
-        if (!std::isfinite(s.input[i])) {
-            ++bridged;
-            continue;
-        }
-        for (std::size_t k = last == s.input.size() ? 0 : last + 1; k < i; ++k) {
-            s.input[k] = last == s.input.size() ? s.input[i]
-                                                : s.input[last] + (s.input[i] - s.input[last]) * (s.time[k] - s.time[last]) /
-                                                                      (s.time[i] - s.time[last]);
-        }
-        last = i;
-    }
-    if (last == s.input.size()) {
-        throw core::InputError("missing", "every value of input_force is missing", {run.file.string(), {}, {}, {}});
-    }
-    for (std::size_t k = last + 1; k < s.input.size(); ++k) {
-        s.input[k] = s.input[last];
-    }
-    if (bridged > 0) {
-        note(remarks, "run '" + run.name + "': " + std::to_string(bridged) + " missing values of input_force were interpolated");
-    }
-    return s;
-}
-
-double usual_step(const RunSignals& run) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < run.time.size(); ++i) {
-        steps.push_back(run.time[i] - run.time[i - 1]);
-    }
-    if (steps.empty()) {
-        throw core::InputError("few", "a run needs at least two samples");
-    }
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-    return steps[steps.size() / 2];
-}
-
-namespace {
-
-// Measured values less outliers: a value far from the middle of its neighbours (Hampel's identifier).
-std::vector<std::size_t> good_samples(const std::vector<double>& time, const std::vector<double>& values, UniformRun& out) {
-    std::vector<std::size_t> finite, good;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isfinite(values[i])) {
-            finite.push_back(i);
-        } else {
-            ++out.missing;
-        }
-    }
-    const double noise = dynamics::noise_of(time, values);
-    for (std::size_t k = 0; k < finite.size(); ++k) {
-        if (k >= 2 && k + 2 < finite.size()) {
-            std::array<double, 5> near{};
-            for (std::size_t j = 0; j < 5; ++j) {
-                near[j] = values[finite[k + j - 2]];
-            }
-            const double spread = std::max(std::abs(near[0] - near[4]), 8 * noise);
-            std::nth_element(near.begin(), near.begin() + 2, near.end());
-            if (noise > 0 && std::abs(values[finite[k]] - near[2]) > spread) {
-                ++out.outliers;
-                continue;
-            }
-        }
-        good.push_back(finite[k]);
-    }
-    return good;
-}
-
-double between(const std::vector<double>& time, const std::vector<double>& values, std::size_t a, std::size_t b, double t) {
-    return a == b ? values[a] : values[a] + (values[b] - values[a]) * (t - time[a]) / (time[b] - time[a]);
-}
-
-}  // namespace
-
-UniformRun uniform(const RunSignals& run, double step) {
-    UniformRun out;
-    const std::vector<std::size_t> good = good_samples(run.time, run.gap, out);
-    if (good.size() < 2) {
-        throw core::InputError("few", "a run needs at least two measured gaps");
-    }
-    for (std::size_t g = 0; g + 1 < good.size();) {
-        // A stretch without gaps in time.
-        std::size_t end = g;
-        while (end + 1 < good.size() && run.time[good[end + 1]] - run.time[good[end]] < 5.5 * step) {
-            ++end;
-        }
-        const double t0 = run.time[good[g]];
-        const auto count = static_cast<std::size_t>(std::floor((run.time[good[end]] - t0) / step + 1e-6));
-        std::size_t a = g;
-        for (std::size_t k = 0; end > g && k <= count; ++k) {
-            const double t = t0 + step * static_cast<double>(k);
-            while (a + 1 < end && run.time[good[a + 1]] <= t + 1e-9) {
-                ++a;
-            }
-            const std::size_t i = good[a], j = good[std::min(a + 1, end)];
-            out.time.push_back(t);
-            out.gap.push_back(between(run.time, run.gap, i, j, t));
-            if (!run.velocity.empty()) {
-                const bool both = std::isfinite(run.velocity[i]) && std::isfinite(run.velocity[j]);
-                const double slope = (run.gap[j] - run.gap[i]) / std::max(run.time[j] - run.time[i], 1e-12);
-                out.velocity.push_back(both ? between(run.time, run.velocity, i, j, t) : slope);
-            }
-            if (!run.input.empty()) {
-                out.input.push_back(between(run.time, run.input, i, j, t));
-            }
-            out.restart.push_back(k == 0);
-        }
-        out.gaps += end + 1 < good.size() ? 1U : 0U;
-        g = end + 1;
-    }
-    return out;
-}
-
 Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& data, const EstimateOptions& asked,
                     core::Progress& progress) {
     EstimateOptions options = asked;
@@ -520,7 +291,10 @@ Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& 
     Estimation out;
     out.observer = options.observer;
     std::vector<Prepared> runs = prepare(model, data, out.remarks);
-    out.noise = noise_for(data, options, runs, out);
+    const internal::NoiseChoice choice = noise_for(data, options, runs, out.remarks);
+    out.noise = choice.noise;
+    out.gap_noise_declared = choice.gap_declared;
+    out.density_chosen = choice.density_chosen;
     Columns columns;
     if (options.observer == "extended") {
         const SeparatedPlant& p = runs.front().plant;
@@ -548,37 +322,6 @@ Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& 
     out.figure = forces_figure(columns, out.runs.front().name);
     out.table = columns.table();
     return out;
-}
-
-TrainingSet training_from_runs(const dynamics::Model& model, const dynamics::Measurements& data, const EstimateOptions& options,
-                               core::Progress& progress) {
-    TrainingSet set;
-    set.layout = Layout::heave();
-    Estimation scratch;
-    std::vector<Prepared> runs = prepare(model, data, set.remarks);
-    const FilterNoise noise = noise_for(data, options, runs, scratch);
-    for (const auto& r : runs) {
-        progress.check();
-        const FilterResult f = extended_filter(r.plant, r.signals, noise, true);
-        for (std::size_t k = 1; k + 1 < f.estimates.size(); ++k) {
-            const FilterEstimate& e = f.estimates[k];
-            const double span = r.signals.time[k + 1] - r.signals.time[k - 1];
-            const double u = r.signals.input.empty() ? 0 : r.signals.input[k];
-            double ground_slope = 0, drag_slope = 0;
-            r.plant.ground_force(e.gap, ground_slope);
-            r.plant.drag_force(e.velocity, drag_slope);
-            const double dw = (e.total_force + u + r.plant.bias) / r.plant.virtual_mass;
-            const double departure = (f.estimates[k + 1].departure - f.estimates[k - 1].departure) / span;
-            const double row[] = {u,  e.velocity, e.gap,     e.ground_force,
-                                  e.drag_force, dw, e.velocity, ground_slope * e.velocity + departure, drag_slope * dw};
-            set.values.insert(set.values.end(), row, row + 9);
-            ++set.count;
-        }
-    }
-    for (auto& p : scratch.remarks) {
-        set.remarks.push_back(std::move(p));
-    }
-    return set;
 }
 
 void to_json(nlohmann::json& j, const Estimation& e) {

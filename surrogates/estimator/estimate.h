@@ -72,11 +72,6 @@ struct UniformRun {
 UniformRun uniform(const RunSignals& run, double step);
 double usual_step(const RunSignals& run);
 
-/// Training samples out of measured runs by smoothing with the model: states, forces with the declared drag, derivatives from the
-/// equation of motion; the departure's rate by central differences.
-TrainingSet training_from_runs(const dynamics::Model& model, const dynamics::Measurements& data, const EstimateOptions& options,
-                               core::Progress& progress = core::Progress::none());
-
 void to_json(nlohmann::json& json, const Estimation& estimation);
 
 }  // namespace underbody::estimator

@@ -21,6 +21,7 @@ struct FilterNoise {
     double force_time = 0;        ///< s: relaxation of the departure; 0: none
     double drag_relative = 0;     ///< relative deviation of the declared drag law, carried into the separate forces
     double gate = 6;              ///< a measurement further off than this many deviations is an outlier; 0: none is
+    double departure_sigma = 0;   ///< N: how far the table may be off at the start; 0: as far as its largest force
 };
 
 /// One run: samples at ascending times; NaN where a value is missing.
@@ -53,24 +54,56 @@ struct FilterResult {
 /// Throws core::InputError: fewer than three gaps, times that do not ascend, an input that is missing.
 FilterResult extended_filter(const SeparatedPlant& plant, const RunSignals& run, const FilterNoise& noise, bool smooth = false);
 
+/// A run with the plant at its own conditions.
+struct PlantRun {
+    const SeparatedPlant* plant;
+    const RunSignals* signals;
+};
 /// The force density with the highest likelihood over the runs, on a logarithmic grid refined once.
-double likely_force_density(const SeparatedPlant& plant, const std::vector<RunSignals>& runs, FilterNoise noise);
+double likely_force_density(const std::vector<PlantRun>& runs, FilterNoise noise);
 
-/// A surface under the vehicle: its plant.
-struct Surface {
-    std::string name;
-    SeparatedPlant plant;
+/// The filter sample by sample, without allocation: what a loop closed in real time runs. plant and noise must outlive it.
+class ExtendedRunner {
+public:
+    /// Mean of (gap, velocity, departure) and its covariance, row-major.
+    struct Belief {
+        std::array<double, 3> x{};
+        std::array<double, 9> p{};
+    };
+    /// Throws core::InputError when the gap sensor's noise is not positive.
+    ExtendedRunner(const SeparatedPlant& plant, const FilterNoise& noise);
+
+    void start(const Belief& belief);
+    /// From one sample: at the measured gap, at rest unless the velocity is measured, with a wide belief about the force.
+    void start(double gap, double velocity);
+    /// The next sample lies `dt` later; `input` was held since.
+    void predict(double dt, double input);
+    /// NaN: not measured. Returns the log likelihood of the sample.
+    double measure(double gap, double velocity, FilterEstimate& estimate);
+    /// What a belief says of gap, velocity and forces.
+    void describe(const Belief& belief, FilterEstimate& estimate) const;
+
+    [[nodiscard]] const Belief& belief() const { return belief_; }
+    [[nodiscard]] const Belief& predicted() const { return predicted_; }             ///< before the last measurement
+    [[nodiscard]] const std::array<double, 9>& transition() const { return phi_; }   ///< over the last step
+    [[nodiscard]] double departure_sigma() const { return departure_sigma_; }
+
+private:
+    bool update(std::size_t component, double value, double sigma, double& innovation, double& spread, bool trust_always);
+
+    const SeparatedPlant* plant_;
+    const FilterNoise* noise_;
+    double departure_sigma_ = 0;
+    Belief belief_, predicted_;
+    std::array<double, 9> phi_{};
+    std::size_t rejected_ = 0;
 };
 
-/// Which surface is under the vehicle: a bank of filters, one per surface, weighed by their innovations (thesis figure 7-2).
-struct SurfaceProbability {
-    std::vector<std::string> names;
-    std::vector<double> time;
-    std::vector<std::vector<double>> probability;  ///< [surface][sample]
-    std::size_t best = 0;
-};
-/// `switching`: chance per second that the surface changes (0: one surface for the whole run).
-SurfaceProbability identify_surface(const std::vector<Surface>& surfaces, const RunSignals& run, const FilterNoise& noise,
-                                    double switching = 0);
+/// Start of a run out of its first gaps: a straight line over 0.3 s.
+ExtendedRunner::Belief start_of_run(const ExtendedRunner& runner, const RunSignals& run, const FilterNoise& noise);
+/// Mean of the input over the step that ends at sample k.
+double input_over(const RunSignals& run, std::size_t k);
+/// Throws core::InputError: lengths that differ, fewer than three gaps, times that do not ascend, an input that is missing.
+void check_run(const RunSignals& run);
 
 }  // namespace underbody::estimator

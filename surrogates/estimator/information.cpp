@@ -1,12 +1,14 @@
 #include "surrogates/estimator/information.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/text.h"
 #include "surrogates/estimator/linear_system.h"
 
 namespace underbody::estimator {
@@ -168,66 +170,89 @@ ObservabilityAlongGap observability_along_gap(const SeparatedPlant& plant, const
     return result;
 }
 
-Consistency consistency_along_gap(const SeparatedPlant& plant, const FilterNoise& noise, const std::vector<double>& gaps, std::size_t runs,
-                                  double duration, double step, std::uint64_t seed, core::Progress& progress) {
+namespace {
+
+struct Trial {
+    double nees = 0, inside = 0, innovation = 0;
+};
+
+// One simulated run under the filter's own assumptions, and what the filter says at its end.
+Trial consistency_trial(const SeparatedPlant& plant, const ConsistencyOptions& o, double gap, double speed, std::uint64_t job) {
+    core::Random random(o.seed, job);
+    const auto n = static_cast<std::size_t>(o.duration / o.step) + 1;
+    const double omega = 2 * std::numbers::pi / std::max(o.duration / 2, 1.0), phase = random.uniform(0, 2 * std::numbers::pi);
+    // The hand leads the body along gap + speed/omega sin(omega t): the input is known to the filter.
+    const auto wanted = [&](double t) { return gap + speed / omega * std::sin(omega * t + phase); };
+    RunSignals run;
+    run.held = true;
+    double h = wanted(0), w = speed * std::cos(phase), d = 2e-3 * random.normal(), slope = 0;
+    std::array<double, 3> truth{};
+    for (std::size_t k = 0; k < n; ++k) {
+        const double t = o.step * static_cast<double>(k);
+        truth = {h, w, d};
+        run.time.push_back(t);
+        run.gap.push_back(h + o.noise.gap * random.normal());
+        if (o.noise.velocity > 0) {
+            run.velocity.push_back(w + o.noise.velocity * random.normal());
+        }
+        const double u = -plant.ground_force(wanted(t), slope) - plant.bias - 4 * (h - wanted(t)) -
+                         4 * (w - speed * std::cos(omega * t + phase));
+        run.input.push_back(u);
+        const int pieces = 4;
+        for (int i = 0; i < pieces; ++i) {
+            plant.advance(h, w, u + d, o.step / pieces);
+            d += std::sqrt(o.noise.force_density * o.step / pieces) * random.normal() -
+                 (o.noise.force_time > 0 ? d * o.step / pieces / o.noise.force_time : 0);
+        }
+    }
+    FilterNoise own = o.noise;
+    own.gate = 0;
+    const FilterResult r = extended_filter(plant, run, own);
+    const FilterEstimate& e = r.estimates.back();
+    const Vector error{truth[0] - e.gap, truth[1] - e.velocity, truth[2] - e.departure};
+    Matrix p(3, 3);
+    std::copy(e.covariance.begin(), e.covariance.end(), p.data());
+    const Vector solved = solve(p, error);
+    const double force = plant.ground_force(truth[0], slope) + truth[2];
+    return {error[0] * solved[0] + error[1] * solved[1] + error[2] * solved[2],
+            std::abs(force - e.ground_force) < 1.96 * e.ground_sigma ? 1.0 : 0.0, r.mean_squared_innovation};
+}
+
+}  // namespace
+
+Consistency consistency_along_gap(const SeparatedPlant& plant, const ConsistencyOptions& options, core::Progress& progress) {
     Consistency c;
-    c.gaps = gaps;
-    c.runs = runs;
-    c.nees.assign(gaps.size(), 0);
-    c.coverage.assign(gaps.size(), 0);
-    c.innovation.assign(gaps.size(), 0);
-    std::vector<double> nees(gaps.size() * runs), inside(nees.size()), nis(nees.size());
+    c.gaps = options.gaps;
+    c.speeds = options.speeds;
+    c.runs = options.runs;
+    const double lower = std::max(plant.lower, plant.contact_gap);
+    for (int i = 0; options.gaps.empty() && i < 8; ++i) {
+        c.gaps.push_back(lower + (plant.upper - lower) * (i + 1.0) / 9);
+    }
+    const std::size_t cells = c.gaps.size() * c.speeds.size();
+    std::vector<Trial> trials(cells * options.runs);
     core::parallel_for(
-        nees.size(),
+        trials.size(),
         [&](std::size_t job) {
-            const double gap = gaps[job / runs];
-            core::Random random(seed, job);
-            const auto n = static_cast<std::size_t>(duration / step) + 1;
-            RunSignals run;
-            std::vector<double> truth(3 * n);
-            double h = gap, w = random.uniform(-.01, .01), d = 2e-3 * random.normal(), slope = 0;
-            for (std::size_t k = 0; k < n; ++k) {
-                truth[3 * k] = h;
-                truth[3 * k + 1] = w;
-                truth[3 * k + 2] = d;
-                run.time.push_back(step * static_cast<double>(k));
-                run.gap.push_back(h + noise.gap * random.normal());
-                if (noise.velocity > 0) {
-                    run.velocity.push_back(w + noise.velocity * random.normal());
-                }
-                // A hand on the vehicle that keeps it near the gap: the input is known to the filter.
-                const double u = -plant.ground_force(gap, slope) - plant.bias - 2 * (h - gap) - 2 * w;
-                run.input.push_back(u);
-                const int pieces = 4;
-                for (int i = 0; i < pieces; ++i) {
-                    plant.advance(h, w, u + d, step / pieces);
-                    d += std::sqrt(noise.force_density * step / pieces) * random.normal() -
-                         (noise.force_time > 0 ? d * step / pieces / noise.force_time : 0);
-                }
-            }
-            run.held = true;
-            FilterNoise own = noise;
-            own.gate = 0;
-            const FilterResult r = extended_filter(plant, run, own);
-            const FilterEstimate& e = r.estimates.back();
-            const Vector error{truth[3 * n - 3] - e.gap, truth[3 * n - 2] - e.velocity, truth[3 * n - 1] - e.departure};
-            Matrix p(3, 3);
-            std::copy(e.covariance.begin(), e.covariance.end(), p.data());
-            const Vector solved = solve(p, error);
-            nees[job] = error[0] * solved[0] + error[1] * solved[1] + error[2] * solved[2];
-            const double force = plant.ground_force(truth[3 * n - 3], slope) + truth[3 * n - 1];
-            inside[job] = std::abs(force - e.ground_force) < 1.96 * e.ground_sigma ? 1 : 0;
-            nis[job] = r.mean_squared_innovation;
+            const std::size_t cell = job / options.runs;
+            trials[job] = consistency_trial(plant, options, c.gaps[cell % c.gaps.size()], c.speeds[cell / c.gaps.size()], job);
         },
         progress);
-    for (std::size_t i = 0; i < nees.size(); ++i) {
-        c.nees[i / runs] += nees[i] / static_cast<double>(runs);
-        c.coverage[i / runs] += inside[i] / static_cast<double>(runs);
-        c.innovation[i / runs] += nis[i] / static_cast<double>(runs);
+    c.nees.assign(cells, 0);
+    c.coverage.assign(cells, 0);
+    c.innovation.assign(cells, 0);
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        const double share = 1 / static_cast<double>(options.runs);
+        c.nees[i / options.runs] += trials[i].nees * share;
+        c.coverage[i / options.runs] += trials[i].inside * share;
+        c.innovation[i / options.runs] += trials[i].innovation * share;
     }
-    const double spread = 1.96 * std::sqrt(6.0 / static_cast<double>(runs));  // variance of chi-square with 3: 6
+    const double spread = 1.96 * std::sqrt(6.0 / static_cast<double>(options.runs));  // variance of chi-square with 3: 6
     c.lower = 3 - spread;
     c.upper = 3 + spread;
+    for (const double v : c.nees) {
+        c.inside += v > c.lower && v < c.upper ? 1 / static_cast<double>(cells) : 0;
+    }
     return c;
 }
 
@@ -235,22 +260,26 @@ core::Figure Consistency::figure() const {
     core::Figure f;
     f.title = "Does the filter state its error truly?";
     f.caption = "Normalised estimation error squared of (gap, velocity, force departure) at the end of " + std::to_string(runs) +
-                " simulated runs per gap; 3 is right, the band holds 95 % of such means.";
+                " simulated runs per point, by amplitude of the heave velocity; 3 is right, the band holds 95 % of such means.";
     f.x = {"gap", "mm", 0, 0, false};
     f.y = {"NEES", "1", 0, 0, false};
     core::FigureBand band;
-    core::FigurePoints points;
-    points.name = "mean of the runs";
-    points.colour = core::palette(0);
-    for (std::size_t i = 0; i < gaps.size(); ++i) {
-        band.x.push_back(1e3 * gaps[i]);
+    for (const double gap : gaps) {
+        band.x.push_back(1e3 * gap);
         band.lower.push_back(lower);
         band.upper.push_back(upper);
-        points.x.push_back(1e3 * gaps[i]);
-        points.y.push_back(nees[i]);
     }
     f.bands.push_back(band);
-    f.points.push_back(points);
+    for (std::size_t s = 0; s < speeds.size(); ++s) {
+        core::FigurePoints points;
+        points.name = core::format_number(1e3 * speeds[s], 3) + " mm/s";
+        points.colour = core::palette(s);
+        for (std::size_t i = 0; i < gaps.size(); ++i) {
+            points.x.push_back(1e3 * gaps[i]);
+            points.y.push_back(nees[s * gaps.size() + i]);
+        }
+        f.points.push_back(points);
+    }
     f.lines.push_back({false, 3, "", {120, 120, 120, 255}, true});
     return f;
 }
@@ -262,8 +291,12 @@ void to_json(nlohmann::json& j, const InformationMap& m) {
 }
 
 void to_json(nlohmann::json& j, const Consistency& c) {
-    j = {{"gaps", c.gaps}, {"nees", c.nees}, {"lower", c.lower}, {"upper", c.upper}, {"coverage", c.coverage}, {"innovation", c.innovation},
-         {"runs", c.runs}};
+    j = {{"gaps", c.gaps},         {"speeds", c.speeds},         {"nees", c.nees}, {"lower", c.lower},  {"upper", c.upper},
+         {"coverage", c.coverage}, {"innovation", c.innovation}, {"runs", c.runs}, {"inside", c.inside}};
+}
+
+void to_json(nlohmann::json& j, const ObservabilityAlongGap& o) {
+    j = {{"gaps", o.gaps}, {"smallest_singular_value", o.smallest_singular_value}, {"separate_rank", o.separate_rank}};
 }
 
 }  // namespace underbody::estimator

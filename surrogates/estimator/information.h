@@ -45,21 +45,31 @@ struct ObservabilityAlongGap {
 };
 ObservabilityAlongGap observability_along_gap(const SeparatedPlant& plant, const std::vector<double>& gaps);
 
-/// Normalised estimation error squared of the extended filter on simulated runs that obey its own assumptions: 3 on average for a
-/// filter that states its covariance truly.
+/// Normalised estimation error squared (NEES) of the extended filter on simulated runs that obey its own assumptions, while a hand
+/// moves the body about the gap with a heave velocity of the given amplitude: 3 on average for a filter that states its covariance truly.
+struct ConsistencyOptions {
+    FilterNoise noise;
+    std::vector<double> gaps;           ///< m; empty: 8 over the table
+    std::vector<double> speeds{0, .01, .03};  ///< m/s
+    std::size_t runs = 60;              ///< per gap and speed
+    double duration = 5, step = 0.02;   ///< s
+    std::uint64_t seed = 1;
+};
 struct Consistency {
-    std::vector<double> gaps;
-    std::vector<double> nees;      ///< mean over runs and samples
-    double lower = 0, upper = 0;   ///< 95 % band of the mean (independent samples: one per run)
-    std::vector<double> coverage;  ///< share of runs whose ground force lay within 1.96 of its stated deviations
-    std::vector<double> innovation;///< mean squared normalised innovation
+    std::vector<double> gaps, speeds;
+    std::vector<double> nees;      ///< [speed * gaps + gap]: mean over the runs at their end
+    double lower = 0, upper = 0;   ///< 95 % band of such a mean
+    std::vector<double> coverage;  ///< likewise: share of runs whose ground force lay within 1.96 of its stated deviations
+    std::vector<double> innovation;///< likewise: mean squared normalised innovation
     std::size_t runs = 0;
+    double inside = 0;             ///< share of means within the band
     [[nodiscard]] core::Figure figure() const;
 };
-Consistency consistency_along_gap(const SeparatedPlant& plant, const FilterNoise& noise, const std::vector<double>& gaps, std::size_t runs,
-                                  double duration, double step, std::uint64_t seed, core::Progress& progress = core::Progress::none());
+Consistency consistency_along_gap(const SeparatedPlant& plant, const ConsistencyOptions& options,
+                                  core::Progress& progress = core::Progress::none());
 
 void to_json(nlohmann::json& json, const InformationMap& map);
 void to_json(nlohmann::json& json, const Consistency& consistency);
+void to_json(nlohmann::json& json, const ObservabilityAlongGap& observability);
 
 }  // namespace underbody::estimator

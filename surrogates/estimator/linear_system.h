@@ -40,6 +40,8 @@ struct Observability {
 /// `scale` (optional) holds a typical size per state, so that the rank does not depend on units. Popov-Belevitch-Hautus
 /// test at every eigenvalue decides, with relative tolerance on singular values.
 Observability observability(const Matrix& a, const Matrix& c, const Vector& scale = {}, double tolerance = 1e-9);
+/// Throws core::InputError (kind "unobservable") that names the first direction that cannot be seen.
+[[noreturn]] void refuse_unobservable(const Observability& seen, const std::vector<std::string>& names);
 /// "0.71 ground_force + 0.71 drag_force"
 std::string direction_text(const Vector& direction, const std::vector<std::string>& names);
 
@@ -74,7 +76,5 @@ Matrix discrete_lyapunov(const Matrix& phi, const Matrix& q);
 /// Throws core::InputError when it does not exist (a mode that cannot be seen and does not decay), naming it.
 Matrix discrete_riccati(const Matrix& phi, const Matrix& c, const Matrix& q, const Matrix& r,
                         const std::vector<std::string>& names = {});
-/// X of A' X + X A - X B R^-1 B' X + Q = 0, for u = -R^-1 B' X x (Newton-Kleinman from the Hamiltonian's stable subspace).
-Matrix continuous_riccati(const Matrix& a, const Matrix& b, const Matrix& q, const Matrix& r);
 
 }  // namespace underbody::estimator

@@ -243,6 +243,11 @@ ObserverDesign latent_observer(const AugmentedModel& model, const Matrix& rotati
     return design;
 }
 
+Matrix usual_rotation() {
+    const double c = std::sqrt(.5);
+    return {{c, 0, c, 0}, {0, c, 0, c}, {-c, 0, c, 0}, {0, -c, 0, c}};
+}
+
 LatentProjection latent_projection(const AugmentedModel& normalised, const Matrix& rotation, const Matrix& latent_gain) {
     const std::size_t nx = normalised.layout.measured, n = normalised.layout.states.size();
     const Matrix v = rotation.block(0, 0, nx, rotation.columns()), w = rotation.block(nx, 0, n - nx, rotation.columns());

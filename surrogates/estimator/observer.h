@@ -103,6 +103,9 @@ ObserverDesign latent_observer(const AugmentedModel& model, const Matrix& rotati
                                const std::vector<std::string>& sensors, const Matrix& gain, double step,
                                Hold hold = Hold::first_order);
 
+/// A square orthonormal T that mixes velocity with ground force and gap with drag, by 45 degrees each: one as good as any other.
+Matrix usual_rotation();
+
 /// The thesis's second latent form (8.36-8.43) with x in place of its estimate: its error matrix W (A_z - L_z V) W' for a latent gain
 /// L_z, in normalised coordinates. It equals J_zeta whatever L_z is: the gain cancels.
 struct LatentProjection {

@@ -54,7 +54,7 @@ void curve(core::Figure& figure, const std::string& name, const std::vector<doub
     for (double& v : c.y) {
         v *= y_scale;
     }
-    c.colour = core::palette(colour);
+    c.colour = colour == 7 ? core::Colour{25, 25, 25, 255} : core::palette(colour);  // 7: the truth, black as in the thesis
     c.dashed = dashed;
     figure.curves.push_back(std::move(c));
 }
@@ -75,8 +75,12 @@ std::string number(double value, int digits) { return core::format_number(value,
 
 std::string numbers(const std::vector<double>& values, int digits) {
     std::string text;
+    double largest = 0;
     for (const double v : values) {
-        text += (text.empty() ? "" : ", ") + number(v, digits);
+        largest = std::max(largest, std::abs(v));
+    }
+    for (const double v : values) {  // what is round-off beside the others is zero
+        text += (text.empty() ? "" : ", ") + number(std::abs(v) < 1e-13 * largest ? 0 : v, digits);
     }
     return text;
 }
@@ -97,6 +101,10 @@ TrainingSet time_samples(const SeparatedPlant& plant, double gap_lower, double g
     o.samples = count;
     o.start_at_rest = true;
     return training_set(plant, o);
+}
+
+AugmentedModel p3_of_8_47() {
+    return corrected(published_8_47(), Correction::p3, heave_rows(Layout::heave(), thesis_virtual_mass(), 0));
 }
 
 double rms(const std::vector<double>& values) {
@@ -148,6 +156,7 @@ ThesisStudy thesis_study(core::Progress& progress) {
     ThesisStudy study;
     progress.report(0, "chapter 7");
     add_chapter_7(study, progress);
+    add_peers(study, progress);
     progress.report(0.5, "chapter 8");
     add_chapter_8(study, progress);
     return study;

@@ -32,7 +32,9 @@ struct ThesisStudy {
 ThesisStudy thesis_study(core::Progress& progress = core::Progress::none());
 
 void add_chapter_7(ThesisStudy& study, core::Progress& progress);
+void add_peers(ThesisStudy& study, core::Progress& progress);    ///< tangent, equivalent-linear, learned, dmdc, edmd, nonlinear
 void add_chapter_8(ThesisStudy& study, core::Progress& progress);
+void add_control(ThesisStudy& study, core::Progress& progress);  ///< the end of chapter 8
 
 void to_json(nlohmann::json& json, const ThesisStudy& study);
 

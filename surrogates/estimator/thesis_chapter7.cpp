@@ -266,8 +266,8 @@ void orders(ThesisStudy& study) {
     core::Figure errors = plot("7-20: relative error of the derivatives against order", "rms over the deviation of each derivative; 1 means nothing is explained.",
                                "order", "1", "relative rms error", "1");
     errors.y.logarithmic = true;
-    core::Figure poles = plot("7-21: poles of A against order", "Orders 1 to 7 of rank 7; poles beyond 6 1/s are left out.", "real part", "1/s",
-                              "imaginary part", "1/s");
+    core::Figure poles = plot("7-21: poles of A against order", "Orders 1 to 7 of rank 7; poles beyond 6 1/s are left out. All poles are real or nearly so.", "real part",
+                              "1/s", "imaginary part", "1/s");
     core::Figure each = plot("7-22: eigenvalues of A against order", "Size of each eigenvalue; orders 4 and 5 are nearly singular.", "order", "1",
                              "size of eigenvalue", "1/s");
     each.y.logarithmic = true;
@@ -301,6 +301,8 @@ void orders(ThesisStudy& study) {
         points(each, "eigenvalue " + std::to_string(i + 1), counted(7), sizes[i], i);
     }
     study.figures.emplace_back("7-20", errors);
+    poles.y.lower = -0.5;
+    poles.y.upper = 0.5;
     study.figures.emplace_back("7-21", poles);
     study.figures.emplace_back("7-22", each);
     study.claims.push_back({"7-20-seven", "Figure 7-20", "From theory the required order is 7",

@@ -317,6 +317,27 @@ void sample_at(const SeparatedPlant& plant, const Layout& layout, double input, 
     fill(compile(plant, layout), input, velocity, gap, row);
 }
 
+Vector equilibrium_point(const SeparatedPlant& plant, const Layout& layout, double gap_lower, double gap_upper) {
+    constexpr int pieces = 2000;
+    double slope = 0;
+    for (int i = 0; i < pieces; ++i) {
+        double a = gap_lower + (gap_upper - gap_lower) * i / pieces, b = gap_lower + (gap_upper - gap_lower) * (i + 1) / pieces;
+        if (!(plant.ground_force(a, slope) + plant.bias > 0 && plant.ground_force(b, slope) + plant.bias <= 0)) {
+            continue;
+        }
+        for (int k = 0; k < 60; ++k) {
+            const double middle = 0.5 * (a + b);
+            (plant.ground_force(middle, slope) + plant.bias > 0 ? a : b) = middle;
+        }
+        std::vector<double> row(layout.channels());
+        sample_at(plant, layout, 0, 0, 0.5 * (a + b), row.data());
+        return {row.begin(), row.begin() + static_cast<std::ptrdiff_t>(layout.inputs.size() + layout.states.size())};
+    }
+    throw core::InputError("missing", "the plant has no stable equilibrium between " + std::to_string(gap_lower) + " and " +
+                                          std::to_string(gap_upper) + " m",
+                           {}, "widen the region or take moments about the mean");
+}
+
 AugmentedModel frozen_model(const SeparatedPlant& plant, double gap, double velocity) {
     double ground_slope = 0, drag_slope = 0;
     plant.ground_force(gap, ground_slope);

@@ -93,6 +93,10 @@ TrainingSet training_set(const SeparatedPlant& plant, const TrainingOptions& opt
 /// One sample at (u, w, h) as the training set holds it; `row` has layout.channels() entries.
 void sample_at(const SeparatedPlant& plant, const Layout& layout, double input, double velocity, double gap, double* row);
 
+/// (inputs, states) at the lowest stable rest point within the gaps, no input: the point of OffsetMode::equilibrium.
+/// Throws core::InputError when there is none.
+Vector equilibrium_point(const SeparatedPlant& plant, const Layout& layout, double gap_lower, double gap_upper);
+
 /// The plant's own linearisation at a point (frozen): rows F_g'(h) w and F_d'(w) dw (thesis 8.51 with its 1/S and signs).
 AugmentedModel frozen_model(const SeparatedPlant& plant, double gap, double velocity);
 

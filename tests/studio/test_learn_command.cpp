@@ -86,7 +86,10 @@ TEST_F(LearnAndEstimate, LearnsAlongTrajectoriesFromRunsAndFromAStreamedFile) {
                                                  {"--auxiliaries", "total_force"},
                                                  {"--samples-out", "s.npy"},
                                                  {"--moments-of", "s.npy"},
-                                                 {"--dmd", "0.1 s"},
+                                                 {"--method", "dmdc"},
+                                                 {"--method", "edmd", "--step", "0.05 s", "--compare", "--plot", "peers.png"},
+                                                 {"--data", "runs", "--compare", "--horizon", "5 s", "--auxiliaries", "total_force"},
+                                                 {"--data", "runs", "--method", "edmd", "--auxiliaries", "gap_squared"},
                                                  {"--correction", "p3"},
                                                  {"--offset", "equilibrium"}}) {
         std::vector<std::string> arguments{"learn", "model.toml", "--json"};

@@ -30,6 +30,8 @@ std::string numbers(const std::vector<double>& values, int digits = 4);
 TrainingSet grid_samples(const SeparatedPlant& plant, double gap_lower = 0, double gap_upper = 1.2, std::size_t count = 50000);
 TrainingSet time_samples(const SeparatedPlant& plant, double gap_lower = 0, double gap_upper = 1.0, std::size_t count = 50000);
 
+AugmentedModel p3_of_8_47();  ///< 8.47 with correction P3
+
 double rms(const std::vector<double>& values);
 std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b);
 

@@ -11,7 +11,9 @@
 #include "surrogates/estimator/dmd.h"
 #include "surrogates/estimator/estimate.h"
 #include "surrogates/estimator/information.h"
+#include "surrogates/estimator/peers.h"
 #include "surrogates/estimator/published.h"
+#include "surrogates/estimator/run_data.h"
 #include "tests/support/support.h"
 
 namespace underbody::estimator {
@@ -71,7 +73,7 @@ TEST(ExtendedFilter, FindsADepartureFromTheTable) {
     real.ground_force = [f = declared.ground_force](double h, double& slope) { return f(h, slope) + 0.003; };
     const Simulated s = simulate(real, 0.2, 40, 0.02, 2e-4, 2);
     FilterNoise noise;
-    noise.force_density = likely_force_density(declared, {s.signals}, noise);
+    noise.force_density = likely_force_density({{&declared, &s.signals}}, noise);
     const FilterResult r = extended_filter(declared, s.signals, noise);
     double mean = 0;
     for (std::size_t k = s.gap.size() - 500; k < s.gap.size(); ++k) {
@@ -112,12 +114,16 @@ TEST(ExtendedFilter, BridgesMissingValuesGapsInTimeAndOutliers) {
 
 TEST(ExtendedFilter, CoversTheTruthAsOftenAsItSays) {
     const SeparatedPlant plant = reference_plant(quadratic_drag(.02, 6));
-    FilterNoise noise;
-    noise.force_density = 1e-7;
-    const Consistency c = consistency_along_gap(plant, noise, {0.03, 0.2, 0.6}, 60, 6, 0.02, 5);
-    for (std::size_t i = 0; i < c.gaps.size(); ++i) {
-        EXPECT_GT(c.nees[i], 3 - 1.5 * (c.upper - 3)) << c.gaps[i];
-        EXPECT_LT(c.nees[i], 3 + 1.5 * (c.upper - 3)) << c.gaps[i];
+    ConsistencyOptions o;
+    o.noise.force_density = 1e-7;
+    o.gaps = {0.03, 0.2, 0.6};
+    o.speeds = {0, 0.02};
+    o.seed = 5;
+    const Consistency c = consistency_along_gap(plant, o);
+    ASSERT_EQ(c.nees.size(), 6U);
+    for (std::size_t i = 0; i < c.nees.size(); ++i) {
+        EXPECT_GT(c.nees[i], 3 - 1.5 * (c.upper - 3)) << i;
+        EXPECT_LT(c.nees[i], 3 + 1.5 * (c.upper - 3)) << i;
         EXPECT_GT(c.coverage[i], 0.85);
         EXPECT_NEAR(c.innovation[i], 1, 0.05);
     }
@@ -149,29 +155,6 @@ TEST(InformationAlongTheGap, BoundsTheFilterAndGrowsWithTheNoise) {
     }
 }
 
-TEST(BankOfSurfaces, NamesTheSurfaceUnderTheVehicle) {
-    const auto surface = [](double deeper) {
-        SeparatedPlant p = reference_plant(quadratic_drag(.02, 6));
-        p.ground_force = [f = p.ground_force, deeper](double h, double& slope) {
-            const double value = f(h, slope);
-            slope *= 1 + deeper;
-            return (1 + deeper) * value;
-        };
-        return p;
-    };
-    const std::vector<Surface> bank{{"smooth", surface(0)}, {"rough", surface(0.3)}, {"rougher", surface(0.6)}};
-    FilterNoise noise;
-    noise.force_density = 1e-10;
-    int right = 0;
-    for (std::size_t truth = 0; truth < 3; ++truth) {
-        const SurfaceProbability p = identify_surface(bank, simulate(bank[truth].plant, 0.08, 30, 0.02, 2e-4, 7 + truth).signals, noise);
-        right += p.best == truth ? 1 : 0;
-        EXPECT_GT(p.probability[truth].back(), 0.9) << bank[truth].name;
-        EXPECT_NEAR(p.probability[0][40] + p.probability[1][40] + p.probability[2][40], 1, 1e-12);
-    }
-    EXPECT_EQ(right, 3);
-}
-
 TEST(DynamicModeDecomposition, IsExactOnALinearPlant) {
     SeparatedPlant plant = reference_plant(quadratic_drag(1.25, 0));
     plant.ground_force = [](double h, double& slope) {
@@ -193,7 +176,7 @@ TEST(DynamicModeDecomposition, IsExactOnALinearPlant) {
     test.runs = 5;
     test.gap_lower = -.1;
     test.gap_upper = .1;
-    for (const auto& e : compare_predictions(plant, {{"dmdc", m}}, test)) {
+    for (const auto& e : compare_predictions(plant, {{"dmdc", m}}, test_motions(plant, test))) {
         EXPECT_LT(e.gap, 1e-4) << e.model;
     }
 }
@@ -210,10 +193,14 @@ TEST(DynamicModeDecomposition, PredictsBetterWithADictionary) {
     PredictionTest test;
     test.gap_upper = 0.3;
     test.horizon = 2;
-    const auto errors = compare_predictions(plant, {{"dmdc", plain}, {"edmdc", lifted}}, test);
-    ASSERT_EQ(errors.size(), 4U);
+    const auto errors = compare_predictions(plant, {{"dmdc", plain}, {"edmdc", lifted}}, test_motions(plant, test));
+    ASSERT_EQ(errors.size(), 5U);
     EXPECT_LT(errors[3].acceleration, errors[2].acceleration);
     EXPECT_LT(errors[3].gap, errors[2].gap);
+    // The plant predicts its own motions.
+    EXPECT_LT(errors[4].gap, 1e-12);
+    EXPECT_LT(errors[4].acceleration, 1e-12);
+    EXPECT_LT(errors[4].total_rate, 1e-12);
 }
 
 class ExampleRuns : public ::testing::Test {
@@ -242,7 +229,7 @@ TEST_F(ExampleRuns, AreEstimatedByEveryObserverThatTheDataAllow) {
     } catch (const core::InputError& error) {
         EXPECT_NE(error.hint().find("extended, kalman or full"), std::string::npos);
     }
-    const TrainingSet set = training_from_runs(model, data, {});
+    const TrainingSet set = training_from_runs(model, data, {"ground_force", "drag_force"});
     const AugmentedModel learned = learn(moments(set.view()), set.layout);
     EXPECT_NEAR(learned.A(0, 2), 1 / model.heave_mass(), 1e-6);
 }

@@ -12,15 +12,17 @@ namespace {
 TEST(ThesisStudy, DrawsItsFiguresAndJudgesItsClaims) {
     const ThesisStudy study = thesis_study();
     for (const char* number : {"7-7a", "7-7b", "7-13", "7-14", "7-15", "7-16", "7-17a", "7-17b", "7-18a", "7-18b", "7-19a", "7-19b", "7-20",
-                               "7-21", "7-22", "8-2a", "8-2b", "8-3", "8-5", "8-6", "8-7a", "8-7d", "8-8", "8-9a", "8-9b", "8-10", "8-11",
-                               "8-12", "8-13", "8-14a", "8-14b", "8-14d", "8-14e", "8-14f"}) {
+                               "7-21", "7-22", "7-peers-a", "7-peers-b", "8-2a", "8-2b", "8-2c", "8-3a", "8-3b", "8-3c", "8-5", "8-6", "8-7a", "8-7d", "8-8", "8-9a", "8-9b", "8-9c", "8-10", "8-11",
+                               "8-12", "8-13", "8-14a", "8-14b", "8-14c", "8-14d", "8-14e", "8-14f", "8-14g", "8-14h"}) {
         const core::Figure* f = study.figure(number);
         ASSERT_NE(f, nullptr) << number;
         EXPECT_FALSE(f->title.empty());
         for (const auto& curve : f->curves) {
             EXPECT_EQ(curve.x.size(), curve.y.size());
             EXPECT_FALSE(curve.x.empty());
-            EXPECT_TRUE(std::all_of(curve.y.begin(), curve.y.end(), [](double v) { return std::isfinite(v); })) << number << curve.name;
+            for (std::size_t i = 0; i < curve.y.size(); ++i) {  // a value that is not finite only where a line is parted
+                EXPECT_TRUE(std::isfinite(curve.y[i]) || std::isnan(curve.x[i])) << number << curve.name;
+            }
         }
     }
     const auto verdict = [&](const std::string& id) {
