@@ -181,7 +181,7 @@ private:
         auto result = vtkSmartPointer<vtkPolyData>::New();
         result->SetPoints(points);
         result->SetPolys(quads);
-        for (const char* name : {"pressure", "kinematic_pressure", "pressure_absolute", "wall_shear"}) {
+        for (const char* name : {"pressure", "kinematic_pressure", "pressure_absolute", "wall_shear", "kinematic_wall_shear"}) {
             if (auto* on_lines = lines.GetCellData()->GetArray(name)) {
                 auto copy = vtk::TakeSmartPointer(on_lines->NewInstance());
                 copy->SetName(name);
@@ -290,8 +290,9 @@ private:
         }
         part.values.pressure = values_of(*array, part.own_pressure);
         if (scale != 1) {
-            part.own_pressure.assign(part.values.pressure.begin(), part.values.pressure.end());
-            std::for_each(part.own_pressure.begin(), part.own_pressure.end(), [&](double& p) { p *= scale; });
+            std::vector<double> scaled(part.values.pressure.begin(), part.values.pressure.end());
+            std::for_each(scaled.begin(), scaled.end(), [&](double& p) { p *= scale; });
+            part.own_pressure = std::move(scaled);
             part.values.pressure = part.own_pressure;
         }
         part.values.pressure_on_nodes = on_nodes;
@@ -301,11 +302,26 @@ private:
     void take_shear(Part& part) {
         bool on_nodes = true;
         vtkDataArray* array = array_of(part, "wall_shear", on_nodes);
+        double scale = 1;
+        if (array == nullptr) {
+            array = array_of(part, "kinematic_wall_shear", on_nodes);
+            scale = options_.references.density ? *options_.references.density : field_.density.value_or(std::nan(""));
+            if (array != nullptr && std::isnan(scale)) {
+                throw InputError("missing", "zone '" + part.zone->name + "' has wall shear over density, and the file does not say the density", place(),
+                                 "give it: --density \"998 kg/m^3\"");
+            }
+        }
         if (array == nullptr || array->GetNumberOfComponents() != 3) {
             warn("zone '" + part.zone->name + "' has no wall shear vector: its viscous part is left out");
             return;
         }
         part.values.shear = values_of(*array, part.own_shear);
+        if (scale != 1) {
+            std::vector<double> scaled(part.values.shear.begin(), part.values.shear.end());
+            std::for_each(scaled.begin(), scaled.end(), [&](double& t) { t *= scale; });
+            part.own_shear = std::move(scaled);
+            part.values.shear = part.own_shear;
+        }
         part.values.shear_on_nodes = on_nodes;
     }
 

@@ -35,6 +35,7 @@ constexpr std::array known = {
     Known{"vorticity_magnitude", "1/s", "vorticity_magnitude vorticity_mag"},
     Known{"mach_number", "1", "mach_number mach sv_mach"},
     Known{"wall_shear", "Pa", "wall_shear wallshear wall_shear_stress wallshearstress shear_stress"},
+    Known{"kinematic_wall_shear", "m^2/s^2", "kinematic_wall_shear"},
     Known{"wall_shear_magnitude", "Pa", "wall_shear_magnitude wall_shear_stress_magnitude"},
     Known{"wall_shear_force", "N", "sv_wall_shear wall_shear_force"},
     Known{"skin_friction_coefficient", "1", "skin_friction_coef skin_friction_coefficient skinfrictioncoefficient"},
@@ -143,7 +144,7 @@ CanonicalName canonical_name(const std::string& original) {
 }
 
 std::optional<VectorComponent> vector_component(const std::string& name) {
-    static constexpr std::array vectors = {"velocity", "wall_shear",    "wall_shear_force", "vorticity",
+    static constexpr std::array vectors = {"velocity", "wall_shear",    "wall_shear_force", "vorticity", "kinematic_wall_shear",
                                            "area_vector", "wall_velocity"};
     if (name.size() < 3 || name[name.size() - 2] != '_') {
         return {};

@@ -15,6 +15,8 @@
 #include "postproc/importers/face_orientation.h"
 #include "postproc/importers/hdf5_file.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/trial.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
@@ -116,6 +118,9 @@ public:
     Reader& operator=(const Reader&) = delete;
 
     Field read();
+    [[nodiscard]] std::string understood() const {
+        return understood_.empty() ? "the file opens, no zone yet" : "zones " + understood_;
+    }
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
@@ -138,6 +143,7 @@ private:
     std::vector<Section> sections(int zone);
     Section section(int zone, int index);
     std::vector<Condition> conditions(int zone);
+    [[nodiscard]] CGNS_ENUMT(BCType_t) family_type(int zone, int condition) const;
     std::vector<PartValues> solutions(int zone, std::size_t cells);
     void add_unstructured(int zone, const std::string& zone_name, Buffer<double>&& points,
                           std::vector<PartValues>&& values, Field& field);
@@ -158,6 +164,7 @@ private:
     std::uint64_t bytes_ = 0;
     std::uint64_t most_values_ = 0;
     std::string where_;
+    std::string understood_;
     CGNS_ENUMT(ZoneType_t) type_ = CGNS_ENUMV(Unstructured);
     std::array<cgsize_t, 9> size_{};
     double scale_ = 1;
@@ -234,6 +241,7 @@ void Reader::read_zone(int zone, Field& field) {
         add_unstructured(zone, zone_name.data(), std::move(points), std::move(values), field);
     }
     where_.clear();
+    understood_ += (understood_.empty() ? "" : ", ") + std::string(zone_name.data());
 }
 
 Buffer<double> Reader::coordinates(int zone) {
@@ -367,6 +375,27 @@ std::vector<Section> Reader::sections(int zone) {
     return result;
 }
 
+/// The condition that the family of a boundary has.
+CGNS_ENUMT(BCType_t) Reader::family_type(int zone, int condition) const {
+    auto type = CGNS_ENUMV(FamilySpecified);
+    std::array<char, 33 * 21> wanted{};
+    int families = 0;
+    if (cg_goto(file_, base_, "Zone_t", zone, "ZoneBC_t", 1, "BC_t", condition, "end") != CG_OK ||
+        cg_famname_read(wanted.data()) != CG_OK || cg_nfamilies(file_, base_, &families) != CG_OK) {
+        return type;
+    }
+    for (int f = 1; f <= families; ++f) {
+        std::array<char, 33> name{};
+        int conditions = 0;
+        int geometries = 0;
+        if (cg_family_read(file_, base_, f, name.data(), &conditions, &geometries) == CG_OK && conditions > 0 &&
+            std::string_view(name.data()) == wanted.data()) {
+            cg_fambc_read(file_, base_, f, 1, name.data(), &type);
+        }
+    }
+    return type;
+}
+
 std::vector<Condition> Reader::conditions(int zone) {
     std::vector<Condition> result;
     int count = 0;
@@ -389,6 +418,7 @@ std::vector<Condition> Reader::conditions(int zone) {
         }
         Condition condition;
         condition.name = name.data();
+        type = type == CGNS_ENUMV(FamilySpecified) ? family_type(zone, b) : type;
         condition.type = BCTypeName[type];
         condition.kind = kind_of(type);
         const bool elements = set == CGNS_ENUMV(ElementRange) || set == CGNS_ENUMV(ElementList);
@@ -724,8 +754,10 @@ bool recognises(std::string_view head, const std::filesystem::path& path) {
 }
 
 Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
-    Field field = Reader(path, options, progress).read();
-    return field;
+    // libcgns trusts what it reads: a damaged file is its end, and not to be that of the program.
+    try_in_child(path, [&] { Reader(path, options, core::Progress::none()).read(); });
+    Reader reader(path, options, progress);
+    return telling([&] { return reader.read(); }, [&] { return reader.understood(); });
 }
 
 }  // namespace

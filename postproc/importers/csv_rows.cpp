@@ -1,7 +1,5 @@
 #include "postproc/importers/csv_rows.h"
 
-#include <fast_float/fast_float.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
+#include "postproc/importers/solver_number.h"
 
 namespace underbody::postproc {
 
@@ -74,87 +73,6 @@ private:
     std::mutex mutex_;
     RowError found_;
 };
-
-/// 8 digits at once (Lemire's way).
-inline bool eight_digits(const char* p, std::uint64_t& value) {
-    std::uint64_t v = 0;
-    std::memcpy(&v, p, 8);
-    if (((v & 0xF0F0F0F0F0F0F0F0ULL) | (((v + 0x0606060606060606ULL) & 0xF0F0F0F0F0F0F0F0ULL) >> 4)) !=
-        0x3333333333333333ULL) {
-        return false;
-    }
-    v -= 0x3030303030303030ULL;
-    v = (v * 10) + (v >> 8);
-    value = (((v & 0x000000FF000000FFULL) * 0x000F424000000064ULL) +
-             (((v >> 16) & 0x000000FF000000FFULL) * 0x0000271000000001ULL)) >>
-            32;
-    return true;
-}
-
-constexpr std::array<double, 23> powers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                           1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
-/// Numbers as solvers write them (at most 53 bits of digits, small exponents) are exact in one operation
-/// (Clinger 1990); everything else goes to fast_float. Returns the end of the number, nullptr if there is none.
-inline const char* parse_number(const char* start, const char* end, double& out) {
-    const char* p = start;
-    if (end - p < 64) {  // near the end of the text: no reading ahead
-        const auto result = fast_float::from_chars(*p == '+' ? p + 1 : p, end, out);
-        return result.ec == std::errc() ? result.ptr : nullptr;
-    }
-    const bool negative = *p == '-';
-    p += negative || *p == '+' ? 1 : 0;
-    const char* digits = p;
-    std::uint64_t mantissa = 0;
-    while (static_cast<unsigned char>(*p - '0') < 10) {
-        mantissa = mantissa * 10 + static_cast<std::uint64_t>(*p - '0');
-        if (++p - digits > 18) {
-            break;
-        }
-    }
-    Index exponent = 0;
-    auto count = p - digits;
-    if (*p == '.') {
-        const char* fraction = ++p;
-        std::uint64_t eight = 0;
-        if (count < 10 && eight_digits(p, eight)) {
-            mantissa = mantissa * 100000000 + eight;
-            p += 8;
-        }
-        while (static_cast<unsigned char>(*p - '0') < 10 && p - fraction < 18) {
-            mantissa = mantissa * 10 + static_cast<std::uint64_t>(*p - '0');
-            ++p;
-        }
-        exponent = fraction - p;
-        count += p - fraction;
-    }
-    if (count == 0) {
-        return nullptr;
-    }
-    bool simple = count <= 18 && static_cast<unsigned char>(*p - '0') >= 10 ;
-    if (simple && (*p | 0x20) == 'e') {
-        const char* q = p + 1;
-        const bool minus = *q == '-';
-        q += minus || *q == '+' ? 1 : 0;
-        int power = 0;
-        const char* power_digits = q;
-        while (static_cast<unsigned char>(*q - '0') < 10 && q - power_digits < 5) {
-            power = power * 10 + (*q++ - '0');
-        }
-        simple = q > power_digits && q - power_digits < 5;
-        exponent += minus ? -power : power;
-        p = q;
-    }
-    if (!simple || mantissa > (std::uint64_t{1} << 53) || exponent < -22 || exponent > 22) {
-        const auto result = fast_float::from_chars(*start == '+' ? start + 1 : start, end, out);
-        return result.ec == std::errc() ? result.ptr : nullptr;
-    }
-    const auto value = static_cast<double>(mantissa);
-    const double scaled = exponent < 0 ? value / powers[static_cast<std::size_t>(-exponent)]
-                                       : value * powers[static_cast<std::size_t>(exponent)];
-    out = negative ? -scaled : scaled;
-    return p;
-}
 
 std::string_view token_at(const char* p, const char* end, char separator) {
     const char* q = p;

@@ -1,302 +1,62 @@
 // EnSight Gold as Fluent, CFX and OpenFOAM write it. Read by ourselves: VTK's reader crashes on a truncated geometry.
-#include <vtkCellType.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 
 #include "core/text.h"
 #include "postproc/importers/element_zone.h"
 #include "postproc/importers/ensight_case.h"
-#include "postproc/importers/ensight_input.h"
+#include "postproc/importers/ensight_geometry.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
 namespace {
 
-struct Kind {
-    const char* name;
-    unsigned char type;
-    int nodes;
-};
-
-constexpr std::array kinds = {Kind{"point", VTK_VERTEX, 1},
-                              Kind{"bar2", VTK_LINE, 2},
-                              Kind{"bar3", VTK_QUADRATIC_EDGE, 3},
-                              Kind{"tria3", VTK_TRIANGLE, 3},
-                              Kind{"tria6", VTK_QUADRATIC_TRIANGLE, 6},
-                              Kind{"quad4", VTK_QUAD, 4},
-                              Kind{"quad8", VTK_QUADRATIC_QUAD, 8},
-                              Kind{"tetra4", VTK_TETRA, 4},
-                              Kind{"tetra10", VTK_QUADRATIC_TETRA, 10},
-                              Kind{"pyramid5", VTK_PYRAMID, 5},
-                              Kind{"pyramid13", VTK_QUADRATIC_PYRAMID, 13},
-                              Kind{"penta6", VTK_WEDGE, 6},
-                              Kind{"penta15", VTK_QUADRATIC_WEDGE, 15},
-                              Kind{"hexa8", VTK_HEXAHEDRON, 8},
-                              Kind{"hexa20", VTK_QUADRATIC_HEXAHEDRON, 20},
-                              Kind{"nsided", VTK_POLYGON, 0},
-                              Kind{"nfaced", VTK_POLYHEDRON, 0}};
-
-const Kind* find_kind(const std::string& name) {
-    for (const auto& kind : kinds) {
-        if (name == kind.name) {
-            return &kind;
-        }
-    }
-    return nullptr;
-}
-
-/// A run of elements of one kind within a part, in the order of the file. Ghosts are passed over.
-struct Run {
-    std::string kind;
-    std::size_t first = 0;
-    std::size_t count = 0;
-    bool ghost = false;
-};
-
-struct Part {
-    ElementPart elements;
-    std::vector<Run> runs;
-};
-
 std::string first_word(const std::string& line) { return line.substr(0, line.find_first_of(" \t")); }
-
-class Geometry {
-public:
-    Geometry(const std::filesystem::path& path, core::Progress& progress)
-        : coding_(EnsightInput::coding_of(path)), in_(path, coding_, false), progress_(progress) {}
-
-    void read();
-
-    std::string description;
-    std::map<std::int64_t, Part> parts;
-    [[nodiscard]] EnsightCoding coding() const { return coding_; }
-    [[nodiscard]] bool swapped() const { return in_.swapped(); }
-
-private:
-    void part(std::int64_t number);
-    void elements(Part& part, const Kind& kind, bool ghost);
-    void polygons(Part& part, std::uint64_t count, bool ghost);
-    void polyhedra(Part& part, std::uint64_t count, bool ghost);
-    void check_nodes(std::vector<std::int64_t>& nodes, const ElementPart& part);
-
-    EnsightCoding coding_;
-    EnsightInput in_;
-    core::Progress& progress_;
-    bool node_ids_ = false;
-    bool element_ids_ = false;
-    std::string pending_;  ///< a line that the part before did not want
-};
-
-void Geometry::read() {
-    if (coding_ != EnsightCoding::text) {
-        in_.line();
-    }
-    description = in_.line();
-    const std::string second = in_.line();
-    description += second.empty() ? "" : "; " + second;
-    for (auto* ids : {&node_ids_, &element_ids_}) {
-        const std::string line = core::lower_case(in_.line());
-        if (line.find(" id") == std::string::npos) {
-            in_.fail("expected 'node id' or 'element id', found '" + line.substr(0, 40) + "'");
-        }
-        *ids = line.find("given") != std::string::npos || line.find("ignore") != std::string::npos;
-    }
-    std::string line = in_.line();
-    if (core::lower_case(line).starts_with("extents")) {
-        std::array<double, 6> extents{};
-        in_.reals(extents.data(), 6);
-        line = in_.line();
-    }
-    while (true) {
-        progress_.check();
-        if (core::lower_case(first_word(line)) != "part") {
-            in_.fail("expected 'part', found '" + line.substr(0, 40) + "'");
-        }
-        const std::int64_t number = in_.part_number(parts.empty());
-        if (parts.contains(number)) {
-            in_.fail("part " + std::to_string(number) + " is there twice");
-        }
-        pending_.clear();
-        part(number);
-        if (pending_.empty()) {
-            return;
-        }
-        line = pending_;
-    }
-}
-
-void Geometry::part(std::int64_t number) {
-    Part& part = parts[number];
-    part.elements.id = static_cast<int>(number);
-    part.elements.name = in_.line();
-    const std::string what = core::lower_case(in_.line());
-    if (what.starts_with("block")) {
-        in_.fail("part '" + part.elements.name + "' is a structured block; these are not read");
-    }
-    if (first_word(what) != "coordinates") {
-        in_.fail("expected 'coordinates', found '" + what.substr(0, 40) + "'");
-    }
-    const std::uint64_t nodes = in_.count("nodes");
-    in_.check_room(3 * nodes, "coordinates");
-    std::vector<std::int64_t> ids;
-    if (node_ids_) {
-        in_.integers(ids, nodes);
-    }
-    part.elements.points.grow_to(3 * nodes);
-    Buffer<double> column(nodes);
-    for (std::size_t k = 0; k < 3; ++k) {
-        in_.reals(column.data(), nodes);
-        for (std::size_t i = 0; i < nodes; ++i) {
-            if (!std::isfinite(column[i])) {
-                in_.fail("part '" + part.elements.name + "' has a coordinate that is not a number");
-            }
-            part.elements.points[3 * i + k] = column[i];
-        }
-    }
-    while (!in_.at_end()) {
-        progress_.check();
-        const std::string line = in_.line();
-        std::string name = core::lower_case(first_word(line));
-        if (name == "part") {
-            pending_ = line;
-            return;
-        }
-        const bool ghost = name.starts_with("g_");
-        name = ghost ? name.substr(2) : name;
-        const Kind* kind = find_kind(name);
-        if (kind == nullptr) {
-            in_.fail("elements of unknown kind '" + line.substr(0, 40) + "' in part '" + part.elements.name + "'");
-        }
-        elements(part, *kind, ghost);
-    }
-}
-
-void Geometry::check_nodes(std::vector<std::int64_t>& nodes, const ElementPart& part) {
-    const auto most = static_cast<std::int64_t>(part.points.size() / 3);
-    for (auto& node : nodes) {
-        if (node < 1 || node > most) {
-            in_.fail("an element of part '" + part.name + "' names node " + std::to_string(node) + " of " +
-                     std::to_string(most));
-        }
-        --node;
-    }
-}
-
-void Geometry::elements(Part& part, const Kind& kind, bool ghost) {
-    const std::uint64_t count = in_.count("elements");
-    std::vector<std::int64_t> ids;
-    if (element_ids_) {
-        in_.integers(ids, count);
-    }
-    part.runs.push_back({kind.name, part.elements.elements(), count, ghost});
-    if (kind.type == VTK_POLYGON) {
-        return polygons(part, count, ghost);
-    }
-    if (kind.type == VTK_POLYHEDRON) {
-        return polyhedra(part, count, ghost);
-    }
-    in_.check_room(count * static_cast<std::uint64_t>(kind.nodes), "corners");
-    std::vector<std::int64_t> nodes;
-    in_.integers(nodes, count * static_cast<std::uint64_t>(kind.nodes));
-    check_nodes(nodes, part.elements);
-    for (std::size_t i = 0; i < count && !ghost; ++i) {
-        part.elements.add(kind.type, nodes.data() + i * static_cast<std::size_t>(kind.nodes),
-                          static_cast<std::size_t>(kind.nodes));
-    }
-}
-
-std::uint64_t total(const std::vector<std::int64_t>& sizes, EnsightInput& in) {
-    std::uint64_t sum = 0;
-    for (const std::int64_t size : sizes) {
-        if (size < 1) {
-            in.fail("an element with " + std::to_string(size) + " corners or faces");
-        }
-        sum += static_cast<std::uint64_t>(size);
-    }
-    return sum;
-}
-
-void Geometry::polygons(Part& part, std::uint64_t count, bool ghost) {
-    std::vector<std::int64_t> sizes;
-    std::vector<std::int64_t> nodes;
-    in_.integers(sizes, count);
-    in_.integers(nodes, total(sizes, in_));
-    check_nodes(nodes, part.elements);
-    std::size_t at = 0;
-    for (const std::int64_t size : sizes) {
-        if (!ghost) {
-            part.elements.add(VTK_POLYGON, nodes.data() + at, static_cast<std::size_t>(size));
-        }
-        at += static_cast<std::size_t>(size);
-    }
-}
-
-void Geometry::polyhedra(Part& part, std::uint64_t count, bool ghost) {
-    std::vector<std::int64_t> faces;
-    std::vector<std::int64_t> sizes;
-    std::vector<std::int64_t> nodes;
-    in_.integers(faces, count);
-    in_.integers(sizes, total(faces, in_));
-    in_.integers(nodes, total(sizes, in_));
-    check_nodes(nodes, part.elements);
-    std::size_t face = 0;
-    std::size_t at = 0;
-    for (const std::int64_t number : faces) {
-        std::vector<std::int64_t> corners;
-        std::vector<std::int64_t> stream = {number};
-        for (std::int64_t f = 0; f < number; ++f, ++face) {
-            stream.push_back(sizes[face]);
-            for (std::int64_t k = 0; k < sizes[face]; ++k, ++at) {
-                stream.push_back(nodes[at]);
-                corners.push_back(nodes[at]);
-            }
-        }
-        if (ghost) {
-            continue;
-        }
-        std::sort(corners.begin(), corners.end());
-        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-        part.elements.add(VTK_POLYHEDRON, corners.data(), corners.size());
-        part.elements.polyhedra.insert(part.elements.polyhedra.end(), stream.begin(), stream.end());
-    }
-}
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads one variable file and gives each part its values.
 class Values {
 public:
-    Values(const EnsightVariable& variable, Geometry& geometry, std::map<std::int64_t, std::vector<PartValues>>& out)
+    Values(const EnsightVariable& variable, EnsightGeometry& geometry, std::map<std::int64_t, std::vector<PartValues>>& out)
         : variable_(variable),
           geometry_(geometry),
-          in_(variable.file, geometry.coding(), geometry.swapped()),
+          in_(variable.file.path, geometry.coding(), geometry.swapped()),
           out_(out) {}
     void read();
     /// Parts that got no values, by name.
     [[nodiscard]] std::string without() const;
 
 private:
-    void section(const std::string& line, const Part& part, PartValues& values);
-    void place(PartValues& values, std::size_t first, std::size_t count, bool keep, const std::string& line);
+    void section(const std::string& line, const EnsightPart& part, PartValues& values);
+    /// `count` values into `values` from `first` on; of a block only the `kept` ones, if these are named.
+    void place(PartValues& values, std::size_t first, std::size_t count, bool keep, const std::string& line,
+               const std::vector<std::size_t>* kept = nullptr);
 
     const EnsightVariable& variable_;
-    Geometry& geometry_;
+    EnsightGeometry& geometry_;
     EnsightInput in_;
     std::map<std::int64_t, std::vector<PartValues>>& out_;
 };
 
 void Values::read() {
-    in_.line();
-    const Part* part = nullptr;
+    if (variable_.file.step >= 0) {
+        in_.to_step(variable_.file.step);
+    }
+    in_.line_as_it_is();
+    const EnsightPart* part = nullptr;
     PartValues* values = nullptr;
     while (!in_.at_end()) {
         const std::string line = in_.line();
         const std::string word = core::lower_case(first_word(line));
+        if (core::lower_case(line).starts_with("end time step")) {
+            return;
+        }
         if (word == "part") {
             const std::int64_t number = in_.part_number(false);
             const auto found = geometry_.parts.find(number);
@@ -332,8 +92,17 @@ std::string Values::without() const {
     return names;
 }
 
-void Values::section(const std::string& line, const Part& part, PartValues& values) {
+void Values::section(const std::string& line, const EnsightPart& part, PartValues& values) {
     const std::string word = core::lower_case(first_word(line));
+    if (part.block) {
+        if (word != "block") {
+            in_.fail("expected 'block', found '" + line.substr(0, 40) + "'");
+        }
+        const std::size_t nodes = part.elements.points.size() / 3;
+        place(values, 0, variable_.on_nodes ? nodes : part.block_elements, true, line,
+              variable_.on_nodes ? nullptr : &part.kept);
+        return;
+    }
     if (variable_.on_nodes) {
         if (word != "coordinates") {
             in_.fail("expected 'coordinates', found '" + line.substr(0, 40) + "'");
@@ -342,7 +111,7 @@ void Values::section(const std::string& line, const Part& part, PartValues& valu
         return;
     }
     const bool ghost = word.starts_with("g_");
-    for (const Run& run : part.runs) {
+    for (const EnsightRun& run : part.runs) {
         if (run.kind == (ghost ? word.substr(2) : word) && run.ghost == ghost) {
             place(values, run.first, run.count, !ghost, line);
             return;
@@ -351,7 +120,8 @@ void Values::section(const std::string& line, const Part& part, PartValues& valu
     in_.fail("values for elements '" + line.substr(0, 40) + "', which part '" + part.elements.name + "' does not have");
 }
 
-void Values::place(PartValues& values, std::size_t first, std::size_t count, bool keep, const std::string& line) {
+void Values::place(PartValues& values, std::size_t first, std::size_t count, bool keep, const std::string& line,
+                   const std::vector<std::size_t>* kept) {
     const std::string lower = core::lower_case(line);
     double undefined = missing;
     if (lower.find("undef") != std::string::npos) {
@@ -368,19 +138,33 @@ void Values::place(PartValues& values, std::size_t first, std::size_t count, boo
         }
     }
     const std::size_t stored = partial ? places.size() : count;
+    // Where a value of the file goes; nowhere for cells that are left out of a block.
+    constexpr auto nowhere = std::numeric_limits<std::size_t>::max();
+    std::vector<std::size_t> moved;
+    if (kept != nullptr && !kept->empty()) {
+        moved.assign(count, nowhere);
+        for (std::size_t i = 0; i < kept->size(); ++i) {
+            moved[(*kept)[i]] = i;
+        }
+    } else if (kept != nullptr && count != values.values.size() / static_cast<std::size_t>(variable_.components)) {
+        moved.assign(count, nowhere);  // all of them are left out
+    }
     const auto n = static_cast<std::size_t>(variable_.components);
     Buffer<double> column(stored);
     for (std::size_t k = 0; k < n; ++k) {
         in_.reals(column.data(), stored);
         for (std::size_t i = 0; i < stored && keep; ++i) {
-            const std::size_t at = first + (partial ? static_cast<std::size_t>(places[i] - 1) : i);
-            values.values[at * n + k] = column[i] == undefined ? missing : column[i];
+            const std::size_t place = partial ? static_cast<std::size_t>(places[i] - 1) : i;
+            const std::size_t at = moved.empty() ? first + place : moved[place];
+            if (at != nowhere) {
+                values.values[at * n + k] = column[i] == undefined ? missing : column[i];
+            }
         }
     }
 }
 
 /// 2-D cases have no cells but elements in one plane, and lines for boundaries.
-int volume_dimension(const Geometry& geometry) {
+int volume_dimension(const EnsightGeometry& geometry) {
     int highest = 0;
     bool plane = true;
     for (const auto& [number, part] : geometry.parts) {
@@ -395,7 +179,11 @@ int volume_dimension(const Geometry& geometry) {
 bool recognises(std::string_view head, const std::filesystem::path& /*path*/) { return is_ensight_case(head); }
 
 /// A geometry that ends before its elements looks whole: nodes that belong to none give it away.
-void mind_unused_nodes(const ElementPart& part, const std::filesystem::path& file, core::Problems& problems) {
+void mind_unused_nodes(const EnsightPart& whole, const std::string& file, core::Problems& problems) {
+    const ElementPart& part = whole.elements;
+    if (whole.block) {
+        return;
+    }
     std::vector<bool> used(part.points.size() / 3);
     for (const std::int64_t node : part.nodes) {
         used[static_cast<std::size_t>(node)] = true;
@@ -405,12 +193,12 @@ void mind_unused_nodes(const ElementPart& part, const std::filesystem::path& fil
         problems.push_back({core::Problem::Severity::warning,
                             std::to_string(unused) + " nodes of part " + part.name +
                                 " belong to no element: is the geometry cut short?",
-                            {file.string(), {}, {}, {}}});
+                            {file, {}, {}, {}}});
     }
 }
 
 /// OpenFOAM writes p over density in incompressible cases and pressure in compressible ones, both as "p".
-void mind_openfoam(const Geometry& geometry, const ReadOptions& options, std::vector<EnsightVariable>& variables,
+void mind_openfoam(const EnsightGeometry& geometry, const ReadOptions& options, std::vector<EnsightVariable>& variables,
                    Field& field) {
     if (geometry.description.find("OpenFOAM") == std::string::npos) {
         return;
@@ -425,80 +213,161 @@ void mind_openfoam(const Geometry& geometry, const ReadOptions& options, std::ve
                 {core::Problem::Severity::warning,
                  "OpenFOAM's p is pressure [Pa] or pressure over density [m^2/s^2]; the file does not say which. "
                  "State the unit of 'p' to use it",
-                 {variable.file.string(), {}, {}, {}}});
+                 {variable.file.path.string(), {}, {}, {}}});
         }
     }
 }
 
-Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
-    EnsightCase files = read_ensight_case(path);
-    Field field;
-    field.format = "EnSight Gold";
-    field.files = {path.string(), files.geometry.string()};
-    field.problems = files.problems;
+/// How many nodes the files of a case can have values for: a uniform block states them in nine numbers.
+std::uint64_t most_nodes(const EnsightCase& files) {
+    std::uint64_t bytes = std::uint64_t{1} << 18;
     std::error_code error;
-    if (!std::filesystem::is_regular_file(files.geometry, error)) {
-        throw core::InputError("missing",
-                               "the geometry '" + files.geometry.filename().string() + "' of this case is not there",
-                               {path.string(), {}, {}, {}});
-    }
-    progress.report(0.1, "reading " + files.geometry.filename().string());
-    Geometry geometry(files.geometry, progress);
-    geometry.read();
-    field.writer = geometry.description;
-    field.dimension = volume_dimension(geometry);
-    mind_openfoam(geometry, options, files.variables, field);
-    std::map<std::int64_t, std::vector<PartValues>> values;
     for (const auto& variable : files.variables) {
-        progress.check();
-        const CanonicalName canonical = canonical_name(variable.name);
-        if (!options.arrays.empty() && !matches_any(options.arrays, variable.name) &&
-            !matches_any(options.arrays, canonical.name)) {
-            continue;
-        }
-        if (!std::filesystem::is_regular_file(variable.file, error)) {
-            field.problems.push_back({core::Problem::Severity::warning,
-                                      "the file of variable '" + variable.name + "' is not there",
-                                      {variable.file.string(), {}, {}, {}}});
-            continue;
-        }
-        Values reader(variable, geometry, values);
-        reader.read();
-        if (const std::string names = reader.without(); !names.empty()) {
-            field.problems.push_back({core::Problem::Severity::note,
-                                      "'" + variable.name + "' has no values on " + names +
-                                          " (unless it lives on some parts only, the file is cut short)",
-                                      {variable.file.string(), {}, {}, {}}});
-        }
-        field.files.push_back(variable.file.string());
+        const auto size = std::filesystem::file_size(variable.file.path, error);
+        bytes += error ? 0 : size;
     }
-    for (const auto& [name, value] : files.constants) {
-        field.metadata.emplace_back(name, value);
-    }
-    if (!files.time.empty()) {
-        field.metadata.emplace_back("time", files.time);
-    }
-    if (files.steps > 1) {
-        field.problems.push_back({core::Problem::Severity::note,
-                                  "the last of " + std::to_string(files.steps) + " time steps is read",
-                                  {path.string(), {}, {}, {}}});
-    }
-    std::vector<ElementPart> parts;
+    return bytes;
+}
+
+/// With coordinates that change under elements that do not, the elements stand in one step only.
+void take_elements(EnsightGeometry& geometry, const EnsightFile& from, std::uint64_t most, core::Progress& progress) {
+    EnsightGeometry base(from.path, from.step, most, progress);
+    base.read();
     for (auto& [number, part] : geometry.parts) {
-        mind_unused_nodes(part.elements, files.geometry, field.problems);
+        const auto found = base.parts.find(number);
+        if (part.elements.elements() > 0 || found == base.parts.end()) {
+            continue;
+        }
+        if (found->second.elements.points.size() != part.elements.points.size()) {
+            throw core::InputError("format",
+                                   "part " + part.elements.name + " has " +
+                                       std::to_string(part.elements.points.size() / 3) + " nodes, in the step with its elements " +
+                                       std::to_string(found->second.elements.points.size() / 3),
+                                   {from.path.string(), {}, {}, {}});
+        }
+        found->second.elements.points = std::move(part.elements.points);
+        part = std::move(found->second);
+    }
+}
+
+class Reader {
+public:
+    Reader(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress)
+        : path_(path), options_(options), progress_(progress) {}
+
+    Field read();
+    [[nodiscard]] std::string understood() const {
+        std::string text = geometry_ ? geometry_->understood() : "the case file";
+        for (const auto& name : variables_) {
+            text += (&name == &variables_.front() ? "; variables " : ", ") + name;
+        }
+        return text;
+    }
+
+private:
+    void read_variable(const EnsightVariable& variable);
+    void add_zones();
+
+    const std::filesystem::path& path_;
+    const ReadOptions& options_;
+    core::Progress& progress_;
+    std::unique_ptr<EnsightGeometry> geometry_;
+    std::vector<std::string> variables_;
+    std::map<std::int64_t, std::vector<PartValues>> values_;
+    Field field_;
+};
+
+void Reader::read_variable(const EnsightVariable& variable) {
+    progress_.check();
+    const CanonicalName canonical = canonical_name(variable.name);
+    if (!options_.arrays.empty() && !matches_any(options_.arrays, variable.name) &&
+        !matches_any(options_.arrays, canonical.name)) {
+        return;
+    }
+    const core::Place place{variable.file.path.string(), {}, {}, {}};
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(variable.file.path, error)) {
+        field_.problems.push_back(
+            {core::Problem::Severity::warning, "the file of variable '" + variable.name + "' is not there", place});
+        return;
+    }
+    variables_.push_back(variable.name);
+    Values reader(variable, *geometry_, values_);
+    reader.read();
+    if (const std::string names = reader.without(); !names.empty()) {
+        field_.problems.push_back({core::Problem::Severity::note,
+                                   "'" + variable.name + "' has no values on " + names +
+                                       " (unless it lives on some parts only, the file is cut short)",
+                                   place});
+    }
+    field_.files.push_back(variable.file.path.string());
+}
+
+void Reader::add_zones() {
+    std::vector<ElementPart> parts;
+    for (auto& [number, part] : geometry_->parts) {
+        mind_unused_nodes(part, field_.files[1], field_.problems);
         parts.push_back(std::move(part.elements));
     }
-    scale_parts(parts, options, field);
+    scale_parts(parts, options_, field_);
     for (auto& part : parts) {
-        const bool volume = part.dimension() == field.dimension;
-        if (!matches_any(options.zones, part.name) || (volume && options.surfaces_only)) {
+        const bool volume = part.dimension() == field_.dimension;
+        if (!matches_any(options_.zones, part.name) || (volume && options_.surfaces_only)) {
             continue;
         }
-        auto& own = values[part.id];
-        field.zones.push_back(
-            zone_from(std::move(part), std::move(own), field.dimension, options, path.string(), field.problems));
+        auto& own = values_[part.id];
+        field_.zones.push_back(
+            zone_from(std::move(part), std::move(own), field_.dimension, options_, path_.string(), field_.problems));
     }
-    return field;
+}
+
+Field Reader::read() {
+    EnsightCase files = read_ensight_case(path_, options_.time);
+    field_.format = "EnSight Gold";
+    field_.files = {path_.string(), files.geometry.path.string()};
+    field_.problems = files.problems;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(files.geometry.path, error)) {
+        throw core::InputError(
+            "missing", "the geometry '" + files.geometry.path.filename().string() + "' of this case is not there",
+            {path_.string(), {}, {}, {}});
+    }
+    progress_.report(0.1, "reading " + files.geometry.path.filename().string());
+    const std::uint64_t most = most_nodes(files);
+    geometry_ = std::make_unique<EnsightGeometry>(files.geometry.path, files.geometry.step, most, progress_);
+    geometry_->read();
+    if (files.connectivity) {
+        take_elements(*geometry_, *files.connectivity, most, progress_);
+    }
+    field_.writer = geometry_->description;
+    field_.dimension = volume_dimension(*geometry_);
+    mind_openfoam(*geometry_, options_, files.variables, field_);
+    for (const auto& variable : files.variables) {
+        read_variable(variable);
+    }
+    for (const auto& [name, value] : files.constants) {
+        field_.metadata.emplace_back(name, value);
+    }
+    if (files.time) {
+        field_.metadata.emplace_back("time", core::format_number(*files.time));
+    }
+    if (files.steps > 1) {
+        field_.metadata.emplace_back("times", std::to_string(files.steps) + (files.times.empty() ? " steps"
+                                                  : " from " + core::format_number(files.times.front()) + " to " +
+                                                        core::format_number(files.times.back())));
+    }
+    if (files.steps > 1 && !options_.time) {
+        field_.problems.push_back({core::Problem::Severity::note,
+                                   "the last of " + std::to_string(files.steps) + " time steps is read",
+                                   {path_.string(), {}, {}, {}}});
+    }
+    add_zones();
+    return std::move(field_);
+}
+
+Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
+    Reader reader(path, options, progress);
+    return telling([&] { return reader.read(); }, [&] { return reader.understood(); });
 }
 
 }  // namespace

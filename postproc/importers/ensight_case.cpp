@@ -1,10 +1,12 @@
 #include "postproc/importers/ensight_case.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/file.h"
 #include "core/text.h"
+#include "postproc/importers/steps.h"
 
 namespace underbody::postproc {
 
@@ -21,7 +23,7 @@ std::vector<std::string> words_of(std::string_view text) {
         if (c == '"') {
             quoted = !quoted;
             any = true;
-        } else if (!quoted && (c == ' ' || c == '\t')) {
+        } else if (!quoted && static_cast<unsigned char>(c) <= ' ') {
             if (any) {
                 words.push_back(word);
             }
@@ -43,19 +45,41 @@ struct TimeSet {
     int start = 0;
     int increment = 1;
     std::vector<int> numbers;
-    std::vector<std::string> values;
+    std::vector<double> values;
+
+    /// The step at a time: the last one that is not later.
+    [[nodiscard]] int step_at(std::optional<double> time) const {
+        int step = 0;
+        for (std::size_t i = 0; time && i < values.size() && static_cast<int>(i) < steps; ++i) {
+            if (values[i] <= *time + 1e-6 * std::abs(*time)) {
+                step = static_cast<int>(i);
+            }
+        }
+        return time && !values.empty() ? step : steps - 1;
+    }
+};
+
+/// Files that hold several steps each: "filename index", "number of steps".
+struct FileSet {
+    std::vector<std::pair<int, int>> files;
+    int steps = 1;  ///< without an index
 };
 
 class CaseReader {
 public:
-    explicit CaseReader(const std::filesystem::path& path) : path_(path) {}
+    CaseReader(const std::filesystem::path& path, std::optional<double> time) : path_(path), time_(time) {}
     EnsightCase read();
 
 private:
+    /// A file name as the case gives it.
+    struct Pattern {
+        std::string name;
+        int time_set = 0;
+        int file_set = 0;
+    };
     struct Pending {
         EnsightVariable variable;
-        std::string pattern;
-        int time_set = 0;
+        Pattern pattern;
     };
 
     [[noreturn]] void fail(const std::string& what) const {
@@ -64,6 +88,8 @@ private:
     void geometry(const std::string& key, const std::string& rest);
     void variable(const std::string& key, const std::string& rest);
     void time(const std::string& key, const std::string& rest, std::string_view line);
+    void files(const std::string& key, const std::string& rest);
+    void choose_time();
     [[nodiscard]] int whole(const std::string& text) const {
         const auto value = core::parse_integer(text);
         if (!value || *value < -1000000000 || *value > 1000000000) {
@@ -71,36 +97,75 @@ private:
         }
         return static_cast<int>(*value);
     }
-    [[nodiscard]] std::filesystem::path complete(const std::string& pattern, int time_set) const;
+    [[nodiscard]] double real(const std::string& text) const {
+        const auto value = core::parse_number(text);
+        if (!value || !std::isfinite(*value)) {
+            fail("expected a time, found '" + text + "'");
+        }
+        return *value;
+    }
+    void take_sets(std::vector<std::string>& words, std::size_t least, Pattern& pattern) const;
+    [[nodiscard]] const TimeSet* set_of(const Pattern& pattern) const;
+    [[nodiscard]] EnsightFile complete(const Pattern& pattern, std::optional<int> wanted = {}) const;
 
     std::filesystem::path path_;
+    std::optional<double> time_;
     std::int64_t line_ = 0;
     EnsightCase result_;
-    std::string geometry_pattern_;
-    int geometry_set_ = 0;
+    Pattern geometry_;
+    std::optional<int> coordinates_only_;  ///< the step that has the elements
     std::vector<Pending> pending_;
     std::map<int, TimeSet> sets_;
+    std::map<int, FileSet> file_sets_;
     TimeSet* set_ = nullptr;
+    FileSet* file_set_ = nullptr;
     enum class Listing { none, values, numbers } listing_ = Listing::none;
 };
 
-std::filesystem::path CaseReader::complete(const std::string& pattern, int time_set) const {
-    std::string name = pattern;
+const TimeSet* CaseReader::set_of(const Pattern& pattern) const {
+    const auto found = sets_.find(pattern.time_set);
+    return found != sets_.end() ? &found->second : sets_.empty() ? nullptr : &sets_.begin()->second;
+}
+
+EnsightFile CaseReader::complete(const Pattern& pattern, std::optional<int> wanted) const {
+    EnsightFile result;
+    const TimeSet steady;
+    const TimeSet* found = set_of(pattern);
+    const TimeSet& set = found != nullptr ? *found : steady;
+    const int step = wanted ? *wanted : set.step_at(time_);
+    int number = static_cast<std::size_t>(step) < set.numbers.size() ? set.numbers[static_cast<std::size_t>(step)]
+                                                                     : set.start + step * set.increment;
+    if (const auto several = file_sets_.find(pattern.file_set); pattern.file_set != 0 && several != file_sets_.end()) {
+        result.step = step;
+        for (const auto& [index, steps] : several->second.files) {
+            number = index;
+            if (result.step < steps) {
+                break;
+            }
+            result.step -= steps;
+        }
+    }
+    std::string name = pattern.name;
     const std::size_t star = name.find('*');
     if (star != std::string::npos) {
         std::size_t width = 0;
         while (star + width < name.size() && name[star + width] == '*') {
             ++width;
         }
-        const auto found = sets_.find(time_set);
-        const TimeSet set = found != sets_.end() ? found->second : sets_.empty() ? TimeSet{} : sets_.begin()->second;
-        const int last = set.steps - 1;
-        const int number = set.numbers.empty() ? set.start + last * set.increment : set.numbers.back();
         std::string digits = std::to_string(number);
         digits.insert(0, width - std::min(width, digits.size()), '0');
         name.replace(star, width, digits);
     }
-    return path_.parent_path() / name;
+    result.path = path_.parent_path() / name;
+    return result;
+}
+
+/// "[time set] [file set] name": numbers in front are sets, as long as enough words remain.
+void CaseReader::take_sets(std::vector<std::string>& words, std::size_t least, Pattern& pattern) const {
+    for (int numbers = 0; words.size() > least && core::parse_integer(words.front()) && numbers < 2; ++numbers) {
+        (numbers == 0 ? pattern.time_set : pattern.file_set) = whole(words.front());
+        words.erase(words.begin());
+    }
 }
 
 void CaseReader::geometry(const std::string& key, const std::string& rest) {
@@ -108,19 +173,14 @@ void CaseReader::geometry(const std::string& key, const std::string& rest) {
         return;  // measured, match, boundary, rigid_body: particles and the like
     }
     auto words = words_of(rest);
-    int numbers = 0;
-    while (words.size() > 1 && core::parse_integer(words.front()) && numbers < 2) {
-        if (numbers++ == 0) {
-            geometry_set_ = whole(words.front());
-        } else {
-            fail("file sets (several steps in one file) are not read");
-        }
-        words.erase(words.begin());
-    }
+    take_sets(words, 1, geometry_);
     if (words.empty()) {
         fail("the model has no file name");
     }
-    geometry_pattern_ = words.front();
+    geometry_.name = words.front();
+    if (words.size() > 1 && core::lower_case(words[1]) == "change_coords_only") {
+        coordinates_only_ = words.size() > 2 ? std::max(0, whole(words[2])) : 0;
+    }
 }
 
 void CaseReader::variable(const std::string& key, const std::string& rest) {
@@ -145,18 +205,11 @@ void CaseReader::variable(const std::string& key, const std::string& rest) {
             {core::Problem::Severity::note, "'" + key + "' is not read", {path_.string(), line_, {}, {}}});
         return;
     }
-    for (int numbers = 0; words.size() > 2 && core::parse_integer(words.front()) && numbers < 2; ++numbers) {
-        if (numbers == 0) {
-            entry.time_set = whole(words.front());
-        } else {
-            fail("file sets (several steps in one file) are not read");
-        }
-        words.erase(words.begin());
-    }
+    take_sets(words, 2, entry.pattern);
     if (words.size() < 2) {
         fail("a variable without name or file");
     }
-    entry.pattern = words.back();
+    entry.pattern.name = words.back();
     for (std::size_t i = 0; i + 1 < words.size(); ++i) {
         entry.variable.name += (i > 0 ? " " : "") + words[i];
     }
@@ -187,16 +240,67 @@ void CaseReader::time(const std::string& key, const std::string& rest, std::stri
         }
     } else if (key == "time values") {
         listing_ = Listing::values;
-        set_->values.insert(set_->values.end(), words.begin(), words.end());
+        for (const auto& word : words) {
+            set_->values.push_back(real(word));
+        }
+    } else if (key == "time values file" || key == "filename numbers file") {
+        for (const auto& word : words_of(core::read_file(path_.parent_path() / first()))) {
+            if (key.starts_with("time")) {
+                set_->values.push_back(real(word));
+            } else {
+                set_->numbers.push_back(whole(word));
+            }
+        }
     } else if (key.empty() && listing_ != Listing::none) {
         for (const auto& word : words_of(line)) {
             if (listing_ == Listing::numbers) {
                 set_->numbers.push_back(whole(word));
             } else {
-                set_->values.push_back(word);
+                set_->values.push_back(real(word));
             }
         }
     }
+}
+
+void CaseReader::files(const std::string& key, const std::string& rest) {
+    const auto words = words_of(rest);
+    const std::string first = words.empty() ? std::string() : words.front();
+    if (key == "file set") {
+        file_set_ = &file_sets_[whole(first)];
+        return;
+    }
+    if (file_set_ == nullptr) {
+        file_set_ = &file_sets_[1];
+    }
+    if (key == "filename index") {
+        file_set_->files.emplace_back(whole(first), 1);
+    } else if (key == "number of steps") {
+        (file_set_->files.empty() ? file_set_->steps : file_set_->files.back().second) = std::max(1, whole(first));
+    }
+}
+
+/// All sets of times are looked at at one time: the one asked for, or the last that any of them states.
+void CaseReader::choose_time() {
+    const auto longest = std::max_element(sets_.begin(), sets_.end(), [](const auto& a, const auto& b) {
+        return a.second.steps < b.second.steps;
+    });
+    if (longest == sets_.end()) {
+        return;
+    }
+    const TimeSet& set = longest->second;
+    if (!set.values.empty() && set.values.size() < static_cast<std::size_t>(set.steps)) {
+        fail("the case states " + std::to_string(set.steps) + " steps but " + std::to_string(set.values.size()) + " times");
+    }
+    result_.steps = set.steps;
+    if (!set.values.empty()) {
+        result_.times.assign(set.values.begin(), set.values.begin() + set.steps);
+    }
+    if (time_) {
+        time_ = result_.times.empty() ? *time_ : result_.times[step_at(result_.times, *time_, path_.string())];
+    } else if (!result_.times.empty()) {
+        time_ = result_.times.back();
+    }
+    result_.time = time_;
 }
 
 EnsightCase CaseReader::read() {
@@ -236,21 +340,23 @@ EnsightCase CaseReader::read() {
             variable(key, rest);
         } else if (section == "TIME") {
             time(key, rest, line);
+        } else if (section == "FILE") {
+            files(key, rest);
         }
     }
+    choose_time();
     line_ = 0;
-    if (!gold || geometry_pattern_.empty()) {
+    if (!gold || geometry_.name.empty()) {
         throw core::InputError("format", "the case names no geometry in EnSight Gold format",
                                {path_.string(), {}, {}, {}});
     }
-    result_.geometry = complete(geometry_pattern_, geometry_set_);
-    for (auto& entry : pending_) {
-        entry.variable.file = complete(entry.pattern, entry.time_set);
-        result_.variables.push_back(std::move(entry.variable));
+    result_.geometry = complete(geometry_);
+    if (coordinates_only_) {
+        result_.connectivity = complete(geometry_, *coordinates_only_);
     }
-    if (!sets_.empty()) {
-        result_.steps = sets_.begin()->second.steps;
-        result_.time = sets_.begin()->second.values.empty() ? "" : sets_.begin()->second.values.back();
+    for (auto& entry : pending_) {
+        entry.variable.file = complete(entry.pattern);
+        result_.variables.push_back(std::move(entry.variable));
     }
     return std::move(result_);
 }
@@ -273,6 +379,8 @@ bool is_ensight_case(std::string_view head) {
     return rest.find("type:") != std::string::npos && rest.find("ensight") != std::string::npos;
 }
 
-EnsightCase read_ensight_case(const std::filesystem::path& path) { return CaseReader(path).read(); }
+EnsightCase read_ensight_case(const std::filesystem::path& path, std::optional<double> time) {
+    return CaseReader(path, time).read();
+}
 
 }  // namespace underbody::postproc

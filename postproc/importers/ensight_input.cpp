@@ -95,6 +95,51 @@ std::string EnsightInput::line() {
     return std::string(core::trimmed(std::string_view(text).substr(0, text.find('\0'))));
 }
 
+std::string EnsightInput::line_as_it_is() {
+    if (coding_ != EnsightCoding::text) {
+        return line();
+    }
+    const auto rest = [&] {
+        std::string text;
+        for (int c = in_.get(); c >= 0 && c != '\n'; c = in_.get()) {
+            text += static_cast<char>(c);
+            if (text.size() > 65536) {
+                fail("a line that is too long");
+            }
+        }
+        ++line_;
+        return std::string(core::trimmed(text));
+    };
+    // A number may have left the end of its line behind.
+    std::string text = rest();
+    return text.empty() ? rest() : text;
+}
+
+void EnsightInput::to_step(int step) {
+    constexpr std::string_view mark = "BEGIN TIME STEP";
+    for (int found = 0; found <= step;) {
+        in_.ensure(width + 8);
+        const auto left = static_cast<std::size_t>(in_.end() - in_.here());
+        const void* place = left < mark.size() ? nullptr : ::memmem(in_.here(), left, mark.data(), mark.size());
+        if (place == nullptr) {
+            if (left < width + 8) {
+                fail("the file has " + std::to_string(found) + " steps, step " + std::to_string(step + 1) + " is wanted");
+            }
+            in_.move_to(in_.end() - (mark.size() - 1));
+            continue;
+        }
+        in_.move_to(static_cast<const char*>(place));
+        if (coding_ == EnsightCoding::text) {
+            for (int c = in_.get(); c >= 0 && c != '\n';) {
+                c = in_.get();
+            }
+        } else {
+            in_.skip(width + (coding_ == EnsightCoding::fortran_binary ? 4 : 0));
+        }
+        ++found;
+    }
+}
+
 std::string EnsightInput::token() {
     if (at_end()) {
         fail("the file ends too early");

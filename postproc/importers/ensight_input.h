@@ -24,6 +24,10 @@ public:
     [[nodiscard]] bool at_end();
     /// One line (80 characters in binary), without blanks at its ends.
     std::string line();
+    /// The same, but a blank line of text counts: names and descriptions may be empty.
+    std::string line_as_it_is();
+    /// Behind the mark that begins step `step` (from 0) of a file that holds several.
+    void to_step(int step);
     std::int64_t integer();
     void integers(std::vector<std::int64_t>& out, std::uint64_t count);
     void reals(double* out, std::uint64_t count);

@@ -1,5 +1,5 @@
-// A mesh as Fluent stores it: faces with the two cells beside them, and values on zones of faces and cells.
-// The legacy and the HDF5 importer fill it; `field_from` turns it into zones with VTK data.
+// A mesh as Fluent and OpenFOAM store it: faces with the two cells beside them, and values on zones of faces and cells.
+// Their importers fill it; `field_from` turns it into zones with VTK data.
 #pragma once
 
 #include <cstdint>
@@ -51,6 +51,8 @@ struct ZoneLabel {
 /// Values of one variable on ids that follow one another within one zone, as the file has them.
 struct ValueBlock {
     std::string variable;  ///< "SV_P"
+    std::string canonical; ///< with `unit`: what it is, where the file says more than the name; "": by the name
+    std::string unit;
     int zone = 0;          ///< 0: the file does not say, the ids do
     bool on_cells = false;
     int phase = 1;  ///< 1: the mixture, or the only one
@@ -69,6 +71,7 @@ struct FaceMesh {
     std::string file;
     int dimension = 0;
     std::uint64_t nodes = 0;  ///< how many there are, stored or not
+    std::uint64_t declared_nodes = 0;  ///< of the file, when only those of the surfaces are kept
     std::uint64_t faces = 0;
     std::uint64_t cells = 0;
     Buffer<double> points;               ///< 3 per node (z = 0 in 2-D), in `length_unit`
@@ -85,8 +88,6 @@ struct FaceMesh {
 
     [[nodiscard]] const ZoneLabel* label(int zone) const;
 };
-
-struct FluentSettings;
 
 /// Fluent's boundary code or zone type, in words and as a kind.
 std::string type_of_code(int code);
@@ -136,7 +137,7 @@ private:
 /// file has them otherwise). Values become canonical: SV_WALL_SHEAR (the wall's force on the fluid) becomes
 /// `wall_shear`, the traction on the body in Pa; components become vectors. The volume by the divergence theorem goes
 /// to `field.metadata`, inverted or open cells to `field.problems`. The mesh's memory is given up on the way.
-Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const FluentSettings& settings,
-                 const ReadOptions& options, core::Progress& progress);
+Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const ReadOptions& options,
+                 core::Progress& progress);
 
 }  // namespace underbody::postproc

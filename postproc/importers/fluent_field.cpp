@@ -1,4 +1,4 @@
-// A Fluent mesh with its values becomes zones with VTK data.
+// A face mesh with its values becomes zones with VTK data.
 #include <vtkCellData.h>
 
 #include <algorithm>
@@ -33,6 +33,7 @@ struct Gathered {
 struct VariableKey {
     std::string variable;
     int phase = 1;
+    CanonicalName canonical{};
     bool operator<(const VariableKey& o) const { return std::tie(phase, variable) < std::tie(o.phase, o.variable); }
 };
 
@@ -262,7 +263,9 @@ void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on
     std::set<VariableKey> seen;
     for (const auto& block : values_) {
         if (block.on_cells == on_cells && (block.zone == 0 || block.zone == zone.id)) {
-            VariableKey key{block.variable, block.phase};
+            VariableKey key{block.variable, block.phase,
+                            block.canonical.empty() ? canonical_name(block.variable)
+                                                    : CanonicalName{block.canonical, block.unit}};
             if (seen.insert(key).second) {
                 keys.push_back(std::move(key));
             }
@@ -276,7 +279,7 @@ void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on
     for (const auto& key : keys) {
         progress_.check();
         const std::string phase = key.phase == 1 ? "" : ".phase-" + std::to_string(key.phase);
-        const CanonicalName canonical = canonical_name(key.variable);
+        const CanonicalName& canonical = key.canonical;
         const auto component = vector_component(canonical.name);
         std::string name = (component ? component->vector : canonical.name) + phase;
         const bool shear = canonical.name == "wall_shear_force";
@@ -465,16 +468,14 @@ std::uint64_t Assembly::hidden_within(const CellBlock& block) const {
 
 }  // namespace
 
-Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const FluentSettings& settings,
-                 const ReadOptions& options, core::Progress& progress) {
+Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const ReadOptions& options,
+                 core::Progress& progress) {
     Field field;
     field.files.push_back(mesh.file);
     field.dimension = mesh.dimension;
-    field.writer = settings.writer;
-    field.metadata.emplace_back("mesh", std::to_string(mesh.nodes) + " nodes, " + std::to_string(mesh.faces) +
+    field.metadata.emplace_back("mesh", std::to_string(std::max(mesh.nodes, mesh.declared_nodes)) + " nodes, " + std::to_string(mesh.faces) +
                                             " faces, " + std::to_string(mesh.cells) + " cells");
     scale_lengths(mesh, options, field);
-    apply_settings(settings, !values.empty(), field);
     Assembly assembly(mesh, values, options, progress);
     std::vector<Zone> surfaces;
     assembly.add_surfaces(field);

@@ -10,6 +10,7 @@
 #include "postproc/importers/hdf5_file.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/partner.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
@@ -41,6 +42,13 @@ public:
 
     FaceMesh read_mesh();
     FluentSettings read_settings() const;
+    [[nodiscard]] std::string understood() const {
+        std::string text = number(mesh_.nodes) + " nodes, " + number(mesh_.faces) + " faces, " + number(mesh_.cells) + " cells";
+        for (std::size_t i = 0; i < std::min<std::size_t>(mesh_.labels.size(), 12); ++i) {
+            text += (i == 0 ? ", zones " : ", ") + mesh_.labels[i].name;
+        }
+        return text;
+    }
 
 private:
     [[noreturn]] void refuse(const std::string& path, const std::string& what) const {
@@ -50,6 +58,7 @@ private:
     [[nodiscard]] std::uint64_t count(const std::string& name) const;
     [[nodiscard]] std::vector<Part> parts(const std::string& path) const;
     void read_nodes();
+    [[nodiscard]] std::vector<std::uint32_t> places_of_used_nodes();
     void read_cells();
     void read_faces();
     void cut_faces(const Part& part);
@@ -97,9 +106,9 @@ FaceMesh Reader::read_mesh() {
     mesh_.nodes = count("nodeCount");
     mesh_.faces = count("faceCount");
     mesh_.cells = count("cellCount");
-    read_nodes();
     read_cells();
     read_faces();
+    read_nodes();
     read_trees();
     read_labels();
     hide_generated_faces(mesh_);
@@ -109,34 +118,47 @@ FaceMesh Reader::read_mesh() {
 
 void Reader::read_nodes() {
     progress_.report(0.1, "reading nodes");
+    const auto pieces = parts(root_ + "/nodes/coords");
     std::uint64_t found = 0;
-    for (const auto& part : parts(root_ + "/nodes/coords")) {
-        progress_.check();
+    std::uint64_t last = 0;
+    for (const auto& part : pieces) {
         const auto shape = file_.shape(part.path);
         if (shape.size() != 2 || shape[0] != part.count || (shape[1] != 2 && shape[1] != 3)) {
             refuse(part.path, "its size does not fit its ids");
         }
-        if (part.first + part.count - 1 > mesh_.nodes) {
-            refuse(part.path, "nodes beyond the " + number(mesh_.nodes) + " of the mesh");
-        }
-        Buffer<double> raw = file_.reals(part.path);
         found += part.count;
-        if (shape[1] == 3 && part.count == mesh_.nodes) {
-            mesh_.points = std::move(raw);
+        last = std::max(last, part.first + part.count - 1);
+    }
+    if (found != mesh_.nodes || last != mesh_.nodes) {
+        refuse(root_ + "/nodes", "the mesh has " + number(mesh_.nodes) + " nodes, " + number(found) + " are there, up to " +
+                                     number(last));
+    }
+    const std::vector<std::uint32_t> places = options_.surfaces_only ? places_of_used_nodes() : std::vector<std::uint32_t>();
+    mesh_.points.grow_to(3 * mesh_.nodes);
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 16;
+    Buffer<double> raw;
+    for (const auto& part : pieces) {
+        const std::size_t width = file_.shape(part.path)[1];
+        if (width == 3 && places.empty()) {
+            file_.reals(part.path, 0, part.count, mesh_.points.data() + 3 * (part.first - 1));
             continue;
         }
-        if (mesh_.points.size() < 3 * (part.first + part.count - 1)) {
-            mesh_.points.grow_to(3 * (part.first + part.count - 1));
+        for (std::uint64_t done = 0; done < part.count; done += at_once) {
+            progress_.check();
+            const std::uint64_t some = std::min(at_once, part.count - done);
+            raw.grow_to(some * width);
+            file_.reals(part.path, done, some, raw.data());
+            for (std::uint64_t i = 0; i < some; ++i) {
+                const std::uint64_t node = part.first - 1 + done + i;
+                const std::uint64_t place = places.empty() ? node : places[node];
+                if (place >= mesh_.nodes) {
+                    continue;
+                }
+                double* out = mesh_.points.data() + 3 * place;
+                std::copy_n(raw.data() + i * width, width, out);
+                out[2] = width == 2 ? 0 : out[2];
+            }
         }
-        double* out = mesh_.points.data() + 3 * (part.first - 1);
-        const std::size_t width = shape[1];
-        for (std::size_t i = 0; i < part.count; ++i, out += 3) {
-            std::copy_n(raw.data() + i * width, width, out);
-            out[2] = width == 2 ? 0 : out[2];
-        }
-    }
-    if (found != mesh_.nodes || mesh_.points.size() != 3 * mesh_.nodes) {
-        refuse(root_ + "/nodes", "the mesh has " + number(mesh_.nodes) + " nodes, " + number(found) + " are there");
     }
     for (const double x : mesh_.points) {
         if (!std::isfinite(x)) {
@@ -150,6 +172,34 @@ void Reader::read_nodes() {
             mesh_.length_unit_known = true;
         }
     }
+}
+
+/// Of a surface only its own nodes are kept: the faces get the numbers that these have among themselves.
+/// The list says where a node of the file goes; beyond the number of nodes: nowhere.
+std::vector<std::uint32_t> Reader::places_of_used_nodes() {
+    constexpr std::uint32_t nowhere = 0xffffffffU;
+    std::vector<std::uint32_t> places(mesh_.nodes, nowhere);
+    for (const auto& block : mesh_.face_blocks) {
+        for (const std::uint32_t node : block.nodes) {
+            if (node == 0 || node > mesh_.nodes) {
+                refuse(root_ + "/faces", "a face of zone " + std::to_string(block.zone) + " names node " + number(node) +
+                                             " of " + number(mesh_.nodes));
+            }
+            places[node - 1] = 0;
+        }
+    }
+    std::uint32_t used = 0;
+    for (auto& place : places) {
+        place = place == nowhere ? nowhere : used++;
+    }
+    for (auto& block : mesh_.face_blocks) {
+        for (auto& node : block.nodes) {
+            node = places[node - 1] + 1;
+        }
+    }
+    mesh_.declared_nodes = mesh_.nodes;
+    mesh_.nodes = used;
+    return places;
 }
 
 void Reader::read_cells() {
@@ -265,22 +315,39 @@ void Reader::read_faces() {
     read_beside("c1");
 }
 
-/// Gives each zone its share of a part of the faces. A zone may lie in several parts.
+/// Gives each zone its share of a part of the faces; faces that nobody wants are not read. A zone may lie in several
+/// parts.
 void Reader::cut_faces(const Part& part) {
-    const auto sizes = file_.numbers(part.path + "/nnodes");
-    if (sizes.size() != part.count) {
+    const auto shape = file_.shape(part.path + "/nnodes");
+    const auto nodes = file_.shape(part.path + "/nodes");
+    if (shape.size() != 1 || shape[0] != part.count || nodes.size() != 1) {
         refuse(part.path, "its size does not fit its ids");
     }
-    const auto nodes = file_.numbers(part.path + "/nodes");
     std::uint64_t at = 0;
     std::uint64_t id = part.first;
-    std::size_t face = 0;
+    std::vector<std::uint32_t> sizes;
+    const auto corners_of = [&](std::uint64_t count) {
+        sizes.resize(count);
+        file_.numbers(part.path + "/nnodes", id - part.first, count, sizes.data());
+        std::uint64_t sum = 0;
+        for (const std::uint32_t size : sizes) {
+            sum += size;
+        }
+        if (sum > nodes[0] - std::min(at, nodes[0])) {
+            refuse(part.path, "faces up to " + number(id + count - 1) + " want more nodes than there are");
+        }
+        return sum;
+    };
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 18;
     for (auto& block : mesh_.face_blocks) {
-        if (block.first + block.count <= id || block.first >= part.first + part.count) {
+        const std::uint64_t end = std::min(block.first + block.count, part.first + part.count);
+        if (end <= id || block.first >= part.first + part.count) {
             continue;
         }
-        for (; id < block.first; ++id, ++face) {
-            at += sizes[face];
+        while (id < block.first) {
+            const std::uint64_t some = std::min(at_once, block.first - id);
+            at += corners_of(some);
+            id += some;
         }
         if (block.offsets.empty()) {
             block.offsets.push(0);
@@ -288,15 +355,20 @@ void Reader::cut_faces(const Part& part) {
         if (block.offsets.size() != id - block.first + 1) {
             refuse(part.path, "the faces of zone " + std::to_string(block.zone) + " are not in order");
         }
-        for (; id < block.first + block.count && face < sizes.size(); ++id, ++face) {
-            if (sizes[face] > nodes.size() - std::min<std::uint64_t>(at, nodes.size())) {
-                refuse(part.path, "face " + number(id) + " wants more nodes than there are");
-            }
-            for (std::uint32_t k = 0; k < sizes[face]; ++k) {
-                block.nodes.push(nodes[at++]);
-            }
-            block.offsets.push(static_cast<std::uint32_t>(block.nodes.size()));
+        const std::uint64_t corners = corners_of(end - id);
+        const std::size_t before = block.nodes.size();
+        if (before + corners > 0xffffffffULL) {
+            refuse(part.path, "too many corners");
         }
+        block.nodes.grow_to(before + corners);
+        file_.numbers(part.path + "/nodes", at, corners, block.nodes.data() + before);
+        std::uint64_t place = before;
+        for (const std::uint32_t size : sizes) {
+            place += size;
+            block.offsets.push(static_cast<std::uint32_t>(place));
+        }
+        at += corners;
+        id = end;
     }
 }
 
@@ -304,8 +376,8 @@ void Reader::read_beside(const std::string& side) {
     std::uint64_t found = 0;
     for (const auto& part : parts(root_ + "/faces/" + side)) {
         progress_.check();
-        const auto cells = file_.numbers(part.path);
-        if (cells.size() != part.count) {
+        const auto shape = file_.shape(part.path);
+        if (shape.size() != 1 || shape[0] != part.count) {
             refuse(part.path, "its size does not fit its ids");
         }
         found += part.count;
@@ -314,7 +386,7 @@ void Reader::read_beside(const std::string& side) {
             const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
             if (from < to) {
                 auto& target = side == "c0" ? block.c0 : block.c1;
-                std::copy_n(cells.data() + (from - part.first), to - from, target.data() + (from - block.first));
+                file_.numbers(part.path, from - part.first, to - from, target.data() + (from - block.first));
             }
         }
     }
@@ -373,7 +445,7 @@ public:
 
 private:
     void read_variable(const std::string& group, const std::string& variable, bool on_cells, int phase);
-    void keep(ValueBlock&& whole);
+    void keep(const std::string& path, ValueBlock&& whole);
     [[noreturn]] void other_case(const std::string& what) const {
         throw core::InputError("mismatch", "these data belong to another case than " + mesh_.file + ": " + what,
                                {file_.name(), {}, {}, {}}, "give the case they were written with");
@@ -453,18 +525,18 @@ void DataReader::read_variable(const std::string& group, const std::string& vari
         if (shape[0] != block.count || (shape.size() > 1 && (shape[1] > 1024 || shape[1] == 0))) {
             throw core::InputError("format", path + ": its size does not fit its ids", {file_.name(), {}, {}, {}});
         }
-        block.values = file_.reals(path);
-        keep(std::move(block));
+        keep(path, std::move(block));
     }
 }
 
-/// On faces the inside of the mesh is by far the most and nobody looks at it: only the zones' shares are kept.
-void DataReader::keep(ValueBlock&& whole) {
+/// On faces the inside of the mesh is by far the most and nobody looks at it: only the zones' shares are read.
+void DataReader::keep(const std::string& path, ValueBlock&& whole) {
+    const auto n = static_cast<std::size_t>(whole.components);
     if (whole.on_cells) {
+        whole.values = file_.reals(path);
         values_.push_back(std::move(whole));
         return;
     }
-    const auto n = static_cast<std::size_t>(whole.components);
     for (const auto& zone : mesh_.face_blocks) {
         const std::uint64_t from = std::max(whole.first, zone.first);
         const std::uint64_t to = std::min(whole.first + whole.count, zone.first + zone.count);
@@ -479,7 +551,7 @@ void DataReader::keep(ValueBlock&& whole) {
         part.count = to - from;
         part.components = whole.components;
         part.values.grow_to(part.count * n);
-        std::copy_n(whole.values.data() + (from - whole.first) * n, part.values.size(), part.values.data());
+        file_.reals(path, from - whole.first, part.count, part.values.data());
         values_.push_back(std::move(part));
     }
 }
@@ -523,7 +595,7 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
     }
     Reader reader(mesh_path, options, progress);
     FluentSettings settings = reader.read_settings();
-    FaceMesh mesh = reader.read_mesh();
+    FaceMesh mesh = telling([&] { return reader.read_mesh(); }, [&] { return reader.understood(); });
     if (!settings.variables.empty()) {
         mesh.length_unit = "m";
         mesh.length_unit_known = true;
@@ -544,8 +616,9 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
                                 "the data beside this case are not used: " + error.message(), error.place()});
         }
     }
-    Field field = field_from(std::move(mesh), std::move(values), settings, options, progress);
+    Field field = field_from(std::move(mesh), std::move(values), options, progress);
     field.format = "Fluent HDF5";
+    apply_settings(settings, with_data, field);
     if (with_data) {
         field.files.push_back(data_path.string());
     }

@@ -76,6 +76,7 @@ public:
 
     std::vector<ValueBlock> read() {
         try {
+            text_.skip_byte_order_mark();
             while (text_.next() >= 0) {
                 section();
             }

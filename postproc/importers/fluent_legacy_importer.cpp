@@ -16,7 +16,7 @@ bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
 /// "(0 ", "(13(", "(1 ...": an opening bracket, a small decimal number, and then a blank, a quote or a bracket.
 bool begins_with_section(std::string_view head) {
-    std::size_t i = 0;
+    std::size_t i = head.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // what some editors put in front
     while (i < head.size() && is_blank(head[i])) {
         ++i;
     }
@@ -101,8 +101,9 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
                                 error.place()});
         }
     }
-    Field field = field_from(std::move(legacy.mesh), std::move(values), legacy.settings, options, progress);
+    Field field = field_from(std::move(legacy.mesh), std::move(values), options, progress);
     field.format = "Fluent legacy";
+    apply_settings(legacy.settings, with_data, field);
     if (with_data) {
         field.files.push_back(files.data.string());
     }

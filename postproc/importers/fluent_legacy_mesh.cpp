@@ -19,12 +19,13 @@ std::uint64_t swapped(std::uint64_t v) { return __builtin_bswap64(v); }
 class MeshReader {
 public:
     MeshReader(ByteStream& in, bool surfaces_only, core::Progress& progress)
-        : in_(in), text_(in), surfaces_only_(surfaces_only), progress_(progress) {
+        : in_(in), text_(in), surfaces_only_(surfaces_only), progress_(progress), mesh_bytes_(in.most_left()) {
         result_.mesh.file = in.name();
     }
 
     LegacyMesh read() {
         try {
+            text_.skip_byte_order_mark();
             while (text_.next() >= 0) {
                 section();
             }
@@ -44,6 +45,8 @@ private:
     void faces(std::uint64_t index, Coding coding);
     void fixed_faces(FaceBlock& block, Coding coding);
     void mixed_faces(FaceBlock& block, Coding coding);
+    template <typename Next>
+    void mixed_faces_of(FaceBlock& block, std::uint64_t bytes, Next&& next);
     void skip_mixed_binary(std::uint64_t count);
     void zone_label();
     void tree(std::uint64_t index, Coding coding, std::vector<IdRange>& hidden);
@@ -69,6 +72,7 @@ private:
     FluentText text_;
     bool surfaces_only_;
     core::Progress& progress_;
+    std::uint64_t mesh_bytes_;  ///< of the whole file, at most
     LegacyMesh result_;
     bool swap_ = false;
     bool nodes_declared_ = false, faces_declared_ = false, cells_declared_ = false;
@@ -249,9 +253,11 @@ void MeshReader::nodes(std::uint64_t index, Coding coding) {
     text_.expect('(');
     double* out = mesh.points.data() + 3 * (first - 1);
     if (coding == Coding::ascii) {
-        for (std::uint64_t i = 0; i < count; ++i, out += 3) {
-            out[2] = 0;
-            text_.reals(out, components);
+        text_.reals(out, count * components);
+        for (std::uint64_t i = count; components == 2 && i-- > 0;) {  // pairs become triples in place
+            out[3 * i + 2] = 0;
+            out[3 * i + 1] = out[2 * i + 1];
+            out[3 * i] = out[2 * i];
         }
     } else {
         constexpr std::uint64_t at_once = 1024;
@@ -334,7 +340,7 @@ void MeshReader::elements(CellBlock& block, std::uint64_t index, Coding coding) 
     check_room(coding == Coding::ascii ? block.count / 2 : block.count, coding == Coding::ascii ? 1 : 4);
     block.elements.grow_to(block.count);
     for (std::size_t i = 0; i < block.count; ++i) {
-        const std::uint32_t code = coding == Coding::ascii ? text_.fast_hex() : integer();
+        const std::uint32_t code = coding == Coding::ascii ? text_.hexadecimal() : integer();
         block.elements[i] = static_cast<unsigned char>(std::min<std::uint32_t>(code, 255));
     }
     close(index, coding);
@@ -410,14 +416,15 @@ void MeshReader::fixed_faces(FaceBlock& block, Coding coding) {
     block.nodes.grow_to(block.count * n);
     std::uint32_t* nodes = block.nodes.data();
     if (coding == Coding::ascii) {
+        HexWords words(text_);
         for (std::size_t face = 0; face < block.count; ++face) {
-            text_.look_ahead(n + 2);
             for (std::size_t k = 0; k < n; ++k) {
-                *nodes++ = text_.fast_hex();
+                *nodes++ = words.next();
             }
-            block.c0[face] = text_.fast_hex();
-            block.c1[face] = text_.fast_hex();
+            block.c0[face] = words.next();
+            block.c1[face] = words.next();
         }
+        words.finish();
         return;
     }
     constexpr std::size_t at_once = 4096;
@@ -438,23 +445,30 @@ void MeshReader::fixed_faces(FaceBlock& block, Coding coding) {
 
 void MeshReader::mixed_faces(FaceBlock& block, Coding coding) {
     block.offsets.grow_to(block.count + 1);
-    const bool ascii = coding == Coding::ascii;
+    if (coding == Coding::ascii) {
+        HexWords words(text_);
+        mixed_faces_of(block, 2, [&] { return words.next(); });
+        words.finish();
+    } else {
+        mixed_faces_of(block, 4, [&] { return integer(); });
+    }
+}
+
+template <typename Next>
+void MeshReader::mixed_faces_of(FaceBlock& block, std::uint64_t bytes, Next&& next) {
+    const std::uint64_t most = mesh_bytes_ / bytes;  // no face can have more corners than the file has numbers
     for (std::size_t face = 0; face < block.count; ++face) {
-        text_.look_ahead(16);
-        const std::uint64_t size = ascii ? text_.fast_hex() : integer();
-        check_room(size, ascii ? 2 : 4);
-        if (block.nodes.size() + size > 0xffffffffULL) {
-            text_.fail("too many corners");
+        const std::uint64_t size = next();
+        if (size > most || block.nodes.size() + size > 0xffffffffULL) {
+            text_.fail("face " + std::to_string(block.first + face) + " of zone " + std::to_string(block.zone) +
+                       " announces " + std::to_string(size) + " corners, more than the bytes of the file can hold");
         }
         block.offsets[face] = static_cast<std::uint32_t>(block.nodes.size());
         for (std::uint64_t k = 0; k < size; ++k) {
-            if (k % 8 == 7) {
-                text_.look_ahead(16);
-            }
-            block.nodes.push(ascii ? text_.fast_hex() : integer());
+            block.nodes.push(next());
         }
-        block.c0[face] = ascii ? text_.fast_hex() : integer();
-        block.c1[face] = ascii ? text_.fast_hex() : integer();
+        block.c0[face] = next();
+        block.c1[face] = next();
     }
     block.offsets[block.count] = static_cast<std::uint32_t>(block.nodes.size());
 }

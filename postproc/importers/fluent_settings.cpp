@@ -86,6 +86,7 @@ std::optional<std::string> lisp_value(std::string_view text, std::string_view na
 void apply_settings(const FluentSettings& settings, bool with_values, Field& field) {
     const std::string_view text = settings.variables;
     const core::Place place{field.files.empty() ? std::string() : field.files.front(), {}, {}, {}};
+    field.writer = settings.writer;
     if (with_values) {
         field.pressure.kind = PressureReference::Kind::gauge;
     }

@@ -6,6 +6,9 @@
 #include <array>
 #include <cstring>
 
+#include "core/parallel.h"
+#include "postproc/importers/solver_number.h"
+
 namespace underbody::postproc {
 
 namespace {
@@ -39,12 +42,19 @@ std::string shown(int c) {
 }
 
 constexpr std::string_view end_words = "End of Binary Section";
+constexpr const char* decimal_comma = " (a decimal comma? the file was rewritten by a program with another language)";
 
 }  // namespace
 
 void FluentText::fail(const std::string& what) const {
     throw core::InputError(
         "format", (section_ != 0 ? "section " + std::to_string(section_) + ": " : std::string()) + what, in_.place());
+}
+
+void FluentText::skip_byte_order_mark() {
+    if (in_.ensure(3) && std::memcmp(in_.here(), "\xEF\xBB\xBF", 3) == 0) {
+        in_.skip(3);
+    }
 }
 
 void FluentText::skip_space() {
@@ -100,31 +110,11 @@ std::uint64_t FluentText::number(int base) {
     }
 }
 
-std::uint32_t FluentText::fast_hex() {
-    const char* p = in_.here();
-    const char* const end = in_.end();
-    while (p != end && is_space(*p)) {
-        ++p;
+std::uint32_t FluentText::hexadecimal() {
+    const std::uint64_t value = number(16);
+    if (value > 0xffffffffULL) {
+        fail("a number that is too large: " + std::to_string(value));
     }
-    const char* const first = p;
-    std::uint64_t value = 0;
-    while (p != end) {
-        const unsigned char digit = digits[static_cast<unsigned char>(*p)];
-        if (digit > 15) {
-            break;
-        }
-        value = (value << 4) | digit;
-        ++p;
-    }
-    if (p == first || p - first > 8 || p == end) {
-        // At the window's end, or not a number: the careful way decides.
-        value = number(16);
-        if (value > 0xffffffffULL) {
-            fail("a number that is too large: " + std::to_string(value));
-        }
-        return static_cast<std::uint32_t>(value);
-    }
-    in_.move_to(p);
     return static_cast<std::uint32_t>(value);
 }
 
@@ -141,12 +131,190 @@ double FluentText::real() {
         fail("expected a number, found " + shown(in_.peek()));
     }
     in_.move_to(rest);
+    if (rest != in_.end() && !is_space(*rest) && *rest != ')') {
+        fail("expected the end of a number, found " + shown(in_.peek()) + (*rest == ',' ? decimal_comma : ""));
+    }
     return value;
 }
 
+std::vector<std::string_view> FluentText::pieces(bool& bracket) {
+    in_.ensure(ByteStream::largest_window);
+    const char* const first = in_.here();
+    const auto* const found = static_cast<const char*>(
+        std::memchr(first, ')', static_cast<std::size_t>(in_.end() - first)));
+    bracket = found != nullptr;
+    const char* last = bracket ? found : in_.end();
+    const bool all = static_cast<std::size_t>(in_.end() - first) < ByteStream::largest_window;  // the file ends there
+    while (!bracket && !all && last != first && !is_space(last[-1])) {
+        --last;
+    }
+    std::vector<std::string_view> result;
+    for (const char* p = first; p != last;) {
+        constexpr std::ptrdiff_t piece = 128 * 1024;
+        const char* q = last - p > piece + piece / 2 ? p + piece : last;
+        while (q != last && !is_space(*q)) {
+            ++q;
+        }
+        result.emplace_back(p, static_cast<std::size_t>(q - p));
+        p = q;
+    }
+    return result;
+}
+
+namespace {
+
+/// The numbers of one piece; where it fails, if it does.
+const char* hexadecimals_of(std::string_view piece, Buffer<std::uint32_t>& out) {
+    out.grow_to(piece.size() / 2 + 1);
+    std::uint32_t* to = out.data();
+    const char* p = piece.data();
+    const char* const end = p + piece.size();
+    const char* failed = nullptr;
+    for (;;) {
+        while (p != end && is_space(*p)) {
+            ++p;
+        }
+        if (p == end) {
+            break;
+        }
+        if (end - p > 8 && parse_hex(p, *to)) {
+            ++to;
+            continue;
+        }
+        const char* const start = p;
+        std::uint64_t value = 0;
+        for (; p != end && digits[static_cast<unsigned char>(*p)] < 16 && value <= 0xffffffffULL; ++p) {
+            value = value << 4 | digits[static_cast<unsigned char>(*p)];
+        }
+        if (p == start || (p != end && !is_space(*p)) || value > 0xffffffffULL) {
+            failed = start;
+            break;
+        }
+        *to++ = static_cast<std::uint32_t>(value);
+    }
+    out.grow_to(static_cast<std::size_t>(to - out.data()));
+    return failed;
+}
+
+const char* reals_of(std::string_view piece, Buffer<double>& out) {
+    out.grow_to(piece.size() / 2 + 1);
+    double* to = out.data();
+    const char* p = piece.data();
+    const char* const end = p + piece.size();
+    const char* failed = nullptr;
+    for (;;) {
+        while (p != end && is_space(*p)) {
+            ++p;
+        }
+        if (p == end) {
+            break;
+        }
+        const char* const next = parse_number(p, end, *to);
+        if (next == nullptr || (next != end && !is_space(*next))) {
+            failed = p;
+            break;
+        }
+        p = next;
+        ++to;
+    }
+    out.grow_to(static_cast<std::size_t>(to - out.data()));
+    return failed;
+}
+
+/// Every piece by its function, on all threads; the first place that failed, or nullptr.
+template <typename Number, typename Parse>
+const char* parse_all(const std::vector<std::string_view>& pieces, std::vector<Buffer<Number>>& lists, Parse&& parse) {
+    lists.resize(std::max(lists.size(), pieces.size()));
+    std::vector<const char*> failed(pieces.size());
+    core::parallel_for(pieces.size(), [&](std::size_t i) { failed[i] = parse(pieces[i], lists[i]); });
+    for (std::size_t i = pieces.size(); i < lists.size(); ++i) {
+        lists[i].grow_to(0);
+    }
+    const auto first = std::find_if(failed.begin(), failed.end(), [](const char* p) { return p != nullptr; });
+    return first == failed.end() ? nullptr : *first;
+}
+
+}  // namespace
+
+void FluentText::fail_at(const char* place) {
+    in_.move_to(place);
+    const char* p = place;
+    while (p != in_.end() && digits[static_cast<unsigned char>(*p)] < 16) {
+        ++p;
+    }
+    in_.move_to(p);  // behind the digits that are fine
+    const int found = in_.peek();
+    if (p - place > 8 || found < 0 || is_space(static_cast<char>(found))) {
+        in_.move_to(place);
+        fail("a number that is too large");
+    }
+    fail("expected a number, found " + shown(found) + (found == ',' ? decimal_comma : ""));
+}
+
+bool FluentText::hexadecimals(std::vector<Buffer<std::uint32_t>>& lists) {
+    bool bracket = false;
+    const auto texts = pieces(bracket);
+    if (texts.empty() && !bracket) {
+        fail(in_.at_end() ? "expected a number, found the end of the file" : "a number with too many digits");
+    }
+    if (const char* failed = parse_all(texts, lists, hexadecimals_of); failed != nullptr) {
+        fail_at(failed);
+    }
+    if (!texts.empty()) {
+        in_.move_to(texts.back().data() + texts.back().size());
+    }
+    return !bracket;
+}
+
 void FluentText::reals(double* out, std::uint64_t count) {
+    constexpr std::uint64_t worth_it = 256;
+    while (count > worth_it) {
+        bool bracket = false;
+        const auto texts = pieces(bracket);
+        const char* const failed = parse_all(texts, parts_, reals_of);
+        std::uint64_t found = 0;
+        for (const auto& part : parts_) {
+            found += part.size();
+        }
+        // Anything odd is left to the careful way below, which says what and where.
+        if (failed != nullptr || found == 0 || found > count || (bracket && found < count)) {
+            break;
+        }
+        for (const auto& part : parts_) {
+            out = std::copy_n(part.data(), part.size(), out);
+        }
+        count -= found;
+        in_.move_to(texts.back().data() + texts.back().size());
+    }
     for (std::uint64_t i = 0; i < count; ++i) {
         out[i] = real();
+    }
+}
+
+void HexWords::advance() {
+    while (at_ == end_) {
+        while (list_ < lists_.size() && lists_[list_].empty()) {
+            ++list_;
+        }
+        if (list_ == lists_.size()) {
+            if (!more_) {
+                text_.fail("the section ends before all that its header announces");
+            }
+            more_ = text_.hexadecimals(lists_);
+            list_ = 0;
+            continue;
+        }
+        at_ = lists_[list_].begin();
+        end_ = lists_[list_].end();
+        ++list_;
+    }
+}
+
+void HexWords::finish() const {
+    const bool left = std::any_of(lists_.begin() + static_cast<std::ptrdiff_t>(std::min(list_, lists_.size())), lists_.end(),
+                                  [](const auto& list) { return !list.empty(); });
+    if (at_ != end_ || left) {
+        text_.fail("the section holds more than its header says");
     }
 }
 

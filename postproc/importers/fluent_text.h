@@ -20,6 +20,8 @@ public:
     [[noreturn]] void fail(const std::string& what) const;
     void set_section(std::uint64_t index) { section_ = index; }
 
+    /// The mark of UTF-8 that some editors put in front of a text.
+    void skip_byte_order_mark();
     /// Blanks, line ends, and what editors leave at the end of a file.
     void skip_space();
     /// The next character that is not blank, not taken; -1 at the end.
@@ -41,8 +43,11 @@ public:
     /// A comment may hold brackets that do not match; after "(0".
     std::string comment();
 
-    /// `count` numbers in ASCII, after the opening bracket of a body.
+    /// `count` numbers in ASCII, after the opening bracket of a body. Long bodies are read by all threads.
     void reals(double* out, std::uint64_t count);
+    /// The hexadecimal numbers from here to the body's closing bracket, or as many as the window holds, in lists that
+    /// follow one another. False: the bracket was reached, and is not taken.
+    bool hexadecimals(std::vector<Buffer<std::uint32_t>>& lists);
 
     /// The rest of the body of an ASCII section that holds numbers only, and its closing brackets.
     void skip_plain_body();
@@ -52,17 +57,44 @@ public:
     /// Searches for that end: for sections whose length nobody told.
     void skip_binary_body(std::uint64_t index);
 
-    /// Hexadecimal numbers without checks between them: the fast way through faces.
-    std::uint32_t fast_hex();
-    /// Makes sure that a face of this many numbers lies in the window.
-    void look_ahead(std::size_t numbers_ahead) { in_.ensure(numbers_ahead * 20); }
+    /// One hexadecimal number of 32 bits.
+    std::uint32_t hexadecimal();
 
 private:
     /// Is the next word "(10 " or the like, or the end of the file?
     bool section_ahead();
+    /// The text from here on that holds whole numbers only, cut into pieces at blanks.
+    std::vector<std::string_view> pieces(bool& bracket);
+    /// A word among hexadecimal numbers that is none.
+    [[noreturn]] void fail_at(const char* place);
 
     ByteStream& in_;
     std::uint64_t section_ = 0;
+    std::vector<Buffer<double>> parts_;  ///< of `reals`, kept for the next window
+};
+
+/// The hexadecimal numbers of a body, one after the other, parsed window by window.
+class HexWords {
+public:
+    explicit HexWords(FluentText& text) : text_(text) {}
+    std::uint32_t next() {
+        if (at_ == end_) {
+            advance();
+        }
+        return *at_++;
+    }
+    /// All numbers before the closing bracket must have been taken.
+    void finish() const;
+
+private:
+    void advance();
+
+    FluentText& text_;
+    std::vector<Buffer<std::uint32_t>> lists_;
+    std::size_t list_ = 0;
+    const std::uint32_t* at_ = nullptr;
+    const std::uint32_t* end_ = nullptr;
+    bool more_ = true;
 };
 
 }  // namespace underbody::postproc

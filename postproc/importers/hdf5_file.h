@@ -32,11 +32,15 @@ public:
 
     [[nodiscard]] Buffer<double> reals(const std::string& path) const;
     [[nodiscard]] Buffer<std::uint32_t> numbers(const std::string& path) const;
+    /// `rows` rows from `first` on (from 0), without reading the others. `out` has room for the rows' numbers.
+    void reals(const std::string& path, std::uint64_t first, std::uint64_t rows, double* out) const;
+    void numbers(const std::string& path, std::uint64_t first, std::uint64_t rows, std::uint32_t* out) const;
     /// All strings of a dataset joined; "" if it is not there.
     [[nodiscard]] std::string text(const std::string& path) const;
 
 private:
     [[noreturn]] void fail(const std::string& path, const std::string& what) const;
+    void read_rows(const std::string& path, std::uint64_t first, std::uint64_t rows, bool whole, void* out) const;
     std::uint64_t checked_size(std::int64_t dataset, const std::string& path, std::size_t bytes_each) const;
 
     std::string name_;

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "core/units.h"
 
 namespace underbody::postproc {
 
@@ -69,6 +70,8 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& wo
     }
     return numbers;
 }
+
+std::string_view without_mark(std::string_view text) { return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text; }
 
 /// Rows by the first column; the last one of a number counts.
 class Rows {
@@ -207,6 +210,11 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
     if (rows.empty()) {
         throw core::InputError("format", "there is no table of numbers in this file", {file, {}, {}, {}});
     }
+    if (bytes.back() != '\n') {
+        monitor.problems.push_back({core::Problem::Severity::warning,
+                                    "the file does not end with a line end: its last row may be cut short",
+                                    {file, number, {}, {}}});
+    }
     rows.into(monitor);
     return monitor;
 }
@@ -224,8 +232,42 @@ std::array<double, 3> triple_after(std::string_view line, std::size_t at) {
     return result;
 }
 
+/// "Forces", "Forces - Direction Vector (1 0 0)", "Moments - Moment Center (0 0 0) Moment Axis (0 0 1)", "Force vector: (1
+/// 0 0)", "Moment Center: (0 0 0)".
+std::optional<ForceReport> report_begun_by(std::string_view line) {
+    const bool now = line == "Forces" || line == "Moments" || line.starts_with("Forces - ") || line.starts_with("Moments - ");
+    const bool before = line.starts_with("Force vector") || line.starts_with("Moment Center");
+    if (!now && !before) {
+        return {};
+    }
+    ForceReport report;
+    report.moments = line.starts_with("Moment");
+    if (report.moments) {
+        report.centre = triple_after(line, line.find("Center"));
+        report.direction = triple_after(line, std::min(line.find("Axis"), line.size()));
+    } else {
+        report.direction = triple_after(line, std::min(line.find('('), line.size()));
+    }
+    return report;
+}
+
+/// "Forces (n)      Coefficients", "Forces [lbf]", "Moments (n-m)": what makes SI of the numbers below.
+double scale_of_header(std::string_view line, bool moments, const core::Place& place) {
+    const std::size_t open = line.find_first_of("([");
+    const std::size_t close = line.find_first_of(")]");
+    if (open == std::string_view::npos || close == std::string_view::npos || close < open) {
+        return 1;
+    }
+    std::string unit(core::trimmed(line.substr(open + 1, close - open - 1)));
+    const std::string lower = core::lower_case(unit);
+    const std::string si = moments ? "N m" : "N";
+    unit = lower == "n" ? "N" : lower == "n-m" || lower == "n m" ? "N m" : unit;
+    std::replace(unit.begin(), unit.end(), '-', ' ');
+    return core::conversion(unit, si, place).scale;
+}
+
 /// Six numbers, or six triples, at the end of a line that begins with a zone's name.
-void add_row(std::vector<ForceReport>& reports, std::size_t first, std::string_view line) {
+void add_row(std::vector<ForceReport>& reports, std::size_t first, std::string_view line, double scale) {
     auto words = words_of(line);
     for (const std::size_t per_entry : {std::size_t{3}, std::size_t{1}}) {
         const std::size_t count = 6 * per_entry;
@@ -251,7 +293,7 @@ void add_row(std::vector<ForceReport>& reports, std::size_t first, std::string_v
         }
         for (std::size_t k = 0; k < per_entry; ++k) {
             const auto at = [&](std::size_t i) { return (*numbers)[i * per_entry + k]; };
-            reports[first + k].rows.push_back({zone, at(0), at(1), at(2), at(3), at(4), at(5)});
+            reports[first + k].rows.push_back({zone, scale * at(0), scale * at(1), scale * at(2), at(3), at(4), at(5)});
         }
         return;
     }
@@ -270,7 +312,7 @@ const std::vector<double>* Monitor::find(const std::string& column) const {
 
 const ReportedForce* ForceReport::net() const {
     for (const auto& row : rows) {
-        if (row.zone == "Net") {
+        if (row.zone == "Net" || row.zone == "net") {
             return &row;
         }
     }
@@ -279,17 +321,18 @@ const ReportedForce* ForceReport::net() const {
 
 Monitor read_monitor(const std::filesystem::path& path) {
     const core::MappedFile file(path);
+    const std::string_view bytes = without_mark(file.bytes());
     // A transcript has the header of its residuals on a line of its own, further down.
     std::size_t lines = 0;
-    for (const auto line : core::split(file.bytes().substr(0, std::size_t{4} << 20), '\n')) {
+    for (const auto line : core::split(bytes.substr(0, std::size_t{4} << 20), '\n')) {
         if (is_residual_header(words_of(line)) && line.find(',') == std::string_view::npos) {
-            return read_transcript(file.name(), file.bytes());
+            return read_transcript(file.name(), bytes);
         }
         if (++lines > 200000) {
             break;
         }
     }
-    return read_table(file.name(), file.bytes());
+    return read_table(file.name(), bytes);
 }
 
 Plot read_plot(const std::filesystem::path& path) {
@@ -297,7 +340,7 @@ Plot read_plot(const std::filesystem::path& path) {
     Plot plot;
     std::int64_t number = 0;
     bool open = false;
-    for (const auto raw : core::split(file.bytes(), '\n')) {
+    for (const auto raw : core::split(without_mark(file.bytes()), '\n')) {
         ++number;
         const auto line = core::trimmed(raw);
         if (line.empty()) {
@@ -340,26 +383,29 @@ std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
     const core::MappedFile file(path);
     std::vector<ForceReport> reports;
     std::size_t first = 0;
+    std::int64_t number = 0;
+    std::int64_t begins = 0;
+    double scale = 1;
     bool reading = false;
-    for (const auto raw : core::split(file.bytes(), '\n')) {
+    for (const auto raw : core::split(without_mark(file.bytes()), '\n')) {
+        ++number;
         const auto line = core::trimmed(raw);
-        if (line == "Forces" || line == "Moments" || line.starts_with("Forces - ") || line.starts_with("Moments - ")) {
-            ForceReport report;
-            report.moments = line.starts_with("Moments");
-            if (report.moments) {
-                report.centre = triple_after(line, line.find("Center"));
-                report.direction =
-                    triple_after(line, line.find("Axis") == std::string_view::npos ? line.size() : line.find("Axis"));
-            } else {
-                report.direction = triple_after(line, line.find("Direction"));
-            }
+        if (auto report = report_begun_by(line)) {
             first = reports.size();
-            reports.push_back(report);
+            reports.push_back(std::move(*report));
             reading = true;
+            begins = number;
+            scale = 1;
+        } else if (reading && (line.starts_with("Forces") || line.starts_with("Moments"))) {
+            scale = scale_of_header(line, reports[first].moments, {file.name(), number, {}, {}});
         } else if (reading && !line.empty() && line.front() != '-') {
-            add_row(reports, first, line);
-            reading = !line.starts_with("Net");
+            add_row(reports, first, line, scale);
+            reading = !core::lower_case(line).starts_with("net");
         }
+    }
+    if (reading && !reports.empty() && !reports.back().rows.empty()) {
+        fail(file.name(), number, "the text ends within the report that begins in line " + std::to_string(begins) +
+                                      ": its net row is missing");
     }
     std::erase_if(reports, [](const ForceReport& report) { return report.rows.empty(); });
     if (reports.empty()) {

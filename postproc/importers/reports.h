@@ -55,16 +55,19 @@ struct ReportedForce {
     double viscous_coefficient = 0;
     double total_coefficient = 0;
 };
-/// "Forces - Direction Vector (1 0 0)" and "Moments - Moment Center (...) Moment Axis (...)".
+/// "Forces - Direction Vector (1 0 0)" and "Moments - Moment Center (...) Moment Axis (...)"; Fluent 6's "Force vector:
+/// (1 0 0)" and "Moment Center: (...)".
 struct ForceReport {
     bool moments = false;
     std::array<double, 3> direction{};  ///< direction of the forces, or axis of the moments
     std::array<double, 3> centre{};     ///< of the moments
-    std::vector<ReportedForce> rows;    ///< N or N m, as the report says by default
+    std::vector<ReportedForce> rows;    ///< N or N m, whatever unit the report is in
 
     [[nodiscard]] const ReportedForce* net() const;
 };
-/// All reports of a text; those with a vector for each entry ("(0.1 0.2 0.3)") become three reports along x, y, z.
+/// All reports of a text (a transcript may hold many, with other lines between); those with a vector for each entry
+/// ("(0.1 0.2 0.3)") become three reports along x, y, z. Throws InputError with line when there is none, or when the
+/// text ends within one.
 std::vector<ForceReport> read_force_reports(const std::filesystem::path& path);
 
 }  // namespace underbody::postproc

@@ -1,5 +1,8 @@
-// Files that VTK reads right: its own, plain surfaces, OpenFOAM cases. Numbers and names are made canonical.
+// Files that VTK reads right: its own, plain surfaces, Tecplot. Numbers and names are made canonical.
+#include <vtkAppendFilter.h>
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataObjectTree.h>
@@ -8,15 +11,17 @@
 #include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
 #include <vtkGenericDataObjectReader.h>
+#include <vtkIdList.h>
+#include <vtkIdTypeArray.h>
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
 #include <vtkOBJReader.h>
-#include <vtkOpenFOAMReader.h>
 #include <vtkPLYReader.h>
 #include <vtkPointData.h>
 #include <vtkSTLReader.h>
-#include <vtkStringArray.h>
 #include <vtkTecplotReader.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkXMLGenericDataObjectReader.h>
 #include <vtkXMLMultiBlockDataReader.h>
 
@@ -26,6 +31,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/trial.h"
 #include "postproc/importers/vtk_problems.h"
 
 namespace underbody::postproc {
@@ -46,6 +52,10 @@ void join_components(Zone& zone, vtkDataSetAttributes& data, Location on) {
             continue;
         }
         vtkSmartPointer<vtkDataArray> whole = data.GetArray(part->vector.c_str());
+        if (whole != nullptr && whole->GetNumberOfComponents() != 3) {
+            kept.push_back(std::move(info));  // something else has the vector's name
+            continue;
+        }
         if (whole == nullptr) {
             whole = vtkSmartPointer<vtkDoubleArray>::New();
             whole->SetName(part->vector.c_str());
@@ -110,6 +120,38 @@ void add_arrays(Zone& zone, vtkDataSetAttributes& data, Location on, const ReadO
     join_components(zone, data, on);
 }
 
+/// VTK's cells along the axes number their corners row by row; everybody else goes round them.
+void go_round_corners(vtkUnstructuredGrid& grid) {
+    if (grid.GetCellTypesArray() == nullptr || grid.GetNumberOfCells() == 0) {
+        return;
+    }
+    bool any = false;
+    for (vtkIdType c = 0; c < grid.GetNumberOfCells() && !any; ++c) {
+        any = grid.GetCellType(c) == VTK_VOXEL || grid.GetCellType(c) == VTK_PIXEL;
+    }
+    if (!any) {
+        return;
+    }
+    vtkNew<vtkCellArray> cells;
+    vtkNew<vtkUnsignedCharArray> types;
+    vtkNew<vtkIdList> nodes;
+    for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
+        int type = grid.GetCellType(c);
+        grid.GetCellPoints(c, nodes);
+        if (type == VTK_VOXEL || type == VTK_PIXEL) {
+            for (vtkIdType first = 0; first < nodes->GetNumberOfIds(); first += 4) {
+                const vtkIdType third = nodes->GetId(first + 2);
+                nodes->SetId(first + 2, nodes->GetId(first + 3));
+                nodes->SetId(first + 3, third);
+            }
+            type = type == VTK_VOXEL ? VTK_HEXAHEDRON : VTK_QUAD;
+        }
+        cells->InsertNextCell(nodes);
+        types->InsertNextValue(static_cast<unsigned char>(type));
+    }
+    grid.SetCells(types, cells, grid.GetFaceLocations(), grid.GetFaces());
+}
+
 void add_zone(Field& field, const std::string& name, vtkDataObject* object, const ReadOptions& options) {
     auto* data = vtkDataSet::SafeDownCast(object);
     if (data == nullptr || data->GetNumberOfPoints() == 0) {
@@ -119,6 +161,7 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, cons
     zone.name = name;
     zone.id = static_cast<int>(field.zones.size()) + 1;
     zone.normals_into_fluid = false;
+    const auto append = vtkSmartPointer<vtkAppendFilter>::New();  // holds what it makes
     if (auto* surface = vtkPolyData::SafeDownCast(data)) {
         zone.surface = vtkSmartPointer<vtkPolyData>::New();
         zone.surface->ShallowCopy(surface);
@@ -127,13 +170,19 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, cons
         zone.volume->ShallowCopy(grid);
         zone.kind = ZoneKind::fluid;
     } else {
-        field.problems.push_back({core::Problem::Severity::warning,
-                                  "zone " + name + " is a " + data->GetClassName() + ", which is not read",
-                                  {field.files.front(), {}, {}, {}}});
-        return;
+        // Structured grids, images and the like: their cells one by one.
+        append->AddInputData(data);
+        append->Update();
+        data = append->GetOutput();
+        zone.volume = vtkSmartPointer<vtkUnstructuredGrid>::New();
+        zone.volume->ShallowCopy(data);
+        zone.kind = ZoneKind::fluid;
     }
     if (!matches_any(options.zones, name) || (zone.volume != nullptr && options.surfaces_only)) {
         return;
+    }
+    if (zone.volume != nullptr) {
+        go_round_corners(*zone.volume);
     }
     add_arrays(zone, *data->GetPointData(), Location::nodes, options);
     vtkDataSet* own =
@@ -173,16 +222,125 @@ void add_tree(Field& field, const std::string& path, vtkDataObject* object, cons
     }
 }
 
-template <typename Reader>
-vtkSmartPointer<vtkDataObject> output_of(Reader& reader, const fs::path& path) {
-    VtkProblems problems(reader);
-    reader.SetFileName(path.c_str());
-    reader.Update();
-    if (problems.any() || reader.GetErrorCode() != vtkErrorCode::NoError) {
+[[noreturn]] void refuse(const fs::path& path, const std::string& what) {
+    throw core::InputError("format", what, {path.string(), {}, {}, {}}, "the file is cut short or damaged");
+}
+
+void check_cells(const fs::path& path, vtkCellArray* cells, vtkIdType points) {
+    const vtkIdType entries = cells != nullptr ? cells->GetNumberOfConnectivityIds() : 0;
+    vtkIdType before = 0;
+    if (cells != nullptr && cells->GetOffsetsArray()->GetNumberOfTuples() != cells->GetNumberOfCells() + 1) {
+        refuse(path, "a list of cells without its offsets");
+    }
+    for (vtkIdType i = 0; cells != nullptr && i <= cells->GetNumberOfCells(); ++i) {
+        const auto offset = static_cast<vtkIdType>(cells->GetOffsetsArray()->GetComponent(i, 0));
+        if (offset < before || offset > entries || (i == 0 && offset != 0)) {
+            refuse(path, "cell " + std::to_string(i) + " lies outside the list of corners");
+        }
+        before = offset;
+    }
+    for (vtkIdType k = 0; k < entries; ++k) {
+        const auto node = static_cast<vtkIdType>(cells->GetConnectivityArray()->GetComponent(k, 0));
+        if (node < 0 || node >= points) {
+            refuse(path, "a cell names point " + std::to_string(node) + " of " + std::to_string(points));
+        }
+    }
+}
+
+void check_arrays(const fs::path& path, vtkDataSetAttributes* data, vtkIdType items) {
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+        if (vtkAbstractArray* array = data->GetAbstractArray(i); array != nullptr && array->GetNumberOfTuples() != items) {
+            refuse(path, std::string("array '") + (array->GetName() != nullptr ? array->GetName() : "") + "' has " +
+                             std::to_string(array->GetNumberOfTuples()) + " values for " + std::to_string(items) + " places");
+        }
+    }
+}
+
+/// Each polyhedron's list of faces must lie within the stream, and name points that there are.
+void check_polyhedra(const fs::path& path, vtkUnstructuredGrid& grid) {
+    vtkIdTypeArray* faces = grid.GetFaces();
+    vtkIdTypeArray* places = grid.GetFaceLocations();
+    if (faces == nullptr || places == nullptr) {
+        return;
+    }
+    const vtkIdType size = faces->GetNumberOfTuples();
+    const auto at = [&](vtkIdType i) {
+        if (i < 0 || i >= size) {
+            refuse(path, "the faces of a polyhedron lie outside their list");
+        }
+        return faces->GetValue(i);
+    };
+    for (vtkIdType c = 0; c < places->GetNumberOfTuples(); ++c) {
+        vtkIdType i = places->GetValue(c);
+        if (i < 0) {
+            continue;
+        }
+        for (vtkIdType count = at(i++); count > 0; --count) {
+            for (vtkIdType corners = at(i++); corners > 0; --corners) {
+                if (const vtkIdType node = at(i++); node < 0 || node >= grid.GetNumberOfPoints()) {
+                    refuse(path, "a polyhedron names point " + std::to_string(node) + " of " +
+                                     std::to_string(grid.GetNumberOfPoints()));
+                }
+            }
+        }
+    }
+}
+
+/// VTK takes indices and lengths as they come; wrong ones would crash whoever uses them.
+void check_leaf(const fs::path& path, vtkDataSet& data) {
+    const vtkIdType points = data.GetNumberOfPoints();
+    if (auto* surface = vtkPolyData::SafeDownCast(&data)) {
+        for (auto* cells : {surface->GetVerts(), surface->GetLines(), surface->GetPolys(), surface->GetStrips()}) {
+            check_cells(path, cells, points);
+        }
+    } else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(&data)) {
+        check_cells(path, grid->GetCells(), points);
+        if (grid->GetCellTypesArray() != nullptr && grid->GetCellTypesArray()->GetNumberOfTuples() != grid->GetNumberOfCells()) {
+            refuse(path, "its cells and their kinds differ in number");
+        }
+        check_polyhedra(path, *grid);
+    }
+    check_arrays(path, data.GetPointData(), points);
+    check_arrays(path, data.GetCellData(), data.GetNumberOfCells());
+}
+
+void check_leaves(const fs::path& path, vtkDataObject* object) {
+    if (auto* tree = vtkDataObjectTree::SafeDownCast(object)) {
+        auto walk = vtkSmartPointer<vtkDataObjectTreeIterator>::New();
+        walk->SetDataSet(tree);
+        for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem()) {
+            check_leaves(path, walk->GetCurrentDataObject());
+        }
+    } else if (auto* data = vtkDataSet::SafeDownCast(object)) {
+        check_leaf(path, *data);
+    }
+}
+
+/// `prepare` makes a reader ready, file name included; it is called for the trial and for the reading proper.
+template <typename Reader, typename Prepare>
+vtkSmartPointer<vtkDataObject> output_of(const fs::path& path, Prepare&& prepare) {
+    try_in_child(path, [&] {
+        auto reader = vtkSmartPointer<Reader>::New();
+        const VtkProblems problems(*reader);
+        prepare(*reader);
+        reader->Update();
+        check_leaves(path, reader->GetOutputDataObject(0));
+    });
+    auto reader = vtkSmartPointer<Reader>::New();
+    const VtkProblems problems(*reader);
+    prepare(*reader);
+    reader->Update();
+    if (problems.any() || reader->GetErrorCode() != vtkErrorCode::NoError) {
         throw core::InputError("format", "VTK cannot read it: " + problems.first(), {path.string(), {}, {}, {}},
                                "the file is cut short or damaged");
     }
-    return reader.GetOutputDataObject(0);
+    check_leaves(path, reader->GetOutputDataObject(0));
+    return reader->GetOutputDataObject(0);
+}
+
+template <typename Reader>
+vtkSmartPointer<vtkDataObject> output_of(const fs::path& path) {
+    return output_of<Reader>(path, [&](Reader& reader) { reader.SetFileName(path.c_str()); });
 }
 
 Field field_for(const fs::path& path, const std::string& format) {
@@ -210,20 +368,20 @@ bool is_xml(std::string_view head, const fs::path& /*path*/) {
 }
 Field read_xml(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
     if (core::lower_case(path.extension().string()) == ".vtm") {
-        auto reader = vtkSmartPointer<vtkXMLMultiBlockDataReader>::New();
-        return read_one(path, "VTK XML", output_of(*reader, path), options);
+        return read_one(path, "VTK XML", output_of<vtkXMLMultiBlockDataReader>(path), options);
     }
-    auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();
-    return read_one(path, "VTK XML", output_of(*reader, path), options);
+    return read_one(path, "VTK XML", output_of<vtkXMLGenericDataObjectReader>(path), options);
 }
 
 bool is_legacy(std::string_view head, const fs::path& /*path*/) { return head.starts_with("# vtk DataFile"); }
 Field read_legacy(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
-    auto reader = vtkSmartPointer<vtkGenericDataObjectReader>::New();
-    reader->ReadAllScalarsOn();
-    reader->ReadAllVectorsOn();
-    reader->ReadAllFieldsOn();
-    return read_one(path, "VTK legacy", output_of(*reader, path), options);
+    const auto prepare = [&](vtkGenericDataObjectReader& reader) {
+        reader.SetFileName(path.c_str());
+        reader.ReadAllScalarsOn();
+        reader.ReadAllVectorsOn();
+        reader.ReadAllFieldsOn();
+    };
+    return read_one(path, "VTK legacy", output_of<vtkGenericDataObjectReader>(path, prepare), options);
 }
 
 bool is_surface(std::string_view head, const fs::path& path) {
@@ -247,14 +405,11 @@ Field read_surface(const fs::path& path, const ReadOptions& options, core::Progr
     const std::string ending = core::lower_case(path.extension().string());
     Field field;
     if (ending == ".ply") {
-        auto reader = vtkSmartPointer<vtkPLYReader>::New();
-        field = read_one(path, "surface (PLY)", output_of(*reader, path), options);
+        field = read_one(path, "surface (PLY)", output_of<vtkPLYReader>(path), options);
     } else if (ending == ".obj") {
-        auto reader = vtkSmartPointer<vtkOBJReader>::New();
-        field = read_one(path, "surface (OBJ)", output_of(*reader, path), options);
+        field = read_one(path, "surface (OBJ)", output_of<vtkOBJReader>(path), options);
     } else {
-        auto reader = vtkSmartPointer<vtkSTLReader>::New();
-        field = read_one(path, "surface (STL)", output_of(*reader, path), options);
+        field = read_one(path, "surface (STL)", output_of<vtkSTLReader>(path), options);
     }
     return field;
 }
@@ -269,115 +424,14 @@ bool is_tecplot(std::string_view head, const fs::path& /*path*/) {
            text.find("variables") != std::string::npos && text.find('=') != std::string::npos;
 }
 Field read_tecplot(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
-    auto reader = vtkSmartPointer<vtkTecplotReader>::New();
-    reader->SetFileName(path.c_str());
-    reader->UpdateInformation();
-    for (int i = 0; i < reader->GetNumberOfDataArrays(); ++i) {
-        reader->SetDataArrayStatus(reader->GetDataArrayName(i), 1);
-    }
-    return read_one(path, "Tecplot ASCII", output_of(*reader, path), options);
-}
-
-/// A folder with constant/polyMesh, or the .foam or controlDict file that stands for one.
-fs::path foam_folder(const fs::path& path) {
-    for (const fs::path& folder : {path, path.parent_path(), path.parent_path().parent_path()}) {
-        std::error_code error;
-        if (fs::is_directory(folder / "constant" / "polyMesh", error)) {
-            return folder;
+    const auto prepare = [&](vtkTecplotReader& reader) {
+        reader.SetFileName(path.c_str());
+        reader.UpdateInformation();
+        for (int i = 0; i < reader.GetNumberOfDataArrays(); ++i) {
+            reader.SetDataArrayStatus(reader.GetDataArrayName(i), 1);
         }
-    }
-    return {};
-}
-bool is_foam(std::string_view head, const fs::path& path) {
-    std::error_code error;
-    if (fs::is_directory(path, error)) {
-        return foam_folder(path) == path;
-    }
-    const std::string name = path.filename().string();
-    return (path.extension() == ".foam" ||
-            (name == "controlDict" && head.find("FoamFile") != std::string_view::npos)) &&
-           !foam_folder(path).empty();
-}
-
-/// "dimensions [0 2 -2 0 0 0 0];" of a field file of the last time step.
-std::string foam_dimensions(const fs::path& file) {
-    std::ifstream in(file);
-    std::string line;
-    for (int lines = 0; lines < 60 && std::getline(in, line); ++lines) {
-        if (core::trimmed(line).starts_with("dimensions")) {
-            const std::size_t open = line.find('[');
-            const std::size_t close = line.find(']');
-            if (open != std::string::npos && close != std::string::npos && close > open) {
-                return std::string(core::trimmed(line.substr(open + 1, close - open - 1)));
-            }
-        }
-    }
-    return {};
-}
-
-Field read_foam(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
-    const fs::path folder = foam_folder(path);
-    const fs::path control = folder / "system" / "controlDict";
-    if (!fs::is_regular_file(control)) {
-        throw core::InputError("missing", "the case has no system/controlDict", {folder.string(), {}, {}, {}});
-    }
-    auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
-    VtkProblems problems(*reader);
-    reader->SetFileName(control.c_str());
-    reader->UpdateInformation();
-    reader->EnableAllPatchArrays();
-    reader->EnableAllCellArrays();
-    reader->EnableAllPointArrays();
-    reader->CreateCellToPointOff();
-    double last = 0;
-    if (vtkDoubleArray* times = reader->GetTimeValues(); times != nullptr && times->GetNumberOfTuples() > 0) {
-        last = times->GetValue(times->GetNumberOfTuples() - 1);
-        reader->UpdateTimeStep(last);
-    }
-    progress.check();
-    reader->Update();
-    if (problems.any()) {
-        throw core::InputError("format", "VTK cannot read the case: " + problems.first(),
-                               {folder.string(), {}, {}, {}});
-    }
-    ReadOptions with_units = options;
-    const fs::path step = folder / core::format_number(last);
-    if (foam_dimensions(step / "p") == "0 2 -2 0 0 0 0") {
-        with_units.units.emplace_back("p", "m^2/s^2");
-    }
-    Field field = field_for(folder, "OpenFOAM");
-    add_tree(field, "", reader->GetOutput(), with_units);
-    field.metadata.emplace_back("time", core::format_number(last));
-    for (auto& zone : field.zones) {
-        const std::size_t slash = zone.name.find_last_of('/');
-        zone.name = slash == std::string::npos ? zone.name : zone.name.substr(slash + 1);
-    }
-    // patch types: wall, patch, symmetryPlane ...
-    std::ifstream boundary(folder / "constant" / "polyMesh" / "boundary");
-    std::string word;
-    std::string before;
-    std::string patch;
-    while (boundary >> word) {
-        if (word == "{") {
-            patch = before;
-        } else if (before == "type") {
-            const std::string type = word.substr(0, word.find(';'));
-            for (auto& zone : field.zones) {
-                if (zone.name == patch && zone.surface != nullptr) {
-                    zone.original_kind = type;
-                    zone.kind = type == "wall"                 ? ZoneKind::wall
-                                : type.starts_with("symmetry") ? ZoneKind::symmetry
-                                : type.starts_with("cyclic")   ? ZoneKind::periodic
-                                                               : ZoneKind::unknown;
-                }
-            }
-        }
-        before = word;
-    }
-    field.problems.push_back({core::Problem::Severity::note,
-                              "patch normals of OpenFOAM point out of the fluid; they are given as stored",
-                              {folder.string(), {}, {}, {}}});
-    return field;
+    };
+    return read_one(path, "Tecplot ASCII", output_of<vtkTecplotReader>(path, prepare), options);
 }
 
 }  // namespace
@@ -386,6 +440,5 @@ Importer vtk_xml_importer() { return {"VTK XML", is_xml, read_xml}; }
 Importer vtk_legacy_importer() { return {"VTK legacy", is_legacy, read_legacy}; }
 Importer surface_file_importer() { return {"surface (STL, PLY, OBJ)", is_surface, read_surface}; }
 Importer tecplot_importer() { return {"Tecplot ASCII", is_tecplot, read_tecplot}; }
-Importer openfoam_importer() { return {"OpenFOAM", is_foam, read_foam}; }
 
 }  // namespace underbody::postproc

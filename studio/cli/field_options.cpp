@@ -8,6 +8,7 @@
 #include "core/name_pattern.h"
 #include "core/table.h"
 #include "core/text.h"
+#include "core/units.h"
 
 namespace underbody::studio {
 
@@ -20,12 +21,16 @@ void FieldOptions::add_to(CLI::App& command, bool with_zones) {
     command.add_option("--length-unit", length_unit, "unit of coordinates that the file does not say (mm, inch ...)");
     command.add_option("--unit", units, "unit of a variable that the file does not say: \"Pressure=Pa\"");
     command.add_option("--mesh", mesh, "the mesh or case file that a results file belongs to")->check(CLI::ExistingFile);
+    command.add_option("--time", time, "which time of a file with several (EnSight, OpenFOAM): a time that it states; default: the last");
 }
 
 postproc::ReadOptions FieldOptions::read_options() const {
     postproc::ReadOptions options;
     options.length_unit = length_unit;
     options.companion = mesh;
+    if (!time.empty()) {
+        options.time = core::parse_in(time, "s");
+    }
     for (const auto& text : units) {
         const auto equals = text.rfind('=');
         if (equals == std::string::npos || equals == 0) {

@@ -13,12 +13,13 @@ class App;
 
 namespace underbody::studio {
 
-/// --zones, --length-unit, --unit, --mesh.
+/// --zones, --length-unit, --unit, --mesh, --time.
 struct FieldOptions {
     std::vector<std::string> zones;
     std::string length_unit;
     std::vector<std::string> units;
     std::string mesh;
+    std::string time;
 
     void add_to(CLI::App& command, bool with_zones = true);
     /// Throws core::UsageError for a --unit without '='.

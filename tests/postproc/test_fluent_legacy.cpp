@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <vtkCellType.h>
 
+#include <array>
+#include <cstdio>
 #include <fstream>
 
 #include "core/file.h"
@@ -73,7 +75,7 @@ TEST(FluentLegacy, ACaseCutAnywhereIsRefusedOrWhole) {
     for (const char* name : {"ascii.cas", "single.cas", "double.cas"}) {
         const std::string whole = core::read_file(data(name));
         const core::TemporaryFolder folder;
-        for (std::size_t size = 1; size < whole.size(); size += 2) {
+        for (std::size_t size = 1; size < whole.size(); size += 3) {
             const auto path = alone(folder, whole.substr(0, size), "cut.cas");
             try {
                 const auto field = read_field(path);
@@ -134,7 +136,7 @@ TEST(FluentLegacy, WrongCountsAndIndicesAreRefusedWithTheirPlace) {
     EXPECT_THAT(reason("(10 (1 1 12 1 3)", "(10 (1 1 7fffffff 1 3)"), HasSubstr("of 18"));
     EXPECT_THAT(reason("4 8 7 6 5 1 4", "4 8 7 6 ff 1 4"), HasSubstr("names node 255"));
     EXPECT_THAT(reason("4 8 7 6 5 1 4", "4 8 7 6 5 1 44"), HasSubstr("names cell 68"));
-    EXPECT_THAT(reason("4 8 7 6 5 1 4", "ffffffff 8 7 6 5 1 4"), HasSubstr("bytes are left"));
+    EXPECT_THAT(reason("4 8 7 6 5 1 4", "ffffffff 8 7 6 5 1 4"), HasSubstr("more than the bytes of the file can hold"));
     EXPECT_THAT(reason("4 8 7 6 5 1 4", "4 8 7 6 -5 1 4"), HasSubstr("expected a number, found '-'"));
     EXPECT_THAT(reason("0 0 0\n", "0,5 0 0\n"), HasSubstr("byte "));
     EXPECT_THAT(reason("(2 3)", "(2 4)"), HasSubstr("dimension is 4"));
@@ -145,6 +147,59 @@ TEST(FluentLegacy, WrongCountsAndIndicesAreRefusedWithTheirPlace) {
         windows += c == '\n' ? "\r\n" : std::string(1, c);
     }
     EXPECT_EQ(test::cells_of(read_field(alone(folder, windows, "windows.cas"))), 5);
+    EXPECT_EQ(test::cells_of(read_field(alone(folder, "\xEF\xBB\xBF" + whole, "marked.cas"))), 5);
+    EXPECT_THAT(reason("0 0 0\n", "0,5 0 0\n"), HasSubstr("decimal comma"));
+}
+
+TEST(FluentLegacy, LongBodiesReadByManyThreadsAreRefusedWhereTheyAreWrong) {
+    // A strip of 20000 quadrilaterals in 2-D: bodies of several pieces.
+    const std::size_t cells = 20000;
+    std::string text = "(0 \"strip\")\n(2 2)\n(12 (0 1 4e20 0))\n(12 (2 1 4e20 1 3))\n(13 (0 1 ea61 0))\n(10 (0 1 9c42 0 2))\n";
+    const auto hex = [](std::size_t value) {
+        std::array<char, 20> digits{};
+        std::snprintf(digits.data(), digits.size(), "%zx", value);
+        return std::string(digits.data());
+    };
+    std::string inner;
+    std::string outer;
+    // Nodes: bottom i -> 2 i + 1, top i -> 2 i + 2. An edge has its c0 to the left.
+    for (std::size_t i = 0; i <= cells; ++i) {
+        const std::string left = hex(i);
+        const std::string right = hex(i + 1);
+        if (i == 0) {
+            outer += "2 1 1 0\n";
+        } else if (i == cells) {
+            outer += hex(2 * i + 1) + " " + hex(2 * i + 2) + " " + left + " 0\n";
+        } else {
+            inner += hex(2 * i + 1) + " " + hex(2 * i + 2) + " " + left + " " + right + "\n";
+        }
+        if (i < cells) {
+            outer += hex(2 * i + 1) + " " + hex(2 * i + 3) + " " + right + " 0\n";
+            outer += hex(2 * i + 4) + " " + hex(2 * i + 2) + " " + right + " 0\n";
+        }
+    }
+    text += "(13 (3 1 4e1f 2 2)(\n" + inner + "))\n(13 (4 4e20 ea61 3 2)(\n" + outer + "))\n(10 (1 1 9c42 1 2)(\n";
+    for (std::size_t i = 0; i <= cells; ++i) {
+        text += std::to_string(i) + ".5 0\n" + std::to_string(i) + ".5e0 1\n";
+    }
+    text += "))\n";
+    const core::TemporaryFolder folder;
+    const auto field = read_field(alone(folder, text, "strip.cas"));
+    EXPECT_EQ(test::cells_of(field), static_cast<long long>(cells));
+    EXPECT_NEAR(test::volume_of(field), static_cast<double>(cells), 1e-6);
+    EXPECT_EQ(field.find("wall-4")->surface->GetNumberOfCells(), static_cast<vtkIdType>(2 * cells + 2));
+    const auto wrong = [&](const std::string& what, const std::string& by) {
+        return test::refusal(alone(folder, replaced(text, what, by), "wrong.cas"));
+    };
+    const std::size_t face = text.find("2711 2712 1388 1389");
+    ASSERT_NE(face, std::string::npos);
+    EXPECT_THAT(wrong("2711 2712 1388 1389", "2711 2712 1388 x389"), HasSubstr("byte " + std::to_string(face + 15)));
+    EXPECT_THAT(wrong("2711 2712 1388 1389", "2711 2712 1388"), HasSubstr("ends before all"));
+    EXPECT_THAT(wrong("2711 2712 1388 1389", "2711 2712 1388 1389 7"), HasSubstr("more than its header says"));
+    EXPECT_THAT(wrong("2711 2712 1388 1389", "2711 2712 1388 1389a1389"), HasSubstr("too large"));
+    const std::size_t node = text.find("15000.5 0\n");
+    EXPECT_THAT(wrong("15000.5 0\n", "15000.5 0,0\n"), HasSubstr("byte " + std::to_string(node + 9)));
+    EXPECT_THAT(wrong("15000.5 0\n", "15000.5\n"), HasSubstr("expected a number, found ')'"));
 }
 
 TEST(FluentLegacy, DataOfAnotherCaseAreRefused) {

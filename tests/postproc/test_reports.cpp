@@ -94,4 +94,85 @@ TEST(ForceReports, BothLayoutsAreRead) {
     EXPECT_EQ(triples[2].net()->total, 3.3);
 }
 
+TEST(ForceReports, ATranscriptWithSeveralReportsGivesThemAll) {
+    const core::TemporaryFolder folder;
+    const auto reports = read_force_reports(written(
+        folder,
+        "\xEF\xBB\xBF  iter  continuity  x-velocity\r\n  10 1e-3 2e-4\r\n\r\nForces\r\n      Forces [N]     Coefficients\r\n"
+        "Zone Pressure Viscous Total Pressure Viscous Total\r\n"
+        "hull (1 2 3) (0.1 0.2 0.3) (1.1 2.2 3.3) (4 5 6) (7 8 9) (10 11 12)\r\n----- -----\r\n"
+        "Net (1 2 3) (0.1 0.2 0.3) (1.1 2.2 3.3) (4 5 6) (7 8 9) (10 11 12)\r\n\r\n"
+        "Forces - Direction Vector (0 0 -1)\r\n   Forces [lbf]   Coefficients\r\nZone Pressure Viscous Total Pressure Viscous Total\r\n"
+        "hull 1 0.5 1.5 1 2 3\r\nbase:012 2 0.5 2.5 1 2 3\r\n-----\r\nNet 3 1 4 2 4 6\r\n"
+        "Moments - Moment Center (-1.5 0 0.25) Moment Axis (0 1 0)\r\n   Moments (n-m)  Coefficients\r\n"
+        "Zone Pressure Viscous Total Pressure Viscous Total\r\nhull -1 -2 -3 0 0 0\r\n-----\r\nNet -1 -2 -3 0 0 0\r\n"
+        "reversed flow in 3 faces on pressure-outlet 8.\r\n"));
+    ASSERT_EQ(reports.size(), 5U);
+    EXPECT_EQ(reports[1].direction[1], 1);
+    EXPECT_EQ(reports[3].direction[2], -1);
+    ASSERT_EQ(reports[3].rows.size(), 3U);
+    EXPECT_EQ(reports[3].rows[1].zone, "base:012");
+    EXPECT_NEAR(reports[3].net()->total, 4 * 4.4482216, 1e-5);
+    EXPECT_EQ(reports[3].net()->total_coefficient, 6);
+    EXPECT_TRUE(reports[4].moments);
+    EXPECT_EQ(reports[4].centre[0], -1.5);
+    EXPECT_EQ(reports[4].direction[1], 1);
+    EXPECT_EQ(reports[4].net()->viscous, -2);
+}
+
+TEST(ForceReports, TheLayoutOfFluent6IsRead) {
+    const core::TemporaryFolder folder;
+    const auto reports = read_force_reports(written(
+        folder,
+        "Force vector: (1 0 0)\n                pressure   viscous     total    pressure     viscous       total\n"
+        "zone name          force     force     force coefficient coefficient coefficient\n"
+        "                       n         n         n\n--------- ------ -----\n"
+        "cylinder 1.5 0.5 2 3 1 4\n--------- ------ -----\nnet 1.5 0.5 2 3 1 4\n"));
+    ASSERT_EQ(reports.size(), 1U);
+    ASSERT_NE(reports[0].net(), nullptr);
+    EXPECT_EQ(reports[0].net()->total, 2);
+    EXPECT_EQ(reports[0].rows[0].zone, "cylinder");
+}
+
+TEST(ForceReports, ATextThatEndsWithinAReportIsRefused) {
+    const core::TemporaryFolder folder;
+    try {
+        read_force_reports(written(folder, "Forces - Direction Vector (1 0 0)\nForces (n)\nhull 1 2 3 4 5 6\n"));
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("net row is missing"));
+    }
+}
+
+TEST(Monitors, EveryHeadOfFluentIsUnderstood) {
+    const core::TemporaryFolder folder;
+    const auto transient = read_monitor(written(
+        folder, "\"lift-rfile\"\r\n\"Time Step\" \"lift etc..\"\r\n(\"Time Step\" \"lift\" \"flow-time\")\r\n1 0.5 0.01\r\n2 0.6 0.02\r\n"));
+    EXPECT_THAT(transient.columns, ElementsAre("Time Step", "lift", "flow-time"));
+    EXPECT_TRUE(transient.problems.empty());
+    const auto old = read_monitor(written(folder, "\"Convergence history of Lift\"\n\"Iterations\"\"cl-1\"\n1\t0.5\n2\t0.6\n"));
+    EXPECT_THAT(old.columns, ElementsAre("Iterations", "cl-1"));
+    const auto bare = read_monitor(written(folder, "1\t0.5\n2\t0.6"));
+    EXPECT_THAT(bare.values[1], ElementsAre(0.5, 0.6));
+    ASSERT_EQ(bare.problems.size(), 1U);
+    EXPECT_THAT(bare.problems[0].message, HasSubstr("cut short"));
+}
+
+TEST(Reports, TextsCutAnywhereAreReadOrRefused) {
+    const core::TemporaryFolder folder;
+    const std::string plot = "(title \"P\")\n(labels \"x\" \"y\")\n\n((xy/key/label \"wall\")\n0\t1.5\n1\t2.5\n)\n";
+    for (std::size_t size = 0; size < plot.size() - 2; ++size) {
+        EXPECT_THROW(read_plot(written(folder, plot.substr(0, size))), core::InputError) << size;
+    }
+    const std::string monitor = "\"l\"\n(\"Iteration\" \"lift\" \"drag\")\n1 0.5 1\n2 0.6 2\n";
+    for (std::size_t size = 0; size < monitor.size(); ++size) {
+        try {
+            const auto table = read_monitor(written(folder, monitor.substr(0, size)));
+            EXPECT_TRUE(monitor[size - 1] == '\n' || !table.problems.empty()) << size;
+        } catch (const core::InputError&) {
+            SUCCEED();
+        }
+    }
+}
+
 }  // namespace underbody

@@ -1,5 +1,7 @@
-// Legacy Fluent files against VTK 9.1's reader on the same file: time and peak memory, each reading in its own process.
+// Legacy Fluent files against VTK 9.1's reader on the same file, HDF5 against the library alone and against the disk: time
+// and peak memory, each reading in its own process.
 // Usage: bench_postproc_importers [cells along an edge, default 60]
+#include <hdf5.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,10 +36,12 @@ struct Cost {
     bool good = false;
 };
 
-/// The median of three runs, each in a fresh process.
+constexpr int repetitions = 7;
+
+/// The median of several runs, each in a fresh process.
 Cost cost_of(const std::function<long long()>& read, long long expected) {
     std::vector<Cost> runs;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < repetitions; ++i) {
         const auto start = std::chrono::steady_clock::now();
         const pid_t child = ::fork();
         if (child == 0) {
@@ -58,17 +62,20 @@ Cost cost_of(const std::function<long long()>& read, long long expected) {
             {time.count(), static_cast<double>(usage.ru_maxrss) / 1024, WIFEXITED(status) && WEXITSTATUS(status) == 0});
     }
     std::sort(runs.begin(), runs.end(), [](const Cost& a, const Cost& b) { return a.seconds < b.seconds; });
-    return runs[1];
+    return runs[runs.size() / 2];
 }
 
-/// A cube of n x n x n hexahedra with one wall zone and five cell fields.
-void write_case(const fs::path& path, std::uint32_t n, bool binary) {
-    std::FILE* out = std::fopen(path.c_str(), "wb");
+/// The faces of a cube of n x n x n hexahedra, each as four nodes and two cells: those inside it and its hull.
+struct Cube {
+    explicit Cube(std::uint32_t n);
+    std::vector<std::uint32_t> inner;
+    std::vector<std::uint32_t> outer;
+};
+
+Cube::Cube(std::uint32_t n) {
     const std::uint32_t m = n + 1;
     const auto node = [m](std::uint32_t i, std::uint32_t j, std::uint32_t k) { return 1 + i + m * (j + m * k); };
     const auto cell = [n](std::uint32_t i, std::uint32_t j, std::uint32_t k) { return 1 + i + n * (j + n * k); };
-    std::vector<std::uint32_t> inner;
-    std::vector<std::uint32_t> outer;
     const std::uint32_t step[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int d = 0; d < 3; ++d) {
         const auto* a = step[(d + 1) % 3];
@@ -95,6 +102,13 @@ void write_case(const fs::path& path, std::uint32_t n, bool binary) {
             }
         }
     }
+}
+
+/// With one wall zone and five cell fields.
+void write_case(const fs::path& path, std::uint32_t n, bool binary) {
+    const auto [inner, outer] = Cube(n);
+    std::FILE* out = std::fopen(path.c_str(), "wb");
+    const std::uint32_t m = n + 1;
     const std::size_t faces = (inner.size() + outer.size()) / 6;
     std::fprintf(out,
                  "(0 \"bench\")\n(2 3)\n(4 (60 0 0 1 2 4 4 4 8 8 8 4))\n(10 (0 1 %x 0 3))\n(12 (0 1 %x 0 0))\n(13 (0 1 "
@@ -155,6 +169,148 @@ void write_case(const fs::path& path, std::uint32_t n, bool binary) {
     std::fclose(data);
 }
 
+/// The same as .cas.h5 and .dat.h5; deflated at level 1 as Fluent does by default, or not at all.
+void write_hdf5(const fs::path& path, std::uint32_t n, bool deflated) {
+    const auto [inner, outer] = Cube(n);
+    const std::uint32_t m = n + 1;
+    const std::uint32_t nodes = m * m * m;
+    const std::uint32_t cells = n * n * n;
+    const auto faces = static_cast<std::uint32_t>((inner.size() + outer.size()) / 6);
+    const hid_t links = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    hid_t file = -1;
+    const auto attribute = [&](const std::string& object, const char* name, std::int64_t value) {
+        const hid_t at = H5Oopen(file, object.c_str(), H5P_DEFAULT);
+        const hid_t space = H5Screate(H5S_SCALAR);
+        const hid_t made = H5Acreate2(at, name, H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT);
+        H5Awrite(made, H5T_NATIVE_INT64, &value);
+        H5Aclose(made);
+        H5Sclose(space);
+        H5Oclose(at);
+    };
+    const auto set = [&](const std::string& name, hid_t type, const void* values, std::vector<hsize_t> size) {
+        const hid_t space = H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr);
+        const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+        if (deflated) {
+            size[0] = std::min<hsize_t>(size[0], 65536);
+            H5Pset_chunk(properties, static_cast<int>(size.size()), size.data());
+            H5Pset_deflate(properties, 1);
+        }
+        const hid_t made = H5Dcreate2(file, name.c_str(), type, space, links, properties, H5P_DEFAULT);
+        H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+        H5Dclose(made);
+        H5Pclose(properties);
+        H5Sclose(space);
+    };
+    const auto ids = [&](const std::string& name, std::int64_t first, std::int64_t last) {
+        attribute(name, "minId", first);
+        attribute(name, "maxId", last);
+    };
+    const auto numbers = [&](const std::string& name, const std::vector<std::uint32_t>& values) {
+        set(name, H5T_NATIVE_UINT32, values.data(), {values.size()});
+    };
+    const std::string root = "/meshes/1";
+    file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    H5Gclose(H5Gcreate2(file, root.c_str(), links, H5P_DEFAULT, H5P_DEFAULT));
+    attribute(root, "dimension", 3);
+    attribute(root, "nodeCount", nodes);
+    attribute(root, "faceCount", faces);
+    attribute(root, "cellCount", cells);
+    std::vector<double> points;
+    for (std::uint32_t i = 0; i < nodes; ++i) {
+        points.insert(points.end(), {i % m / 7.0, i / m % m / 11.0, i / m / m / 13.0});
+    }
+    set(root + "/nodes/coords/1", H5T_NATIVE_DOUBLE, points.data(), {nodes, 3});
+    ids(root + "/nodes/coords/1", 1, nodes);
+    const auto zones = [&](const std::string& where, const std::vector<std::vector<std::uint32_t>>& columns) {
+        const char* names[] = {"id", "minId", "maxId", "zoneType"};
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            numbers(root + where + "/zoneTopology/" + names[c], columns[c]);
+        }
+    };
+    const auto inside = static_cast<std::uint32_t>(inner.size() / 6);
+    zones("/cells", {{2}, {1}, {cells}, {1}});
+    zones("/faces", {{3, 4}, {1, inside + 1}, {inside, faces}, {2, 3}});
+    std::vector<std::uint32_t> corners;
+    std::vector<std::uint32_t> beside[2];
+    for (const auto* list : {&inner, &outer}) {
+        for (std::size_t i = 0; i < list->size(); i += 6) {
+            corners.insert(corners.end(), list->begin() + static_cast<std::ptrdiff_t>(i), list->begin() + static_cast<std::ptrdiff_t>(i) + 4);
+            beside[0].push_back((*list)[i + 4]);
+            if (list == &inner) {
+                beside[1].push_back((*list)[i + 5]);
+            }
+        }
+    }
+    numbers(root + "/faces/nodes/1/nnodes", std::vector<std::uint32_t>(faces, 4));
+    numbers(root + "/faces/nodes/1/nodes", corners);
+    ids(root + "/faces/nodes/1", 1, faces);
+    for (int side = 0; side < 2; ++side) {
+        const std::string name = root + (side == 0 ? "/faces/c0/1" : "/faces/c1/1");
+        numbers(name, beside[side]);
+        ids(name, 1, side == 0 ? faces : inside);
+    }
+    H5Fclose(file);
+    std::string data = path.string();
+    data.replace(data.size() - 6, 3, "dat");
+    file = H5Fcreate(data.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    std::vector<double> values(cells);
+    for (const char* variable : {"SV_P", "SV_T", "SV_U", "SV_V", "SV_W"}) {
+        for (std::uint32_t i = 0; i < cells; ++i) {
+            values[i] = static_cast<double>(variable[3]) + i / 3.0;
+        }
+        const std::string name = std::string("/results/1/phase-1/cells/") + variable + "/1";
+        set(name, H5T_NATIVE_DOUBLE, values.data(), {cells});
+        ids(name, 1, cells);
+    }
+    H5Fclose(file);
+    H5Pclose(links);
+}
+
+/// All bytes of a case and its data, as they lie on the disk.
+long long read_bytes(const fs::path& path) {
+    long long total = 0;
+    std::vector<char> block(std::size_t{1} << 20);
+    for (const auto& entry : fs::directory_iterator(path.parent_path())) {
+        if (entry.path().filename().string().starts_with(path.stem().stem().string())) {
+            std::FILE* in = std::fopen(entry.path().c_str(), "rb");
+            for (std::size_t got = 1; got > 0;) {
+                got = std::fread(block.data(), 1, block.size(), in);
+                total += static_cast<long long>(got);
+            }
+            std::fclose(in);
+        }
+    }
+    return total;
+}
+
+/// Every data set through the library alone, into memory that is thrown away.
+long long read_by_library(const fs::path& path) {
+    long long values = 0;
+    const auto visit = [](hid_t object, const char* name, const H5O_info_t* info, void* total) -> herr_t {
+        if (info->type == H5O_TYPE_DATASET) {
+            const hid_t set = H5Dopen2(object, name, H5P_DEFAULT);
+            const hid_t space = H5Dget_space(set);
+            const hid_t type = H5Dget_type(set);
+            std::vector<double> memory(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+            H5Dread(set, H5Tget_class(type) == H5T_FLOAT ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, memory.data());
+            *static_cast<long long*>(total) += static_cast<long long>(memory.size());
+            H5Tclose(type);
+            H5Sclose(space);
+            H5Dclose(set);
+        }
+        return 0;
+    };
+    for (const char* kind : {"cas", "dat"}) {
+        std::string name = path.string();
+        name.replace(name.size() - 6, 3, kind);
+        const hid_t file = H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+        H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &values);
+        H5Fclose(file);
+    }
+    return values > 0 ? 0 : -1;
+}
+
 long long read_ours(const fs::path& path, bool surfaces_only) {
     postproc::ReadOptions options;
     options.surfaces_only = surfaces_only;
@@ -187,7 +343,7 @@ int main(int count, char** arguments) {
     const auto n = static_cast<std::uint32_t>(count > 1 ? std::atoi(arguments[1]) : 60);
     const core::TemporaryFolder folder;
     const Cost nothing = cost_of([] { return 0LL; }, 0);
-    std::printf("%u hexahedra, five fields; median of three, memory above %.0f MB of the bare process\n", n * n * n,
+    std::printf("%u hexahedra, five fields; median of seven, memory above %.0f MB of the bare process\n", n * n * n,
                 nothing.megabytes);
     bool good = true;
     for (const bool binary : {false, true}) {
@@ -204,6 +360,23 @@ int main(int count, char** arguments) {
             binary ? "binary" : "ASCII", ours.seconds, memory(ours), surface.seconds, memory(surface), vtk.seconds,
             memory(vtk), vtk.good ? "" : " (failed)", vtk.seconds / ours.seconds, memory(ours) / memory(vtk));
         good = good && ours.good && surface.good;
+    }
+    for (const bool deflated : {false, true}) {
+        const fs::path path = folder.path() / (deflated ? "deflated.cas.h5" : "plain.cas.h5");
+        write_hdf5(path, n, deflated);
+        const long long cells = static_cast<long long>(n) * n * n;
+        const long long bytes = read_bytes(path);
+        const Cost plain = cost_of([&] { return read_bytes(path); }, bytes);
+        const Cost library = cost_of([&] { return read_by_library(path); }, 0);
+        const Cost ours = cost_of([&] { return read_ours(path, false); }, cells);
+        const Cost surface = cost_of([&] { return read_ours(path, true); }, 6LL * n * n);
+        const auto memory = [&](const Cost& cost) { return cost.megabytes - nothing.megabytes; };
+        std::printf(
+            "HDF5, %s: ours %.3f s (%.0f MB/s) %.0f MB | surface alone %.3f s %.0f MB | the library alone %.3f s | bytes "
+            "from the disk's cache %.3f s (%.0f MB)\n",
+            deflated ? "deflated" : "plain", ours.seconds, static_cast<double>(bytes) / 1e6 / ours.seconds, memory(ours),
+            surface.seconds, memory(surface), library.seconds, plain.seconds, static_cast<double>(bytes) / 1e6);
+        good = good && ours.good && surface.good && library.good;
     }
     return good ? 0 : 1;
 }

@@ -1,0 +1,164 @@
+// OpenFOAM cases (tests/data/openfoam: a closed box whose lid moves, solved by pisoFoam) in every coding, against the
+// solver's own forces.
+#include <gmock/gmock.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+
+#include <fstream>
+
+#include "core/file.h"
+#include "import_support.h"
+#include "postproc/loads.h"
+#include "tests/support/support.h"
+
+namespace underbody {
+
+using postproc::read_field;
+using postproc::ReadOptions;
+using ::testing::HasSubstr;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path data(const std::string& name) { return test::data_folder() / "openfoam" / name; }
+
+void copy_case(const fs::path& from, const fs::path& to) {
+    fs::create_directories(to.parent_path());
+    fs::copy(from, to, fs::copy_options::recursive);
+}
+
+void expect_near(const postproc::Vector& found, const postproc::Vector& wanted, double tolerance) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(found[k], wanted[k], tolerance) << k;
+    }
+}
+
+}  // namespace
+
+TEST(OpenFoam, ForcesAreThoseOfTheSolverInEveryCoding) {
+    // What the function object "forces" wrote with rhoInf 998 and CofR (0.01 0.02 0.03), at time 0.005.
+    const postproc::Vector pressure = {6.5012259765e-01, -3.4919910512e-05, 0};
+    const postproc::Vector viscous = {-7.7722379715e-01, 2.8108892963e-06, -2.3021970998e-09};
+    const postproc::Vector moment = {-8.0286963578e-07, 3.1775301365e-03, 3.1460048518e-02};
+    for (const char* name : {"ascii", "binary", "packed", "decomposed"}) {
+        SCOPED_TRACE(name);
+        const auto field = read_field(data(name));
+        EXPECT_EQ(field.format, "OpenFOAM");
+        EXPECT_EQ(test::cells_of(field), 32);
+        EXPECT_NEAR(test::volume_of(field), 0.1 * 0.1 * 0.01, 1e-12);
+        const auto* cells = field.find("internalMesh");
+        ASSERT_NE(cells, nullptr);
+        EXPECT_EQ(test::count_cells(*cells->volume, VTK_HEXAHEDRON), 32);
+        EXPECT_EQ(cells->volume->GetNumberOfPoints(), 75);
+        const auto* lid = field.find("movingWall");
+        ASSERT_NE(lid, nullptr);
+        EXPECT_EQ(lid->kind, postproc::ZoneKind::wall);
+        EXPECT_EQ(test::range_of(*lid->surface, "velocity").low, 1);  // fixedValue uniform (1 0 0)
+        EXPECT_EQ(test::range_of(*field.find("fixedWalls")->surface, "velocity").high, 0);  // noSlip
+        postproc::LoadsOptions options;
+        options.zones = {"*Wall*"};
+        options.reference = postproc::Vector{0.01, 0.02, 0.03};
+        options.references.density = 998;
+        const auto loads = postproc::loads(field, options);
+        EXPECT_EQ(loads.values_from, "faces");
+        expect_near(loads.pressure.force, pressure, 1e-8);
+        expect_near(loads.viscous.force, viscous, 1e-8);
+        expect_near(loads.total.moment, moment, 1e-9);
+    }
+}
+
+TEST(OpenFoam, PressureOverDensityIsNoPressure) {
+    const auto field = read_field(data("ascii"));
+    const auto* lid = field.find("movingWall");
+    EXPECT_EQ(lid->find("pressure"), nullptr);
+    ASSERT_NE(lid->find("kinematic_pressure"), nullptr);
+    EXPECT_EQ(lid->find("kinematic_pressure")->unit, "m^2/s^2");
+    ASSERT_NE(lid->find("kinematic_wall_shear"), nullptr);
+    EXPECT_EQ(lid->find("wall_shear"), nullptr);
+    EXPECT_THROW(postproc::loads(field), core::InputError);  // no density
+}
+
+TEST(OpenFoam, ATimeIsChosenOrTheNearestIsNamed) {
+    ReadOptions options;
+    options.time = 0.0025;
+    const auto early = read_field(data("ascii"), options);
+    const auto late = read_field(data("ascii"));
+    EXPECT_NE(test::range_of(*early.find("movingWall")->surface, "kinematic_pressure").high,
+              test::range_of(*late.find("movingWall")->surface, "kinematic_pressure").high);
+    options.time = 0.004;
+    EXPECT_THAT(test::refusal(data("ascii"), options), HasSubstr("0.005"));
+}
+
+TEST(OpenFoam, ACaseIsFoundByItsFolderItsFoamFileAndItsControlDict) {
+    const core::TemporaryFolder folder;
+    copy_case(data("ascii"), folder.path() / "box");
+    std::ofstream(folder.path() / "box" / "box.foam") << "";
+    EXPECT_EQ(test::cells_of(read_field(folder.path() / "box")), 32);
+    EXPECT_EQ(test::cells_of(read_field(folder.path() / "box" / "system" / "controlDict")), 32);
+    std::ofstream(folder.path() / "box" / "box.foam") << "\n";
+    EXPECT_EQ(test::cells_of(read_field(folder.path() / "box" / "box.foam")), 32);
+}
+
+TEST(OpenFoam, OnlyWhatIsAskedForIsKept) {
+    ReadOptions options;
+    options.surfaces_only = true;
+    options.arrays = {"kinematic_pressure"};
+    const auto field = read_field(data("binary"), options);
+    EXPECT_EQ(test::cells_of(field), 0);
+    ASSERT_NE(field.find("movingWall"), nullptr);
+    EXPECT_EQ(field.find("movingWall")->arrays.size(), 1U);
+}
+
+TEST(OpenFoam, FilesCutAnywhereAreRefusedWithTheirPlace) {
+    for (const char* coding : {"ascii", "binary", "packed"}) {
+        const core::TemporaryFolder folder;
+        const fs::path box = folder.path() / "box";
+        copy_case(data(coding), box);
+        const std::string ending = coding == std::string("packed") ? ".gz" : "";
+        for (const char* file : {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
+                                 "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "0.005/p", "0.005/U"}) {
+            const fs::path path = fs::exists(box / (file + ending)) ? box / (file + ending) : box / file;
+            const std::string whole = core::read_file(path);
+            const std::size_t step = std::max<std::size_t>(1, whole.size() / 12);
+            // Whole up to the last bracket: what follows is comment.
+            for (std::size_t size = 1; size < whole.find_last_of(")}") && size < whole.size(); size += step) {
+                std::ofstream(path, std::ios::binary) << whole.substr(0, size);
+                const std::string reason = test::refusal(box);
+                EXPECT_THAT(reason, HasSubstr(path.filename().string())) << coding << " " << file << " cut at " << size;
+                EXPECT_THAT(reason, HasSubstr("understood so far")) << coding << " " << file << " cut at " << size;
+            }
+            std::ofstream(path, std::ios::binary) << whole;
+        }
+        EXPECT_EQ(test::cells_of(read_field(box)), 32);
+    }
+}
+
+TEST(OpenFoam, WrongCountsAndLabelsAreRefused) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const auto reason = [&](const std::string& file, const std::string& what, const std::string& by) {
+        const std::string whole = core::read_file(box / file);
+        std::string text = whole;
+        const std::size_t at = text.find(what);
+        EXPECT_NE(at, std::string::npos) << what;
+        std::ofstream(box / file, std::ios::binary) << text.replace(at, what.size(), by);
+        std::string found = test::refusal(box);
+        std::ofstream(box / file, std::ios::binary) << whole;
+        return found;
+    };
+    EXPECT_THAT(reason("constant/polyMesh/owner", "128\n(\n0\n", "128\n(\n-1\n"), HasSubstr("whole number"));
+    EXPECT_THAT(reason("constant/polyMesh/owner", "128\n(\n0\n", "128\n(\n999999\n"), HasSubstr("names cell 999999"));
+    EXPECT_THAT(reason("constant/polyMesh/owner", "128\n(", "900000000\n("), HasSubstr("bytes are left"));
+    EXPECT_THAT(reason("constant/polyMesh/faces", "4(1 6 31 26)", "4(1 6 31 2600)"), HasSubstr("names node"));
+    EXPECT_THAT(reason("constant/polyMesh/faces", "4(1 6 31 26)", "900000000(1 6 31 26)"), HasSubstr("bytes are left"));
+    EXPECT_THAT(reason("constant/polyMesh/boundary", "nFaces          8;", "nFaces          9;"), HasSubstr("should begin at"));
+    EXPECT_THAT(reason("constant/polyMesh/points", "(0 0 0)", "(0 nan 0)"), HasSubstr("not a number"));
+    EXPECT_THAT(reason("constant/polyMesh/points", "(0 0 0)", "(0,1 0 0)"), HasSubstr("points"));
+    EXPECT_THAT(reason("0.005/p", "nonuniform List<scalar> \n32\n", "nonuniform List<scalar> \n900000000\n"), HasSubstr("bytes are left"));
+    EXPECT_THAT(reason("0.005/p", "nonuniform List<scalar> \n32\n(", "nonuniform List<scalar> \n900000000{1}\n;("), HasSubstr("repeated"));
+    EXPECT_THAT(reason("0.005/U", "internalField   nonuniform", "internalField   mysterious"), HasSubstr("'mysterious'"));
+}
+
+}  // namespace underbody

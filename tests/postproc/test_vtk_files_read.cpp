@@ -1,0 +1,137 @@
+// VTK's own files and surfaces, whole and damaged: what other programs write.
+#include <gmock/gmock.h>
+#include <vtkCellData.h>
+#include <vtkPointData.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "core/file.h"
+#include "import_support.h"
+#include "postproc/vtk_files.h"
+#include "tests/support/support.h"
+
+namespace underbody {
+
+using postproc::read_field;
+using ::testing::HasSubstr;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path written(const core::TemporaryFolder& folder, const std::string& name, const std::string& text) {
+    std::ofstream(folder.path() / name, std::ios::binary) << text;
+    return folder.path() / name;
+}
+
+const std::string tetrahedron =
+    "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>\n"
+    "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float64\" Name=\"Pressure\" format=\"ascii\">1 2 3 4</DataArray></PointData>\n"
+    "<CellData><DataArray type=\"Float32\" Name=\"U\" NumberOfComponents=\"3\" format=\"ascii\">5 6 7</DataArray></CellData>\n"
+    "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>\n"
+    "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
+    "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+    "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells>\n"
+    "</Piece></UnstructuredGrid></VTKFile>\n";
+
+const std::string ply =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+
+const std::string legacy =
+    "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+    "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\nSCALARS p double 1\nLOOKUP_TABLE default\n1 2 3 4\n";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return at == std::string::npos ? text : text.replace(at, what.size(), by);
+}
+
+/// Everything that a damaged file may do is to be refused, or to be read as a mesh that is whole.
+void expect_safe(const fs::path& path) {
+    try {
+        const auto field = read_field(path);
+        EXPECT_GE(test::volume_of(field), 0);
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr(path.filename().string()));
+    }
+}
+
+}  // namespace
+
+TEST(VtkFiles, XmlLegacyAndStructuredGridsHaveTheirCellsAndArrays) {
+    const core::TemporaryFolder folder;
+    const auto xml = read_field(written(folder, "a.vtu", tetrahedron));
+    EXPECT_NEAR(test::volume_of(xml), 1.0 / 6, 1e-15);
+    EXPECT_NE(xml.zones.at(0).find("pressure"), nullptr);
+    EXPECT_NE(xml.zones.at(0).find("velocity"), nullptr);
+    const auto old = read_field(written(folder, "a.vtk", legacy));
+    EXPECT_NEAR(test::volume_of(old), 1.0 / 6, 1e-15);
+    const auto grid = read_field(written(folder, "b.vtk",
+                                         "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
+                                         "X_COORDINATES 3 double\n0 1 3\nY_COORDINATES 2 double\n0 1\nZ_COORDINATES 2 double\n0 2\n"
+                                         "CELL_DATA 2\nSCALARS p double 1\nLOOKUP_TABLE default\n1 2\n"));
+    EXPECT_EQ(test::cells_of(grid), 2);
+    EXPECT_NEAR(test::volume_of(grid), 6, 1e-12);
+    EXPECT_EQ(grid.zones.at(0).volume->GetCellData()->GetArray("pressure")->GetTuple1(1), 2);
+}
+
+TEST(VtkFiles, WhatImportWritesIsReadAgainTheSame) {
+    const core::TemporaryFolder folder;
+    const auto whole = read_field(test::data_folder() / "fluent_legacy" / "ascii.cas");
+    postproc::write_vtk(whole, folder.path() / "all.vtm");
+    const auto again = read_field(folder.path() / "all.vtm");
+    EXPECT_NEAR(test::volume_of(again), test::volume_of(whole), 1e-12);
+    postproc::write_vtk(whole, folder.path() / "all.vtp");
+    const auto surfaces = read_field(folder.path() / "all.vtp");
+    ASSERT_FALSE(surfaces.zones.empty());
+    EXPECT_NE(surfaces.zones[0].find("pressure"), nullptr);
+    postproc::write_vtk(whole, folder.path() / "all.vtu");
+    EXPECT_NEAR(test::volume_of(read_field(folder.path() / "all.vtu")), test::volume_of(whole), 1e-12);
+}
+
+TEST(VtkFiles, SurfacesInPlyObjAndBothKindsOfStlHaveTheirArea) {
+    const core::TemporaryFolder folder;
+    EXPECT_NEAR(test::area_of(*read_field(written(folder, "a.ply", ply)).zones.at(0).surface), 1, 1e-6);
+    EXPECT_NEAR(test::area_of(*read_field(written(folder, "a.obj", "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")).zones.at(0).surface), 1, 1e-6);
+    std::string stl(84 + 50, '\0');
+    const std::uint32_t one = 1;
+    const float corners[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+    std::memcpy(stl.data() + 80, &one, 4);
+    std::memcpy(stl.data() + 84, corners, sizeof corners);
+    EXPECT_NEAR(test::area_of(*read_field(written(folder, "a.stl", stl)).zones.at(0).surface), 0.5, 1e-6);
+    EXPECT_NE(test::refusal(written(folder, "b.stl", stl.substr(0, 120))), "");
+}
+
+TEST(VtkFiles, WrongIndicesCountsAndOffsetsAreRefused) {
+    const core::TemporaryFolder folder;
+    const auto xml = [&](const std::string& what, const std::string& by) {
+        return test::refusal(written(folder, "wrong.vtu", replaced(tetrahedron, what, by)));
+    };
+    EXPECT_THAT(xml("0 1 2 3</DataArray>", "0 1 2 99</DataArray>"), HasSubstr("names point 99 of 4"));
+    EXPECT_THAT(xml("0 1 2 3</DataArray>", "0 1 2 -3</DataArray>"), HasSubstr("names point -3 of 4"));
+    EXPECT_NE(xml("NumberOfPoints=\"4\"", "NumberOfPoints=\"400000000000\""), "");
+    EXPECT_NE(xml("NumberOfCells=\"1\"", "NumberOfCells=\"1000000000\""), "");
+    EXPECT_NE(xml("format=\"ascii\">4</DataArray>", "format=\"ascii\">4000</DataArray>"), "");
+    const auto old = [&](const std::string& what, const std::string& by) {
+        return test::refusal(written(folder, "wrong.vtk", replaced(legacy, what, by)));
+    };
+    EXPECT_THAT(old("4 0 1 2 3", "4 0 1 2 77"), HasSubstr("names point 77 of 4"));
+    EXPECT_NE(old("POINTS 4 double", "POINTS 400000000000 double"), "");
+    expect_safe(written(folder, "wrong.ply", replaced(ply, "3 0 2 3\n", "3 0 2 300\n")));
+    expect_safe(written(folder, "wrong2.ply", replaced(ply, "element vertex 4", "element vertex 400000000")));
+    expect_safe(written(folder, "wrong.obj", "v 0 0 0\nv 1 0 0\nf 1 2 30\n"));
+}
+
+TEST(VtkFiles, FilesCutAnywhereAreReadOrRefused) {
+    const core::TemporaryFolder folder;
+    for (const auto& [name, text] : {std::pair<std::string, std::string>{"cut.vtu", tetrahedron}, {"cut.vtk", legacy}, {"cut.ply", ply}}) {
+        for (std::size_t size = 1; size < text.size(); size += text.size() / 30) {
+            expect_safe(written(folder, name, text.substr(0, size)));
+        }
+    }
+}
+
+}  // namespace underbody
