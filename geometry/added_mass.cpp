@@ -302,6 +302,7 @@ void to_json(nlohmann::json& json, const AddedMass& mass) {
             {"density", mass.density},
             {"panels", mass.panels},
             {"asymmetry", mass.asymmetry},
+            {"extrapolation", mass.extrapolation},
             {"axes", "x forward, y starboard, z down, about the reference point"},
             {"gap", nullptr}};
     if (mass.placement) {
@@ -309,6 +310,12 @@ void to_json(nlohmann::json& json, const AddedMass& mass) {
         json["pitch"] = mass.placement->pitch;
         json["roll"] = mass.placement->roll;
         json["edge_over_gap"] = mass.edge_over_gap;
+    }
+    if (mass.fit) {
+        json["panel_fit"] = {{"triangles", mass.fit->triangles},
+                             {"distance_rms", mass.fit->distance_rms},
+                             {"distance_largest", mass.fit->distance_largest},
+                             {"volume_error", mass.fit->volume_error}};
     }
 }
 

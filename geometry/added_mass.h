@@ -21,6 +21,13 @@ using Matrix6 = std::array<std::array<double, 6>, 6>;
 /// rows and columns surge, sway, heave, roll, pitch, yaw: kg, kg m and kg m^2. Positive on the diagonal (A = -X_udot
 /// and so on).
 struct AddedMass {
+    /// How panels made anew for a surface of (many) triangles lie on it.
+    struct PanelFit {
+        std::size_t triangles = 0;    ///< of the surface
+        double distance_rms = 0;      ///< m, of the panels from the surface
+        double distance_largest = 0;  ///< m
+        double volume_error = 0;      ///< (volume of the panels - that of the surface) over it
+    };
     Matrix6 matrix{};
     Vec3 reference;  ///< m, in the axes of the mesh (x forward, y to port, z up, from the centre of the base)
     std::optional<Placement> placement;  ///< over the ground; free water when empty
@@ -29,6 +36,9 @@ struct AddedMass {
     double asymmetry =
         0;  ///< largest |A - A'| over the largest diagonal of its kind: 0 when exact, a measure of the error
     double edge_over_gap = 0;  ///< longest panel edge in the lowest part over the smallest clearance; 0 in free water
+    /// Largest change of a diagonal entry by the extrapolation, over the entry: a cautious bound of the error left.
+    double extrapolation = 0;
+    std::optional<PanelFit> fit;
 };
 
 struct AddedMassOptions {
@@ -50,6 +60,11 @@ AddedMass added_mass(const SurfaceMesh& mesh, const AddedMassOptions& options = 
 AddedMass added_mass(const BodyShape& shape, std::size_t panels, const AddedMassOptions& options = {},
                      bool extrapolate = true, core::Progress& progress = core::Progress::none());
 
+/// The same for a surface of any number of triangles (closed, as `certify` finds it): panels are made anew on it
+/// (`panel_mesh.h`), and `fit` says how near they lie.
+AddedMass added_mass(const SurfaceMesh& surface, std::size_t panels, const AddedMassOptions& options = {},
+                     bool extrapolate = true, core::Progress& progress = core::Progress::none());
+
 /// For `model.toml`: columns gap [mm], pitch [deg] and the entries `added_mass_surge`, `_sway`, `_heave` [kg],
 /// `added_inertia_roll`,
 /// `_pitch`, `_yaw` [kg m^2] and the couplings `added_mass_surge_pitch`, `added_mass_heave_pitch`, ... [kg m].
@@ -58,6 +73,9 @@ struct AddedMassSweep {
     AddedMass free_water;
 };
 AddedMassSweep added_mass_against_gap(const BodyShape& shape, const std::vector<double>& gaps, std::size_t panels,
+                                      const AddedMassOptions& options = {},
+                                      core::Progress& progress = core::Progress::none());
+AddedMassSweep added_mass_against_gap(const SurfaceMesh& surface, const std::vector<double>& gaps, std::size_t panels,
                                       const AddedMassOptions& options = {},
                                       core::Progress& progress = core::Progress::none());
 core::Table table(const AddedMassSweep& sweep);

@@ -1,4 +1,5 @@
-// Added mass of shapes and its table against the gap.
+// Added mass of shapes and of surfaces, and its table against the gap.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -7,59 +8,111 @@
 #include "geometry/added_mass.h"
 #include "geometry/body_surface.h"
 #include "geometry/mass_properties.h"
+#include "geometry/panel_mesh.h"
 
 namespace underbody::geometry {
 
 namespace {
 
-SurfaceOptions panel_options(std::size_t panels, bool over_ground) {
+// The panels, and a third of them to extrapolate with (none: no extrapolation).
+struct Levels {
+    SurfaceMesh fine, coarse;
+    std::optional<AddedMass::PanelFit> fit;
+};
+
+constexpr std::size_t fewest_to_extrapolate = 600;
+
+Levels levels_of(const BodyShape& shape, std::size_t panels, bool over_ground, bool extrapolate,
+                 core::Progress& progress) {
     SurfaceOptions options;
-    options.triangles = panels;
     options.edge_refinement = over_ground ? 0.4 : 0.8;
-    return options;
+    options.triangles = panels;
+    Levels levels{make_surface(shape, options, progress), {}, {}};
+    if (extrapolate && panels >= fewest_to_extrapolate) {
+        options.triangles = panels / 3;
+        levels.coarse = make_surface(shape, options, progress);
+    }
+    return levels;
+}
+
+Levels levels_of(const SurfaceMesh& surface, std::size_t panels, bool over_ground, bool extrapolate,
+                 core::Progress& progress) {
+    PanelOptions options;
+    options.refinement = over_ground ? 0.4 : 0.8;
+    options.panels = panels;
+    PanelMesh fine = panel_mesh(surface, options, progress);
+    Levels levels{std::move(fine.mesh), {}, {}};
+    levels.fit = {fine.triangles, fine.distance_rms, fine.distance_largest, fine.volume_error};
+    if (extrapolate && panels >= fewest_to_extrapolate) {
+        options.panels = panels / 3;
+        levels.coarse = panel_mesh(surface, options, progress).mesh;
+    }
+    return levels;
+}
+
+AddedMass solved(const Levels& levels, AddedMassOptions options, core::Progress& progress) {
+    if (!options.reference) {
+        options.reference = mass_properties(levels.fine).centroid;
+    }
+    AddedMass fine = added_mass(levels.fine, options, progress);
+    fine.fit = levels.fit;
+    if (levels.coarse.triangles.empty()) {
+        return fine;
+    }
+    const AddedMass coarse = added_mass(levels.coarse, options, progress);
+    // Error like 1/panels: second order in the edge length.
+    const double ratio = static_cast<double>(fine.panels) / static_cast<double>(coarse.panels);
+    for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t j = 0; j < 6; ++j) {
+            const double change = (fine.matrix[i][j] - coarse.matrix[i][j]) / (ratio - 1);
+            fine.matrix[i][j] += change;
+            if (i == j && i < 3) {
+                fine.extrapolation = std::max(fine.extrapolation, std::abs(change / fine.matrix[i][i]));
+            }
+        }
+    }
+    return fine;
+}
+
+template <class Body>
+AddedMassSweep against_gap(const Body& body, const std::vector<double>& gaps, std::size_t panels,
+                           const AddedMassOptions& options, core::Progress& progress) {
+    AddedMassSweep sweep;
+    AddedMassOptions each = options;
+    each.placement.reset();
+    sweep.free_water = solved(levels_of(body, panels, false, true, progress), each, progress);
+    each.reference = sweep.free_water.reference;
+    const Levels levels = levels_of(body, panels, true, true, progress);
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+        each.placement = options.placement.value_or(Placement{});
+        each.placement->gap = gaps[i];
+        progress.report(static_cast<double>(i) / static_cast<double>(gaps.size()),
+                        "added mass at " + core::format_number(1000 * gaps[i], 4) + " mm");
+        sweep.at_gap.push_back(solved(levels, each, progress));
+    }
+    return sweep;
 }
 
 }  // namespace
 
 AddedMass added_mass(const BodyShape& shape, std::size_t panels, const AddedMassOptions& options, bool extrapolate,
                      core::Progress& progress) {
-    const bool over_ground = options.placement.has_value();
-    const SurfaceMesh fine_mesh = make_surface(shape, panel_options(panels, over_ground), progress);
-    AddedMassOptions at_point = options;
-    if (!at_point.reference) {
-        at_point.reference = mass_properties(fine_mesh).centroid;
-    }
-    AddedMass fine = added_mass(fine_mesh, at_point, progress);
-    if (!extrapolate || panels < 600) {
-        return fine;
-    }
-    const SurfaceMesh coarse_mesh = make_surface(shape, panel_options(panels / 3, over_ground), progress);
-    const AddedMass coarse = added_mass(coarse_mesh, at_point, progress);
-    // Error like 1/panels: second order in the edge length.
-    const double ratio = static_cast<double>(fine.panels) / static_cast<double>(coarse.panels);
-    for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t j = 0; j < 6; ++j) {
-            fine.matrix[i][j] += (fine.matrix[i][j] - coarse.matrix[i][j]) / (ratio - 1);
-        }
-    }
-    return fine;
+    return solved(levels_of(shape, panels, options.placement.has_value(), extrapolate, progress), options, progress);
+}
+
+AddedMass added_mass(const SurfaceMesh& surface, std::size_t panels, const AddedMassOptions& options, bool extrapolate,
+                     core::Progress& progress) {
+    return solved(levels_of(surface, panels, options.placement.has_value(), extrapolate, progress), options, progress);
 }
 
 AddedMassSweep added_mass_against_gap(const BodyShape& shape, const std::vector<double>& gaps, std::size_t panels,
                                       const AddedMassOptions& options, core::Progress& progress) {
-    AddedMassSweep sweep;
-    AddedMassOptions each = options;
-    each.placement.reset();
-    sweep.free_water = added_mass(shape, panels, each, true, progress);
-    each.reference = sweep.free_water.reference;
-    for (std::size_t i = 0; i < gaps.size(); ++i) {
-        each.placement = options.placement.value_or(Placement{});
-        each.placement->gap = gaps[i];
-        progress.report(static_cast<double>(i) / static_cast<double>(gaps.size()),
-                        "added mass at " + core::format_number(1000 * gaps[i], 4) + " mm");
-        sweep.at_gap.push_back(added_mass(shape, panels, each, true, progress));
-    }
-    return sweep;
+    return against_gap(shape, gaps, panels, options, progress);
+}
+
+AddedMassSweep added_mass_against_gap(const SurfaceMesh& surface, const std::vector<double>& gaps, std::size_t panels,
+                                      const AddedMassOptions& options, core::Progress& progress) {
+    return against_gap(surface, gaps, panels, options, progress);
 }
 
 core::Table table(const AddedMassSweep& sweep) {
@@ -71,6 +124,13 @@ core::Table table(const AddedMassSweep& sweep) {
             core::format_number(sweep.free_water.reference.z, 6) +
             ") m from the centre of the base (x forward, y port, z up); " + std::to_string(sweep.free_water.panels) +
             " panels, " + core::format_number(sweep.free_water.density, 6) + " kg/m^3"};
+    if (sweep.free_water.fit) {
+        const AddedMass::PanelFit& fit = *sweep.free_water.fit;
+        result.comments.push_back(" panels made from " + std::to_string(fit.triangles) +
+                                  " triangles, off their surface by " +
+                                  core::format_number(1e3 * fit.distance_rms, 3) + " mm (RMS), " +
+                                  core::format_number(1e3 * fit.distance_largest, 3) + " mm at most");
+    }
     std::vector<double> gap, pitch;
     for (const AddedMass& m : sweep.at_gap) {
         gap.push_back(m.placement->gap);

@@ -14,7 +14,6 @@ namespace underbody::geometry {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr std::size_t most_panels = 6000;
 
 std::string text(double value, int digits = 6) { return core::format_number(value, digits); }
 
@@ -41,24 +40,19 @@ void add_added_mass(Body& body, const BodyOptions& options, core::Progress& prog
     if (body.trim) {
         water.reference = body.trim->centre_of_gravity;
     }
-    if (body.shape) {
-        body.added_mass = added_mass(*body.shape, options.panels, water, true, progress);
-    } else if (body.mesh.triangles.size() <= most_panels) {
-        body.added_mass = added_mass(body.mesh, water, progress);
-    } else {
-        body.remark += "No added mass: the surface has " + std::to_string(body.mesh.triangles.size()) +
-                       " triangles, and more than " + std::to_string(most_panels) + " panels take too long. ";
-    }
+    body.added_mass = body.shape ? added_mass(*body.shape, options.panels, water, true, progress)
+                                 : added_mass(body.mesh, options.panels, water, true, progress);
 }
 
 }  // namespace
 
 void require_clearance(const SurfaceMesh& body, const Placement& placement) {
     const Clearance clear = clearance(body, placement);
-    if (clear.smallest >= 0) {
+    if (clear.smallest > 0) {
         return;
     }
-    std::string hint = "the nearest allowed gap at this pitch: " + text(1e3 * (placement.gap - clear.smallest)) + " mm";
+    std::string hint =
+        "the nearest allowed gap at this pitch: above " + text(1e3 * (placement.gap - clear.smallest)) + " mm";
     if (placement.gap > 0 && placement.roll == 0) {
         const ContactAngles angles = contact_angles(body, placement.gap);
         const auto& limit = placement.pitch > 0 ? angles.nose_up : angles.nose_down;
@@ -70,8 +64,10 @@ void require_clearance(const SurfaceMesh& body, const Placement& placement) {
     }
     throw core::InputError("contact",
                            "at gap " + text(1e3 * placement.gap) + " mm and pitch " + text(placement.pitch / degree) +
-                               " deg the body's " + clear.patch + " lies " + text(-1e3 * clear.smallest, 4) +
-                               " mm below the ground, at x = " + text(1e3 * clear.where_on_body.x, 4) + " mm",
+                               " deg the body's " + clear.patch +
+                               (clear.smallest < 0 ? " lies " + text(-1e3 * clear.smallest, 4) + " mm below the ground"
+                                                   : std::string(" touches the ground")) +
+                               ", at x = " + text(1e3 * clear.where_on_body.x, 4) + " mm",
                            {}, hint);
 }
 
@@ -84,6 +80,7 @@ Body read_body(const std::filesystem::path& path, const BodyOptions& options, co
         body.loading = read_loading(path);
         SurfaceOptions surface;
         surface.triangles = options.triangles;
+        body.origin_from_axis = base_centre(*body.shape);
         body.mesh = make_surface(*body.shape, surface, progress);
         progress.report(0.3, "certificate");
         body.certificate = certify(body.mesh, *body.shape, progress);
@@ -106,6 +103,10 @@ Body read_body(const std::filesystem::path& path, const BodyOptions& options, co
         require_clearance(body.mesh, *options.placement);
         body.clearance = clearance(body.mesh, *options.placement);
         body.contact = contact_angles(body.mesh, options.placement->gap);
+        const Box& box = body.mass.bounding_box;
+        body.underside = underside_area(
+            body.mesh, *options.placement,
+            options.underside_up_to.value_or(options.placement->gap + 0.25 * (box.upper.z - box.lower.z)));
     }
     progress.report(0.5, "added mass");
     add_added_mass(body, options, progress);
@@ -117,7 +118,8 @@ void to_json(nlohmann::json& json, const Body& body) {
     json["name"] = body.name;
     json["density"] = body.density;
     json["buoyancy"] = body.mass.buoyancy(body.density);
-    json["axes"] = "x forward, y to port, z up, origin at the centre of the base";
+    json["axes"] = "x forward, y to port, z up, origin at the centre of the flat base (mid-length, mid-width)";
+    json["origin_from_axis"] = body.origin_from_axis;
     json["patches"] = nlohmann::json::array();
     for (const PatchSummary& patch : patches(body.mesh)) {
         json["patches"].push_back({{"name", patch.name}, {"area", patch.area}, {"faces", patch.faces}});
@@ -144,6 +146,7 @@ void to_json(nlohmann::json& json, const Body& body) {
         json["roll"] = body.placement->roll;
         json["clearance"] = *body.clearance;
         json["contact_angles"] = *body.contact;
+        json["underside_area"] = *body.underside;
     }
     if (!body.remark.empty()) {
         json["remark"] = body.remark;

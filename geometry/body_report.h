@@ -23,12 +23,15 @@ struct BodyOptions {
     double feature_angle = 20;        ///< degrees, of a surface file
     double density = default_water_density;
     std::optional<Placement> placement;
-    std::size_t panels = 1200;  ///< of the added mass; 0: none
+    std::size_t panels = 1200;               ///< of the added mass; 0: none
+    std::optional<double> underside_up_to;  ///< m above the ground; default: the gap and a quarter of the body's height
 };
 
 struct Body {
     std::string name;
     std::optional<BodyShape> shape;  ///< empty for a surface file
+    /// m, how far the origin (the centre of the flat base) lies forward of the ellipsoid's axis; 0 for a surface file.
+    double origin_from_axis = 0;
     SurfaceMesh mesh;                ///< certified; origin at the centre of the base
     MassProperties mass;
     Certificate certificate;
@@ -39,6 +42,7 @@ struct Body {
     std::optional<Placement> placement;
     std::optional<Clearance> clearance;
     std::optional<ContactAngles> contact;
+    std::optional<AreaBelow> underside;
     std::string remark;  ///< what the reader should know; may be empty
 };
 
@@ -48,7 +52,7 @@ struct Body {
 Body read_body(const std::filesystem::path& path, const BodyOptions& options = {},
                core::Progress& progress = core::Progress::none());
 
-/// Throws core::InputError (kind "contact") when the lowest point is below the ground.
+/// Throws core::InputError (kind "contact") when the lowest point is not above the ground.
 void require_clearance(const SurfaceMesh& body, const Placement& placement);
 
 /// interfaces.md section 7, command `body`.

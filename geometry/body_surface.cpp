@@ -125,6 +125,9 @@ SurfaceMesh make_surface(const BodyShape& shape, const SurfaceOptions& options, 
         edge *= std::sqrt(ratio);
     }
     drop_unused_patches(half);
+    for (Vec3& p : half.points) {
+        p.x -= body.base_centre();
+    }
     return with_mirror_image(half);
 }
 

@@ -135,7 +135,8 @@ public:
 
     [[nodiscard]] const ExactBody& body() const { return body_; }
 
-    [[nodiscard]] double operator()(const Vec3& p, const std::string& patch) const {
+    [[nodiscard]] double operator()(Vec3 p, const std::string& patch) const {
+        p.x += body_.base_centre();
         if (patch == "hull") {
             // Inside its own piece by the chord, further inside all others: the largest is the one.
             double d = body_.distance_to_ellipsoid(p);

@@ -34,15 +34,16 @@ double base_area(const SurfaceMesh& mesh) {
     return sum;
 }
 
-// Distance of the points of a mesh from another body's exact pieces: hull points from its hull, others from its base.
+// Distance of the points of a mesh from another body's exact pieces, the ellipsoids' axes on each other.
 struct Farthest {
     double distance = 0;
-    Vec3 where;
+    Vec3 where;  // from the axis
 };
 
-Farthest farthest(const SurfaceMesh& mesh, const ExactBody& other) {
+Farthest farthest(const SurfaceMesh& mesh, const ExactBody& own, const ExactBody& other) {
     Farthest result;
-    for (const Vec3& p : mesh.points) {
+    for (Vec3 p : mesh.points) {
+        p.x += own.base_centre();
         // Signed distance of the whole: the largest over its pieces (an intersection of convex ones, with additions
         // below).
         double d = std::max(other.distance_to_ellipsoid(p), other.distance_to_base(p));
@@ -83,9 +84,10 @@ Comparison compare(const BodyShape& a, const BodyShape& b, std::size_t triangles
     const ExactBody exact_a(a), exact_b(b);
     result.volume_a = exact_a.volume();
     result.volume_b = exact_b.volume();
-    const Farthest of_a = farthest(mesh_a, exact_b), of_b = farthest(mesh_b, exact_a);
+    const Farthest of_a = farthest(mesh_a, exact_a, exact_b), of_b = farthest(mesh_b, exact_b, exact_a);
     result.largest_distance = std::max(of_a.distance, of_b.distance);
     result.where = of_a.distance > of_b.distance ? of_a.where : of_b.where;
+    result.where.x -= exact_a.base_centre();
     return result;
 }
 

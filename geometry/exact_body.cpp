@@ -125,6 +125,9 @@ ExactBody::ExactBody(const BodyShape& shape)
         tabulate_spine();
     }
     highest_fillet_ = std::max(fillet_top(0), fillet_top(half_pi));
+    if (shape.base == BaseKind::ellipse_front) {
+        base_centre_ = 0.5 * (ellipsoid_point(0, 0).x - along_.base_half());
+    }
     if (!shape.protrusion) {
         return;
     }
@@ -177,6 +180,8 @@ ExactBody::Spine ExactBody::solved_spine(double t) const {
     const double nh = std::sqrt(std::max(0.0, 1 - nz * nz));
     return {a_ * s * ct - r * nh * ct / (a_ * horizontal), b_ * s * st - r * nh * st / (b_ * horizontal), z + depth_};
 }
+
+double base_centre(const BodyShape& shape) { return ExactBody(shape).base_centre(); }
 
 constexpr std::size_t spine_steps = 1024;
 
@@ -234,7 +239,8 @@ Vec3 ExactBody::bent(const Vec3& p) const {
         return p;
     }
     const double g = square((depth_ - p.z) / depth_);
-    return {p.x, p.y * (1 + taper_ * p.x * g), p.z + slope_ * p.x * g};
+    const double x = p.x - base_centre_;
+    return {p.x, p.y * (1 + taper_ * x * g), p.z + slope_ * x * g};
 }
 
 Vec3 ExactBody::unbent(const Vec3& p) const {
@@ -242,10 +248,10 @@ Vec3 ExactBody::unbent(const Vec3& p) const {
         return p;
     }
     // With v = depth - height: v' = v - k v^2, k = slope x / depth^2.
-    const double k = slope_ * p.x / square(depth_), bent_v = depth_ - p.z;
+    const double x = p.x - base_centre_, k = slope_ * x / square(depth_), bent_v = depth_ - p.z;
     const double v = 2 * bent_v / (1 + std::sqrt(std::max(0.0, 1 - 4 * k * bent_v)));
     const double g = square(v / depth_);
-    return {p.x, p.y / (1 + taper_ * p.x * g), depth_ - v};
+    return {p.x, p.y / (1 + taper_ * x * g), depth_ - v};
 }
 
 double ExactBody::profile_depth(double d) const {

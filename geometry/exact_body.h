@@ -1,8 +1,9 @@
 // The exact surface behind a BodyShape: pieces in closed form, of which meshes are made and against which they are
 // measured.
 //
-// Coordinates: as SurfaceMesh (origin at the centre of the base, height u above it), before or after the bend that
-// makes taper and base pitch. The unbent body is the intersection of convex pieces: the ellipsoid, and the sides that
+// Coordinates: x forward from the axis of the ellipsoid, y to port, height u above the flat base, before or after the
+// bend that makes taper and base pitch. A mesh has its origin at the centre of the base, `base_centre()` forward of the
+// axis. The unbent body is the intersection of convex pieces: the ellipsoid, and the sides that
 // cut it, each with its own rounded edge to the base.
 #pragma once
 
@@ -66,6 +67,8 @@ public:
     [[nodiscard]] double semi_z() const { return c_; }
     [[nodiscard]] double depth() const { return depth_; }
     [[nodiscard]] double top() const { return depth_ + c_; }
+    /// x of the middle between the ends of the flat base: 0 but for `ellipse_front`.
+    [[nodiscard]] double base_centre() const { return base_centre_; }
 
     [[nodiscard]] bool cut(Side side) const;
     [[nodiscard]] const SideProfile& profile(Side side) const { return side == Side::port ? across_ : along_; }
@@ -119,6 +122,7 @@ private:
     std::vector<SpineEntry> spine_table_;
     BodyShape shape_;
     double a_, b_, c_, depth_;
+    double base_centre_ = 0;
     double taper_ = 0;  // d(width factor)/dx at the base
     double slope_ = 0;  // tangent of the pitch of the base
     double highest_fillet_ = 0;

@@ -38,7 +38,7 @@ struct Moments {
 // The volume element of the bend at (x, height) against the unbent one.
 class Bend {
 public:
-    Bend(const ExactBody& body) : depth_(body.depth()) {
+    explicit Bend(const ExactBody& body) : depth_(body.depth()), centre_(body.base_centre()) {
         const BodyShape& shape = body.shape();
         const BodyShape::BaseExtent extent = shape.base_extent();
         taper_ = shape.taper / (extent.nose - extent.tail);
@@ -49,12 +49,14 @@ public:
             return m.one;
         }
         const double v = (depth_ - height) / depth_, widening = taper_ * v * v, lifting = -2 * slope_ * v / depth_;
-        return m.one + (widening + lifting) * m.x + widening * lifting * m.xx;
+        // about the centre of the base
+        const double x = m.x - centre_ * m.one, xx = m.xx - centre_ * (2 * m.x - centre_ * m.one);
+        return m.one + (widening + lifting) * x + widening * lifting * xx;
     }
     [[nodiscard]] double at(double x, double height) const { return of({1, x, x * x}, height); }
 
 private:
-    double depth_, taper_, slope_;
+    double depth_, centre_, taper_, slope_;
 };
 
 double root(const ExactBody& body, double height, double low, double high, bool of_x, double value) {

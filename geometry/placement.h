@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/figure.h"
+#include "core/table.h"
 #include "geometry/surface_mesh.h"
 
 namespace underbody::geometry {
@@ -45,11 +46,14 @@ struct AreaBelow {
     std::vector<double> area;    ///< m^2
 };
 AreaBelow underside_area(const SurfaceMesh& body, const Placement& placement, double up_to, std::size_t points = 200);
-core::Figure underside_figure(const SurfaceMesh& body, const Placement& placement, double up_to);
+core::Figure figure(const AreaBelow& below);
+/// Columns height [mm], area [cm^2].
+core::Table table(const AreaBelow& below);
 
 /// The gap under the base as a map seen from above (x forward to the right, y to port upward), mm.
 core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement);
 
+void to_json(nlohmann::json& json, const AreaBelow& below);
 void to_json(nlohmann::json& json, const Clearance& clearance);
 void to_json(nlohmann::json& json, const ContactAngles& angles);
 

@@ -91,8 +91,15 @@ AreaBelow underside_area(const SurfaceMesh& body, const Placement& placement, do
     return result;
 }
 
-core::Figure underside_figure(const SurfaceMesh& body, const Placement& placement, double up_to) {
-    const AreaBelow below = underside_area(body, placement, up_to);
+core::Table table(const AreaBelow& below) {
+    core::Table result;
+    result.comments = {" area of the under side, seen from below, that lies lower than a height above the ground"};
+    result.add_numbers("height", "m", below.height, "mm");
+    result.add_numbers("area", "m^2", below.area, "cm^2");
+    return result;
+}
+
+core::Figure figure(const AreaBelow& below) {
     core::Figure figure;
     figure.title = "Under side against height";
     figure.caption = "Area of the under side, seen from below, that lies lower than the height above the ground.";
@@ -177,6 +184,10 @@ core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
     point.size = 11;
     figure.points.push_back(point);
     return figure;
+}
+
+void to_json(nlohmann::json& json, const AreaBelow& below) {
+    json = {{"height", below.height}, {"area", below.area}};
 }
 
 void to_json(nlohmann::json& json, const Clearance& clear) {

@@ -82,8 +82,9 @@ struct Comparison {
     MassProperties mass_a, mass_b;
     double volume_a = 0, volume_b = 0;  ///< m^3, of the exact shapes (the meshes' own are in mass_a, mass_b)
     double base_area_a = 0, base_area_b = 0;
-    double largest_distance = 0;  ///< m, of the points of each mesh from the other's exact surface, to first order
-    Vec3 where;
+    /// m, of the points of each mesh from the other's exact surface, to first order, the ellipsoids laid on each other.
+    double largest_distance = 0;
+    Vec3 where;  ///< in the axes of `a` (from the centre of its base)
 };
 Comparison compare(const BodyShape& a, const BodyShape& b, std::size_t triangles = 6000,
                    core::Progress& progress = core::Progress::none());

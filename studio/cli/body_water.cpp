@@ -1,0 +1,187 @@
+// underbody body added-mass, underbody body domain: the water around a body.
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/table.h"
+#include "core/units.h"
+#include "geometry/added_mass.h"
+#include "geometry/flow_domain.h"
+#include "studio/cli/body_parts.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+namespace {
+
+using core::format_number;
+
+std::string number(double v, int digits = 6) { return format_number(v, digits); }
+
+// ---- body added-mass ----
+
+struct AddedMassCommand {
+    std::string shape, unit, gap = "1mm:100mm", pitch = "0 deg", density = "1000 kg/m^3", out, picture;
+    std::size_t panels = 2000, count = 9;
+};
+
+// "1mm:100mm" as `count` gaps in equal ratios, or a list "1mm,2mm".
+std::vector<double> gaps_of(const AddedMassCommand& o) {
+    std::vector<double> gaps;
+    const auto colon = o.gap.find(':');
+    if (colon == std::string::npos) {
+        for (const std::string_view part : core::split(o.gap, ',')) {
+            gaps.push_back(core::parse_in(part, "m"));
+        }
+    } else {
+        const double low = core::parse_in(o.gap.substr(0, colon), "m"),
+                     high = core::parse_in(o.gap.substr(colon + 1), "m");
+        if (!(low > 0 && high > low) || o.count < 2) {
+            throw core::UsageError("range", "--gap " + o.gap + " is no range of gaps", {},
+                                   "for example 1mm:100mm, with --count 2 or more");
+        }
+        for (std::size_t i = 0; i < o.count; ++i) {
+            gaps.push_back(low * std::pow(high / low, static_cast<double>(i) / static_cast<double>(o.count - 1)));
+        }
+    }
+    for (const double gap : gaps) {
+        if (!(gap > 0)) {
+            throw core::UsageError("range", "a gap of " + number(gap) + " m", {}, "gaps are positive");
+        }
+    }
+    return gaps;
+}
+
+int added_mass_table(const AddedMassCommand& o, Shell& shell) {
+    BodyInput input;
+    input.shape = o.shape;
+    input.unit = o.unit;
+    input.density = o.density;
+    input.panels = o.panels;
+    geometry::BodyOptions reading = input.options();
+    reading.panels = 0;
+    const std::vector<double> gaps = gaps_of(o);
+    const geometry::Body body = geometry::read_body(o.shape, reading, shell.progress());
+    geometry::AddedMassOptions options;
+    options.density = reading.density;
+    options.placement = geometry::Placement{0, core::parse_in(o.pitch, "rad"), 0};
+    if (body.trim) {
+        options.reference = body.trim->centre_of_gravity;
+    }
+    const geometry::AddedMassSweep sweep =
+        body.shape ? geometry::added_mass_against_gap(*body.shape, gaps, o.panels, options, shell.progress())
+                   : geometry::added_mass_against_gap(body.mesh, gaps, o.panels, options, shell.progress());
+    shell.progress().report(1, "done");
+    const core::Table table = geometry::table(sweep);
+    if (!o.out.empty()) {
+        core::write_csv(o.out, table);
+    }
+    if (!o.picture.empty()) {
+        write_picture(geometry::figure(sweep, body.name), o.picture);
+    }
+    if (shell.json) {
+        nlohmann::json document{{"name", body.name}, {"free_water", sweep.free_water}, {"gaps", sweep.at_gap}};
+        shell.print_json(document);
+    } else if (o.out.empty()) {
+        shell.print(core::write_csv(table));
+    } else {
+        shell.print(o.out + ": " + std::to_string(table.rows()) + " gaps");
+    }
+    return done;
+}
+
+// ---- body domain ----
+
+struct DomainCommand {
+    BodyInput input;
+    std::string solver = "openfoam", out, speed = "0.5 m/s", viscosity = "1e-6 m^2/s";
+    geometry::FlowOptions flow;
+    bool whole = false;
+};
+
+int write_domain(DomainCommand& o, Shell& shell) {
+    const auto placement = o.input.placement();
+    if (!placement) {
+        throw core::UsageError("missing", "a flow domain needs --gap", {}, "add --gap 5mm");
+    }
+    geometry::BodyOptions options = o.input.options();
+    options.panels = 0;
+    const geometry::Body body = geometry::read_body(o.input.shape, options, shell.progress());
+    o.flow.placement = *placement;
+    o.flow.speed = core::parse_in(o.speed, "m/s");
+    o.flow.kinematic_viscosity = core::parse_in(o.viscosity, "m^2/s");
+    o.flow.density = options.density;
+    o.flow.half = !o.whole;
+    const geometry::FlowDomain domain = geometry::flow_domain(body.mesh, o.flow);
+    const auto files = o.solver == "openfoam" ? geometry::write_openfoam_case(body.mesh, o.flow, o.out)
+                                              : geometry::write_ansys_case(body.mesh, o.flow, o.out);
+    if (domain.cells_in_gap < 3 && o.solver == "openfoam") {
+        shell.warn("only " + number(domain.cells_in_gap, 2) +
+                   " cells across the smallest clearance: choose a smaller --cell");
+    }
+    nlohmann::json document{{"solver", o.solver},
+                            {"folder", o.out},
+                            {"boundaries", domain.boundaries},
+                            {"walls", domain.walls},
+                            {"cells_in_gap", domain.cells_in_gap},
+                            {"clearance", domain.clearance},
+                            {"files", nlohmann::json::array()}};
+    for (const auto& file : files) {
+        document["files"].push_back(file.string());
+    }
+    if (shell.json) {
+        shell.print_json(document);
+    } else {
+        shell.print(
+            o.out + ": " + std::to_string(files.size()) + " files; " +
+            (o.solver == "openfoam" ? "run " + o.out + "/Allrun" : "mesh surfaces/, then fluent.jou or cfx.ccl"));
+    }
+    return done;
+}
+
+}  // namespace
+
+void add_body_added_mass(CLI::App* body, Shell& shell, BodyActions& actions) {
+    CLI::App* command = body->add_subcommand("added-mass", "table of the added mass against the gap, for model.toml");
+    auto o = std::make_shared<AddedMassCommand>();
+    command->add_option("shape", o->shape, "SHAPE.toml, or a surface: .stl, .obj, .ply, .vtp")->required();
+    command->add_option("--unit", o->unit, "unit of length of a surface file: mm, m, in");
+    command->add_option("--gap", o->gap, "range 1mm:100mm (equal ratios) or list 1mm,2mm,5mm")->capture_default_str();
+    command->add_option("--count", o->count, "gaps in the range")->capture_default_str();
+    command->add_option("--pitch", o->pitch, "nose up positive")->capture_default_str();
+    command->add_option("--panels", o->panels, "panels of the body")->capture_default_str();
+    command->add_option("--density", o->density, "of the water")->capture_default_str();
+    command->add_option("--out", o->out, "CSV to write; else it is printed");
+    command->add_option("--picture", o->picture, "PNG or PDF of the curves");
+    command->footer(
+        "Example:\n  underbody body added-mass cases/evie/shapes/ellipse.toml --gap 1mm:100mm --out added-mass.csv "
+        "--picture added-mass.png");
+    on(shell, actions, command, [o, &shell] { return added_mass_table(*o, shell); });
+}
+
+void add_body_domain(CLI::App* body, Shell& shell, BodyActions& actions) {
+    CLI::App* command =
+        body->add_subcommand("domain", "the flow past the body over a moving ground, as a case for a solver");
+    auto o = std::make_shared<DomainCommand>();
+    o->input.add_to(command, true);
+    o->input.add_placement(command);
+    command->add_option("--solver", o->solver, "openfoam or ansys")
+        ->check(CLI::IsMember({"openfoam", "ansys"}))
+        ->capture_default_str();
+    command->add_option("--out", o->out, "new folder")->required();
+    command->add_option("--speed", o->speed, "of the stream and the ground")->capture_default_str();
+    command->add_option("--viscosity", o->viscosity, "kinematic")->capture_default_str();
+    command->add_flag("--whole", o->whole, "both halves (default: the port half with a plane of symmetry)");
+    command->add_option("--cell", o->flow.cell, "background cell, in body lengths")->capture_default_str();
+    command->add_option("--surface-level", o->flow.surface_level, "halvings of the cell at the body")
+        ->capture_default_str();
+    command->add_option("--layers", o->flow.layers, "prism layers")->capture_default_str();
+    command->add_option("--iterations", o->flow.iterations, "of the solver")->capture_default_str();
+    command->footer(
+        "Examples:\n"
+        "  underbody body domain shape.toml --gap 10mm --out case && case/Allrun\n"
+        "  underbody body domain shape.toml --gap 5mm --pitch 2deg --solver ansys --out for-fluent");
+    on(shell, actions, command, [o, &shell] { return write_domain(*o, shell); });
+}
+
+}  // namespace underbody::studio
