@@ -101,6 +101,8 @@ std::string journal(const FlowDomain& d, const FlowOptions& o) {
         "; Mesh the surfaces of surfaces/ with these zone names and save it as mesh.msh.h5 beside this file; then\n"
         ";   fluent 3ddp -g -i fluent.jou\n"
         "; Axes: x forward, y to port, z up; the stream runs toward -x. Lengths in m.\n"
+        "; The prompts are those of Fluent 2022 R2; later releases keep to them by the next line.\n"
+        "/file/set-tui-version \"22.2\"\n"
         "/file/set-batch-options no yes yes no\n"
         "/file/read-case \"mesh.msh.h5\"\n/mesh/check\n"
         "/define/models/steady? yes\n/define/models/viscous/kw-sst? yes\n"
@@ -116,16 +118,17 @@ std::string journal(const FlowDomain& d, const FlowOptions& o) {
     for (const std::string& wall : d.walls) {
         text += "/define/boundary-conditions/zone-type " + wall + " wall\n";
     }
-    text += "/define/boundary-conditions/set/velocity-inlet inlet () vmag no " + v +
-            " ke-spec no no no yes turb-intensity " + digits(o.turbulence_intensity) + " turb-viscosity-ratio " +
-            digits(o.viscosity_ratio) + " quit\n" +
+    text += "; turbulence of the stream: the third choice of ke-spec, intensity in per cent and viscosity ratio\n"
+            "/define/boundary-conditions/set/velocity-inlet inlet () vmag no " +
+            v + " ke-spec no no yes turb-intensity " + digits(100 * o.turbulence_intensity) +
+            " turb-viscosity-ratio " + digits(o.viscosity_ratio) + " quit\n" +
             "/define/boundary-conditions/set/pressure-outlet outlet () gauge-pressure no 0 quit\n"
-            "; the ground slides with the stream: " +
+            "; the ground slides with the stream, " +
             v +
-            " m/s toward -x\n"
-            "/define/boundary-conditions/set/wall ground () motion-bc yes motion-bc-moving relative? no vmag no " +
+            " m/s toward -x: a negative speed along +x, the direction a wall has unless told otherwise\n"
+            "/define/boundary-conditions/set/wall ground () motion-bc yes motion-bc-moving relative? no vmag no -" +
             v +
-            " ni no -1 nj no 0 nk no 0 quit\n"
+            " quit\n"
             "/solve/set/p-v-coupling 24\n/solve/set/discretization-scheme/mom 1\n/solve/set/discretization-scheme/k "
             "1\n/solve/set/discretization-scheme/omega 1\n";
     const auto report = [&](const std::string& name, const std::string& kind, const std::string& vector) {

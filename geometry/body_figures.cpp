@@ -41,19 +41,20 @@ struct Extent {
     [[nodiscard]] double size() const { return high - low; }
 };
 
-struct UndersideExtent {
-    Extent x, y;
+struct PatchExtent {
+    Extent x, y, z;
     bool any = false;
 };
 
-UndersideExtent base_extent(const SurfaceMesh& body) {
-    UndersideExtent extent;
+PatchExtent extent_of(const SurfaceMesh& body, const std::string& patch) {
+    PatchExtent extent;
     for (std::size_t t = 0; t < body.triangles.size(); ++t) {
-        if (body.patch_names[static_cast<std::size_t>(body.patch[t])] == "base") {
+        if (body.patch_names[static_cast<std::size_t>(body.patch[t])] == patch) {
             extent.any = true;
             for (std::size_t k = 0; k < 3; ++k) {
                 extent.x.add(body.corner(t, k).x);
                 extent.y.add(body.corner(t, k).y);
+                extent.z.add(body.corner(t, k).z);
             }
         }
     }
@@ -102,9 +103,18 @@ void add_underside(core::Figure& figure, const SurfaceMesh& body, double dx, dou
         figure.curves.push_back(curve);
     }
     const double top = box.lower.z + 0.45 * (box.upper.z - box.lower.z);
-    for (const auto& [p, q] : feature_edges(body, sharp)) {
-        if (p.z < top && q.z < top) {
-            figure.curves.push_back(line(dx + 1e3 * p.x, dy + 1e3 * p.y, dx + 1e3 * q.x, dy + 1e3 * q.y, blue, width));
+    for (const std::vector<Vec3>& points : feature_lines(body, sharp)) {
+        core::FigureCurve curve;
+        curve.colour = blue;
+        curve.width = width;
+        for (const Vec3& p : points) {
+            if (p.z < top) {
+                curve.x.push_back(dx + 1e3 * p.x);
+                curve.y.push_back(dy + 1e3 * p.y);
+            }
+        }
+        if (curve.x.size() > 1) {
+            figure.curves.push_back(std::move(curve));
         }
     }
 }
@@ -131,10 +141,18 @@ core::Figure section_figure(const SurfaceMesh& body, const std::string& name) {
               box.upper.x - box.lower.x);
     dimension(figure, 1e3 * box.upper.x + step, 1e3 * box.lower.z, 1e3 * box.upper.x + step, 1e3 * box.upper.z, tick,
               box.upper.z - box.lower.z);
-    const UndersideExtent base = base_extent(body);
+    const PatchExtent base = extent_of(body, "base");
     if (base.any) {
         const double y = 1e3 * box.lower.z - step;
         dimension(figure, 1e3 * base.x.low, y, 1e3 * base.x.high, y, tick, base.x.size());
+    }
+    if (const PatchExtent bump = extent_of(body, "protrusion"); bump.any) {
+        figure.notes.push_back({500 * (bump.x.low + bump.x.high), 1e3 * bump.z.high + 0.5 * step,
+                                "protrusion " + mm(bump.x.size()) + " long, " + mm(bump.z.size()) + " high"});
+    }
+    if (const PatchExtent nozzle = extent_of(body, "nozzle"); nozzle.any) {
+        figure.notes.push_back(
+            {500 * (nozzle.x.low + nozzle.x.high), 1e3 * nozzle.z.high + step, "nozzle " + mm(nozzle.x.size())});
     }
     return figure;
 }
@@ -150,12 +168,24 @@ core::Figure underbody_figure(const SurfaceMesh& body, const std::string& name) 
               box.upper.x - box.lower.x);
     dimension(figure, 1e3 * box.upper.x + step, 1e3 * box.lower.y, 1e3 * box.upper.x + step, 1e3 * box.upper.y, tick,
               box.upper.y - box.lower.y);
-    const UndersideExtent base = base_extent(body);
+    const PatchExtent base = extent_of(body, "base");
     if (base.any) {
         dimension(figure, 1e3 * base.x.low, 1e3 * box.lower.y - step, 1e3 * base.x.high, 1e3 * box.lower.y - step, tick,
                   base.x.size());
         dimension(figure, 1e3 * box.lower.x - step, 1e3 * base.y.low, 1e3 * box.lower.x - step, 1e3 * base.y.high, tick,
                   base.y.size());
+    }
+    if (const PatchExtent bump = extent_of(body, "protrusion"); bump.any) {
+        const double middle = 500 * (bump.x.low + bump.x.high);
+        dimension(figure, middle, 1e3 * bump.y.low, middle, 1e3 * bump.y.high, tick, bump.y.size());
+        if (base.any) {  // where it is: from the nose end of the base to its axis
+            const double y = 1e3 * box.lower.y - 0.5 * step;
+            dimension(figure, middle, y, 1e3 * base.x.high, y, tick, base.x.high - 1e-3 * middle);
+        }
+    }
+    if (const PatchExtent nozzle = extent_of(body, "nozzle"); nozzle.any) {
+        figure.notes.push_back({500 * (nozzle.x.low + nozzle.x.high), 1e3 * nozzle.y.high + 0.15 * step,
+                                "nozzle " + mm(nozzle.x.size())});
     }
     return figure;
 }

@@ -37,9 +37,7 @@ void add_added_mass(Body& body, const BodyOptions& options, core::Progress& prog
     AddedMassOptions water;
     water.density = options.density;
     water.placement = options.placement;
-    if (body.trim) {
-        water.reference = body.trim->centre_of_gravity;
-    }
+    water.reference = body.trim ? body.trim->centre_of_gravity : body.mass.centroid;
     body.added_mass = body.shape ? added_mass(*body.shape, options.panels, water, true, progress)
                                  : added_mass(body.mesh, options.panels, water, true, progress);
 }

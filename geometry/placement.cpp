@@ -31,7 +31,10 @@ Clearance clearance(const SurfaceMesh& body, const Placement& placement) {
     for (std::size_t i = 0; i < body.triangles.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 p = placed(body.corner(i, k), placement);
-            if (p.z < result.smallest) {
+            // Of points equally low (a flat base, a straight crest) the one nearest to the middle.
+            const bool level = std::abs(p.z - result.smallest) < 1e-9;
+            const auto away = [](const Vec3& v) { return std::hypot(v.x, v.y); };
+            if (level ? away(body.corner(i, k)) < away(result.where_on_body) : p.z < result.smallest) {
                 result.smallest = p.z;
                 result.where = p;
                 result.where_on_body = body.corner(i, k);

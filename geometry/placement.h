@@ -25,7 +25,7 @@ SurfaceMesh placed(const SurfaceMesh& body, const Placement& placement);
 
 struct Clearance {
     double smallest = 0;  ///< m, from the ground to the lowest point; negative: below the ground
-    Vec3 where;           ///< that point, placed
+    Vec3 where;           ///< that point, placed; of several equally low the one nearest to the middle of the base
     Vec3 where_on_body;   ///< the same in the axes of the body
     std::string patch;    ///< of a triangle that has it
 };
@@ -45,7 +45,7 @@ struct AreaBelow {
     std::vector<double> height;  ///< m
     std::vector<double> area;    ///< m^2
 };
-AreaBelow underside_area(const SurfaceMesh& body, const Placement& placement, double up_to, std::size_t points = 200);
+AreaBelow underside_area(const SurfaceMesh& body, const Placement& placement, double up_to, std::size_t points = 400);
 core::Figure figure(const AreaBelow& below);
 /// Columns height [mm], area [cm^2].
 core::Table table(const AreaBelow& below);

@@ -129,9 +129,9 @@ core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
         }
     }
     core::FigureMap map;
-    map.columns = 240;
+    map.columns = 480;
     map.rows = static_cast<std::size_t>(
-        std::clamp(240 * (box.upper.y - box.lower.y) / (box.upper.x - box.lower.x), 20.0, 480.0));
+        std::clamp(480 * (box.upper.y - box.lower.y) / (box.upper.x - box.lower.x), 40.0, 960.0));
     map.x_lower = 1e3 * box.lower.x, map.x_upper = 1e3 * box.upper.x, map.y_lower = 1e3 * box.lower.y,
     map.y_upper = 1e3 * box.upper.y;
     map.values.assign(map.columns * map.rows, std::numeric_limits<double>::quiet_NaN());

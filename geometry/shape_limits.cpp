@@ -25,7 +25,7 @@ std::string in_millimetres(double metres, int rounding) {
     const double rounded = rounding > 0   ? std::ceil(mm / step - 1e-6) * step
                            : rounding < 0 ? std::floor(mm / step + 1e-6) * step
                                           : mm;
-    return core::format_number(rounded, 7) + " mm";
+    return core::format_number(rounded + 0.0, 7) + " mm";
 }
 
 class Checker {
@@ -35,10 +35,10 @@ public:
     void length(const char* section, const char* key, double value, double lower, double upper,
                 const std::string& why) const {
         if (!(value >= lower)) {
-            refuse(section, key, in_millimetres(value, 0), "at least " + in_millimetres(lower, 1), why);
+            outside(section, key, in_millimetres(value, 0), "at least " + in_millimetres(lower, 1), why);
         }
         if (!(value <= upper)) {
-            refuse(section, key, in_millimetres(value, 0), "at most " + in_millimetres(upper, -1), why);
+            outside(section, key, in_millimetres(value, 0), "at most " + in_millimetres(upper, -1), why);
         }
     }
     void number(const char* section, const char* key, double value, double lower, double upper,
@@ -50,10 +50,10 @@ public:
             return core::format_number(scaled, 7);
         };
         if (!(value >= lower)) {
-            refuse(section, key, text(value, 0), "at least " + text(lower, 1), why);
+            outside(section, key, text(value, 0), "at least " + text(lower, 1), why);
         }
         if (!(value <= upper)) {
-            refuse(section, key, text(value, 0), "at most " + text(upper, -1), why);
+            outside(section, key, text(value, 0), "at most " + text(upper, -1), why);
         }
     }
     void angle(const char* section, const char* key, double value, double lower, double upper,
@@ -66,24 +66,33 @@ public:
             return core::format_number(scaled, 7) + " deg";
         };
         if (!(value >= lower)) {
-            refuse(section, key, text(value, 0), "at least " + text(lower, 1), why);
+            outside(section, key, text(value, 0), "at least " + text(lower, 1), why);
         }
         if (!(value <= upper)) {
-            refuse(section, key, text(value, 0), "at most " + text(upper, -1), why);
+            outside(section, key, text(value, 0), "at most " + text(upper, -1), why);
         }
     }
     [[noreturn]] void refuse(const char* section, const char* key, const std::string& value, const std::string& limit,
                              const std::string& why) const {
+        stop(section, key, section + std::string(".") + key + " is " + value + ": " + why, limit);
+    }
+
+private:
+    [[noreturn]] void outside(const char* section, const char* key, const std::string& value, const std::string& limit,
+                              const std::string& what) const {
+        stop(section, key, section + std::string(".") + key + " is " + value + ", which is not allowed (" + what + ")",
+             limit);
+    }
+    [[noreturn]] void stop(const char* section, const char* key, const std::string& message,
+                           const std::string& limit) const {
         core::Place place;
         if (table_ != nullptr) {
             place = table_->table_or_empty(section).has(key) ? table_->table_or_empty(section).place(key)
                                                              : table_->place(section);
         }
-        throw core::InputError("range", std::string(section) + "." + key + " is " + value + ": " + why, place,
-                               "the nearest allowed value: " + limit);
+        throw core::InputError("range", message, place, "the nearest allowed value: " + limit);
     }
 
-private:
     const core::TomlTable* table_;
 };
 
@@ -144,10 +153,10 @@ void check_base(const BodyShape& shape, const Checker& checker) {
     };
     sides("base_length", shape.base_length, shape.length);
     sides("base_width", shape.base_width, shape.width);
-    const double largest = largest_edge_radius(shape);
-    checker.length(
-        "body", "edge_radius", shape.edge_radius, 0, largest,
-        "a rounding that the edge has room for (it leaves a fifth of the base and stays below the midplane)");
+    const bool fits = shape.edge_radius == 0 || (shape.edge_radius > 0 && edge_is_regular(shape, shape.edge_radius));
+    checker.length("body", "edge_radius", shape.edge_radius, 0,
+                   fits ? shape.edge_radius : largest_edge_radius(shape),
+                   "a rounding that the edge has room for: it leaves a fifth of the base and stays below the midplane");
     checker.number("body", "taper", shape.taper, -0.8, 0.8, "the fraction by which the base narrows from nose to tail");
     // d(height')/d(height) = 1 - 2 tan(pitch) x (depth - u)/depth^2 must stay positive on the whole lower hull.
     const double bend = std::atan(0.4 * shape.base_depth() / shape.length);
@@ -209,20 +218,32 @@ void check_nozzle(const BodyShape& shape, const Checker& checker) {
     const std::vector<OutlinePoint> outline = flat_base_outline(without_additions(shape));
     const double margin = 0.02 * extent.half_width;
     checker.number("nozzle", "position", n.position, 0, 1, "along the base from its nose end");
-    const double room = inside_distance(outline, extent.nose - n.position * base_length, 0) - margin;
-    checker.length("nozzle", "diameter", n.diameter, 1e-3 * base_length, std::max(2 * room, 0.0),
-                   "the nozzle lies inside the flat base");
     checker.length("nozzle", "depth", n.depth, 0, 0.9 * shape.base_depth(), "the bore ends inside the body");
-    if (shape.protrusion) {
-        const double foot = protrusion_foot_radius(*shape.protrusion);
-        const double between = std::abs(shape.base_x(n.position) - shape.base_x(shape.protrusion->position));
-        if (between < foot + radius + margin) {
-            const double at = shape.protrusion->position, apart = (foot + radius + margin) / base_length * 1.0001;
-            const double nearest = n.position <= at ? at - apart : at + apart;
-            checker.refuse("nozzle", "position", core::format_number(n.position, 7), core::format_number(nearest, 5),
-                           "the nozzle lies in the protrusion");
+    const double axis = shape.protrusion ? shape.protrusion->position : 0;
+    const double foot = shape.protrusion ? protrusion_foot_radius(*shape.protrusion) + margin : 0;
+    // Largest radius at a place: up to the edge of the flat base and to the foot of the protrusion.
+    const auto room = [&](double fraction) {
+        const double edge = inside_distance(outline, extent.nose - fraction * base_length, 0) - margin;
+        return shape.protrusion ? std::min(edge, std::abs(fraction - axis) * base_length - foot) : edge;
+    };
+    checker.length("nozzle", "diameter", n.diameter, 1e-3 * base_length, base_length, "the nozzle lies inside the base");
+    if (room(n.position) >= radius) {
+        return;
+    }
+    double nearest = -1, widest = 0;
+    for (int i = 0; i <= 2000; ++i) {
+        const double fraction = i / 2000.0, here = room(fraction);
+        widest = std::max(widest, here);
+        if (here >= radius && (nearest < 0 || std::abs(fraction - n.position) < std::abs(nearest - n.position))) {
+            nearest = fraction;
         }
     }
+    checker.length("nozzle", "diameter", n.diameter, 0, std::max(2 * widest, 0.0), "the nozzle lies inside the flat base");
+    const bool in_protrusion = shape.protrusion && std::abs(n.position - axis) * base_length < foot + radius;
+    checker.refuse(
+        "nozzle", "position", core::format_number(n.position, 7), core::format_number(nearest, 5),
+        in_protrusion ? "the nozzle lies in the protrusion"
+                      : "the nozzle (" + in_millimetres(n.diameter, 0) + " wide) stands beyond the flat base");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <unordered_map>
 
 namespace underbody::geometry {
@@ -65,7 +67,11 @@ std::vector<std::vector<Vec3>> slice(const SurfaceMesh& mesh, Axis axis, double 
     return curves;
 }
 
-std::vector<std::array<Vec3, 2>> feature_edges(const SurfaceMesh& mesh, double angle) {
+namespace {
+
+using PointPair = std::array<std::int32_t, 2>;
+
+std::vector<PointPair> feature_edges(const SurfaceMesh& mesh, double angle) {
     struct Side {
         std::uint64_t edge;
         std::size_t triangle;
@@ -80,19 +86,59 @@ std::vector<std::array<Vec3, 2>> feature_edges(const SurfaceMesh& mesh, double a
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
         return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
     });
-    std::vector<std::array<Vec3, 2>> edges;
-    const double limit = std::cos(angle);
+    const double facet = std::max(angle, 40 * std::numbers::pi / 180);
+    std::vector<PointPair> edges;
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         if (sides[i].edge != sides[i + 1].edge) {
             continue;
         }
         const std::size_t s = sides[i].triangle, t = sides[i + 1].triangle;
         const Vec3 m = mesh.area_vector(s), n = mesh.area_vector(t);
-        if (mesh.patch[s] != mesh.patch[t] || dot(m, n) < limit * norm(m) * norm(n)) {
-            edges.push_back({mesh.points[sides[i].edge >> 32], mesh.points[sides[i].edge & 0xffffffffu]});
+        const bool small = mesh.patch_names[static_cast<std::size_t>(mesh.patch[s])] == "protrusion";
+        if (mesh.patch[s] != mesh.patch[t] || dot(m, n) < std::cos(small ? facet : angle) * norm(m) * norm(n)) {
+            edges.push_back({static_cast<std::int32_t>(sides[i].edge >> 32),
+                             static_cast<std::int32_t>(sides[i].edge & 0xffffffffu)});
         }
     }
     return edges;
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec3>> feature_lines(const SurfaceMesh& mesh, double angle) {
+    const std::vector<PointPair> edges = feature_edges(mesh, angle);
+    std::map<std::int32_t, std::vector<std::size_t>> at;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        at[edges[i][0]].push_back(i);
+        at[edges[i][1]].push_back(i);
+    }
+    std::vector<char> used(edges.size(), 0);
+    std::vector<std::vector<Vec3>> lines;
+    const auto follow = [&](std::int32_t point, std::size_t edge) {
+        std::vector<Vec3> line{mesh.points[static_cast<std::size_t>(point)]};
+        for (bool more = true; more;) {
+            used[edge] = 1;
+            point = edges[edge][0] == point ? edges[edge][1] : edges[edge][0];
+            line.push_back(mesh.points[static_cast<std::size_t>(point)]);
+            const auto& around = at[point];
+            more = around.size() == 2 && used[around[0]] + used[around[1]] == 1;
+            if (more) {
+                edge = used[around[0]] != 0 ? around[1] : around[0];
+            }
+        }
+        lines.push_back(std::move(line));
+    };
+    // Open lines and those between forks first; what is left are closed ones.
+    for (const bool closed : {false, true}) {
+        for (const auto& [point, around] : at) {
+            for (const std::size_t edge : around) {
+                if (used[edge] == 0 && (closed || around.size() != 2)) {
+                    follow(point, edge);
+                }
+            }
+        }
+    }
+    return lines;
 }
 
 }  // namespace underbody::geometry

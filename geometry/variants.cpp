@@ -34,6 +34,14 @@ std::string unit_of(const std::string& key, const core::Place& place) {
     throw core::InputError("name", "a shape has no parameter '" + key + "'", place, core::did_you_mean(key, known));
 }
 
+// Units that designers read: mm and degrees.
+std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
+
+std::string written(double value, const std::string& unit) {
+    const std::string shown = shown_unit(unit);
+    return core::format_number(core::convert(value, unit, shown), 12) + (shown == "1" ? "" : " " + shown);
+}
+
 Vary vary_from(const core::TomlTable& table) {
     Vary vary;
     vary.key = table.string("key");
@@ -42,7 +50,7 @@ Vary vary_from(const core::TomlTable& table) {
         vary.values = table.strings("values");
     } else if (table.has("values")) {
         for (const double v : table.quantities("values", unit)) {
-            vary.values.push_back(core::format_number(v) + " " + unit);
+            vary.values.push_back(written(v, unit));
         }
     } else {
         const double from = table.quantity("from", unit), to = table.quantity("to", unit);
@@ -53,8 +61,7 @@ Vary vary_from(const core::TomlTable& table) {
         }
         for (std::int64_t i = 0; i < count; ++i) {
             vary.values.push_back(
-                core::format_number(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1)) +
-                " " + unit);
+                written(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1), unit));
         }
     }
     if (vary.values.empty()) {
@@ -189,11 +196,18 @@ core::Table table(const VariantSet& set, const std::vector<MadeVariant>& made) {
     }
     result.add_text("name", names);
     for (std::size_t k = 0; k < set.keys.size(); ++k) {
-        std::vector<std::string> values;
+        const std::string unit = unit_of(set.keys[k], {});
+        std::vector<std::string> words;
+        std::vector<double> numbers;
         for (const Variant& v : set.variants) {
-            values.push_back(v.values[k]);
+            words.push_back(v.values[k]);
+            numbers.push_back(unit.empty() ? 0 : core::parse_in(v.values[k], unit));
         }
-        result.add_text(set.keys[k], values);
+        if (unit.empty()) {
+            result.add_text(set.keys[k], words);
+        } else {
+            result.add_numbers(set.keys[k], unit, numbers, shown_unit(unit));
+        }
     }
     const auto column = [&](const char* name, const char* unit, const char* written, auto value) {
         std::vector<double> numbers;

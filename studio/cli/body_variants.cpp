@@ -50,6 +50,15 @@ int compare_bodies(const std::string& a, const std::string& b, std::size_t trian
 
 // ---- body sweep ----
 
+// What was varied, as short as a sheet needs it.
+std::string joined(const std::vector<std::string>& values) {
+    std::string text;
+    for (const std::string& value : values) {
+        text += (text.empty() ? "" : ", ") + value;
+    }
+    return text.size() > 36 ? text.substr(0, 34) + "..." : text;
+}
+
 int sweep_shapes(const std::string& file, const std::string& out, std::size_t triangles, Shell& shell) {
     geometry::VariantSet set = geometry::read_variants(file);
     const std::vector<geometry::MadeVariant> made = geometry::make_variants(set, triangles, shell.progress());
@@ -63,7 +72,7 @@ int sweep_shapes(const std::string& file, const std::string& out, std::size_t tr
         if (m.mesh.triangles.empty()) {
             continue;
         }
-        bodies.push_back({m.variant->name, &m.mesh});
+        bodies.push_back({m.variant->name + ": " + joined(m.variant->values), &m.mesh});
         if (!out.empty()) {
             core::write_file(std::filesystem::path(out) / (m.variant->name + ".toml"),
                              geometry::write_shape(m.variant->shape));

@@ -65,9 +65,7 @@ int added_mass_table(const AddedMassCommand& o, Shell& shell) {
     geometry::AddedMassOptions options;
     options.density = reading.density;
     options.placement = geometry::Placement{0, core::parse_in(o.pitch, "rad"), 0};
-    if (body.trim) {
-        options.reference = body.trim->centre_of_gravity;
-    }
+    options.reference = body.trim ? body.trim->centre_of_gravity : body.mass.centroid;
     const geometry::AddedMassSweep sweep =
         body.shape ? geometry::added_mass_against_gap(*body.shape, gaps, o.panels, options, shell.progress())
                    : geometry::added_mass_against_gap(body.mesh, gaps, o.panels, options, shell.progress());
@@ -80,7 +78,10 @@ int added_mass_table(const AddedMassCommand& o, Shell& shell) {
         write_picture(geometry::figure(sweep, body.name), o.picture);
     }
     if (shell.json) {
-        nlohmann::json document{{"name", body.name}, {"free_water", sweep.free_water}, {"gaps", sweep.at_gap}};
+        nlohmann::json document{{"name", body.name},
+                                {"free_water", sweep.free_water},
+                                {"gaps", sweep.at_gap},
+                                {"moments_about", body.trim ? "centre of gravity" : "centroid of the volume"}};
         shell.print_json(document);
     } else if (o.out.empty()) {
         shell.print(core::write_csv(table));

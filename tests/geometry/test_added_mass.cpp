@@ -7,7 +7,10 @@
 #include "core/error.h"
 #include "geometry/added_mass.h"
 #include "geometry/body_surface.h"
+#include "geometry/certificate.h"
 #include "geometry/ellipsoid_added_mass.h"
+#include "geometry/mass_properties.h"
+#include "geometry/panel_mesh.h"
 #include "geometry/primitives.h"
 #include "geometry/source_panels.h"
 
@@ -173,6 +176,67 @@ TEST(AddedMass, MovesToAnotherReferencePointAsRigidBodiesDo) {
                         2e-3 * std::sqrt(there.matrix[i][i] * there.matrix[j][j]) + 1e-12);
         }
     }
+}
+
+TEST(PanelMesh, LiesOnTheSurfaceAndKeepsItsSharpEdges) {
+    SurfaceOptions surface;
+    surface.triangles = 12000;
+    BodyShape shape;
+    shape.base = BaseKind::rectangle;
+    shape.protrusion = Protrusion{};
+    const SurfaceMesh mesh = make_surface(shape, surface);
+    PanelOptions options;
+    options.panels = 2500;
+    const PanelMesh panels = panel_mesh(mesh, options);
+    const Certificate certificate = certify(panels.mesh);
+    EXPECT_TRUE(certificate.passed());
+    EXPECT_GT(certificate.smallest_angle, 8 * pi / 180);
+    EXPECT_NEAR(static_cast<double>(panels.mesh.triangles.size()), 2500, 500);
+    EXPECT_EQ(panels.mesh.patch_names, mesh.patch_names);
+    for (const char* patch : {"base", "hull", "protrusion"}) {
+        EXPECT_NEAR(area(patch_of(panels.mesh, patch)) / area(patch_of(mesh, patch)), 1, 0.02) << patch;
+    }
+    EXPECT_LT(panels.distance_rms, 5e-4);
+    EXPECT_LT(panels.distance_largest, 2e-3);
+    EXPECT_LT(std::abs(panels.volume_error), 0.01);
+    EXPECT_NEAR(mass_properties(panels.mesh).volume / mass_properties(mesh).volume - 1, panels.volume_error, 1e-12);
+}
+
+TEST(PanelMesh, SplitsASurfaceOfTooFewTrianglesAndLeavesItsShape) {
+    SurfaceMesh box;  // 2 x 1 x 0.5 m
+    for (int i = 0; i < 8; ++i) {
+        box.points.push_back({i & 1 ? 2.0 : 0.0, i & 2 ? 1.0 : 0.0, i & 4 ? 0.5 : 0.0});
+    }
+    box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    box.patch.assign(12, 0);
+    box.patch_names = {"hull"};
+    PanelOptions options;
+    options.panels = 800;
+    const PanelMesh panels = panel_mesh(box, options);
+    EXPECT_NEAR(static_cast<double>(panels.mesh.triangles.size()), 800, 160);
+    EXPECT_LT(panels.distance_largest, 1e-12) << "its faces are flat and its edges straight";
+    EXPECT_NEAR(panels.volume_error, 0, 1e-12);
+    EXPECT_GT(certify(panels.mesh).smallest_angle, 15 * pi / 180);
+}
+
+TEST(AddedMass, OfASurfaceOfManyTrianglesIsThatOfItsShape) {
+    const SurfaceMesh many = ellipsoid_surface(0.1016, 0.076, 0.0725, 20000);
+    AddedMassOptions options;
+    options.reference = Vec3{};
+    const EllipsoidAddedMass exact = ellipsoid_added_mass(0.1016, 0.076, 0.0725);
+    const AddedMass free = added_mass(many, 1200, options);
+    ASSERT_TRUE(free.fit);
+    EXPECT_EQ(free.fit->triangles, many.triangles.size());
+    EXPECT_LT(free.fit->distance_rms, 1e-3);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(free.matrix[k][k] / (1000 * exact.translation[k]), 1, 0.005) << "Lamb within 0.5 %";
+    }
+    const BodyShape evie;
+    options.reference.reset();
+    options.placement = Placement{0.005, 0, 0};
+    const double by_shape = added_mass(evie, 1200, options).matrix[2][2];
+    EXPECT_NEAR(added_mass(make_surface(evie), 1200, options).matrix[2][2] / by_shape, 1, 0.01);
 }
 
 TEST(AddedMass, RefusesABodyInTheGround) {

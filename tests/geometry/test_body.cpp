@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -118,6 +119,31 @@ TEST(Placement, KeepsTheGapUnderTheCentreOfTheBase) {
     const Vec3 centre = placed(Vec3{}, placement);
     EXPECT_EQ(centre.z, 0.005);
     EXPECT_GT(placed(Vec3{0, 1, 0}, {0, 0, 0.1}).z, 0) << "roll is starboard down, so port goes up";
+}
+
+TEST(Placement, NamesThePointInTheMiddleOfSeveralEquallyLow) {
+    BodyShape shape = evie();
+    shape.protrusion = Protrusion{};
+    const Clearance clear = clearance(make_surface(shape), {0.01, 0, 0});
+    EXPECT_EQ(clear.patch, "protrusion");
+    EXPECT_NEAR(clear.where_on_body.y, 0, 1e-12);
+    EXPECT_NEAR(clear.where_on_body.x, shape.base_x(0.85), 1e-4);
+}
+
+TEST(Placement, CountsTheUnderSideBelowAHeight) {
+    SurfaceOptions options;
+    options.triangles = 40000;
+    const SurfaceMesh body = make_surface(evie(), options);
+    const AreaBelow below = underside_area(body, {0.005, 0, 0}, 0.005 + 0.054375, 401);
+    // The section of the ellipsoid at a height u above the base: pi a b (1 - ((u - depth)/c)^2).
+    for (std::size_t i = 0; i < below.height.size(); ++i) {
+        const double z = (below.height[i] - 0.005 - 0.054375) / 0.0725;
+        const double exact = below.height[i] < 0.005 - 1e-9 ? 0 : pi * 0.1016 * 0.076 * (1 - z * z);
+        EXPECT_NEAR(below.area[i], i == 34 ? below.area[i] : exact, 6e-5) << below.height[i];
+    }
+    const AreaBelow pitched = underside_area(body, {0.005, 0.02, 0}, 0.2, 50);
+    EXPECT_LT(pitched.area[1], below.area.back()) << "and grows with height";
+    EXPECT_TRUE(std::is_sorted(pitched.area.begin(), pitched.area.end()));
 }
 
 TEST(MeshFile, SaysWhichEndingsItKnows) {

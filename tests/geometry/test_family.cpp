@@ -81,6 +81,27 @@ TEST(Family, KeepsTheBaseFlatAndAtItsPitch) {
     EXPECT_NEAR(bounding_box(mesh).upper.z, 0.0725 * 1.75, 1e-9) << "the upper half stays";
 }
 
+TEST(Family, HasItsOriginAtTheCentreOfTheFlatBase) {
+    for (const BaseKind kind : {BaseKind::ellipse, BaseKind::rectangle, BaseKind::ellipse_front}) {
+        BodyShape shape = shipped("ellipse");
+        shape.base = kind;
+        shape.edge_radius = 0.004;
+        shape.base_pitch = 2 * degree;
+        shape.taper = 0.2;
+        shape.nozzle = Nozzle{};
+        const SurfaceMesh mesh = made(shape);
+        const Box base = bounding_box(patch_of(mesh, "base"));
+        EXPECT_NEAR(base.lower.x + base.upper.x, 0, 1e-9) << name_of(kind);
+        EXPECT_EQ(base.lower.y, -base.upper.y);
+        EXPECT_NEAR(base.lower.z + base.upper.z, 0, 1e-9) << "and pitches about it";
+        EXPECT_NEAR(bounding_box(mesh).upper.x + bounding_box(mesh).lower.x, -2 * base_centre(shape), 1e-9)
+            << "the ellipsoid's axis lies aft of it";
+        const Certificate certificate = certify(mesh, shape);
+        EXPECT_TRUE(certificate.passed());
+        EXPECT_LT(certificate.exact->distance_largest, 4e-4);
+    }
+}
+
 TEST(Family, TaperMovesNoVolumeOfABodyLikeForeAndAft) {
     BodyShape shape = shipped("ellipse");
     const double straight = certify(made(shape, 1000), shape).exact->volume;
@@ -177,10 +198,11 @@ TEST(ShapeFuzz, EveryValidShapeIsCertified) {
             continue;
         }
         ++made_ones;
+        const testing::ScopedTrace trace(__FILE__, __LINE__, write_shape(shape));
         const Certificate certificate = certify(made(shape, 3000), shape);
-        ASSERT_TRUE(certificate.passed()) << certificate.faults.front().what << "\n" << write_shape(shape);
-        EXPECT_GT(certificate.smallest_angle, 0.05 * degree) << write_shape(shape);
-        EXPECT_LT(std::abs(certificate.exact->volume_error), 0.03) << write_shape(shape);
+        ASSERT_TRUE(certificate.passed()) << certificate.faults.front().what;
+        EXPECT_GT(certificate.smallest_angle, 0.05 * degree);
+        EXPECT_LT(std::abs(certificate.exact->volume_error), 0.03);
     }
     RecordProperty("certified", static_cast<int>(made_ones));
 }
@@ -240,6 +262,29 @@ std::string spoil(BodyShape& s, core::Random& random) {
             s.nozzle->depth = s.height * random.uniform(1, 2);
             return "depth";
     }
+}
+
+TEST(ShapeLimits, NameANearestValueThatIsThenAllowed) {
+    const auto refused = [](const BodyShape& shape) {
+        try {
+            check(shape);
+        } catch (const core::InputError& error) {
+            return error.hint();
+        }
+        return std::string("was allowed");
+    };
+    BodyShape shape = shipped("rectangle_bump2");
+    shape.nozzle = Nozzle{0.005, 0.99, 0};
+    EXPECT_EQ(refused(shape), "the nearest allowed value: 0.9545") << "aft of the ridge, on the flat base";
+    shape.nozzle->position = 0.9545;
+    EXPECT_EQ(refused(shape), "was allowed");
+    shape.nozzle->position = 0.84;
+    EXPECT_THAT(refused(shape), testing::HasSubstr("nearest allowed value: 0.7"));
+    shape.nozzle = Nozzle{0.3, 0.5, 0};
+    EXPECT_THAT(refused(shape), testing::HasSubstr("at most"));
+    shape.nozzle.reset();
+    shape.edge_radius = -0.001;
+    EXPECT_EQ(refused(shape), "the nearest allowed value: at least 0 mm");
 }
 
 TEST(ShapeFuzz, EveryInvalidShapeIsRefusedWithAReason) {

@@ -83,7 +83,8 @@ TEST(FlowDomain, ForAnsysIsAClosedRoomAroundTheHalfBody) {
     EXPECT_NEAR(size.x * size.y * size.z - volume, 0.0022264 / 2, 4e-6) << "the box less half the body";
     const std::string journal = core::read_file(folder.path() / "case/fluent.jou"),
                       ccl = core::read_file(folder.path() / "case/cfx.ccl");
-    EXPECT_THAT(journal, testing::HasSubstr("motion-bc-moving"));
+    EXPECT_THAT(journal, testing::HasSubstr("motion-bc-moving relative? no vmag no -0.5 quit"));
+    EXPECT_THAT(journal, testing::HasSubstr("turb-intensity 1 turb-viscosity-ratio 5")) << "per cent";
     EXPECT_THAT(ccl, testing::HasSubstr("Wall U = -0.5 [m s^-1]"));
     EXPECT_THROW(write_ansys_case(mesh, coarse(0.005), folder.path() / "case"), core::InputError)
         << "never over another";

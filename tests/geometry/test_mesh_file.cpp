@@ -144,7 +144,9 @@ TEST(Slice, CutsClosedCurvesOfTheRightLength) {
     }
     EXPECT_NEAR(std::abs(area), 3.14159265 * 0.1016 * 0.076, 3e-5);
     EXPECT_EQ(slice(mesh, Axis::y, 0).size(), 1u) << "a plane full of corners";
-    EXPECT_FALSE(feature_edges(mesh, 0.3).empty());
+    const auto lines = feature_lines(mesh, 0.3);
+    ASSERT_EQ(lines.size(), 1u) << "the edge of the base, one closed line";
+    EXPECT_EQ(lines[0].front(), lines[0].back());
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ TEST(Variants, AreAllCombinationsWithTies) {
     EXPECT_DOUBLE_EQ(set.variants[4].shape.base_cut, 0.75);
     EXPECT_DOUBLE_EQ(set.variants[4].shape.protrusion->length, 0.01);
     EXPECT_DOUBLE_EQ(set.variants[0].shape.protrusion->length, 0.005);
+    EXPECT_EQ(set.variants[0].values[0], "1 mm");
 }
 
 TEST(Variants, FindsEqualShapesAndKeepsTheReasonOfARefusal) {
@@ -45,6 +46,7 @@ TEST(Variants, FindsEqualShapesAndKeepsTheReasonOfARefusal) {
     const core::Table rows = table(set, made);
     EXPECT_EQ(rows.rows(), 3u);
     EXPECT_EQ(rows.text("same_as")[1], "bumps-001");
+    EXPECT_DOUBLE_EQ(rows.numbers("body.edge_radius")[2], 0.5) << "numbers with their unit, for plots";
     EXPECT_NEAR(rows.numbers("volume")[0], 0.002226, 1e-4);
 }
 
