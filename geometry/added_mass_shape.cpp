@@ -117,19 +117,18 @@ AddedMassSweep added_mass_against_gap(const SurfaceMesh& surface, const std::vec
 
 core::Table table(const AddedMassSweep& sweep) {
     core::Table result;
+    const auto metres = [](double v) { return core::format_number(std::abs(v) < 1e-12 ? 0.0 : v, 6); };
+    const Vec3& about = sweep.free_water.reference;
     result.comments = {
         " added mass over flat ground, source panels with image; body axes x forward, y starboard, z down",
-        " moments about (" + core::format_number(sweep.free_water.reference.x, 6) + ", " +
-            core::format_number(sweep.free_water.reference.y, 6) + ", " +
-            core::format_number(sweep.free_water.reference.z, 6) +
+        " moments about (" + metres(about.x) + ", " + metres(about.y) + ", " + metres(about.z) +
             ") m from the centre of the base (x forward, y port, z up); " + std::to_string(sweep.free_water.panels) +
             " panels, " + core::format_number(sweep.free_water.density, 6) + " kg/m^3"};
     if (sweep.free_water.fit) {
         const AddedMass::PanelFit& fit = *sweep.free_water.fit;
         result.comments.push_back(" panels made from " + std::to_string(fit.triangles) +
-                                  " triangles, off their surface by " +
-                                  core::format_number(1e3 * fit.distance_rms, 3) + " mm (RMS), " +
-                                  core::format_number(1e3 * fit.distance_largest, 3) + " mm at most");
+                                  " triangles, off their surface by " + core::format_number(1e3 * fit.distance_rms, 3) +
+                                  " mm (RMS), " + core::format_number(1e3 * fit.distance_largest, 3) + " mm at most");
     }
     std::vector<double> gap, pitch;
     for (const AddedMass& m : sweep.at_gap) {

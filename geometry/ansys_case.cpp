@@ -118,19 +118,20 @@ std::string journal(const FlowDomain& d, const FlowOptions& o) {
     for (const std::string& wall : d.walls) {
         text += "/define/boundary-conditions/zone-type " + wall + " wall\n";
     }
-    text += "; turbulence of the stream: the third choice of ke-spec, intensity in per cent and viscosity ratio\n"
-            "/define/boundary-conditions/set/velocity-inlet inlet () vmag no " +
-            v + " ke-spec no no yes turb-intensity " + digits(100 * o.turbulence_intensity) +
-            " turb-viscosity-ratio " + digits(o.viscosity_ratio) + " quit\n" +
-            "/define/boundary-conditions/set/pressure-outlet outlet () gauge-pressure no 0 quit\n"
-            "; the ground slides with the stream, " +
-            v +
-            " m/s toward -x: a negative speed along +x, the direction a wall has unless told otherwise\n"
-            "/define/boundary-conditions/set/wall ground () motion-bc yes motion-bc-moving relative? no vmag no -" +
-            v +
-            " quit\n"
-            "/solve/set/p-v-coupling 24\n/solve/set/discretization-scheme/mom 1\n/solve/set/discretization-scheme/k "
-            "1\n/solve/set/discretization-scheme/omega 1\n";
+    text +=
+        "; turbulence of the stream: the third choice of ke-spec, intensity in per cent and viscosity ratio\n"
+        "/define/boundary-conditions/set/velocity-inlet inlet () vmag no " +
+        v + " ke-spec no no yes turb-intensity " + digits(100 * o.turbulence_intensity) + " turb-viscosity-ratio " +
+        digits(o.viscosity_ratio) + " quit\n" +
+        "/define/boundary-conditions/set/pressure-outlet outlet () gauge-pressure no 0 quit\n"
+        "; the ground slides with the stream, " +
+        v +
+        " m/s toward -x: a negative speed along +x, the direction a wall has unless told otherwise\n"
+        "/define/boundary-conditions/set/wall ground () motion-bc yes motion-bc-moving relative? no vmag no -" +
+        v +
+        " quit\n"
+        "/solve/set/p-v-coupling 24\n/solve/set/discretization-scheme/mom 1\n/solve/set/discretization-scheme/k "
+        "1\n/solve/set/discretization-scheme/omega 1\n";
     const auto report = [&](const std::string& name, const std::string& kind, const std::string& vector) {
         text += "/solve/report-definitions/add " + name + " " + kind + " thread-names " + walls + " () " + vector +
                 " quit\n";

@@ -61,6 +61,31 @@ PatchExtent extent_of(const SurfaceMesh& body, const std::string& patch) {
     return extent;
 }
 
+// How far a patch stands out of the plane of the base, whatever its pitch.
+double height_over_base(const SurfaceMesh& body, const std::string& patch) {
+    Vec3 vector, centre;
+    double area = 0, height = 0;
+    const auto is = [&](std::size_t t, const std::string& name) {
+        return body.patch_names[static_cast<std::size_t>(body.patch[t])] == name;
+    };
+    for (std::size_t t = 0; t < body.triangles.size(); ++t) {
+        if (is(t, "base")) {
+            const double part = norm(body.area_vector(t));
+            vector += body.area_vector(t);
+            centre += part * body.centre(t);
+            area += part;
+        }
+    }
+    for (std::size_t t = 0; area > 0 && t < body.triangles.size(); ++t) {
+        if (is(t, patch)) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                height = std::max(height, dot(body.corner(t, k) - centre / area, unit(vector)));
+            }
+        }
+    }
+    return height;
+}
+
 void add_section(core::Figure& figure, const SurfaceMesh& body, double dx, double dy, double width) {
     for (const auto& loop : slice(body, Axis::y, 0)) {
         core::FigureCurve curve;
@@ -147,8 +172,9 @@ core::Figure section_figure(const SurfaceMesh& body, const std::string& name) {
         dimension(figure, 1e3 * base.x.low, y, 1e3 * base.x.high, y, tick, base.x.size());
     }
     if (const PatchExtent bump = extent_of(body, "protrusion"); bump.any) {
-        figure.notes.push_back({500 * (bump.x.low + bump.x.high), 1e3 * bump.z.high + 0.5 * step,
-                                "protrusion " + mm(bump.x.size()) + " long, " + mm(bump.z.size()) + " high"});
+        figure.notes.push_back(
+            {500 * (bump.x.low + bump.x.high), 1e3 * bump.z.high + 0.5 * step,
+             "protrusion " + mm(bump.x.size()) + " long, " + mm(height_over_base(body, "protrusion")) + " high"});
     }
     if (const PatchExtent nozzle = extent_of(body, "nozzle"); nozzle.any) {
         figure.notes.push_back(
@@ -184,8 +210,8 @@ core::Figure underbody_figure(const SurfaceMesh& body, const std::string& name) 
         }
     }
     if (const PatchExtent nozzle = extent_of(body, "nozzle"); nozzle.any) {
-        figure.notes.push_back({500 * (nozzle.x.low + nozzle.x.high), 1e3 * nozzle.y.high + 0.15 * step,
-                                "nozzle " + mm(nozzle.x.size())});
+        figure.notes.push_back(
+            {500 * (nozzle.x.low + nozzle.x.high), 1e3 * nozzle.y.high + 0.15 * step, "nozzle " + mm(nozzle.x.size())});
     }
     return figure;
 }

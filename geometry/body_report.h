@@ -23,7 +23,7 @@ struct BodyOptions {
     double feature_angle = 20;        ///< degrees, of a surface file
     double density = default_water_density;
     std::optional<Placement> placement;
-    std::size_t panels = 1200;               ///< of the added mass; 0: none
+    std::size_t panels = 1200;              ///< of the added mass; 0: none
     std::optional<double> underside_up_to;  ///< m above the ground; default: the gap and a quarter of the body's height
 };
 
@@ -32,7 +32,7 @@ struct Body {
     std::optional<BodyShape> shape;  ///< empty for a surface file
     /// m, how far the origin (the centre of the flat base) lies forward of the ellipsoid's axis; 0 for a surface file.
     double origin_from_axis = 0;
-    SurfaceMesh mesh;                ///< certified; origin at the centre of the base
+    SurfaceMesh mesh;  ///< certified; origin at the centre of the base
     MassProperties mass;
     Certificate certificate;
     double density = default_water_density;

@@ -136,7 +136,10 @@ double CutHull::tip_height(Side side) const {
     if (inside(near) > 0) {
         return depth_;
     }
-    return bisect([&](double u) { return -inside(u); }, std::min(body_.highest_fillet(), 0.5 * near), near);
+    // Above the rounding of the edge, unless the side has left the ellipsoid in it already.
+    const double low = std::min(body_.highest_fillet(), 0.5 * near);
+    const auto outside = [&](double u) { return -inside(u); };
+    return inside(low) > 0 ? bisect(outside, low, near) : bisect(outside, 0, low);
 }
 
 Vec3 CutHull::end_crease(const Corner& corner, double u) const {

@@ -1,7 +1,6 @@
 #include "geometry/panel_mesh.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -138,7 +137,7 @@ private:
         }
         // A line that turns by more than 40 degrees has a corner there.
         return features == 2 && (ways[0] | ways[1]) < -0.766 * ways[0].norm() * ways[1].norm() ? Kind::line
-                                                                                                : Kind::corner;
+                                                                                               : Kind::corner;
     }
 
     [[nodiscard]] double length(EdgeHandle edge) const {

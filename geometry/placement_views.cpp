@@ -117,7 +117,12 @@ core::Figure figure(const AreaBelow& below) {
 }
 
 core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
-    const SurfaceMesh mesh = placed(body, placement);
+    SurfaceMesh mesh = placed(body, placement);
+    const auto& names = mesh.patch_names;
+    if (std::find(names.begin(), names.end(), "nozzle_bore") != names.end()) {
+        // The end of a bore is no part of the gap, and its height would hide all else.
+        std::replace(mesh.patch_names.begin(), mesh.patch_names.end(), std::string("nozzle"), std::string("bore_end"));
+    }
     Box box{{1e9, 1e9, 0}, {-1e9, -1e9, 0}};
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (is_underside(mesh.patch_names[static_cast<std::size_t>(mesh.patch[t])])) {
@@ -186,9 +191,7 @@ core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
     return figure;
 }
 
-void to_json(nlohmann::json& json, const AreaBelow& below) {
-    json = {{"height", below.height}, {"area", below.area}};
-}
+void to_json(nlohmann::json& json, const AreaBelow& below) { json = {{"height", below.height}, {"area", below.area}}; }
 
 void to_json(nlohmann::json& json, const Clearance& clear) {
     json = {

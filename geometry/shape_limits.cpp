@@ -154,8 +154,7 @@ void check_base(const BodyShape& shape, const Checker& checker) {
     sides("base_length", shape.base_length, shape.length);
     sides("base_width", shape.base_width, shape.width);
     const bool fits = shape.edge_radius == 0 || (shape.edge_radius > 0 && edge_is_regular(shape, shape.edge_radius));
-    checker.length("body", "edge_radius", shape.edge_radius, 0,
-                   fits ? shape.edge_radius : largest_edge_radius(shape),
+    checker.length("body", "edge_radius", shape.edge_radius, 0, fits ? shape.edge_radius : largest_edge_radius(shape),
                    "a rounding that the edge has room for: it leaves a fifth of the base and stays below the midplane");
     checker.number("body", "taper", shape.taper, -0.8, 0.8, "the fraction by which the base narrows from nose to tail");
     // d(height')/d(height) = 1 - 2 tan(pitch) x (depth - u)/depth^2 must stay positive on the whole lower hull.
@@ -226,7 +225,8 @@ void check_nozzle(const BodyShape& shape, const Checker& checker) {
         const double edge = inside_distance(outline, extent.nose - fraction * base_length, 0) - margin;
         return shape.protrusion ? std::min(edge, std::abs(fraction - axis) * base_length - foot) : edge;
     };
-    checker.length("nozzle", "diameter", n.diameter, 1e-3 * base_length, base_length, "the nozzle lies inside the base");
+    checker.length("nozzle", "diameter", n.diameter, 1e-3 * base_length, base_length,
+                   "the nozzle lies inside the base");
     if (room(n.position) >= radius) {
         return;
     }
@@ -238,12 +238,13 @@ void check_nozzle(const BodyShape& shape, const Checker& checker) {
             nearest = fraction;
         }
     }
-    checker.length("nozzle", "diameter", n.diameter, 0, std::max(2 * widest, 0.0), "the nozzle lies inside the flat base");
+    checker.length("nozzle", "diameter", n.diameter, 0, std::max(2 * widest, 0.0),
+                   "the nozzle lies inside the flat base");
     const bool in_protrusion = shape.protrusion && std::abs(n.position - axis) * base_length < foot + radius;
-    checker.refuse(
-        "nozzle", "position", core::format_number(n.position, 7), core::format_number(nearest, 5),
-        in_protrusion ? "the nozzle lies in the protrusion"
-                      : "the nozzle (" + in_millimetres(n.diameter, 0) + " wide) stands beyond the flat base");
+    checker.refuse("nozzle", "position", core::format_number(n.position, 7), core::format_number(nearest, 5),
+                   in_protrusion
+                       ? "the nozzle lies in the protrusion"
+                       : "the nozzle (" + in_millimetres(n.diameter, 0) + " wide) stands beyond the flat base");
 }
 
 }  // namespace

@@ -67,8 +67,8 @@ struct MadeVariant {
 std::vector<MadeVariant> make_variants(VariantSet& set, std::size_t triangles,
                                        core::Progress& progress = core::Progress::none());
 
-/// One row a variant: name, the varied parameters (mm, degrees, or words), volume, area, buoyancy, centroid, base area, smallest
-/// angle, largest distance to the exact shape, volume error, `same_as`, `refused`.
+/// One row a variant: name, the varied parameters (mm, degrees, or words), volume, area, buoyancy, centroid, base area,
+/// smallest angle, largest distance to the exact shape, volume error, `same_as`, `refused`.
 core::Table table(const VariantSet& set, const std::vector<MadeVariant>& made);
 
 /// What differs between two shapes, and what that does.

@@ -22,6 +22,10 @@ using core::format_number;
 
 std::string number(double v, int digits = 6) { return format_number(v, digits); }
 
+// m as mm; the rounding errors of symmetric bodies (1e-13 mm) are shown as 0.
+std::string mm(double metres) { return number(std::abs(metres) < 1e-12 ? 0.0 : 1e3 * metres, 5); }
+std::string degrees(double radians) { return number(std::abs(radians) < 1e-12 ? 0.0 : 57.29577951308232 * radians, 4); }
+
 double positive(const std::string& text, const char* unit, const char* option) {
     const double value = core::parse_in(text, unit);
     if (!(value > 0) || !std::isfinite(value)) {
@@ -93,7 +97,7 @@ namespace {
 struct MakeOptions {
     BodyInput input;
     std::string out, out_unit = "m", picture, section, underside, gap_picture, area_curve, area_up_to, ballast,
-        trim_pitch = "0 deg", trim_roll = "0 deg";
+                     trim_pitch = "0 deg", trim_roll = "0 deg";
     bool ascii = false;
 };
 
@@ -128,8 +132,8 @@ void print_body(const geometry::Body& body, Shell& shell) {
     shell.print("volume      " + number(mass.volume * 1e6) + " cm^3, buoyancy " + number(mass.buoyancy(body.density)) +
                 " N");
     shell.print("area        " + number(mass.area * 1e4) + " cm^2");
-    shell.print("centroid    " + number(mass.centroid.x * 1e3, 5) + ", " + number(mass.centroid.y * 1e3, 5) + ", " +
-                number(mass.centroid.z * 1e3, 5) + " mm from the centre of the base (x forward, y to port, z up)");
+    shell.print("centroid    " + mm(mass.centroid.x) + ", " + mm(mass.centroid.y) + ", " + mm(mass.centroid.z) +
+                " mm from the centre of the base (x forward, y to port, z up)");
     for (const geometry::PatchSummary& patch : geometry::patches(body.mesh)) {
         shell.print("patch       " + patch.name + ": " + std::to_string(patch.faces) + " triangles, " +
                     number(patch.area * 1e4, 5) + " cm^2");
@@ -145,10 +149,9 @@ void print_body(const geometry::Body& body, Shell& shell) {
     if (body.trim) {
         const geometry::Trim& t = *body.trim;
         shell.print("trim        mass " + number(t.mass, 5) + " kg, net weight " + number(t.net_weight, 4) + " N, " +
-                    (t.stable
-                         ? "pitch " + number(t.pitch * 57.29578, 4) + " deg, roll " + number(t.roll * 57.29578, 4) +
-                               " deg, righting " + number(t.righting_stiffness, 4) + " N m/rad"
-                         : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));
+                    (t.stable ? "pitch " + degrees(t.pitch) + " deg, roll " + degrees(t.roll) + " deg, righting " +
+                                    number(t.righting_stiffness, 4) + " N m/rad"
+                              : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));
     }
     if (body.added_mass) {
         const auto& a = body.added_mass->matrix;
@@ -159,9 +162,8 @@ void print_body(const geometry::Body& body, Shell& shell) {
             (body.placement ? " at a gap of " + number(1e3 * body.placement->gap, 4) + " mm" : " in free water"));
         const geometry::Vec3& about = body.added_mass->reference;
         line = "            moments about the " +
-               std::string(body.trim ? "centre of gravity" : "centroid of the volume") + " (" +
-               number(about.x * 1e3, 5) + ", " + number(about.y * 1e3, 5) + ", " + number(about.z * 1e3, 5) + ") mm; " +
-               std::to_string(body.added_mass->panels) + " panels";
+               std::string(body.trim ? "centre of gravity" : "centroid of the volume") + " (" + mm(about.x) + ", " +
+               mm(about.y) + ", " + mm(about.z) + ") mm; " + std::to_string(body.added_mass->panels) + " panels";
         if (body.added_mass->fit) {
             line += " made from the triangles, off them by " + number(1e3 * body.added_mass->fit->distance_rms, 3) +
                     " mm (RMS), " + number(1e3 * body.added_mass->fit->distance_largest, 3) + " mm at most";
@@ -170,10 +172,10 @@ void print_body(const geometry::Body& body, Shell& shell) {
     }
     if (body.clearance) {
         shell.print("clearance   " + number(1e3 * body.clearance->smallest, 4) +
-                    " mm at x = " + number(1e3 * body.clearance->where.x, 4) + ", y = " +
-                    number(1e3 * body.clearance->where.y, 4) + " mm (" + body.clearance->patch + ")");
+                    " mm at x = " + number(1e3 * body.clearance->where.x, 4) +
+                    ", y = " + number(1e3 * body.clearance->where.y, 4) + " mm (" + body.clearance->patch + ")");
         const auto angle = [](const std::optional<double>& v) {
-            return v ? number(*v * 57.29578, 4) + " deg" : std::string("none");
+            return v ? degrees(*v) + " deg" : std::string("none");
         };
         shell.print("contact     at this gap: nose up " + angle(body.contact->nose_up) + ", nose down " +
                     angle(body.contact->nose_down) + ", roll " + angle(body.contact->roll));

@@ -38,8 +38,9 @@ double processor_seconds() {
 std::string geo(const BodyShape& s, double edge) {
     const auto n = [](double v) { return std::to_string(v); };
     const double depth = s.base_depth();
-    std::string text = "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\nDilate {{0, 0, 0}, {" + n(s.length / 2) +
-                       ", " + n(s.width / 2) + ", " + n(s.height / 2) + "}} { Volume{1}; }\nTranslate {0, 0, " + n(depth) +
+    std::string text = "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\nDilate {{0, 0, 0}, {" +
+                       n(s.length / 2) + ", " + n(s.width / 2) + ", " + n(s.height / 2) +
+                       "}} { Volume{1}; }\nTranslate {0, 0, " + n(depth) +
                        "} { Volume{1}; }\nBox(2) = {-1, -1, -1, 2, 2, 1};\n"
                        "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n";
     if (s.protrusion) {
@@ -52,9 +53,10 @@ std::string geo(const BodyShape& s, double edge) {
             text += "Sphere(" + std::to_string(6 + end) + ") = {" + n(x) + ", " + n(end * axis) + ", " + n(centre) +
                     ", " + n(radius) + "};\n";
         }
-        text += "Box(8) = {-1, -1, -1, 2, 2, 1};\nBooleanUnion(9) = { Volume{4}; Delete; }{ Volume{5, 7}; Delete; };\n"
-                "BooleanIntersection(10) = { Volume{9}; Delete; }{ Volume{8}; Delete; };\n"
-                "BooleanUnion(11) = { Volume{3}; Delete; }{ Volume{10}; Delete; };\n";
+        text +=
+            "Box(8) = {-1, -1, -1, 2, 2, 1};\nBooleanUnion(9) = { Volume{4}; Delete; }{ Volume{5, 7}; Delete; };\n"
+            "BooleanIntersection(10) = { Volume{9}; Delete; }{ Volume{8}; Delete; };\n"
+            "BooleanUnion(11) = { Volume{3}; Delete; }{ Volume{10}; Delete; };\n";
     }
     return text + "Mesh.MeshSizeMin = " + n(edge) + ";\nMesh.MeshSizeMax = " + n(edge) + ";\n";
 }
@@ -143,9 +145,20 @@ BodyShape bump() {
     return shape;
 }
 
-BENCHMARK_CAPTURE(underbody_here, ellipse, BodyShape{})->Arg(20000)->Arg(100000)->Unit(benchmark::kMillisecond)->UseManualTime();
-BENCHMARK_CAPTURE(gmsh_peer, ellipse, BodyShape{})->Arg(20000)->Arg(100000)->Unit(benchmark::kMillisecond)->UseManualTime();
-BENCHMARK_CAPTURE(underbody_here, ellipse_with_bump, bump())->Arg(20000)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK_CAPTURE(underbody_here, ellipse, BodyShape{})
+    ->Arg(20000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(gmsh_peer, ellipse, BodyShape{})
+    ->Arg(20000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(underbody_here, ellipse_with_bump, bump())
+    ->Arg(20000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
 BENCHMARK_CAPTURE(gmsh_peer, ellipse_with_bump, bump())->Arg(20000)->Unit(benchmark::kMillisecond)->UseManualTime();
 
 }  // namespace
