@@ -1,63 +1,19 @@
 #include "cases/measured/studies.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 
+#include "cases/measured/foreign_table.h"
 #include "core/file.h"
+#include "core/html.h"
 #include "core/text.h"
 
 namespace underbody::cases {
 
 namespace {
-
-/// A plain CSV of somebody else: no units in its header. Text stays text.
-struct ForeignTable {
-    std::vector<std::string> header;
-    std::vector<std::vector<std::string>> rows;
-    std::string source;
-
-    [[nodiscard]] std::size_t column(const std::string& name) const {
-        const auto found = std::find(header.begin(), header.end(), name);
-        if (found == header.end()) {
-            throw core::InputError("name", "no column '" + name + "'", core::Place{source, 1, {}, {}}, core::did_you_mean(name, header));
-        }
-        return static_cast<std::size_t>(found - header.begin());
-    }
-    [[nodiscard]] double number(std::size_t row, std::size_t column_index) const {
-        const auto value = core::parse_number(rows[row][column_index]);
-        if (!value) {
-            throw core::InputError("parse", "'" + rows[row][column_index] + "' is not a number",
-                                   core::Place{source, static_cast<std::int64_t>(row) + 2, static_cast<std::int64_t>(column_index) + 1, {}});
-        }
-        return *value;
-    }
-};
-
-ForeignTable read_foreign(const std::filesystem::path& file) {
-    ForeignTable table;
-    table.source = file.string();
-    const std::string text = core::read_file(file);
-    for (const std::string_view line : core::split(text, '\n')) {
-        if (core::trimmed(line).empty()) {
-            continue;
-        }
-        std::vector<std::string> cells;
-        for (const std::string_view cell : core::split(line, ',')) {
-            cells.emplace_back(core::trimmed(cell));
-        }
-        if (table.header.empty()) {
-            table.header = std::move(cells);
-        } else if (cells.size() == table.header.size()) {
-            table.rows.push_back(std::move(cells));
-        } else {
-            throw core::InputError("parse", "a line with another number of columns than the header",
-                                   core::Place{table.source, static_cast<std::int64_t>(table.rows.size()) + 2, {}, {}});
-        }
-    }
-    return table;
-}
 
 discovery::DiscoverOptions quick() {
     discovery::DiscoverOptions options;
@@ -127,46 +83,61 @@ std::vector<MeasuredStudy> ball_drop_studies(const std::filesystem::path& folder
         study.declared = "weight alone, no drag";
         study.known = mass > 1 || key == "Golf_Ball" ? "drag is next to nothing" : "drag, its order undecided";
         study.found = discovery::discover(model, data, quick(), progress);
+        study.model = model;
+        study.measured = std::move(data);
         studies.push_back(std::move(study));
     }
     return studies;
 }
 
-MeasuredStudy bearing_study(const std::filesystem::path& folder, core::Progress& progress) {
-    const ForeignTable tare = read_foreign(folder / "rm2_tow_tank" / "Tare-torque.csv");
-    const std::size_t rpm = tare.column("rpm"), torque = tare.column("tare_torque");
-    std::vector<double> speed, moment, gap, time;
-    double above = 0, below = 0;
-    for (std::size_t row = 0; row < tare.rows.size(); ++row) {
-        speed.push_back(tare.number(row, rpm) * 0.10471975511965977);   // rad/s; in the channel `speed`, of a point one metre out
-        moment.push_back(tare.number(row, torque));
-        gap.push_back(0.5);
-        time.push_back(static_cast<double>(row));
-        above += speed.back() * moment.back();
-        below += speed.back() * speed.back();
+std::vector<MeasuredStudy> measured_studies(const std::filesystem::path& folder, core::Progress& progress) {
+    std::vector<MeasuredStudy> all;
+    if (std::filesystem::is_directory(folder / "rm2_tow_tank")) {
+        all.push_back(bearing_study(folder, progress));
+        all.push_back(strut_study(folder, progress));
     }
-    const core::TemporaryFolder scratch("bearing");
-    const std::string slope = core::format_number(above / below);
-    core::write_file(scratch.path() / "torque.csv", "gap [m], yaw_moment [N m]\n0, " + slope + "\n1, " + slope + "\n");
-    core::write_file(scratch.path() / "model.toml", "[vehicle]\nmass = 1\n[[force]]\nquantity = \"yaw_moment\"\ntable = \"torque.csv\"\n"
-                                                    "scale.speed = { reference = 1, exponent = 1 }\n");
-    dynamics::Measurements data;
-    data.kind = dynamics::MeasurementKind::steady;
-    data.title = "bearing of a tow-tank turbine";
-    dynamics::MeasuredRun run;
-    run.name = "tare";
-    run.table.source = tare.source;
-    run.table.add_numbers("gap", "m", gap);
-    run.table.add_numbers("speed", "m/s", speed);
-    run.table.add_numbers("yaw_moment", "N m", moment);
-    data.runs.push_back(std::move(run));
-    MeasuredStudy study;
-    study.name = "bearing";
-    study.data = "Tare-torque.csv, UNH-CORE RM2 tow tank, CC BY 4.0, doi:10.6084/m9.figshare.1373899";
-    study.declared = "torque proportional to the shaft's speed, slope by least squares";
-    study.known = "Coulomb friction, with a slope that falls";
-    study.found = discovery::discover(dynamics::read_model(scratch.path() / "model.toml"), data, quick(), progress);
-    return study;
+    if (std::filesystem::is_directory(folder / "mashcon2009_bank")) {
+        for (MeasuredStudy& study : bank_studies(folder, progress)) {
+            all.push_back(std::move(study));
+        }
+    }
+    if (std::filesystem::is_directory(folder / "cf21_thrust_stand")) {
+        all.push_back(thrust_stand_study(folder, progress));
+    }
+    if (std::filesystem::is_directory(folder / "air_garage_ceiling")) {
+        all.push_back(ceiling_study(folder, progress));
+    }
+    if (std::filesystem::is_directory(folder / "ball_drops")) {
+        for (MeasuredStudy& study : ball_drop_studies(folder, progress)) {
+            all.push_back(std::move(study));
+        }
+    }
+    return all;
+}
+
+void write_measured_reports(const std::vector<MeasuredStudy>& studies, const std::filesystem::path& folder, const discovery::FigureRenderer& renderer) {
+    std::filesystem::create_directories(folder);
+    core::HtmlPage page("What simple models lack", "measurements of others, each against the simplest model that somebody would declare");
+    page.section("Overview");
+    std::vector<std::vector<std::string>> rows;
+    for (const MeasuredStudy& study : studies) {
+        const discovery::ErrorChange& error = study.found.error.front();
+        rows.push_back({study.name, study.declared, study.found.verdict,
+                        core::format_number(error.before.rmse, 3) + " to " + core::format_number(error.after.rmse, 3) + " " + error.unit, study.known});
+    }
+    page.table({"study", "declared", "verdict", "held-out error", "what is known"}, rows);
+    for (const MeasuredStudy& study : studies) {
+        std::string slug;
+        for (const char letter : study.name) {
+            slug += std::isalnum(static_cast<unsigned char>(letter)) != 0 ? static_cast<char>(std::tolower(static_cast<unsigned char>(letter))) : '-';
+        }
+        discovery::write_discovery(study.found, study.model, study.measured, folder / slug, renderer);
+        page.section(study.name);
+        page.paragraph(study.found.sentence);
+        page.paragraph("Known: " + study.known + ". Data: " + study.data + ".");
+        page.link(slug + "/report.html", "the report");
+    }
+    core::write_file(folder / "index.html", page.text());
 }
 
 }  // namespace underbody::cases

@@ -4,12 +4,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cases/measured/studies.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/load_cell.h"
 #include "surrogates/discovery/wording.h"
 
 namespace underbody::studio {
@@ -22,6 +24,11 @@ struct Arguments {
     std::string out;
     std::string horizon = "2 s";
     std::uint64_t seed = 1;
+    std::size_t placebo = 4;
+    std::string measured;
+    std::string log;
+    std::string settle = "0 s";
+    bool without_thrust = false;
 };
 
 void print(Shell& shell, const discovery::Discovery& found, const std::filesystem::path& folder) {
@@ -47,31 +54,91 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     shell.print(text);
 }
 
+/// The studies that ship, one report each and an overview.
+int study_measurements(Shell& shell, const Arguments& arguments, const discovery::FigureRenderer& renderer) {
+    const std::vector<cases::MeasuredStudy> studies = cases::measured_studies(arguments.measured, shell.progress());
+    if (studies.empty()) {
+        throw core::InputError("missing", "none of the measurements of cases/measured is in this folder", core::Place{arguments.measured, {}, {}, {}},
+                               "cases/measured/README.md names them");
+    }
+    cases::write_measured_reports(studies, arguments.out, renderer);
+    nlohmann::json all = nlohmann::json::array();
+    for (const cases::MeasuredStudy& study : studies) {
+        nlohmann::json one = discovery::to_json(study.found);
+        one["study"] = study.name;
+        one["known"] = study.known;
+        all.push_back(one);
+        shell.print(study.name + ": " + study.found.sentence + "\n  known: " + study.known + "\n");
+    }
+    shell.print("Report: " + (std::filesystem::path(arguments.out) / "index.html").string());
+    if (shell.json) {
+        shell.print_json({{"studies", all}});
+    }
+    return static_cast<int>(ExitCode::done);
+}
+
+/// A raw log to forces at set points.
+int reduce(Shell& shell, const Arguments& arguments) {
+    discovery::LoadCellOptions options;
+    options.settle = core::parse_in(arguments.settle, "s");
+    options.without_thrust = arguments.without_thrust;
+    const discovery::LoadCellReduction reduction = discovery::reduce_load_cell(core::read_csv(std::filesystem::path(arguments.log)), options);
+    shell.show(reduction.problems);
+    core::write_csv(arguments.out, reduction.table);
+    if (shell.json) {
+        shell.print_json({{"rows", reduction.table.rows()}, {"drift_rate", reduction.drift_rate}, {"friction", reduction.friction}, {"noise", reduction.noise}});
+    }
+    shell.print(std::to_string(reduction.table.rows()) + " forces at set points in " + arguments.out + "; the zero drifts by " +
+                core::format_number(3600 * reduction.drift_rate, 3) + " an hour, friction between repeats " + core::format_number(reduction.friction, 3) +
+                ", noise of a reading " + core::format_number(reduction.noise, 3) + " (SI)");
+    return static_cast<int>(ExitCode::done);
+}
+
 }  // namespace
 
 void add_discover_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("discover", "find what the model lacks: from measured data to the effect, and the error before and after");
     auto arguments = std::make_shared<Arguments>();
-    command->add_option("model", arguments->model, "the declared model (model.toml)")->required();
-    command->add_option("--data", arguments->data, "folder of measurements (with dataset.toml)")->required();
+    command->add_option("model", arguments->model, "the declared model (model.toml)");
+    command->add_option("--data", arguments->data, "folder of measurements (with dataset.toml)");
     command->add_option("--out", arguments->out, "folder for model.toml, report.html and discovery.json")->required();
     command->add_option("--horizon", arguments->horizon, "length of the prediction windows of a time series");
     command->add_option("--seed", arguments->seed, "seed of all random draws");
+    command->add_option("--placebo", arguments->placebo, "static sets: simulated twins with nothing missing that go through the same procedure (0: none)");
+    command->add_option("--measured-studies", arguments->measured,
+                        "instead of a model and data: the folder of third-party measurements that the shipped studies (cases/measured) read");
+    command->add_option("--reduce", arguments->log,
+                        "instead of a model and data: the raw log of a load cell (time, gap, jet_voltage, one force); --out is then the table of forces");
+    command->add_option("--settle", arguments->settle, "with --reduce: left out at the beginning of each block");
+    command->add_flag("--without-thrust", arguments->without_thrust, "with --reduce: take the force at the largest gap of each voltage off");
     command->footer(
         "Examples:\n"
         "  underbody discover model.toml --data runs --out found        report, new model and discovery.json in found/\n"
         "  underbody discover model.toml --data runs --out found --json the same, discovery.json on stdout as well\n"
         "  underbody predict found/model.toml --data other-runs         the new model on data it has not seen\n"
+        "  underbody discover --reduce log.csv --out bench.csv          raw log of a load cell to forces, by its pump-off blocks\n"
+        "  underbody discover --measured-studies ../shared/measured --out studies   the shipped studies of measurements by others\n"
         "The verdict is 'none', 'effect' (named, with its numbers) or 'unknown' (a smooth correction takes its place).");
     shell.on(command, [arguments, &shell] {
+        const auto renderer = [](const core::Figure& figure) { return render_png(figure); };
+        if (!arguments->measured.empty()) {
+            return study_measurements(shell, *arguments, renderer);
+        }
+        if (!arguments->log.empty()) {
+            return reduce(shell, *arguments);
+        }
+        if (arguments->model.empty() || arguments->data.empty()) {
+            throw core::UsageError("missing", "discover needs the declared model and --data FOLDER", {}, "underbody discover model.toml --data runs --out found");
+        }
         const dynamics::Model model = dynamics::read_model(arguments->model);
         const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
         discovery::DiscoverOptions options;
         options.horizon = core::parse_in(arguments->horizon, "s");
         options.seed = arguments->seed;
+        options.placebo_twins = arguments->placebo;
         const discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
         shell.show(found.problems);
-        discovery::write_discovery(found, model, data, arguments->out, [](const core::Figure& figure) { return render_png(figure); });
+        discovery::write_discovery(found, model, data, arguments->out, renderer);
         if (shell.json) {
             shell.print_json(discovery::to_json(found));
         }

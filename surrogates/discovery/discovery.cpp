@@ -6,15 +6,38 @@
 
 #include "core/file.h"
 #include "core/hash.h"
-#include "core/html.h"
 #include "core/text.h"
-#include "surrogates/discovery/wording.h"
+#include "surrogates/discovery/load_cell.h"
 
 namespace underbody::discovery {
 
-Discovery discover(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+namespace {
+
+/// Raw logs of a load cell among the runs of a static set become forces at set points.
+dynamics::Measurements reduced(const dynamics::Measurements& raw) {
+    dynamics::Measurements data = raw;
+    for (dynamics::MeasuredRun& run : data.runs) {
+        if (data.kind == dynamics::MeasurementKind::steady && is_load_cell_log(run.table)) {
+            LoadCellReduction reduction = reduce_load_cell(run.table);
+            data.problems.push_back({core::Problem::Severity::note,
+                                     run.name + " is the log of a load cell: " + std::to_string(reduction.table.rows()) +
+                                         " set points by their pump-off blocks; the zero drifts by " + core::format_number(3600 * reduction.drift_rate, 2) +
+                                         " an hour, friction between repeats " + core::format_number(reduction.friction, 2) + ", noise of a reading " +
+                                         core::format_number(reduction.noise, 2) + " (SI)",
+                                     core::Place{run.file.string(), {}, {}, {}}});
+            data.problems.insert(data.problems.end(), reduction.problems.begin(), reduction.problems.end());
+            run.table = std::move(reduction.table);
+        }
+    }
+    return data;
+}
+
+}  // namespace
+
+Discovery discover(const dynamics::Model& model, const dynamics::Measurements& measured, const DiscoverOptions& options,
                    core::Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
+    const dynamics::Measurements data = reduced(measured);
     Discovery result = data.kind == dynamics::MeasurementKind::steady ? discover_static(model, data, options, progress)
                                                                       : discover_time_series(model, data, options, progress);
     result.model.lineage.made_from.push_back("made by underbody discover from " + model.name + " and the measurements '" + data.title +
@@ -106,6 +129,7 @@ nlohmann::json to_json(const Discovery& d) {
     json["alternatives"] = nlohmann::json::array();
     for (const FoundEffect& effect : d.alternatives) {
         json["alternatives"].push_back(to_json(effect));
+        json["alternatives"].back()["told_apart_by"] = effect.told_apart_by;
     }
     json["none_probability"] = d.none_probability;
     json["depends_on"] = d.depends_on;
@@ -129,6 +153,9 @@ nlohmann::json to_json(const Discovery& d) {
             {{"name", limit.name}, {"parameter", limit.parameter}, {"value", number(limit.value)}, {"unit", limit.unit}});
     }
     json["consequence"] = to_json(d.consequence);
+    if (d.placebo.twins > 0) {
+        json["placebo"] = {{"twins", d.placebo.twins}, {"false_alarms", d.placebo.alarms}, {"error_after_over_before", d.placebo.error_ratio}};
+    }
     json["next_experiment"] = d.next_experiment;
     json["next_experiment_power"] = d.next_power;
     json["problems"] = nlohmann::json::array();
@@ -136,121 +163,6 @@ nlohmann::json to_json(const Discovery& d) {
         json["problems"].push_back({{"message", problem.message}, {"place", problem.place.text()}});
     }
     return json;
-}
-
-namespace {
-
-std::vector<std::string> effect_row(const FoundEffect& effect) {
-    std::string numbers;
-    for (const FoundParameter& parameter : effect.parameters) {
-        numbers += (numbers.empty() ? "" : "; ") + parameter.name + " " + value_text(parameter);
-    }
-    return {effect.name, core::format_number(effect.probability, 3), numbers, list_of(effect.depends_on),
-            effect.told_apart_by.empty() ? effect.evidence : effect.told_apart_by};
-}
-
-void add_error(core::HtmlPage& page, const Discovery& d) {
-    page.section("Error before and after");
-    page.paragraph("Measured on " + d.held_out + ".");
-    std::vector<std::vector<std::string>> rows;
-    for (const ErrorChange& change : d.error) {
-        const auto text = [&](const ErrorEstimate& e) {
-            return core::format_number(e.rmse, 3) + " (" + core::format_number(e.low, 3) + " to " + core::format_number(e.high, 3) + ")";
-        };
-        rows.push_back({change.channel + " [" + change.unit + "]",
-                        change.horizon > 0 ? (std::isinf(change.horizon) ? "free run" : core::format_number(change.horizon, 3) + " s") : "set points",
-                        text(change.before), text(change.after), core::format_number(change.before.rmse / std::max(change.noise, 1e-300), 3),
-                        core::format_number(change.after.rmse / std::max(change.noise, 1e-300), 3)});
-    }
-    page.table({"channel", "horizon", "before (95 %)", "after (95 %)", "before, in noise", "after, in noise"}, rows,
-               "Root mean square of measured less predicted; intervals from resampling whole runs or set points.");
-}
-
-}  // namespace
-
-std::string report_html(const Discovery& d, const dynamics::Model& before, const dynamics::Measurements& data,
-                        const FigureRenderer& renderer) {
-    core::HtmlPage page("What the model lacks: " + d.verdict,
-                        before.name + " against " + (data.title.empty() ? data.folder.string() : data.title));
-    page.section("Verdict");
-    page.paragraph(d.sentence);
-    for (const core::Problem& problem : d.problems) {
-        page.warning(problem.message);
-    }
-    std::vector<core::HtmlPage::Fact> facts;
-    if (!d.effects.empty()) {
-        facts.push_back({core::format_number(100 * d.effects.front().probability, 3) + " %", "probability of the verdict"});
-    } else {
-        facts.push_back({core::format_number(100 * d.none_probability, 3) + " %", "probability that nothing is missing"});
-    }
-    facts.push_back({core::format_number(100 * d.stability, 3) + " %", "of resampled data give the same verdict"});
-    if (!d.error.empty()) {
-        const ErrorChange& chief = d.error.front();
-        facts.push_back({core::format_number(chief.before.rmse / std::max(chief.noise, 1e-300), 3) + " -> " +
-                             core::format_number(chief.after.rmse / std::max(chief.noise, 1e-300), 3),
-                         "error of " + chief.channel + " in noise, before -> after"});
-    }
-    page.facts(facts);
-    std::vector<core::HtmlPage::Picture> pictures;
-    for (const core::Figure& figure : d.figures) {
-        if (renderer) {
-            pictures.push_back({renderer(figure), figure.caption, figure.title});
-        }
-    }
-    page.pictures(pictures);
-    page.section("How sure, and what else it could be");
-    std::vector<std::vector<std::string>> rows;
-    for (const FoundEffect& effect : d.effects) {
-        rows.push_back(effect_row(effect));
-    }
-    for (const FoundEffect& effect : d.alternatives) {
-        rows.push_back(effect_row(effect));
-    }
-    rows.push_back({"none", core::format_number(d.none_probability, 3), "", "",
-                    "chance of as much structure in noise alone: " + core::format_number(d.gate, 2)});
-    page.table({"effect", "probability", "numbers", "depends on", "evidence, or what would tell it apart"}, rows);
-    page.paragraph("The residual depends on " + list_of(d.depends_on) + " (found without any named effect).");
-    add_error(page, d);
-    page.section("What it changes");
-    page.paragraph(d.consequence.text);
-    if (!d.consequence.equilibria.empty()) {
-        std::vector<std::vector<std::string>> equilibria;
-        for (const EquilibriumPair& pair : d.consequence.equilibria) {
-            const auto text = [](double gap) { return std::isfinite(gap) ? core::format_number(1000 * gap, 4) : std::string("gone"); };
-            equilibria.push_back({pair.name, pair.stable ? "stable" : "unstable", text(pair.gap_before), text(pair.gap_after)});
-        }
-        page.table({"equilibrium", "kind", "gap before [mm]", "gap after [mm]"}, equilibria);
-    }
-    if (!d.consequence.region_before.empty()) {
-        std::vector<std::vector<std::string>> regions;
-        std::map<std::string, std::pair<double, double>> both;
-        for (const auto& [name, share] : d.consequence.region_before) {
-            both[name].first = share;
-        }
-        for (const auto& [name, share] : d.consequence.region_after) {
-            both[name].second = share;
-        }
-        for (const auto& [name, shares] : both) {
-            regions.push_back({name, core::format_number(100 * shares.first, 3), core::format_number(100 * shares.second, 3)});
-        }
-        page.table({"where a start ends", "share before [%]", "share after [%]"}, regions);
-    }
-    page.section("The next experiment");
-    page.paragraph(d.next_experiment);
-    page.section("Noise and limits");
-    std::vector<std::vector<std::string>> noise;
-    for (const auto& [channel, used] : d.noise) {
-        noise.push_back({channel + " [" + used.unit + "]", core::format_number(used.value, 3), core::format_number(used.estimated, 3), used.from});
-    }
-    page.table({"channel", "used", "estimated", "from"}, noise);
-    std::vector<std::vector<std::string>> limits;
-    for (const DetectionLimit& limit : d.limits) {
-        limits.push_back({limit.name, limit.parameter, core::format_number(limit.value, 3) + " " + limit.unit});
-    }
-    page.folded_table("Smallest effects that these data would have shown", {"effect", "parameter", "limit"}, limits);
-    page.section("From what it was made");
-    page.list(d.model.lineage.made_from);
-    return page.text();
 }
 
 void write_discovery(const Discovery& discovery, const dynamics::Model& before, const dynamics::Measurements& data,

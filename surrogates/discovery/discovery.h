@@ -77,6 +77,13 @@ struct Consequence {
     std::string text;
 };
 
+/// The same procedure on twins of the data in which nothing is missing: the declared model with noise at the same set points.
+struct Placebo {
+    std::size_t twins = 0;
+    std::size_t alarms = 0;       ///< twins in which something was found
+    double error_ratio = 1;       ///< their held-out error after over before, root mean square
+};
+
 struct Discovery {
     std::string verdict;                       ///< none, effect, unknown
     std::string sentence;                      ///< the verdict for people
@@ -91,6 +98,7 @@ struct Discovery {
     std::string held_out;                      ///< which data the error is from
     std::vector<DetectionLimit> limits;
     Consequence consequence;
+    Placebo placebo;
     std::string next_experiment;
     core::Table next_set_points;               ///< as a file the rig can follow; empty: none
     double next_power = 0;
@@ -105,6 +113,7 @@ struct DiscoverOptions {
     std::uint64_t seed = 1;
     bool consequence = true;
     bool figures = true;
+    std::size_t placebo_twins = 0; ///< static sets: how many twins the placebo runs through the whole procedure
 };
 
 /// The whole loop. Throws core::InputError where nothing can be said; what is doubtful but usable is in `problems`.

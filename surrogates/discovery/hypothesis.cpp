@@ -95,12 +95,144 @@ std::vector<std::string> channels_needed(const std::string& effect) {
     return {};
 }
 
+/// Whether an effect can change what this model says of these quantities at all.
+bool model_feels(const dynamics::Model& model, const std::string& effect, const std::vector<std::string>& quantities) {
+    const auto measured = [&](const std::string& quantity) {
+        return std::find(quantities.begin(), quantities.end(), quantity) != quantities.end();
+    };
+    const auto has_axis = [](const dynamics::ForceSource& source, Channel channel) {
+        return std::find(source.axes.begin(), source.axes.end(), channel) != source.axes.end();
+    };
+    const auto any_source = [&](auto&& predicate) {
+        return std::any_of(model.forces.begin(), model.forces.end(),
+                           [&](const dynamics::ForceSource& source) { return measured(source.quantity) && predicate(source); });
+    };
+    const auto scaled_by = [](const dynamics::ForceSource& source, Channel channel) {
+        return std::any_of(source.scales.begin(), source.scales.end(),
+                           [&](const dynamics::ForceScale& scale) { return scale.channel == channel && scale.exponent != 0; });
+    };
+    if (effect == "pitch_misalignment") {
+        // without a pitch axis the balance leans: that needs lift and drag, both in the model
+        const std::vector<std::string> known = model.quantities();
+        const auto knows = [&](const char* quantity) { return std::find(known.begin(), known.end(), quantity) != known.end(); };
+        return any_source([&](const auto& source) { return has_axis(source, Channel::pitch); }) ||
+               (knows("lift_force") && knows("drag_force") && (measured("lift_force") || measured("drag_force")));
+    }
+    if (effect == "pump_curve") {
+        return any_source([&](const auto& source) { return has_axis(source, Channel::jet_voltage) || scaled_by(source, Channel::jet_voltage); });
+    }
+    if (effect == "current") {
+        return any_source([&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
+    }
+    if (effect == "speed_exponent") {
+        return any_source([&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
+    }
+    if (effect == "gap_offset") {
+        return any_source([&](const auto& source) { return has_axis(source, Channel::gap); });
+    }
+    return true;
+}
+
+/// The effect is neutral at the exponent that the model declares, not at two.
+void start_at_declared_exponent(Hypothesis& hypothesis, const dynamics::Model& model, const std::vector<std::string>& quantities) {
+    for (std::size_t j = 0; j < hypothesis.slots.size(); ++j) {
+        const std::string& wanted = hypothesis.uses[hypothesis.slots[j].use].quantity;
+        for (const dynamics::ForceSource& source : model.forces) {
+            const bool concerned = wanted.empty() ? std::find(quantities.begin(), quantities.end(), source.quantity) != quantities.end()
+                                                  : source.quantity == wanted;
+            const auto scale = std::find_if(source.scales.begin(), source.scales.end(),
+                                            [](const dynamics::ForceScale& one) { return one.channel == Channel::speed; });
+            if (concerned && scale != source.scales.end()) {
+                const double shift = scale->exponent - hypothesis.parameters[j].start;
+                hypothesis.parameters[j].start += shift;
+                hypothesis.uses[hypothesis.slots[j].use].values[hypothesis.slots[j].value] += shift;
+                for (std::vector<double>& start : hypothesis.starts) {
+                    start[j] += shift;
+                }
+                break;
+            }
+        }
+    }
+}
+
+/// Roughness with one strength: as much deeper near the ground as it is weaker far from it.
+void one_strength(Hypothesis& hypothesis) {
+    for (std::size_t j = hypothesis.parameters.size(); j-- > 0;) {
+        if (hypothesis.parameters[j].name == "far") {
+            hypothesis.copies.push_back({j - 1, hypothesis.slots[j]});  // `near` stands before it
+            hypothesis.parameters.erase(hypothesis.parameters.begin() + static_cast<std::ptrdiff_t>(j));
+            hypothesis.slots.erase(hypothesis.slots.begin() + static_cast<std::ptrdiff_t>(j));
+        }
+    }
+    for (Hypothesis::Copy& copy : hypothesis.copies) {
+        const auto near = std::find_if(hypothesis.slots.begin(), hypothesis.slots.end(),
+                                       [&](const Hypothesis::Slot& slot) { return slot.use == copy.to.use && slot.value + 1 == copy.to.value; });
+        copy.parameter = static_cast<std::size_t>(near - hypothesis.slots.begin());
+    }
+    for (FitParameter& parameter : hypothesis.parameters) {
+        parameter.upper = parameter.name == "near" ? std::min(parameter.upper, 1.0) : parameter.upper;
+    }
+    add_starts(hypothesis);
+}
+
+Hypothesis of_declared(const std::string& parameter, double declared, double lower, double upper, double typical,
+                       const std::vector<std::string>& depends_on) {
+    Hypothesis hypothesis;
+    hypothesis.names = {"declared_parameter"};
+    dynamics::EffectUse use = dynamics::neutral_use("declared_parameter");
+    use.parameter = parameter;
+    use.values[0] = declared;
+    hypothesis.form = parameter;
+    hypothesis.uses = {use};
+    hypothesis.parameters = {{"value", "1", lower, upper, declared, typical}};
+    hypothesis.slots = {{0, 0}};
+    hypothesis.starts = {{declared + 0.2 * typical}};
+    hypothesis.depends_on = depends_on;
+    return hypothesis;
+}
+
+/// Declared numbers for which the catalogue has no name of its own: the factor of one of several sources of a quantity, and powers of
+/// channels other than the speed and the voltage of a declared jet.
+std::vector<Hypothesis> declared_numbers(const dynamics::Model& model, const std::vector<Channel>& varying,
+                                         const std::vector<std::string>& quantities) {
+    std::vector<Hypothesis> list;
+    for (std::size_t k = 0; k < model.forces.size(); ++k) {
+        const dynamics::ForceSource& source = model.forces[k];
+        if (std::find(quantities.begin(), quantities.end(), source.quantity) == quantities.end()) {
+            continue;
+        }
+        const std::string prefix = "force." + std::to_string(k + 1) + ".";
+        std::vector<std::string> depends_on;
+        for (const Channel axis : source.axes) {
+            depends_on.emplace_back(dynamics::channel_name(axis));
+        }
+        const auto sources = std::count_if(model.forces.begin(), model.forces.end(),
+                                           [&](const dynamics::ForceSource& other) { return other.quantity == source.quantity; });
+        for (const dynamics::ForceScale& scale : source.scales) {
+            const std::string name = dynamics::channel_name(scale.channel);
+            depends_on.push_back(name);
+            const bool named = scale.channel == Channel::speed || (scale.channel == Channel::jet_voltage && scale.exponent != 0);
+            if ((!named || (scale.channel == Channel::speed && sources > 1)) && varies(varying, name)) {
+                list.push_back(of_declared(prefix + "scale." + name + ".exponent", scale.exponent, -10, 10, 0.2, {name}));
+                list.back().prior = named ? 0.05 : 1;  // the power of the speed has a name of its own
+            }
+        }
+        if (sources > 1) {
+            list.push_back(of_declared(prefix + "factor", source.factor, -1000, 1000, 0.1 * std::max(std::abs(source.factor), 1e-6), depends_on));
+        }
+    }
+    return list;
+}
+
 }  // namespace
 
 std::vector<dynamics::EffectUse> Hypothesis::with(std::span<const double> p) const {
     std::vector<dynamics::EffectUse> result = uses;
     for (std::size_t j = 0; j < slots.size(); ++j) {
         result[slots[j].use].values[slots[j].value] = p[j];
+    }
+    for (const Copy& copy : copies) {
+        result[copy.to.use].values[copy.to.value] = p[copy.parameter];
     }
     return result;
 }
@@ -113,7 +245,8 @@ std::string Hypothesis::label() const {
     return text.empty() ? "none" : text;
 }
 
-std::vector<Hypothesis> static_hypotheses(const std::vector<Channel>& varying, const std::vector<std::string>& quantities) {
+std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying,
+                                          const std::vector<std::string>& quantities) {
     std::vector<Hypothesis> list;
     for (const dynamics::Effect* effect : dynamics::effects()) {
         const dynamics::EffectInfo& info = effect->info();
@@ -121,29 +254,43 @@ std::vector<Hypothesis> static_hypotheses(const std::vector<Channel>& varying, c
             continue;
         }
         const std::vector<std::string> needed = channels_needed(info.name);
-        if (!std::all_of(needed.begin(), needed.end(), [&](const std::string& name) { return varies(varying, name); })) {
+        if (!std::all_of(needed.begin(), needed.end(), [&](const std::string& name) { return varies(varying, name); }) ||
+            !model_feels(model, info.name, quantities)) {
             continue;
         }
         if ((info.name == "cable_buoyancy" || info.name == "strut_buoyancy") && !varies(varying, "gap") && !varies(varying, "depth")) {
             continue;
         }
-        list.push_back(make(info, {""}, quantities.size() > 1 ? "same for all measured quantities" : ""));
-        // a cable or a strut pulls the way it hangs: both its names share one law, the rig says which is likelier
-        const bool towed = varies(varying, "speed");
-        if (info.name == "cable_buoyancy") {
-            list.back().prior = towed ? 0.15 : 0.85;
-        } else if (info.name == "strut_buoyancy") {
-            list.back().prior = towed ? 0.85 : 0.15;
-        }
-        const double prior = list.back().prior;
+        const std::size_t first = list.size();
+        const bool lift_only = info.name == "surface_roughness" || info.name == "cable_buoyancy" || info.name == "strut_buoyancy";
+        list.push_back(make(info, {""}, quantities.size() > 1 && !lift_only ? "same for all measured quantities" : ""));
         if (info.takes_quantity && quantities.size() > 1) {
             for (const std::string& quantity : quantities) {
-                list.push_back(make(info, {quantity}, quantity + " only"));
-                list.back().prior = prior;
+                if (!lift_only || quantity != "lift_force") {
+                    list.push_back(make(info, {quantity}, quantity + " only"));
+                }
             }
             list.push_back(make(info, quantities, "each measured quantity with its own number"));
-            list.back().prior = prior;
         }
+        if (info.name == "surface_roughness") {
+            list.push_back(make(info, {""}, "as much deeper near as weaker far"));
+        }
+        // a cable or a strut pulls the way it hangs: both its names share one law, the rig says which is likelier
+        const bool towed = varies(varying, "speed");
+        for (std::size_t k = first; k < list.size(); ++k) {
+            if (info.name == "surface_roughness" && k + 1 == list.size()) {
+                one_strength(list[k]);
+            } else if (info.name == "cable_buoyancy") {
+                list[k].prior = towed ? 0.15 : 0.85;
+            } else if (info.name == "strut_buoyancy") {
+                list[k].prior = towed ? 0.85 : 0.15;
+            } else if (info.name == "speed_exponent") {
+                start_at_declared_exponent(list[k], model, quantities);
+            }
+        }
+    }
+    for (Hypothesis& hypothesis : declared_numbers(model, varying, quantities)) {
+        list.push_back(std::move(hypothesis));
     }
     return list;
 }
@@ -229,6 +376,9 @@ Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hy
     std::set<std::string> names(a.names.begin(), a.names.end());
     names.insert(b.names.begin(), b.names.end());
     both.names.assign(names.begin(), names.end());
+    for (const Hypothesis::Copy& copy : b.copies) {
+        both.copies.push_back({copy.parameter + a.parameters.size(), {copy.to.use + offset, copy.to.value}});
+    }
     std::set<std::string> depends(a.depends_on.begin(), a.depends_on.end());
     depends.insert(b.depends_on.begin(), b.depends_on.end());
     both.depends_on.assign(depends.begin(), depends.end());

@@ -22,6 +22,11 @@ struct Hypothesis {
         std::size_t value = 0;
     };
     std::vector<Slot> slots;                 ///< where each free number belongs
+    struct Copy {
+        std::size_t parameter = 0;
+        Slot to;
+    };
+    std::vector<Copy> copies;                ///< further places of a free number
     /// Other starts worth trying, each of the length of `parameters` (the first start is parameters[i].start).
     std::vector<std::vector<double>> starts;
     std::vector<std::string> depends_on;
@@ -44,8 +49,10 @@ struct FittedHypothesis {
     [[nodiscard]] double score() const { return cost + occam; }
 };
 
-/// The names that a static set with these varying channels and measured quantities can show, each with its variants.
-std::vector<Hypothesis> static_hypotheses(const std::vector<dynamics::Channel>& varying, const std::vector<std::string>& quantities);
+/// The names that a static set with these varying channels and measured quantities can show against this model, each with its variants.
+/// An effect that could change nothing there (no speed varies, no table knows of pitch, ...) is not among them.
+std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const std::vector<dynamics::Channel>& varying,
+                                          const std::vector<std::string>& quantities);
 
 /// The names that heave time series can show; `declared` are declared parameters of the model that have no name of their own.
 std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool velocity_measured);

@@ -3,8 +3,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 
+#include "core/random.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/flexible.h"
@@ -43,7 +46,6 @@ dynamics::Conditions conditions_of(const dynamics::MeasuredRun& run, std::size_t
 }  // namespace
 
 StaticExperiment::StaticExperiment(const dynamics::Model& model, const dynamics::Measurements& data) : model_(model.resolved()) {
-    const dynamics::Model bare = model_.without_effects();
     const std::vector<std::string> known = model_.quantities();
     for (const std::string& quantity : dynamics::force_channels()) {
         const bool measured = std::any_of(data.runs.begin(), data.runs.end(),
@@ -58,7 +60,6 @@ StaticExperiment::StaticExperiment(const dynamics::Model& model, const dynamics:
             continue;
         }
         quantities_.push_back(quantity);
-        bare_.emplace_back(bare, quantity);
     }
     if (quantities_.empty()) {
         throw core::InputError("missing", "the model gives none of the measured quantities", core::Place{model.name, {}, {}, {}},
@@ -93,10 +94,12 @@ void StaticExperiment::collect(const dynamics::Measurements& data) {
                     one.sigma = *declared;
                 }
                 try {
-                    if (!std::isfinite(predict(one, {}))) {
+                    bool outside = false;
+                    if (!std::isfinite(predict(one, {}, &outside))) {
                         ++without;
                         continue;
                     }
+                    outside_ += outside ? 1 : 0;
                 } catch (const core::InputError& error) {
                     throw core::InputError(error.kind(), error.message(), run.table.place(row, quantities_[q]), error.hint());
                 }
@@ -159,19 +162,38 @@ void StaticExperiment::find_set_points() {
     set_points_ = seen.size();
 }
 
-double StaticExperiment::predict(const Observation& observation, const std::vector<dynamics::EffectUse>& uses) const {
+namespace {
+
+bool replaces_a_number(const dynamics::EffectUse& use) { return use.name == "declared_parameter"; }
+
+/// The model with those of the uses carried out that replace a declared number.
+dynamics::Model with_numbers(dynamics::Model model, const std::vector<dynamics::EffectUse>& uses) {
+    for (const dynamics::EffectUse& use : uses) {
+        if (replaces_a_number(use)) {
+            model = model.with_parameter(use.parameter, use.values.front());
+        }
+    }
+    return model;
+}
+
+bool any_number(const std::vector<dynamics::EffectUse>& uses) { return std::any_of(uses.begin(), uses.end(), replaces_a_number); }
+
+}  // namespace
+
+double StaticExperiment::value_of(const dynamics::Model& model, const Observation& observation,
+                                  const std::vector<dynamics::EffectUse>& uses, bool* outside) const {
     dynamics::StaticPoint point;
-    point.conditions = observation.at.over(model_.conditions);
-    point.model = &model_;
+    point.conditions = observation.at.over(model.conditions);
+    point.model = &model;
     const dynamics::Conditions set_point = point.conditions;
     const std::string& quantity = quantities_[observation.quantity];
-    for (const auto* list : {&model_.effects, &uses}) {
+    for (const auto* list : {&model.effects, &uses}) {
         for (const dynamics::EffectUse& use : *list) {
             dynamics::effect(use.name).before(point, use);
         }
     }
-    double value = bare_[observation.quantity](point.conditions);
-    for (const auto* list : {&model_.effects, &uses}) {
+    double value = dynamics::sum_of_sources(model, quantity, point.conditions, outside);
+    for (const auto* list : {&model.effects, &uses}) {
         for (const dynamics::EffectUse& use : *list) {
             value = dynamics::effect(use.name).after(quantity, value, point, set_point, use);
         }
@@ -179,12 +201,17 @@ double StaticExperiment::predict(const Observation& observation, const std::vect
     return value;
 }
 
+double StaticExperiment::predict(const Observation& observation, const std::vector<dynamics::EffectUse>& uses, bool* outside) const {
+    return any_number(uses) ? value_of(with_numbers(model_, uses), observation, uses, outside) : value_of(model_, observation, uses, outside);
+}
+
 double StaticExperiment::sigma(const Observation& observation) const {
     const auto found = noise_.find(quantities_[observation.quantity]);
-    if (found != noise_.end() && found->second.from != "declared") {
-        return found->second.value;
+    if (found == noise_.end() || (found->second.from == "declared" && observation.sigma > 0)) {
+        return observation.sigma;
     }
-    return observation.sigma > 0 ? observation.sigma : found->second.value;
+    const NoiseFigure& figure = found->second;
+    return observation.sigma > 0 && figure.declared > 0 ? figure.value * observation.sigma / figure.declared : figure.value;
 }
 
 namespace {
@@ -214,25 +241,44 @@ std::size_t take_means_off(const std::vector<std::size_t>& set_point, DesignMatr
 
 }  // namespace
 
+void StaticExperiment::mark_accidents(const std::vector<std::size_t>& observations) {
+    for (const std::size_t i : observations) {
+        observations_[i].accident = true;
+    }
+}
+
 void StaticExperiment::estimate_noise() {
+    std::erase_if(problems_, [](const core::Problem& problem) { return problem.message.rfind("the declared noise of ", 0) == 0; });
     for (std::size_t q = 0; q < quantities_.size(); ++q) {
         std::vector<const Observation*> own;
         for (const Observation& one : observations_) {
-            if (one.quantity == q) {
+            if (one.quantity == q && !one.accident) {
                 own.push_back(&one);
             }
         }
         std::vector<double> y;
         std::vector<double> force;
         std::vector<std::size_t> set_point;
+        std::vector<std::pair<std::size_t, std::size_t>> cells;
         double declared_square = 0;
         for (const Observation* one : own) {
             force.push_back(predict(*one, {}));
             y.push_back(one->value - force.back());
             set_point.push_back(one->set_point);
+            cells.emplace_back(one->set_point, one->run);
             declared_square += one->sigma * one->sigma;
         }
         const std::size_t n = own.size();
+        // repeats within one run where there are enough of them: runs may contradict each other
+        std::map<std::pair<std::size_t, std::size_t>, std::size_t> cell_index;
+        for (const auto& cell : cells) {
+            cell_index.emplace(cell, cell_index.size());
+        }
+        if (n >= cell_index.size() + 20) {
+            for (std::size_t i = 0; i < n; ++i) {
+                set_point[i] = cell_index.at(cells[i]);
+            }
+        }
         const std::set<std::size_t> distinct(set_point.begin(), set_point.end());
         const bool repeats = n >= distinct.size() + 20;
         // what may change between repeats: time, temperature, direction, each alone and in proportion to the force
@@ -268,7 +314,6 @@ void StaticExperiment::estimate_noise() {
         NoiseFigure figure;
         figure.unit = core::find_quantity(quantities_[q])->unit;
         figure.declared = std::sqrt(declared_square / static_cast<double>(n));
-        // one bad reading must not pass for noise: readings beyond six robust deviations are taken out of the estimate
         const DesignMatrix basis = orthonormal(design);
         double rest = 0;
         for (const double value : y) {
@@ -307,9 +352,15 @@ void StaticExperiment::estimate_noise() {
 void StaticExperiment::residuals(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
                                  std::vector<double>& out) const {
     out.resize(chosen.size());
+    const dynamics::Model* model = &model_;
+    std::optional<dynamics::Model> changed;
+    if (any_number(uses)) {
+        changed = with_numbers(model_, uses);
+        model = &*changed;
+    }
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Observation& one = observations_[chosen[i]];
-        out[i] = (one.value - predict(one, uses)) / sigma(one);
+        out[i] = (one.value - value_of(*model, one, uses, nullptr)) / sigma(one);
     }
     whiten(chosen, out.data());
 }
@@ -356,6 +407,23 @@ bool StaticExperiment::find_colour(const std::vector<std::size_t>& chosen, const
         }
     }
     return found;
+}
+
+std::vector<double> StaticExperiment::drawn_noise(std::uint64_t seed) const {
+    core::Random random(seed);
+    std::vector<double> noise(observations_.size());
+    std::vector<std::vector<double>> past(quantities_.size());
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+        const std::size_t q = observations_[i].quantity;
+        const std::vector<double>* colour = colour_.empty() || colour_[q].empty() ? nullptr : &colour_[q];
+        double value = random.normal() * (colour != nullptr ? colour->back() : 1);
+        for (std::size_t k = 1; colour != nullptr && k < colour->size() && k <= past[q].size(); ++k) {
+            value += (*colour)[k - 1] * past[q][past[q].size() - k];
+        }
+        past[q].push_back(value);
+        noise[i] = value * sigma(observations_[i]);
+    }
+    return noise;
 }
 
 void StaticExperiment::whiten(const std::vector<std::size_t>& chosen, double* values) const {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <set>
 
 #include "core/text.h"
 #include "core/units.h"
@@ -33,43 +35,88 @@ Shown shown(Channel channel) {
     return {1, dynamics::channel_unit(channel)};
 }
 
+/// Mean and its error in bins of equal numbers; a channel with few levels gets one bin a level.
+core::FigurePoints binned(const std::vector<std::pair<double, double>>& sorted, const std::string& name, core::Colour colour) {
+    core::FigurePoints means;
+    means.name = name;
+    means.colour = colour;
+    means.size = 8;
+    std::set<double> levels;
+    for (const auto& [x, y] : sorted) {
+        levels.insert(x);
+    }
+    const bool by_level = levels.size() <= 16;
+    const std::size_t size = std::max<std::size_t>(6, sorted.size() / 12);
+    for (std::size_t begin = 0; begin < sorted.size();) {
+        std::size_t end = begin;
+        double x = 0, y = 0, square = 0;
+        while (end < sorted.size() && (by_level ? sorted[end].first == sorted[begin].first : end - begin < size)) {
+            x += sorted[end].first;
+            y += sorted[end].second;
+            square += sorted[end].second * sorted[end].second;
+            ++end;
+        }
+        const double n = static_cast<double>(end - begin);
+        means.x.push_back(x / n);
+        means.y.push_back(y / n);
+        means.y_error.push_back(std::sqrt(std::max(0.0, square / n - y * y / n / n) / std::max(n - 1, 1.0)));
+        begin = end;
+    }
+    return means;
+}
+
 core::Figure residual_figure(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
                              const std::vector<dynamics::EffectUse>& uses, std::size_t quantity, Channel channel) {
     const Shown unit = shown(channel);
     const std::string& name = experiment.quantities()[quantity];
-    core::Figure figure;
-    figure.title = "What the model leaves of " + name + " against " + dynamics::channel_name(channel);
-    figure.x = {dynamics::channel_name(channel), unit.unit, 0, 0, false};
-    figure.y = {"measured less model", "mN", 0, 0, false};
-    core::FigurePoints before;
-    before.name = "as declared";
-    before.colour = {180, 180, 180, 255};
-    before.size = 5;
-    core::FigurePoints after;
-    after.name = "with what was found";
-    after.colour = core::palette(0);
-    after.size = 5;
+    std::vector<std::pair<double, double>> before, after;
     double sigma = 0;
+    double largest = 0;
     for (const std::size_t i : chosen) {
         const Observation& one = experiment.observations()[i];
         if (one.quantity != quantity) {
             continue;
         }
-        before.x.push_back(one.at[channel] * unit.factor);
-        before.y.push_back(1000 * (one.value - experiment.predict(one, {})));
-        if (!uses.empty()) {
-            after.x.push_back(before.x.back());
-            after.y.push_back(1000 * (one.value - experiment.predict(one, uses)));
+        const double x = one.at[channel] * unit.factor;
+        before.emplace_back(x, one.value - experiment.predict(one, {}));
+        after.emplace_back(x, one.value - experiment.predict(one, uses));
+        largest = std::max(largest, std::abs(before.back().second));
+        sigma = experiment.sigma(one);
+    }
+    if (before.empty()) {
+        return {};
+    }
+    const double scale = largest < 1 ? 1000 : 1;
+    core::FigurePoints cloud;
+    cloud.name = "readings less declared model";
+    cloud.colour = {190, 190, 190, 255};
+    cloud.size = 4;
+    for (auto* list : {&before, &after}) {
+        for (auto& [x, y] : *list) {
+            y *= scale;
         }
-        sigma = 1000 * experiment.sigma(one);
     }
-    figure.lines.push_back({false, 2 * sigma, "two standard deviations of the noise", {120, 120, 120, 255}, true});
-    figure.lines.push_back({false, -2 * sigma, "", {120, 120, 120, 255}, true});
-    figure.caption = "Every reading used for the fit. Readings between the dashed lines cannot be told from noise.";
-    figure.points.push_back(std::move(before));
+    for (const auto& [x, y] : before) {
+        cloud.x.push_back(x);
+        cloud.y.push_back(y);
+    }
+    std::sort(before.begin(), before.end());
+    std::sort(after.begin(), after.end());
+    core::Figure figure;
+    figure.title = "What the model leaves of " + name + " over " + dynamics::channel_name(channel);
+    const bool wide = before.front().first > 0 && before.back().first > 20 * before.front().first;
+    figure.x = {dynamics::channel_name(channel), unit.unit, 0, 0, wide};
+    figure.y = {"measured less model", (scale > 1 ? "m" : "") + core::find_quantity(name)->unit, 0, 0, false};
+    figure.lines.push_back({false, 0, "", {60, 60, 60, 255}, false});
+    figure.lines.push_back({false, 2 * sigma * scale, "two standard deviations of a reading", {120, 120, 120, 255}, true});
+    figure.lines.push_back({false, -2 * sigma * scale, "", {120, 120, 120, 255}, true});
+    figure.points.push_back(std::move(cloud));
+    figure.points.push_back(binned(before, "means, as declared", core::palette(1)));
     if (!uses.empty()) {
-        figure.points.push_back(std::move(after));
+        figure.points.push_back(binned(after, "means, with what was found", core::palette(0)));
     }
+    figure.caption = uses.empty() ? "Grey: every reading that was used; means with their errors. Nothing stands out of the noise."
+                                  : "Grey: every reading that was used for the fit. The means should lie on zero: with what was found they do, as declared they do not.";
     return figure;
 }
 
@@ -134,13 +181,21 @@ std::vector<core::Figure> static_figures(const StaticExperiment& experiment, con
         }
     }
     for (const Channel channel : experiment.varying()) {
-        if (channels.size() < 3 && std::find(channels.begin(), channels.end(), channel) == channels.end()) {
+        if (channels.size() < 2 && std::find(channels.begin(), channels.end(), channel) == channels.end()) {
             channels.push_back(channel);
         }
     }
-    for (std::size_t q = 0; q < experiment.quantities().size(); ++q) {
-        for (const Channel channel : channels) {
-            figures.push_back(residual_figure(experiment, chosen, uses, q, channel));
+    // the quantity that moves most gets a picture over each of two channels, the others one over the first
+    std::vector<std::size_t> order(experiment.quantities().size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto rank = [&](std::size_t q) {
+        const auto found = std::find_if(result.error.begin(), result.error.end(), [&](const ErrorChange& change) { return change.channel == experiment.quantities()[q]; });
+        return found - result.error.begin();
+    };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+    for (std::size_t k = 0; k < order.size() && !channels.empty(); ++k) {
+        for (std::size_t c = 0; c < (k == 0 ? std::min<std::size_t>(channels.size(), 2) : 1); ++c) {
+            figures.push_back(residual_figure(experiment, chosen, uses, order[k], channels[c]));
         }
     }
     figures.push_back(probability_figure(result));

@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/discovery/wording.h"
 
 namespace underbody::discovery {
 
@@ -128,6 +129,10 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
         p.front() += 3 * best.fit.sigma.front();
         a = best.hypothesis.with(p);
         purpose = "to see " + best.hypothesis.label() + " below today's limit";
+    } else if (result.verdict == "unknown" && !result.effects.empty()) {
+        // where the correction is largest; levels between the measured ones show its shape
+        a = result.effects.front().uses;
+        purpose = "to see the law behind what depends on " + list_of(result.depends_on);
     } else {
         purpose = "to confirm " + best.hypothesis.label();
     }

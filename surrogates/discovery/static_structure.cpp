@@ -82,22 +82,33 @@ DesignMatrix of_quantity(const DesignMatrix& matrix, std::size_t quantity, std::
 StaticStructure::StaticStructure(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen)
     : quantities_(experiment.quantities().size()) {
     const std::vector<Channel>& varying = experiment.varying();
+    const bool few = chosen.size() < 60 * quantities_;  // a tow tank's dozen of runs
+    const std::size_t rows_a_column = few ? 3 : 4;
     const auto add = [&](const std::vector<Channel>& variables, DesignMatrix matrix) {
         for (std::size_t k = 0; k < matrix.columns; ++k) {
             experiment.whiten(chosen, matrix.values.data() + k * matrix.rows);
         }
         for (std::size_t q = 0; q < quantities_; ++q) {
             DesignMatrix basis = orthonormal(of_quantity(matrix, q, quantities_));
-            if (basis.columns > 0 && basis.columns * quantities_ * 4 < chosen.size()) {
+            if (basis.columns > 0 && basis.columns * quantities_ * rows_a_column <= chosen.size()) {
                 tests_.push_back({variables, q, std::move(basis)});
             }
         }
     };
     for (const Channel channel : varying) {
         add({channel}, design(experiment, chosen, {channel}, 6));
+        if (few) {
+            add({channel}, design(experiment, chosen, {channel}, 2));
+        }
+        if (channel == Channel::time) {
+            add({channel}, design(experiment, chosen, {channel}, 16));  // several waves in a day of measuring
+        }
     }
     for (std::size_t a = 0; a < varying.size(); ++a) {
         for (std::size_t b = a + 1; b < varying.size(); ++b) {
+            if (few) {
+                add({varying[a], varying[b]}, design(experiment, chosen, {varying[a], varying[b]}, 1));
+            }
             add({varying[a], varying[b]}, design(experiment, chosen, {varying[a], varying[b]}, 3));
             add({varying[a], varying[b]}, design(experiment, chosen, {varying[a], varying[b]}, 5));
         }

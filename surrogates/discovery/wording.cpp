@@ -38,6 +38,12 @@ FoundEffect found_effect(const FittedHypothesis& fitted, double probability) {
                                      fitted.fit.parameters[j], sigma, fitted.hypothesis.parameters[j].unit});
         effect.uses[slot.use].sigmas[slot.value] = sigma;
     }
+    for (const Hypothesis::Copy& copy : fitted.hypothesis.copies) {
+        const dynamics::EffectParameter& parameter = dynamics::effect(fitted.hypothesis.uses[copy.to.use].name).info().parameters[copy.to.value];
+        const double sigma = std::isfinite(fitted.fit.sigma[copy.parameter]) ? fitted.fit.sigma[copy.parameter] : 0;
+        effect.uses[copy.to.use].sigmas[copy.to.value] = sigma;
+        effect.parameters.push_back({parameter.name, fitted.fit.parameters[copy.parameter], sigma, parameter.unit});
+    }
     return effect;
 }
 
@@ -52,6 +58,11 @@ std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHyp
             for (std::size_t j = 0; j < fitted.hypothesis.slots.size(); ++j) {
                 if (fitted.hypothesis.uses[fitted.hypothesis.slots[j].use].name == name) {
                     part.parameters.push_back(whole.parameters[j]);
+                }
+            }
+            for (std::size_t c = 0; c < fitted.hypothesis.copies.size(); ++c) {
+                if (fitted.hypothesis.uses[fitted.hypothesis.copies[c].to.use].name == name) {
+                    part.parameters.push_back(whole.parameters[fitted.hypothesis.slots.size() + c]);
                 }
             }
             for (const dynamics::EffectUse& use : whole.uses) {

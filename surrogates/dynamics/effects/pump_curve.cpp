@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
 #include "surrogates/dynamics/model.h"
 
 namespace underbody::dynamics {
@@ -19,6 +20,18 @@ double reference_voltage(const Model& model) {
         }
     }
     return 10;
+}
+
+/// The voltage over the reference, past the dead zone and to its power, without saturation.
+double plain(double voltage, double reference, const EffectUse& use) {
+    const double dead = std::min(use.values[0], 0.99 * reference);
+    return std::pow(std::max(0.0, voltage - dead) / (reference - dead), 1 + use.values[2] / 2);
+}
+
+double seen_by_the_law(double voltage, double reference, const EffectUse& use) {
+    const double dead = std::min(use.values[0], 0.99 * reference);
+    const double x = std::max(0.0, voltage - dead) / (reference - dead);
+    return reference * plain(voltage, reference, use) * std::sqrt((1 + use.values[1]) / (1 + use.values[1] * x * x));
 }
 
 class Kind final : public Effect {
@@ -39,14 +52,26 @@ public:
     }
 
     void before(StaticPoint& point, const EffectUse& use) const override {
-        if (!point.conditions.has(Channel::jet_voltage)) {
-            return;
+        if (point.conditions.has(Channel::jet_voltage)) {
+            point.conditions[Channel::jet_voltage] = seen_by_the_law(point.conditions[Channel::jet_voltage], reference_voltage(*point.model), use);
         }
-        const double reference = reference_voltage(*point.model);
-        const double dead = std::min(use.values[0], 0.99 * reference);
-        const double x = std::max(0.0, point.conditions[Channel::jet_voltage] - dead) / (reference - dead);
-        const double levelled = std::sqrt((1 + use.values[1]) / (1 + use.values[1] * x * x));
-        point.conditions[Channel::jet_voltage] = reference * std::pow(x, 1 + use.values[2] / 2) * levelled;
+    }
+
+    /// A voltage that is held runs through the curve; one that varies in time gets the dead zone and the power (no saturation).
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& model) const override {
+        for (HeaveSource& source : terms.sources) {
+            for (HeaveSource::Scale& scale : source.scales) {
+                if (scale.channel == Channel::jet_voltage) {
+                    const double reference = reference_voltage(model);
+                    const double power = scale.exponent * (1 + use.values[2] / 2);
+                    const double seen = seen_by_the_law(scale.held, reference, use) / reference;
+                    const double levelled = seen > 0 ? std::pow(seen / plain(scale.held, reference, use), scale.exponent) : 1;
+                    source.factor *= levelled;
+                    scale.dead_band = std::min(use.values[0], 0.99 * reference);
+                    scale.exponent = power;
+                }
+            }
+        }
     }
 };
 

@@ -1,7 +1,9 @@
 // force times (speed/reference)^(exponent - declared exponent)
+#include <algorithm>
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/heave_terms.h"
 #include "surrogates/dynamics/model.h"
 
 namespace underbody::dynamics {
@@ -20,6 +22,22 @@ ForceScale declared_speed_law(const Model& model, const std::string& quantity) {
         }
     }
     return {};
+}
+
+/// What a model's other sources (a jet) give, which do not know of the speed; nothing when no source is scaled by it.
+double part_without_speed(const Model& model, const std::string& quantity, const Conditions& seen) {
+    const auto knows_speed = [](const ForceSource& source) {
+        return std::any_of(source.scales.begin(), source.scales.end(), [](const ForceScale& scale) { return scale.channel == Channel::speed; });
+    };
+    const auto own = [&](const ForceSource& source) { return source.quantity == quantity; };
+    if (std::none_of(model.forces.begin(), model.forces.end(), [&](const ForceSource& source) { return own(source) && knows_speed(source); }) ||
+        std::all_of(model.forces.begin(), model.forces.end(), [&](const ForceSource& source) { return !own(source) || knows_speed(source); }) ||
+        model.coupling.kind != Coupling::Kind::sum) {
+        return 0;
+    }
+    Conditions at_rest = seen;  // there the sources scaled by the speed give nothing
+    at_rest[Channel::speed] = 0;
+    return sum_of_sources(model, quantity, at_rest);
 }
 
 class Kind final : public Effect {
@@ -43,7 +61,25 @@ public:
         }
         const ForceScale declared = declared_speed_law(*seen.model, quantity);
         const double ratio = std::abs(seen.conditions[Channel::speed]) / declared.reference;
-        return ratio > 0 ? value * std::pow(ratio, use.values[0] - declared.exponent) : value;
+        if (!(ratio > 0)) {
+            return value;
+        }
+        const double factor = std::pow(ratio, use.values[0] - declared.exponent);
+        const double still = part_without_speed(*seen.model, quantity, seen.conditions);
+        return still + (value - still) * factor;
+    }
+
+    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        if (!concerns(use, "lift_force")) {
+            return;
+        }
+        for (HeaveSource& source : terms.sources) {
+            for (HeaveSource::Scale& scale : source.scales) {
+                if (scale.channel == Channel::speed) {
+                    scale.exponent = use.values[0];
+                }
+            }
+        }
     }
 };
 

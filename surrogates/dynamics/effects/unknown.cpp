@@ -22,8 +22,9 @@ public:
     }
 
     void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
-        if (!use.table) {
-            return;
+        const std::string& quantity = use.quantity.empty() && use.table ? use.table->quantity() : use.quantity;
+        if (!use.table || quantity != "lift_force") {
+            return;  // a correction of the drag or of a moment is no force in heave
         }
         HeaveTerms::Correction correction{*use.table, {}};
         for (const tables::TableAxis& axis : use.table->axes()) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 namespace underbody::bench {
 
 struct Case {
-    std::string family;                    ///< heave, glide, jet
+    std::string family;                    ///< heave; static: glide, towed (with pitch and depth), jet, both (glide and jet at once)
     std::vector<std::string> names;        ///< true effects; empty: clean; "unknown": out of the catalogue
     std::string law;                       ///< which out-of-catalogue law
     double level = 1;                      ///< strength in units of the noise (heave: error of a 2 s prediction; static: RMS)
@@ -30,6 +31,7 @@ struct Sample {
     std::vector<std::string> names;
     std::vector<std::string> depends_on;   ///< of an unknown law
     double strength = 0;                   ///< first parameter of the true law
+    double in_catalogue_terms = 0;         ///< static: what the catalogue's first parameter should come out as; NaN: another form
 };
 
 /// Writes model.toml and its tables for a family into a folder; returns the model file.
@@ -38,6 +40,11 @@ std::filesystem::path write_declared_model(const std::string& family, const std:
 Sample make_sample(const Case& wanted);
 Sample make_heave(const Case& wanted);
 Sample make_static(const Case& wanted);
+
+/// The best that can be reached: the true law with its strength refitted to the training data; RMSE on the test data by quantity.
+std::map<std::string, double> static_oracle(const Case& wanted, const Sample& sample);
+/// One standard deviation of a reading of the static plants.
+double static_noise(const std::string& family, const std::string& quantity);
 
 std::vector<std::string> effects_of(const std::string& family);
 std::vector<std::string> unknown_laws(const std::string& family);

@@ -96,5 +96,12 @@ TEST(StaticDiscovery, WritesEverythingAndItsModelIsReadBack) {
 
 TEST(StaticDiscovery, GivesTheSameBytesTwice) {
     const auto truth = [](double h, double v) { return declared(h, v) * 1.15; };
-    EXPECT_EQ(to_json(found_on(truth, 9)).dump(), to_json(found_on(truth, 9)).dump());
+    const auto bytes = [&] {
+        nlohmann::json json = to_json(found_on(truth, 9));
+        for (nlohmann::json& problem : json["problems"]) {
+            problem.erase("place");  // names the temporary folder
+        }
+        return json.dump();
+    };
+    EXPECT_EQ(bytes(), bytes());
 }

@@ -1,0 +1,166 @@
+#include "surrogates/discovery/static_consequence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.h"
+#include "surrogates/discovery/statistics.h"
+#include "surrogates/discovery/wording.h"
+#include "surrogates/dynamics/region.h"
+
+namespace underbody::discovery {
+
+using dynamics::Channel;
+
+namespace {
+
+/// The middle of each channel over the measurements; direction and time have none.
+dynamics::Conditions middle_of(const StaticExperiment& experiment) {
+    dynamics::Conditions middle = experiment.observations().front().at;
+    for (const Channel channel : experiment.varying()) {
+        std::vector<double> values;
+        for (const Observation& one : experiment.observations()) {
+            values.push_back(one.at[channel]);
+        }
+        middle[channel] = median(values);
+    }
+    middle[Channel::approach_direction] = 0;
+    return middle;
+}
+
+struct Balance {
+    double gap = 0;
+    bool stable = false;
+};
+
+/// Zeros of lift less net weight over the measured gaps.
+std::vector<Balance> balances(const dynamics::Model& model, const dynamics::Conditions& held, double low, double high) {
+    const dynamics::StaticModel lift(model, "lift_force");
+    const auto excess = [&](double gap) {
+        dynamics::Conditions at = held;
+        at[Channel::gap] = gap;
+        return lift(at) - model.vehicle.net_weight;
+    };
+    std::vector<Balance> list;
+    constexpr int steps = 400;
+    const auto gap_of = [&](int k) { return low > 0 ? low * std::pow(high / low, static_cast<double>(k) / steps) : low + (high - low) * k / steps; };
+    double left = excess(gap_of(0));
+    for (int k = 1; k <= steps; ++k) {
+        const double right = excess(gap_of(k));
+        if (left * right < 0) {
+            double a = gap_of(k - 1), b = gap_of(k);
+            for (int halving = 0; halving < 50; ++halving) {
+                const double c = 0.5 * (a + b);
+                (excess(c) * left > 0 ? a : b) = c;
+            }
+            list.push_back({0.5 * (a + b), left > 0});
+        }
+        left = right;
+    }
+    return list;
+}
+
+std::vector<EquilibriumPair> paired(const std::vector<Balance>& before, std::vector<Balance> after) {
+    std::vector<EquilibriumPair> pairs;
+    for (const Balance& one : before) {
+        EquilibriumPair pair{one.stable ? "rest" : "watershed", one.stable, one.gap, std::nan("")};
+        auto nearest = after.end();
+        for (auto other = after.begin(); other != after.end(); ++other) {
+            if (other->stable == one.stable && (nearest == after.end() || std::abs(std::log(other->gap / one.gap)) < std::abs(std::log(nearest->gap / one.gap)))) {
+                nearest = other;
+            }
+        }
+        if (nearest != after.end()) {
+            pair.gap_after = nearest->gap;
+            after.erase(nearest);
+        }
+        pairs.push_back(pair);
+    }
+    for (const Balance& one : after) {
+        pairs.push_back({one.stable ? "rest" : "watershed", one.stable, std::nan(""), one.gap});
+    }
+    return pairs;
+}
+
+}  // namespace
+
+bool belongs_to_the_rig(const std::string& effect) {
+    static constexpr std::array<const char*, 9> rig{"gap_offset",     "force_bias",     "sensor_gain",    "drift",             "current",
+                                                    "strut_buoyancy", "cable_buoyancy", "guide_friction", "pitch_misalignment"};
+    return std::find(rig.begin(), rig.end(), effect) != rig.end();
+}
+
+Consequence static_consequence(const dynamics::Model& before, const std::vector<dynamics::EffectUse>& uses, const StaticExperiment& experiment,
+                               core::Progress& progress) {
+    Consequence result;
+    std::vector<std::string> rig, body;
+    dynamics::Model after = before;
+    for (const dynamics::EffectUse& use : uses) {
+        std::vector<std::string>& side = belongs_to_the_rig(use.name) ? rig : body;
+        if (std::find(side.begin(), side.end(), use.name) == side.end()) {
+            side.push_back(use.name);
+        }
+        after = after.with_effect(use);
+    }
+    if (!rig.empty()) {
+        result.text += list_of(rig) + (rig.size() == 1 ? " belongs" : " belong") +
+                       " to the rig, not to the vehicle: its motion does not change. A force table made from these readings must have " +
+                       (rig.size() == 1 ? "it" : "them") + " taken out; where the vehicle would seem to rest otherwise stands under 'after'. ";
+    }
+    if (!body.empty()) {
+        result.text += list_of(body) + (body.size() == 1 ? " goes" : " go") + " with the vehicle: every map and equilibrium made from the new model has " +
+                       (body.size() == 1 ? "it" : "them") + ". ";
+    }
+    const std::vector<std::string>& quantities = experiment.quantities();
+    const std::vector<Channel>& varying = experiment.varying();
+    if (std::find(quantities.begin(), quantities.end(), "lift_force") == quantities.end() ||
+        std::find(varying.begin(), varying.end(), Channel::gap) == varying.end()) {
+        result.text += "No lift over a gap was measured: there is no equilibrium to compare.";
+        return result;
+    }
+    double low = 1e300, high = -1e300;
+    for (const Observation& one : experiment.observations()) {
+        low = std::min(low, one.at[Channel::gap]);
+        high = std::max(high, one.at[Channel::gap]);
+    }
+    const dynamics::Conditions held = middle_of(experiment);
+    const std::vector<Balance> old_list = balances(before, held, low, high);
+    result.equilibria = paired(old_list, uses.empty() ? old_list : balances(after, held, low, high));
+    std::string at;
+    for (const Channel channel : {Channel::speed, Channel::jet_voltage, Channel::pitch}) {
+        if (held.has(channel)) {
+            at += (at.empty() ? "" : ", ") + std::string(dynamics::channel_name(channel)) + " " + core::format_number(held[channel], 3) + " " +
+                  dynamics::channel_unit(channel);
+        }
+    }
+    result.text += "Equilibria of lift and a net weight of " + core::format_number(before.vehicle.net_weight, 3) + " N between the measured gaps" +
+                   (at.empty() ? "" : " at " + at) + (result.equilibria.empty() ? ": there are none." : ".");
+    if (body.empty() && !uses.empty()) {
+        return result;
+    }
+    try {
+        dynamics::RegionOptions options;
+        options.axes = {{"gap", low, high}, {"heave_velocity", -0.1, 0.1}};
+        options.columns = options.rows = 30;
+        options.refine = false;
+        options.held = held;
+        const auto shares = [&](const dynamics::Model& model) {
+            std::map<std::string, double> fractions;
+            for (const dynamics::EndClass& one : dynamics::stability_region(model, options, progress).classes) {
+                fractions[one.name] = one.fraction;
+            }
+            return fractions;
+        };
+        result.region_before = shares(before);
+        result.region_after = uses.empty() ? result.region_before : shares(after);
+        result.text += " Shares of starts with those gaps and velocities of -0.1 to 0.1 m/s, without input.";
+    } catch (const core::Cancelled&) {
+        throw;
+    } catch (const core::Error& error) {
+        result.text += " The free motion could not be mapped: " + error.message();
+    }
+    return result;
+}
+
+}  // namespace underbody::discovery

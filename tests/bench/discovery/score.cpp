@@ -1,0 +1,151 @@
+#include "tests/bench/discovery/score.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::bench {
+
+namespace {
+
+std::vector<std::string> sorted(std::vector<std::string> names) {
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+/// Two names for one law, which only the rig can tell apart.
+bool same_law(const std::string& a, const std::string& b) {
+    const auto pair = [&](const char* x, const char* y) { return (a == x && b == y) || (a == y && b == x); };
+    return pair("input_delay", "gap_sensor_delay") || pair("cable_buoyancy", "strut_buoyancy");
+}
+
+template <typename... Values>
+std::string text(const char* format, Values... values) {
+    char line[400];
+    std::snprintf(line, sizeof line, format, values...);
+    return line;
+}
+
+}  // namespace
+
+bool Outcome::right() const {
+    if (truth.empty()) {
+        return verdict == "none";
+    }
+    return verdict != "none" && sorted(names) == sorted(truth);
+}
+
+bool Outcome::tied() const {
+    if (right() || verdict != "effect" || truth.size() != 1) {
+        return false;
+    }
+    if (names.size() == 1 && same_law(names.front(), truth.front())) {
+        return true;
+    }
+    return std::any_of(rivals.begin(), rivals.end(), [&](const auto& rival) { return rival.second > 0.2 && rival.first == truth.front(); });
+}
+
+Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::string>& truth, const std::vector<std::string>& depends_on) {
+    Outcome one;
+    one.truth = truth;
+    one.verdict = found.verdict;
+    for (const discovery::FoundEffect& effect : found.effects) {
+        one.names.push_back(effect.name);
+    }
+    for (const discovery::FoundEffect& rival : found.alternatives) {
+        one.rivals.emplace_back(rival.name, rival.probability);
+    }
+    one.variables = sorted(found.depends_on) == sorted(depends_on);
+    one.stated = found.effects.empty() ? found.none_probability : found.effects.front().probability;
+    if (!found.error.empty()) {
+        const discovery::ErrorChange& error = found.error.front();
+        one.before = error.before.rmse / error.noise;
+        one.after = error.after.rmse / error.noise;
+    }
+    one.seconds = found.seconds;
+    return one;
+}
+
+std::string share(std::size_t of, std::size_t all) {
+    const discovery::Interval w = discovery::wilson_interval(of, all);
+    return text("%zu/%zu %.2f (%.2f-%.2f)", of, all, all > 0 ? static_cast<double>(of) / static_cast<double>(all) : 0.0, w.low, w.high);
+}
+
+double Tally::after() const {
+    double sum = 0;
+    for (const Outcome& one : outcomes) {
+        sum += one.after * one.after;
+    }
+    return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count(), 1)));
+}
+
+double Tally::before() const {
+    double sum = 0;
+    for (const Outcome& one : outcomes) {
+        sum += one.before * one.before;
+    }
+    return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count(), 1)));
+}
+
+double Tally::oracle_gap() const {
+    std::vector<double> ratios;
+    for (const Outcome& one : outcomes) {
+        if (std::isfinite(one.best)) {
+            ratios.push_back(one.after / one.best);
+        }
+    }
+    return discovery::median(ratios);
+}
+
+std::string Tally::line() const {
+    const std::size_t right = count([](const Outcome& o) { return o.right(); });
+    const std::size_t tied = count([](const Outcome& o) { return o.tied(); });
+    const std::size_t wrong = count([](const Outcome& o) { return o.wrong(); });
+    const std::size_t none = count([](const Outcome& o) { return !o.right() && o.verdict == "none"; });
+    const std::size_t unknown = count([](const Outcome& o) { return !o.right() && o.verdict == "unknown"; });
+    const std::size_t variables = count([](const Outcome& o) { return o.variables; });
+    double seconds = 0;
+    for (const Outcome& one : outcomes) {
+        seconds += one.seconds;
+    }
+    return text("%-26s tied %2zu wrong %2zu none %2zu unknown %2zu | variables %zu | error %.2f -> %.2f noise, over best %.3f | %.2f s",
+                share(right + tied, count()).c_str(), tied, wrong, none, unknown, variables, before(), after(), oracle_gap(),
+                seconds / static_cast<double>(std::max<std::size_t>(count(), 1)));
+}
+
+std::string calibration_lines(const std::vector<Outcome>& outcomes) {
+    std::string lines;
+    double weighted = 0, total = 0;
+    const std::vector<double> edges{0, 0.5, 0.7, 0.85, 0.95, 0.99, 1.01};
+    for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+        double sum = 0, right = 0, n = 0;
+        for (const Outcome& one : outcomes) {
+            if (one.stated >= edges[b] && one.stated < edges[b + 1]) {
+                sum += one.stated;
+                right += one.right() ? 1 : 0;
+                n += 1;
+            }
+        }
+        if (n > 0) {
+            lines += text("stated %.2f to %.2f: mean %.3f, right %s\n", edges[b], std::min(edges[b + 1], 1.0), sum / n,
+                          share(static_cast<std::size_t>(right), static_cast<std::size_t>(n)).c_str());
+            weighted += std::abs(sum - right);
+            total += n;
+        }
+    }
+    return lines + text("mean difference between stated and frequency, weighted by count: %.3f\n", total > 0 ? weighted / total : 0.0);
+}
+
+std::string coverage_line(const std::vector<Outcome>& outcomes) {
+    std::size_t inside = 0, all = 0;
+    for (const Outcome& one : outcomes) {
+        if (std::isfinite(one.pull)) {
+            ++all;
+            inside += std::abs(one.pull) < 1.96 ? 1 : 0;
+        }
+    }
+    return "95 % intervals that hold the true number: " + share(inside, all) + "\n";
+}
+
+}  // namespace underbody::bench

@@ -1,0 +1,162 @@
+// Static data that are not as they should be: said clearly, with what is still possible.
+#include <gtest/gtest.h>
+
+#include "make_data.h"
+#include "surrogates/discovery/discovery.h"
+
+using namespace underbody;
+using namespace underbody::discovery;
+
+namespace {
+
+double declared(double gap, double voltage) { return test::lift_of(gap) * voltage * voltage / 100; }
+
+struct Bench {
+    core::TemporaryFolder folder{"odd"};
+    dynamics::Model model;
+    dynamics::Measurements data;
+
+    explicit Bench(std::uint64_t seed = 21) {
+        test::write_bench(folder.path(), declared, seed);
+        model = dynamics::read_model(folder.path() / "model.toml");
+        data = dynamics::read_measurements(folder.path());
+    }
+    /// Column `name` of a run, changed row by row.
+    void change(const std::string& name, const std::function<double(std::size_t, double)>& to, std::size_t run = 0) {
+        core::Table table;
+        table.source = data.runs[run].table.source;
+        for (const core::Column& column : data.runs[run].table.columns()) {
+            std::vector<double> values = column.numbers;
+            for (std::size_t i = 0; i < values.size() && column.name == name; ++i) {
+                values[i] = to(i, values[i]);
+            }
+            table.add_numbers(column.name, column.unit, values);
+        }
+        data.runs[run].table = std::move(table);
+    }
+    Discovery found() {
+        DiscoverOptions options;
+        options.figures = options.consequence = false;
+        return discover(model, data, options);
+    }
+};
+
+bool says(const Discovery& found, const std::string& words) {
+    return std::any_of(found.problems.begin(), found.problems.end(),
+                       [&](const core::Problem& problem) { return problem.message.find(words) != std::string::npos; });
+}
+
+}  // namespace
+
+TEST(OddStaticData, OneSetPointShowsThatSomethingIsMissingButNotWhat) {
+    Bench bench;
+    bench.change("gap", [](std::size_t, double) { return 0.02; });
+    bench.change("jet_voltage", [](std::size_t, double) { return 8.0; });
+    core::Random random(4);
+    bench.change("lift_force", [&](std::size_t, double) { return declared(0.02, 8) + 0.004 + 1e-3 * random.normal(); });
+    const Discovery found = bench.found();
+    EXPECT_TRUE(says(found, "one set point"));
+    EXPECT_NE(found.held_out.find("were fitted"), std::string::npos);
+    if (found.verdict == "effect") {
+        EXPECT_LT(found.effects.front().probability, 0.75) << found.sentence;
+    }
+}
+
+TEST(OddStaticData, ASensorThatStandsStillIsNamed) {
+    Bench bench;
+    bench.change("lift_force", [](std::size_t, double) { return -0.0123; });
+    EXPECT_TRUE(says(bench.found(), "stands still"));
+}
+
+TEST(OddStaticData, AClippedSensorIsNamed) {
+    Bench bench;
+    bench.change("lift_force", [](std::size_t, double value) { return std::max(value, -0.02); });
+    EXPECT_TRUE(says(bench.found(), "clipped"));
+}
+
+TEST(OddStaticData, AForceInThousandthsIsNamed) {
+    Bench bench;
+    bench.change("lift_force", [](std::size_t, double value) { return 1000 * value; });
+    EXPECT_TRUE(says(bench.found(), "thousandths"));
+}
+
+TEST(OddStaticData, AGapInTheWrongUnitIsNamed) {
+    Bench bench;
+    bench.change("gap", [](std::size_t, double value) { return 1000 * value; });
+    const Discovery found = bench.found();
+    EXPECT_TRUE(says(found, "outside the range of a declared table"));
+    EXPECT_TRUE(says(found, "1000 times too large"));
+}
+
+TEST(OddStaticData, OneWildReadingIsLeftOutAndNamed) {
+    Bench bench;
+    bench.change("lift_force", [](std::size_t i, double value) { return i == 40 ? value + 0.05 : value; });
+    const Discovery found = bench.found();
+    EXPECT_TRUE(says(found, "left out of every fit"));
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+    EXPECT_NEAR(found.noise.at("lift_force").value, 1e-3, 2e-4);
+}
+
+TEST(OddStaticData, RunsThatContradictEachOtherAreNamed) {
+    Bench bench;
+    bench.data.runs.push_back(bench.data.runs.front());
+    bench.data.runs.back().name = "second";
+    bench.change("lift_force", [](std::size_t i, double value) { return value + (i < 45 ? 0.01 : -0.008); }, 1);
+    EXPECT_TRUE(says(bench.found(), "contradict"));
+}
+
+TEST(OddStaticData, ReadingsThatStandThereTwiceAreNamed) {
+    Bench bench;
+    bench.data.runs.push_back(bench.data.runs.front());
+    bench.data.runs.back().name = "copy";
+    EXPECT_TRUE(says(bench.found(), "twice"));
+}
+
+TEST(OddStaticData, SwappedColumnsAreNamed) {
+    Bench bench;
+    core::write_file(bench.folder.path() / "drag.csv", "gap [m], drag_force [N]\n0.001, 0.5\n0.1, 0.3\n1.6, 0.2\n");
+    const std::string text = core::read_file(bench.folder.path() / "model.toml");
+    core::write_file(bench.folder.path() / "both.toml", text + "[[force]]\nquantity = \"drag_force\"\ntable = \"drag.csv\"\n");
+    bench.model = dynamics::read_model(bench.folder.path() / "both.toml");
+    const dynamics::StaticModel drag(bench.model, "drag_force");
+    std::vector<double> lifts = bench.data.runs[0].table.numbers("lift_force"), drags;
+    for (const double gap : bench.data.runs[0].table.numbers("gap")) {
+        dynamics::Conditions at;
+        at[dynamics::Channel::gap] = gap;
+        drags.push_back(drag(at));
+    }
+    bench.change("lift_force", [&](std::size_t i, double) { return drags[i]; });
+    bench.data.runs[0].table.add_numbers("drag_force", "N", lifts);
+    EXPECT_TRUE(says(bench.found(), "look swapped"));
+}
+
+TEST(OddStaticData, ADeclaredModelWithoutTheMeasuredQuantityIsRefusedWithWhatToDo) {
+    Bench bench;
+    core::Table table;
+    table.source = "bench.csv";
+    for (const core::Column& column : bench.data.runs[0].table.columns()) {
+        table.add_numbers(column.name == "lift_force" ? "pitch_moment" : column.name, column.name == "lift_force" ? "N m" : column.unit, column.numbers);
+    }
+    bench.data.runs[0].table = std::move(table);
+    try {
+        (void)bench.found();
+        FAIL() << "nothing was refused";
+    } catch (const core::InputError& error) {
+        EXPECT_NE(error.message().find("none of the measured quantities"), std::string::npos);
+        EXPECT_FALSE(error.hint().empty());
+    }
+}
+
+TEST(OddStaticData, AChannelThatRanWithAnotherIsNamed) {
+    Bench bench;
+    bench.change("time", [&](std::size_t i, double) { return 1e4 * bench.data.runs[0].table.numbers("gap")[i] + 0.01 * static_cast<double>(i); });
+    EXPECT_TRUE(says(bench.found(), "ran together"));
+}
+
+TEST(OddStaticData, ADeclaredNoiseTwiceTooLargeIsFoundOut) {
+    Bench bench;
+    bench.data.noise["lift_force"] = 0.002;
+    const Discovery found = bench.found();
+    EXPECT_NE(found.noise.at("lift_force").from.find("wrong"), std::string::npos);
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
