@@ -163,19 +163,13 @@ MeasuredStudy thrust_stand_study(const std::filesystem::path& folder, core::Prog
     set.title = "thrust stand (jet_flow: motor command, 0 to 1; jet_voltage: the battery's)";
     set.quantity = "lift_force";
     set.unit = "N";
-    std::vector<double> duty, volt, direction, row;
-    double before = 0;
-    double way = 1;
+    std::vector<double> duty, volt;
     for (std::size_t i = 0; i + 1 < weight.size(); ++i) {
         if (command[i + 1] == command[i]) {
             continue;  // the last reading of each step: the others are on their way there
         }
-        way = command[i] == before ? way : command[i] > before ? 1 : -1;
-        before = command[i];
         duty.push_back(command[i] / 65535);
         volt.push_back(battery[i]);
-        direction.push_back(way);
-        row.push_back(static_cast<double>(i));
         set.values.push_back(newton_per_gram * weight[i]);
     }
     // parabola a + b d + c d^2 by least squares through moments of d
@@ -209,7 +203,7 @@ MeasuredStudy thrust_stand_study(const std::filesystem::path& folder, core::Prog
         set.table += text(d) + ", " + text(c[0] + c[1] * d + c[2] * d * d) + "\n";
     }
     set.scale = "scale.jet_voltage = { reference = \"3.7 V\", exponent = 0 }\n";
-    set.channels = {{"time", row}, {"jet_flow", duty}, {"jet_voltage", volt}, {"approach_direction", direction}};
+    set.channels = {{"jet_flow", duty}, {"jet_voltage", volt}};
     MeasuredStudy study;
     study.name = "thrust stand";
     study.data = "cf2.1-stock-prop.csv, IMRCLab crazyflie-system-id, MIT";
@@ -234,10 +228,10 @@ MeasuredStudy ceiling_study(const std::filesystem::path& folder, core::Progress&
     for (const Flight& flight : flights) {
         const ForeignTable log = read_foreign(folder / "air_garage_ceiling" / flight.file);
         const std::vector<double> time = log.numbers("t"), height = log.numbers("z");
-        // the climb takes fifteen seconds by the owner's log; then means of a second each
-        double sum = 0, count = 0, end = time.front() + 16;
+        // the logs begin on the ground; the climb and its overshoot end nineteen seconds later; then means of a second each
+        double sum = 0, count = 0, end = time.front() + 20;
         for (std::size_t i = 0; i < time.size(); ++i) {
-            if (time[i] < time.front() + 15 || time[i] > time.front() + 22) {
+            if (time[i] < time.front() + 19) {
                 continue;
             }
             if (time[i] > end) {

@@ -78,9 +78,10 @@ std::vector<Candidate> separated(const StaticExperiment& experiment, const std::
 std::string where(const StaticExperiment& experiment, const Candidate& candidate) {
     std::string text;
     for (const Channel channel : experiment.varying()) {
-        if (channel != Channel::time) {
+        if (channel != Channel::time && channel != Channel::temperature) {
+            const std::string unit = dynamics::channel_unit(channel);
             text += (text.empty() ? "" : ", ") + std::string(dynamics::channel_name(channel)) + " " +
-                    core::format_number(candidate.at[channel], 3) + " " + dynamics::channel_unit(channel);
+                    core::format_number(candidate.at[channel], 3) + (unit == "1" ? "" : " " + unit);
         }
     }
     return text;

@@ -78,9 +78,18 @@ std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHyp
 }
 
 std::string value_text(const FoundParameter& parameter) {
-    const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
-    return core::format_number(parameter.value, 3) + unit +
-           (parameter.sigma > 0 ? " (+- " + core::format_number(parameter.sigma, 2) + unit + ")" : "");
+    // thousandths and millionths of the units that people read them in
+    double scale = 1;
+    std::string unit = parameter.unit == "1" ? "" : parameter.unit;
+    const double size = std::max(std::abs(parameter.value), 3 * parameter.sigma);
+    const bool prefixed = unit == "m" || unit == "N" || unit == "N m" || unit == "s" || unit == "N/m" || unit == "m/s" || unit == "N/s";
+    if (prefixed && size > 0 && size < 0.1) {
+        const bool micro = size < 1e-4;
+        scale = micro ? 1e6 : 1e3;
+        unit = (micro ? "u" : "m") + unit;
+    }
+    const std::string text = core::format_number(scale * parameter.value, 3);
+    return (parameter.sigma > 0 ? text + " \u00b1 " + core::format_number(scale * parameter.sigma, 2) : text) + (unit.empty() ? "" : " " + unit);
 }
 
 std::string verdict_sentence(const Discovery& discovery) {

@@ -21,7 +21,7 @@ std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHyp
 /// The verdict for people, one or two sentences.
 std::string verdict_sentence(const Discovery& discovery);
 
-/// "0.0098 N (+- 0.0004 N)".
+/// "9.8 ± 0.4 mN".
 std::string value_text(const FoundParameter& parameter);
 
 }  // namespace underbody::discovery

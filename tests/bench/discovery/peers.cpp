@@ -197,7 +197,9 @@ PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measu
     }
     double best = y.squaredNorm();
     Eigen::VectorXd chosen = Eigen::VectorXd::Zero(library.cols());
-    for (const double threshold : {2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0}) {
+    for (int setting = 0; setting < 24; ++setting) {
+        const double threshold = std::vector<double>{2, 3, 4, 5, 7, 10, 14, 20}[static_cast<std::size_t>(setting) / 3];
+        const double ridge = std::vector<double>{1e-6, 0.05, 0.5}[static_cast<std::size_t>(setting) % 3];
         std::vector<Eigen::Index> kept;
         for (Eigen::Index k = 0; k < library.cols(); ++k) {
             kept.push_back(k);
@@ -208,7 +210,9 @@ PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measu
             for (std::size_t k = 0; k < kept.size(); ++k) {
                 part.col(static_cast<Eigen::Index>(k)) = library.col(kept[k]);
             }
-            c = part.colPivHouseholderQr().solve(y);
+            Eigen::MatrixXd normal = part.transpose() * part;
+            normal.diagonal().array() += ridge;  // effects of one rig look alike: without it coefficients run away in pairs
+            c = normal.ldlt().solve(part.transpose() * y);
             std::vector<Eigen::Index> longer;
             for (std::size_t k = 0; k < kept.size(); ++k) {
                 if (std::abs(c(static_cast<Eigen::Index>(k))) > threshold) {
@@ -219,6 +223,13 @@ PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measu
                 break;
             }
             kept = longer;
+        }
+        if (!kept.empty()) {
+            Eigen::MatrixXd part(rows, static_cast<Eigen::Index>(kept.size()));
+            for (std::size_t k = 0; k < kept.size(); ++k) {
+                part.col(static_cast<Eigen::Index>(k)) = library.col(kept[k]);
+            }
+            c = part.colPivHouseholderQr().solve(y);  // what is kept, fitted freely
         }
         Eigen::VectorXd full = Eigen::VectorXd::Zero(library.cols());
         for (std::size_t k = 0; k < kept.size(); ++k) {

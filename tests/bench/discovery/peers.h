@@ -21,7 +21,7 @@ struct PeerAnswer {
 using Noise = std::map<std::string, double>;
 
 /// SINDy's sequentially thresholded least squares (Brunton, Proctor and Kutz 2016) on the residual, over a library of what each effect of
-/// the catalogue does when it is small; threshold by the Bayesian information criterion.
+/// the catalogue does when it is small; threshold and ridge by the Bayesian information criterion.
 PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measurements& train, const dynamics::Measurements& test, const Noise& sigma);
 
 /// All monomials of the varying channels up to a degree of 0 to 3, by the same criterion; no names.
