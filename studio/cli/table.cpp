@@ -15,6 +15,7 @@
 #include "surrogates/tables/equilibria.h"
 #include "surrogates/tables/figures.h"
 #include "surrogates/tables/line.h"
+#include "surrogates/tables/many_points.h"
 
 namespace underbody::studio {
 
@@ -87,6 +88,10 @@ int run_at(Shell& shell, const AtCommand& command) {
                                (table.range() == tables::RangePolicy::extrapolate ? "extrapolated" : "the end value is held"));
                 }
             }
+            if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
+                shell.warn("no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
+                           " % of the axes' ranges outside them): the value is an extrapolation, its error says how far to trust it");
+            }
             shell.print(line);
             document["values"].push_back(std::move(entry));
         }
@@ -129,6 +134,7 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
         if (e.kick_velocity > 0) {
             text += " or a kick of " + core::format_number(e.kick_velocity, 4) + " m/s";
         }
+        text += ", barrier " + core::format_number(e.barrier, 4) + " J";
         text += e.limited_by_range ? " (to the end of the table)" : "";
     }
     if (e.probability && *e.probability < 0.995) {

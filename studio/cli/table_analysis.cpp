@@ -11,6 +11,7 @@
 #include "studio/cli/shell.h"
 #include "studio/cli/table_options.h"
 #include "studio/figures/render.h"
+#include "surrogates/tables/collapse.h"
 #include "surrogates/tables/compare.h"
 #include "surrogates/tables/continuation.h"
 #include "surrogates/tables/figures.h"
@@ -122,7 +123,7 @@ struct CompareCommand {
 };
 
 int run_compare(Shell& shell, const CompareCommand& command) {
-    const auto points = tables::selected_rows(core::read_csv(command.table.file), command.table.where);
+    const auto points = tables::selected_rows(tables::read_points(command.table.file), command.table.where);
     std::vector<std::string> names;
     for (const auto& name : points.text(command.by)) {
         if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -164,23 +165,37 @@ int run_compare(Shell& shell, const CompareCommand& command) {
 
 struct CollapseCommand {
     TableOptions table;
-    std::string by = "speed", length, width;
+    std::string by, length, width, density, picture;
 };
 
 int run_collapse(Shell& shell, const CollapseCommand& command) {
-    const auto points = tables::selected_rows(core::read_csv(command.table.file), command.table.where);
+    const auto points = tables::selected_rows(tables::read_points(command.table.file), command.table.where);
+    const auto forces = tables::force_columns(points);
+    if (forces.empty() && command.table.quantity.empty()) {
+        throw core::InputError("missing", "the table has no force column", {points.source, {}, {}, {}}, "name one by --quantity");
+    }
     tables::CollapseOptions options;
     options.by = command.by;
     options.length = command.length.empty() ? 0 : core::parse_in(command.length, "m");
     options.width = command.width.empty() ? 0 : core::parse_in(command.width, "m");
-    const auto result = tables::collapse(points, command.table.quantity.empty() ? tables::force_columns(points).front() : command.table.quantity, options);
+    options.density = command.density.empty() ? options.density : core::parse_in(command.density, "kg/m^3");
+    const auto result = tables::collapse(points, command.table.quantity.empty() ? forces.front() : command.table.quantity, options);
     for (const auto& g : result.groups) {
+        std::string where;
+        for (const auto& [from, to] : g.beyond) {
+            where += (where.empty() ? "; off at " : ", ") + result.abscissa + " " + number(from, 4) + (to > from ? " to " + number(to, 4) : "");
+        }
         shell.print(result.by + " " + number(g.level) + " " + result.by_unit + ": " + std::to_string(g.points) + " points, " + number(g.mean_ratio, 4) +
-                    " of what the square law says from " + number(result.reference) + " " + result.by_unit + ", exponent " + number(g.exponent, 4));
+                    " of what the square law says from " + number(result.reference) + " " + result.by_unit + ", exponent " + number(g.exponent, 4) + where);
     }
     shell.print(result.verdict);
+    nlohmann::json document = result;
+    if (!command.picture.empty()) {
+        write_picture(tables::collapse_figure(result), command.picture);
+        document["picture"] = command.picture;
+    }
     if (shell.json) {
-        shell.print_json(nlohmann::json(result));
+        shell.print_json(document);
     }
     return done;
 }
@@ -220,11 +235,13 @@ void add_table_analysis(CLI::App& table, Shell& shell) {
     shell.on(sub, [&shell, compare] { return run_compare(shell, *compare); });
 
     auto collapse = std::make_shared<CollapseCommand>();
-    sub = table.add_subcommand("collapse", "do forces at several speeds or voltages fall on one curve?");
+    sub = table.add_subcommand("collapse", "do forces at several speeds, sizes, jet voltages or flows fall on one curve?");
     collapse->table.add_to(*sub);
-    sub->add_option("--by", collapse->by, "speed | jet_voltage")->capture_default_str();
-    sub->add_option("--length", collapse->length, "length of the body, for gap over length and C_L");
-    sub->add_option("--width", collapse->width, "width of the body, for C_L");
+    sub->add_option("--by", collapse->by, "speed | length | jet_voltage | jet_flow (default: the first of them that varies)");
+    sub->add_option("--length", collapse->length, "length of the body, for gap over length and C_L (default: the column length)");
+    sub->add_option("--width", collapse->width, "width of the body, for C_L (default: the column width)");
+    sub->add_option("--density", collapse->density, "density of the fluid (default 998 kg/m^3)");
+    sub->add_option("--picture", collapse->picture, "writes the collapsed points over the curve (.png, .pdf)");
     sub->footer("Examples:\n  underbody table collapse forces.csv --where \"variant=ellipse, mesh=medium, pitch=0\"");
     shell.on(sub, [&shell, collapse] { return run_collapse(shell, *collapse); });
 }

@@ -11,7 +11,7 @@
 namespace underbody::studio {
 
 void TableOptions::add_to(CLI::App& command) {
-    command.add_option("table", file, "points as CSV: gap [mm], pitch [deg], ..., lift_force [N], lift_force_sigma [N], ...")->required();
+    command.add_option("table", file, "points as CSV: gap [mm], pitch [deg], ..., lift_force [N], lift_force_sigma [N], ...; or a JSON that 'export' wrote")->required();
     command.add_option("--quantity", quantity, "column to use (default: lift_force, or the first force of the table)");
     command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either");
     command.add_option("--axes", axes, "columns that are axes, such as gap,pitch (default: all known ones that vary)");
@@ -72,14 +72,14 @@ std::vector<std::string> quantities_of(const core::Table& table, const std::stri
 }  // namespace
 
 tables::ForceTable TableOptions::fit(Shell& shell) const {
-    const auto table = tables::selected_rows(core::read_csv(file), where);
+    const auto table = tables::selected_rows(tables::read_points(file), where);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
     shell.show(fitted.remarks());
     return fitted;
 }
 
 std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell) const {
-    const auto table = tables::selected_rows(core::read_csv(file), where);
+    const auto table = tables::selected_rows(tables::read_points(file), where);
     std::vector<tables::ForceTable> all;
     for (const auto& name : quantities_of(table, quantity)) {
         all.push_back(tables::ForceTable::fit(table, name, fit_options()));

@@ -1,4 +1,4 @@
-// Variants side by side, and how well forces at several speeds or voltages fall on one curve.
+// Variants side by side: where they differ beyond their errors, and which wins.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/table.h"
 #include "surrogates/tables/force_table.h"
 #include "surrogates/tables/line.h"
 
@@ -49,37 +48,5 @@ struct Comparison {
 /// Throws core::UsageError: fewer than two tables, different quantities, no common range.
 Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>& tables, const ComparisonOptions& options);
 void to_json(nlohmann::json& json, const Comparison& comparison);
-
-struct CollapseOptions {
-    double density = 998;    ///< kg/m^3
-    double length = 0;       ///< m, of a column `length`, or this; 0: gap stays as it is
-    double area = 0;         ///< m^2, S_xy; 0: pi/4 length width, or 1 when no width is known
-    double width = 0;        ///< m
-    std::string by = "speed";  ///< speed or jet_voltage
-};
-
-struct CollapseGroup {
-    double level = 0;          ///< the speed or voltage
-    std::size_t points = 0;
-    double mean_ratio = 1;     ///< collapsed force over the reference curve, mean
-    double exponent = 2;       ///< that would make it fall on the curve of the reference group
-    double worst = 0;          ///< largest deviation, in its joint error
-    double worst_gap = 0;      ///< m
-};
-
-struct Collapse {
-    std::string quantity, by, by_unit;
-    double reference = 0;      ///< level of the group with most points
-    std::vector<CollapseGroup> groups;   ///< the others
-    bool holds = false;        ///< every point within twice its joint error of the reference curve
-    double exponent = 2;       ///< over all groups; NaN when there is one group only
-    std::string verdict;
-    core::Table points;        ///< gap over length, coefficient (C_L or force over square), level, deviation
-};
-
-/// Points at several speeds (voltages) as coefficients over gap: C = 2 F/(rho U^2 S) (physics notes 4.4), or F/V^2. The group with most points is the
-/// reference curve. Throws core::InputError when only one level is there, or nothing overlaps.
-Collapse collapse(const core::Table& table, const std::string& quantity, const CollapseOptions& options);
-void to_json(nlohmann::json& json, const Collapse& collapse);
 
 }  // namespace underbody::tables

@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/tables/many_points.h"
 
 namespace underbody::tables {
 
@@ -258,16 +259,26 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
     map.unit = shown_unit(table, table.quantity());
     double low = INFINITY;
     double high = -INFINITY;
+    bool blank = false;
     for (std::size_t j = 0; j < map.rows; ++j) {
         at[ky] = ay.lower + (ay.upper - ay.lower) * (static_cast<double>(j) + 0.5) / static_cast<double>(map.rows);
         for (std::size_t i = 0; i < map.columns; ++i) {
             at[kx] = ax.lower + (ax.upper - ax.lower) * (static_cast<double>(i) + 0.5) / static_cast<double>(map.columns);
+            if (beyond_points(table, at.data()) > 0.02) {
+                map.values.push_back(std::nan(""));
+                blank = true;
+                continue;
+            }
             map.values.push_back(v_shown(table.value(at.data())));
             low = std::min(low, map.values.back());
             high = std::max(high, map.values.back());
         }
     }
     map.diverging = low < 0 && high > 0;
+    if (blank) {
+        figure.caption += " Blank: outside the points, where the table only extrapolates.";
+        figure.title += " (blank: outside the points)";
+    }
     figure.maps.push_back(std::move(map));
     core::FigurePoints points;
     points.name = "points";

@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "core/text.h"
 #include "surrogates/tables/force_table_impl.h"
+#include "surrogates/tables/process_mixture.h"
 
 namespace underbody::tables {
 
@@ -104,6 +105,18 @@ std::shared_ptr<const ForceTable::Impl> drawn_from(const ForceTable::Impl& table
     const CubicGrid& grid = table.surface;
     const std::size_t n = grid.dimensions();
     const std::size_t count = grid.nodes();
+    if (table.processes) {
+        // Straight from the joint posterior; splines carry the deviation between the nodes.
+        const CubicGrid deviation(grid.points(), table.processes->deviation(grid.hermite(), seed), SlopeRule::not_a_knot);
+        std::vector<double> hermite = grid.hermite();
+        for (std::size_t i = 0; i < hermite.size(); ++i) {
+            hermite[i] += deviation.hermite()[i];
+        }
+        drawn->surface = CubicGrid(grid.points(), std::move(hermite));
+        drawn->processes.reset();
+        drawn->kind += ", drawn";
+        return drawn;
+    }
     core::Random random(seed);
     std::vector<double> field(count);
     for (double& z : field) {

@@ -1,158 +1,23 @@
-// Gaussian process of a force table: which coordinates and known laws it uses, and its table for fast evaluation.
-//
-// Known laws (physics notes 4.4 and 5.2): force ~ speed^2 and ~ jet voltage^2 (the process then models force over that square); film terms ~ 1/h^2 and
-// 1/h^3 over a gap axis, a constant free-stream value at large gaps; gaps that span decades act through their logarithm.
+// Gaussian process of a force table: which coordinates and known laws it uses, how sure it is of them, and its table for fast evaluation.
 #include <Eigen/Core>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "core/text.h"
 #include "surrogates/tables/fit.h"
 #include "surrogates/tables/force_table_impl.h"
-#include "surrogates/tables/gaussian_process.h"
+#include "surrogates/tables/hull.h"
+#include "surrogates/tables/process_mixture.h"
 
 namespace underbody::tables {
 
 namespace {
 
 using core::InputError;
-
-/// How raw set points and forces become the numbers that the process sees.
-struct Form {
-    std::vector<bool> logarithmic;       ///< per axis
-    std::vector<double> start, span;     ///< of the coordinate
-    std::vector<bool> squared;           ///< per axis: force grows with its square
-    std::vector<double> reference;       ///< per axis: the square counts from here
-    std::optional<std::size_t> film;     ///< axis with 1/h^2 and 1/h^3
-    double film_gap = 1;
-    std::optional<std::size_t> swelling;  ///< gap axis toward whose small end the process grows as (lower/h)^swell
-    double swell = 0;
-    double swell_gap = 1;
-    double offset = 0, size = 1;         ///< of force over squares
-
-    [[nodiscard]] double coordinate(std::size_t k, double x) const {
-        return ((logarithmic[k] ? std::log(x) : x) - start[k]) / span[k];
-    }
-    [[nodiscard]] double coordinate_slope(std::size_t k, double x) const { return (logarithmic[k] ? 1 / x : 1) / span[k]; }
-    [[nodiscard]] double factor(const std::vector<double>& x) const {
-        double product = 1;
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            product *= squared[k] ? std::pow(x[k] / reference[k], 2) : 1;
-        }
-        return product;
-    }
-    [[nodiscard]] double amplitude(const std::vector<double>& x) const { return swelling ? std::pow(x[*swelling] / swell_gap, -swell) : 1; }
-    [[nodiscard]] std::size_t trends() const { return film ? 3 : 1; }
-    void trend(const std::vector<double>& x, double* h) const {
-        h[0] = 1;
-        if (film) {
-            const double r = film_gap / x[*film];
-            h[1] = r * r;
-            h[2] = r * r * r;
-        }
-    }
-    [[nodiscard]] std::string text(const std::vector<TableAxis>& axes) const {
-        std::string words;
-        for (std::size_t k = 0; k < axes.size(); ++k) {
-            words += logarithmic[k] ? ", logarithm of " + axes[k].name : "";
-            words += squared[k] ? ", force over " + axes[k].name + " squared" : "";
-        }
-        if (swelling) {
-            words += ", larger at small gaps as h^-" + core::format_number(swell, 2);
-        }
-        return words + (film ? ", film terms 1/h^2 and 1/h^3" : "");
-    }
-};
-
-GpData data_of(const SetPoints& points, const std::vector<std::size_t>& rows, Form& form) {
-    GpData data;
-    const std::size_t n = points.axes.size();
-    data.axes = n;
-    data.trends = form.trends();
-    std::vector<double> z;
-    for (const std::size_t i : rows) {
-        z.push_back(points.value[i] / form.factor(points.x[i]));
-    }
-    const double mean = std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
-    double square = 0;
-    for (const double v : z) {
-        square += (v - mean) * (v - mean);
-    }
-    form.offset = mean;
-    form.size = std::max(std::sqrt(square / static_cast<double>(z.size())), 1e-300);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const auto& x = points.x[rows[i]];
-        for (std::size_t k = 0; k < n; ++k) {
-            data.x.push_back(form.coordinate(k, x[k]));
-        }
-        double h[3];
-        form.trend(x, h);
-        if (form.swelling) {
-            data.amplitude.push_back(form.amplitude(x));
-        }
-        data.trend.insert(data.trend.end(), h, h + data.trends);
-        data.y.push_back((z[i] - form.offset) / form.size);
-        const double s = points.has_sigma() ? points.sigma[rows[i]] / form.factor(x) / form.size : 0;
-        data.noise.push_back(s * s);
-    }
-    return data;
-}
-
-std::vector<Form> candidate_forms(const SetPoints& points) {
-    const std::size_t n = points.axes.size();
-    Form plain;
-    plain.logarithmic.assign(n, false);
-    plain.squared.assign(n, false);
-    plain.reference.assign(n, 1);
-    for (const auto& axis : points.axes) {
-        plain.start.push_back(axis.lower);
-        plain.span.push_back(axis.upper - axis.lower);
-    }
-    std::vector<Form> forms{plain};
-    const bool force = points.quantity.ends_with("_force") || points.quantity.ends_with("_moment");
-    for (std::size_t k = 0; k < n; ++k) {
-        const TableAxis& axis = points.axes[k];
-        if (axis.name == "gap" && axis.lower > 0 && axis.upper / axis.lower >= 4) {
-            std::vector<Form> more;
-            for (Form form : forms) {
-                form.logarithmic[k] = true;
-                form.start[k] = std::log(axis.lower);
-                form.span[k] = std::log(axis.upper / axis.lower);
-                more.push_back(form);
-                form.film = k;
-                form.film_gap = axis.lower;
-                if (points.x.size() >= 6) {
-                    more.push_back(form);
-                }
-                form.film.reset();
-                form.swelling = k;
-                form.swell_gap = std::sqrt(axis.lower * axis.upper);
-                for (const double power : {0.5, 1.0}) {
-                    form.swell = power;
-                    if (n > 1 && points.x.size() >= 8) {
-                        more.push_back(form);
-                    }
-                }
-            }
-            forms.insert(forms.end(), more.begin(), more.end());
-        }
-        if (force && (axis.name == "speed" || axis.name == "jet_voltage") && axis.lower > 0) {
-            std::vector<Form> more;
-            for (Form form : forms) {
-                form.squared[k] = true;
-                form.reference[k] = axis.upper;
-                more.push_back(form);
-            }
-            forms.insert(forms.end(), more.begin(), more.end());
-        }
-    }
-    return forms;
-}
 
 /// Every so many-th point of a shuffled order: spread over the set, the same each time.
 std::vector<std::size_t> spread_rows(std::size_t count, std::size_t wanted) {
@@ -269,199 +134,17 @@ SetPoints reduced(const SetPoints& points, std::size_t most, core::Problems& rem
     return result;
 }
 
-std::vector<double> knots_of(const SetPoints& points, const Form& form, const GpParameters& p, std::size_t k) {
-    const TableAxis& axis = points.axes[k];
-    static constexpr std::size_t most[] = {400, 90, 30, 15};
-    const std::size_t n = points.axes.size();
-    const auto wanted = static_cast<std::size_t>(std::ceil((n < 3 ? 8.0 : 5.0) / p.length[k])) + 2;
-    const std::size_t count = std::clamp<std::size_t>(std::max(wanted, form.logarithmic[k] ? std::size_t{24} : std::size_t{8}), 6, most[n - 1]);
-    std::vector<double> knots(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const double t = static_cast<double>(i) / static_cast<double>(count - 1);
-        knots[i] = i == 0 ? axis.lower : i + 1 == count ? axis.upper : form.logarithmic[k] ? axis.lower * std::pow(axis.upper / axis.lower, t) : axis.lower + t * (axis.upper - axis.lower);
-    }
-    if (n == 1) {
-        // The third derivative of a Matern process jumps at its points.
-        const double apart = 1e-3 * (axis.upper - axis.lower) / static_cast<double>(count);
-        for (const double x : axis.points.size() <= 200 ? axis.points : std::vector<double>{}) {
-            const auto next = std::lower_bound(knots.begin(), knots.end(), x);
-            const bool near_next = next != knots.end() && *next - x < apart;
-            const bool near_last = next != knots.begin() && x - *(next - 1) < apart;
-            if (!near_next && !near_last) {
-                knots.insert(next, x);
-            }
-        }
-    }
-    return knots;
-}
-
-/// Exact Hermite data of the mean on a tensor grid: the kernel is a product over the axes, so each axis has its own matrices.
-std::vector<double> hermite_of(const GaussianProcess& process, const Form& form, const std::vector<std::vector<double>>& grid) {
-    const GpData& d = process.data();
-    const std::size_t n = grid.size();
-    const std::size_t points = d.count();
-    // part[k][derivative][i * points + q]: kernel factor of grid line i and point q.
-    std::vector<std::array<std::vector<double>, 2>> part(n);
-    for (std::size_t k = 0; k < n; ++k) {
-        for (auto& matrix : part[k]) {
-            matrix.resize(grid[k].size() * points);
-        }
-        for (std::size_t i = 0; i < grid[k].size(); ++i) {
-            const double t = form.coordinate(k, grid[k][i]);
-            const double rate = form.coordinate_slope(k, grid[k][i]) / process.parameters().length[k];
-            const bool swells = form.swelling == k;
-            const double amplitude = swells ? std::pow(grid[k][i] / form.swell_gap, -form.swell) : 1;
-            const double amplitude_slope = swells ? -form.swell * amplitude / grid[k][i] : 0;
-            for (std::size_t q = 0; q < points; ++q) {
-                const auto v = kernel_value(process.kernel(), (t - d.x[q * n + k]) / process.parameters().length[k]);
-                part[k][0][i * points + q] = amplitude * v.value;
-                part[k][1][i * points + q] = amplitude * v.slope * rate + amplitude_slope * v.value;
-            }
-        }
-    }
-    std::size_t count = 1;
-    for (const auto& axis : grid) {
-        count *= axis.size();
-    }
-    const std::size_t width = std::size_t{1} << n;
-    std::vector<double> hermite(count * width);
-    // Products over all axes but the last are kept from node to node.
-    std::vector<double> product(width / 2 * points);
-    const double scale = process.parameters().scale * process.parameters().scale;
-    const std::size_t last = grid[n - 1].size();
-    for (std::size_t begin = 0; begin < count; begin += last) {
-        for (std::size_t mask = 0; mask < width / 2; ++mask) {
-            double* to = &product[mask * points];
-            for (std::size_t q = 0; q < points; ++q) {
-                to[q] = scale * process.weights()[q] * d.amplitude_of(q);
-            }
-            std::size_t rest = begin / last;
-            for (std::size_t k = n - 1; k-- > 0;) {
-                const double* from = &part[k][mask >> k & 1][(rest % grid[k].size()) * points];
-                rest /= grid[k].size();
-                for (std::size_t q = 0; q < points; ++q) {
-                    to[q] *= from[q];
-                }
-            }
-        }
-        for (std::size_t i = 0; i < last; ++i) {
-            for (std::size_t mask = 0; mask < width; ++mask) {
-                const double* a = &product[(mask & (width / 2 - 1)) * points];
-                const double* b = &part[n - 1][mask >> (n - 1) & 1][i * points];
-                hermite[(begin + i) * width + mask] = Eigen::Map<const Eigen::VectorXd>(a, static_cast<Eigen::Index>(points))
-                                                          .dot(Eigen::Map<const Eigen::VectorXd>(b, static_cast<Eigen::Index>(points)));
-            }
-        }
-    }
-    return hermite;
-}
-
-/// Trend, size and squares on top of the process, with their own derivatives.
-void add_laws(std::vector<double>& hermite, const GaussianProcess& process, const Form& form, const std::vector<std::vector<double>>& grid) {
-    const std::size_t n = grid.size();
-    const std::size_t width = std::size_t{1} << n;
-    const auto& c = process.coefficients();
-    for (std::size_t node = 0; node < hermite.size() / width; ++node) {
-        double* data = &hermite[node * width];
-        std::vector<double> x(n);
-        std::size_t rest = node;
-        for (std::size_t k = n; k-- > 0;) {
-            x[k] = grid[k][rest % grid[k].size()];
-            rest /= grid[k].size();
-        }
-        data[0] += c[0];
-        if (form.film) {
-            const double r = form.film_gap / x[*form.film];
-            data[0] += c[1] * r * r + c[2] * r * r * r;
-            data[std::size_t{1} << *form.film] -= (2 * c[1] * r * r + 3 * c[2] * r * r * r) / x[*form.film];
-        }
-        for (std::size_t m = 0; m < width; ++m) {
-            data[m] *= form.size;
-        }
-        data[0] += form.offset;
-        for (std::size_t k = 0; k < n; ++k) {
-            if (!form.squared[k]) {
-                continue;
-            }
-            const double p = std::pow(x[k] / form.reference[k], 2);
-            const double slope = 2 * x[k] / (form.reference[k] * form.reference[k]);
-            for (std::size_t m = 0; m < width; ++m) {
-                if ((m >> k & 1) == 0) {
-                    const std::size_t with = m | std::size_t{1} << k;
-                    data[with] = p * data[with] + slope * data[m];
-                    data[m] *= p;
-                }
-            }
-        }
-    }
-}
-
-/// Standard deviations at all nodes; on large grids at every other line, or fewer, and linear between.
-std::vector<double> sigma_of(const GaussianProcess& process, const Form& form, const std::vector<std::vector<double>>& grid, double inflation) {
-    const std::size_t n = grid.size();
-    std::size_t count = 1;
-    for (const auto& axis : grid) {
-        count *= axis.size();
-    }
-    const double work = static_cast<double>(process.data().count()) * static_cast<double>(process.data().count());
-    std::size_t skip = 1;
-    while (work * static_cast<double>(count) / std::pow(static_cast<double>(skip), static_cast<double>(n)) > 2e9 && skip < 8) {
-        ++skip;
-    }
-    std::vector<std::vector<double>> coarse(n);
-    std::size_t coarse_count = 1;
-    for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t i = 0; i < grid[k].size(); i += skip) {
-            coarse[k].push_back(grid[k][i]);
-        }
-        if (coarse[k].back() != grid[k].back()) {
-            coarse[k].push_back(grid[k].back());
-        }
-        coarse_count *= coarse[k].size();
-    }
-    std::vector<double> t(coarse_count * n), h(coarse_count * form.trends()), factor(coarse_count), amplitude(coarse_count);
-    std::vector<double> x(n);
-    for (std::size_t node = 0; node < coarse_count; ++node) {
-        std::size_t rest = node;
-        for (std::size_t k = n; k-- > 0;) {
-            x[k] = coarse[k][rest % coarse[k].size()];
-            rest /= coarse[k].size();
-            t[node * n + k] = form.coordinate(k, x[k]);
-        }
-        form.trend(x, &h[node * form.trends()]);
-        factor[node] = form.factor(x) * form.size;
-        amplitude[node] = form.amplitude(x);
-    }
-    std::vector<double> sigma = process.variances(t, h, amplitude);
-    const double scatter = process.parameters().scatter;
-    for (std::size_t node = 0; node < coarse_count; ++node) {
-        sigma[node] = factor[node] * std::sqrt(inflation * inflation * sigma[node] + scatter * scatter);
-    }
-    if (skip == 1) {
-        return sigma;
-    }
-    const ErrorModel between(coarse, std::move(sigma));
-    std::vector<double> all(count);
-    for (std::size_t node = 0; node < count; ++node) {
-        std::size_t rest = node;
-        for (std::size_t k = n; k-- > 0;) {
-            x[k] = grid[k][rest % grid[k].size()];
-            rest /= grid[k].size();
-        }
-        all[node] = between.sigma(x.data(), nullptr);
-    }
-    return all;
-}
-
-struct Chosen {
+/// A form with a kernel, fitted to the points (or a share of them).
+struct Candidate {
     Form form;
-    GpOptions options;
+    GpOptions options;  ///< starts with the fitted parameters
     double score = -INFINITY;
 };
 
-Chosen choose_form(const SetPoints& points) {
+/// All candidates, the best by leave-one-out score first.
+std::vector<Candidate> ranked_candidates(const SetPoints& points) {
     const auto rows = spread_rows(points.x.size(), points.axes.size() > 2 ? 120 : 150);
-    Chosen best;
+    std::vector<Candidate> all;
     // Points without stated errors are mostly computed ones: little scatter is expected beside the stated error.
     const double expected = points.has_sigma() ? 1e-3 : 1e-2;
     const auto consider = [&](Form form, Kernel kernel, std::vector<GpParameters> starts) {
@@ -472,17 +155,169 @@ Chosen choose_form(const SetPoints& points) {
         options.starts = std::move(starts);
         const auto process = GaussianProcess::fit(data_of(points, rows, form), options);
         // A law must earn its place: a little handicap for each one.
-        double score = score_of(process, points, rows, form) - (form.film ? 1.0 : 0.0) - (form.swelling ? 0.5 : 0.0);
-        if (score > best.score) {
-            options.starts = {process.parameters()};
-            best = {form, options, score};
-        }
+        const double score = score_of(process, points, rows, form) - (form.film ? 1.0 : 0.0) - (form.decay ? 0.5 : 0.0);
+        options.starts = {process.parameters()};
+        all.push_back({std::move(form), std::move(options), score});
     };
     for (const Form& form : candidate_forms(points)) {
         consider(form, Kernel::matern52, {});
     }
+    const auto better = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
+    std::stable_sort(all.begin(), all.end(), better);
+    const Candidate best = all.front();
     consider(best.form, Kernel::squared_exponential, best.options.starts);
-    return best;
+    std::stable_sort(all.begin(), all.end(), better);
+    return all;
+}
+
+/// Few points leave open which law holds and how long the lengths are: the table is then the mean over what they allow.
+ProcessMixture mixture_of(const SetPoints& points, std::vector<Candidate> candidates) {
+    std::vector<std::size_t> rows(points.x.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    ProcessMixture mixture;
+    if (rows.size() > 120) {
+        Candidate& best = candidates.front();
+        best.options.iterations = 14;
+        GpData data = data_of(points, rows, best.form);
+        GaussianProcess process = rows.size() <= 600 ? GaussianProcess::fit(std::move(data), best.options)
+                                                     : GaussianProcess(std::move(data), best.options.kernel, best.options.starts.front());
+        mixture.parts.push_back({best.form, std::move(process), 1});
+        return mixture;
+    }
+    const double best_score = candidates.front().score;
+    for (Candidate& candidate : candidates) {
+        const double weight = std::exp(candidate.score - best_score);
+        if (weight < 0.05 || mixture.parts.size() > 30) {
+            break;
+        }
+        const GpData data = data_of(points, rows, candidate.form);
+        candidate.options.iterations = 40;
+        const auto fitted = GaussianProcess::fit(data, candidate.options);
+        for (const auto& point : GaussianProcess::posterior_design(data, candidate.options, fitted.parameters())) {
+            if (point.weight > 0.003) {
+                mixture.parts.push_back({candidate.form, GaussianProcess(data, candidate.options.kernel, point.parameters), weight * point.weight});
+            }
+        }
+    }
+    double sum = 0;
+    for (const auto& part : mixture.parts) {
+        sum += part.weight;
+    }
+    for (auto& part : mixture.parts) {
+        part.weight /= sum;
+    }
+    return mixture;
+}
+
+/// Student's t over the normal quantile at 97.5 % (Abramowitz and Stegun 26.7.5).
+double student_factor(double freedom) {
+    constexpr double z = 1.959964;
+    const double z2 = z * z;
+    return 1 + (z2 + 1) / (4 * freedom) + (5 * z2 * z2 + 16 * z2 + 3) / (96 * freedom * freedom) +
+           (3 * z2 * z2 * z2 + 19 * z2 * z2 + 17 * z2 - 15) / (384 * freedom * freedom * freedom);
+}
+
+/// Upper normal quantile of a probability below one half (Abramowitz and Stegun 26.2.23).
+double normal_quantile(double beyond) {
+    const double t = std::sqrt(-2 * std::log(beyond));
+    return t - (2.515517 + t * (0.802853 + 0.010328 * t)) / (1 + t * (1.432788 + t * (0.189269 + 0.001308 * t)));
+}
+
+/// Squares of leave-one-out misses over their stated variance. For few points lengths and sizes are fitted anew without each point, because a
+/// single one of them may have set these.
+std::vector<double> misfits(const ProcessMixture& mixture, const SetPoints& points, const ProcessMixture::LeftOut& left_out, GpOptions options) {
+    std::vector<double> squares;
+    const ProcessPart& best = mixture.parts.front();
+    for (std::size_t out = 0; out < points.x.size(); ++out) {
+        squares.push_back(std::pow(points.value[out] - left_out.mean[out], 2) / left_out.variance[out]);
+        if (points.x.size() > 50 || points.x.size() < points.axes.size() + 4) {
+            continue;
+        }
+        std::vector<std::size_t> rest(points.x.size() - 1);
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            rest[i] = i < out ? i : i + 1;
+        }
+        Form form = best.form;
+        options.kernel = best.process.kernel();
+        options.starts = {best.process.parameters()};
+        options.iterations = 10;
+        const auto without = GaussianProcess::fit(data_of(points, rest, form), options);
+        const GpData& all = best.process.data();
+        const std::span<const double> x(&all.x[out * all.axes], all.axes);
+        const std::span<const double> h(&all.trend[out * all.trends], all.trends);
+        const double unit = form.size * form.factor(points.x[out]);
+        const double mean = form.factor(points.x[out]) * (form.offset + form.size * without.mean(x, h, all.amplitude_of(out)));
+        const double stated = points.has_sigma() ? points.sigma[out] : 0;
+        const double variance = unit * unit * (without.variance(x, h, all.amplitude_of(out)) + std::pow(without.parameters().scatter, 2)) + stated * stated;
+        squares.back() = std::max(squares.back(), std::pow(points.value[out] - mean, 2) / variance);
+    }
+    return squares;
+}
+
+/// The mixture must be as sure as its own leave-one-out errors allow: where points are near and where they are far, around each point, and in its tail.
+void widen(ProcessMixture& mixture, const SetPoints& points, const ProcessMixture::LeftOut& left_out, const std::vector<double>& squares) {
+    const std::size_t n = squares.size();
+    double near = 0, near_weight = 0, far = 0, far_weight = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        near += (1 - left_out.share[i]) * squares[i];
+        near_weight += 1 - left_out.share[i];
+        far += left_out.share[i] * squares[i];
+        far_weight += left_out.share[i];
+    }
+    // Three points' worth of belief that the process is right; narrower by a fifth at most, and by a tenth where the noise is fitted too.
+    const double least = points.has_sigma() ? 0.64 : 0.81;
+    near = std::clamp((near + 3) / (near_weight + 3), least, 25.0);
+    far = std::clamp((far + 3) / (far_weight + 3), least, 25.0);
+    mixture.misfit = squares;
+    for (std::size_t i = 0; i < n; ++i) {
+        mixture.misfit[i] /= near * (1 - left_out.share[i]) + far * left_out.share[i];
+    }
+    // The tail: 95 % of the misses, each judged by what its neighbours say, must lie where a normal distribution has them.
+    std::vector<double> judged;
+    const GpData& data = mixture.parts.front().process.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        judged.push_back(std::sqrt(mixture.misfit[i] / mixture.local_widening(&data.x[i * data.axes], i)));
+    }
+    std::sort(judged.begin(), judged.end());
+    const std::size_t rank = std::min(n, static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(n + 1))));
+    const double usual = normal_quantile(0.5 * (1 - (static_cast<double>(rank) - 0.3) / (static_cast<double>(n) + 0.4)));
+    const double tail = std::max(1.0, judged[rank - 1] / (1.05 * usual));
+    // Without stated errors the noise is fitted too, so that the points tell less than their number.
+    const auto fitted = static_cast<double>(points.axes.size() + mixture.parts.front().form.trends() + 1);
+    const double few = points.has_sigma() ? 1 : student_factor(std::max(2.0, static_cast<double>(n) - fitted));
+    mixture.widened_near = few * tail * std::sqrt(near);
+    mixture.widened_far = few * tail * std::sqrt(far);
+}
+
+std::string described(const ProcessMixture& mixture, const SetPoints& points) {
+    const ProcessPart& best = mixture.parts.front();
+    const auto& p = best.process.parameters();
+    std::string words = std::string("Gaussian process (") + (best.process.kernel() == Kernel::matern52 ? "Matern 5/2" : "squared exponential") + best.form.text(points.axes) + "): lengths";
+    for (std::size_t k = 0; k < points.axes.size(); ++k) {
+        words += std::string(k == 0 ? " " : ", ") + core::format_number(p.length[k] * best.form.span[k], 3) +
+                 (best.form.logarithmic[k] ? " e-foldings of " : " " + points.axes[k].unit + " of ") + points.axes[k].name;
+    }
+    words += ", unexplained scatter " + core::format_number(p.scatter * best.form.size, 2) + " " + points.unit;
+    if (best.form.decay || best.form.film) {
+        const std::vector<double> nowhere(points.axes.size(), 0.0);
+        const double constant[3] = {1, 0, 0};
+        const std::span<const double> only(constant, best.form.trends());
+        words += ", free-stream value " + core::format_number(best.form.offset + best.form.size * best.process.mean(nowhere, only, 0), 3) + " +- " +
+                 core::format_number(best.form.size * std::sqrt(best.process.variance(nowhere, only, 0)), 2) + " " + points.unit;
+    }
+    double others = 0;
+    for (const auto& part : mixture.parts) {
+        others += part.form.text(points.axes) != best.form.text(points.axes) || part.process.kernel() != best.process.kernel() ? part.weight : 0;
+    }
+    if (mixture.parts.size() > 1) {
+        words += "; mean over " + std::to_string(mixture.parts.size()) + " sets of lengths and sizes";
+        words += others > 0.01 ? ", other laws weigh " + core::format_number(100 * others, 2) + " %" : "";
+    }
+    if (std::max(std::abs(mixture.widened_near - 1), std::abs(mixture.widened_far - 1)) > 0.01) {
+        words += "; error scaled by " + core::format_number(mixture.widened_near, 3) + " near points and " + core::format_number(mixture.widened_far, 3) +
+                 " far from them after leave-one-out";
+    }
+    return words;
 }
 
 }  // namespace
@@ -491,29 +326,14 @@ std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_poin
     check_spread(all_points);
     core::Problems remarks = all_points.remarks;
     const SetPoints points = reduced(all_points, 1200, remarks);
-    Chosen chosen = choose_form(points);
-    std::vector<std::size_t> rows(points.x.size());
-    std::iota(rows.begin(), rows.end(), std::size_t{0});
-    Form& form = chosen.form;
-    GpData data = data_of(points, rows, form);
-    const bool refit = points.x.size() <= 600;
-    chosen.options.iterations = points.x.size() <= 150 ? 40 : 14;
-    const GaussianProcess process = refit ? GaussianProcess::fit(std::move(data), chosen.options)
-                                          : GaussianProcess(std::move(data), chosen.options.kernel, chosen.options.starts.front());
-    const auto left_out = process.leave_one_out();
-    double square = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        square += std::pow(process.data().y[i] - left_out.mean[i], 2) / left_out.variance[i];
-    }
-    // The process must not be surer than its own leave-one-out errors allow.
-    // Nor than so few points can tell about lengths and sizes that were fitted to them.
-    const auto count = static_cast<double>(rows.size());
-    const double fitted = std::min(static_cast<double>(points.axes.size() + form.trends()) + 1.0, 0.75 * count);
-    const double inflation = std::clamp(std::sqrt(square / count), 1.0, 5.0) * std::sqrt(count / (count - fitted));
+    const auto candidates = ranked_candidates(points);
+    auto mixture = std::make_shared<ProcessMixture>(mixture_of(points, candidates));
+    const auto left_out = mixture->leave_one_out(points);
+    widen(*mixture, points, left_out, misfits(*mixture, points, left_out, candidates.front().options));
     if (misses != nullptr) {
         misses->clear();
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            misses->push_back((left_out.mean[i] - process.data().y[i]) * form.size * form.factor(points.x[i]));
+        for (std::size_t i = 0; i < points.x.size(); ++i) {
+            misses->push_back(left_out.mean[i] - points.value[i]);
         }
     }
     auto table = std::make_shared<ForceTable::Impl>();
@@ -526,27 +346,18 @@ std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_poin
     table->range = options.range;
     table->kind = "Gaussian process";
     table->rule = SlopeRule::not_a_knot;
-    std::string words = std::string("Gaussian process (") + (chosen.options.kernel == Kernel::matern52 ? "Matern 5/2" : "squared exponential") + form.text(points.axes) +
-                        "): lengths";
-    const auto& p = process.parameters();
-    for (std::size_t k = 0; k < points.axes.size(); ++k) {
-        words += std::string(k == 0 ? " " : ", ") + core::format_number(p.length[k] * form.span[k], 3) + (form.logarithmic[k] ? " e-foldings of " : " " + points.axes[k].unit + " of ") +
-                 points.axes[k].name;
-    }
-    words += ", unexplained scatter " + core::format_number(p.scatter * form.size, 2) + " " + points.unit +
-             (inflation > 1.01 ? ", error widened by " + core::format_number(inflation, 3) + " after leave-one-out" : "");
-    remarks.push_back({core::Problem::Severity::note, words, {points.table.source, {}, {}, {}}});
+    remarks.push_back({core::Problem::Severity::note, described(*mixture, points), {points.table.source, {}, {}, {}}});
     table->remarks = std::move(remarks);
-    std::vector<std::vector<double>> grid;
-    for (std::size_t k = 0; k < points.axes.size(); ++k) {
-        grid.push_back(knots_of(points, form, p, k));
-    }
-    auto hermite = hermite_of(process, form, grid);
-    add_laws(hermite, process, form, grid);
-    table->error = ErrorModel(grid, sigma_of(process, form, grid, inflation));
-    table->surface = CubicGrid(grid, std::move(hermite));
-    for (std::size_t k = 0; k < grid.size(); ++k) {
+    mixture->choose_grid(points);
+    auto hermite = mixture->tabulate();
+    table->error = ErrorModel(mixture->grid, mixture->sigma);
+    table->surface = CubicGrid(mixture->grid, std::move(hermite));
+    for (std::size_t k = 0; k < mixture->grid.size(); ++k) {
         table->error.set_growth(k, end_growth(table->surface, k));
+    }
+    table->processes = std::move(mixture);
+    if (points.axes.size() > 1 && !all_points.full_grid) {
+        table->hull = std::make_shared<Hull>(points.axes, points.x);
     }
     return table;
 }

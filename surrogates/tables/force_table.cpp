@@ -9,6 +9,9 @@
 #include "core/units.h"
 #include "surrogates/tables/fit.h"
 #include "surrogates/tables/force_table_impl.h"
+#include "surrogates/tables/hull.h"
+#include "surrogates/tables/many_points.h"
+#include "surrogates/tables/select.h"
 #include "surrogates/tables/set_points.h"
 
 namespace underbody::tables {
@@ -29,7 +32,7 @@ const std::vector<std::pair<std::string, double>>& ForceTable::conditions() cons
 RangePolicy ForceTable::range() const { return impl_->range; }
 
 ForceTable ForceTable::read(const std::filesystem::path& path, const std::string& quantity, const FitOptions& options) {
-    return fit(core::read_csv(path), quantity, options);
+    return fit(read_points(path), quantity, options);
 }
 
 ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity, const FitOptions& options) {
@@ -46,6 +49,9 @@ ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity
 }
 
 double ForceTable::value(const double* point, double* slope) const noexcept { return impl_->surface.value(point, slope); }
+void values(const ForceTable& table, const double* points, std::size_t count, double* value, double* slope) noexcept {
+    table.impl().surface.values(points, count, value, slope);
+}
 
 Evaluation ForceTable::at(std::span<const double> point) const {
     const Impl& t = *impl_;
@@ -76,6 +82,8 @@ Evaluation ForceTable::at(std::span<const double> point) const {
     result.sigma = t.error.sigma(point.data(), result.beyond.data());
     return result;
 }
+
+double beyond_points(const ForceTable& table, const double* point) { return table.impl().hull ? table.impl().hull->distance(point) : 0; }
 
 double ForceTable::sigma(const double* point) const noexcept {
     std::array<double, max_axes> beyond{};

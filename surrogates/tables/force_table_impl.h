@@ -12,6 +12,9 @@
 
 namespace underbody::tables {
 
+class Hull;
+struct ProcessMixture;
+
 struct ForceTable::Impl {
     std::string quantity;
     std::string unit;
@@ -24,7 +27,9 @@ struct ForceTable::Impl {
     RangePolicy range = RangePolicy::clamp;
     SlopeRule rule = SlopeRule::monotone;
     CubicGrid surface;  ///< what value() evaluates
-    ErrorModel error;   ///< variance over the same axes
+    ErrorModel error;   ///< standard deviation over the same axes
+    std::shared_ptr<const ProcessMixture> processes;  ///< of a table by Gaussian processes; null for others
+    std::shared_ptr<const Hull> hull;                  ///< of scattered points of two and more axes; null for others
 };
 
 }  // namespace underbody::tables

@@ -126,15 +126,9 @@ public:
     Objective(const GpData& data, const GpOptions& options) : data_(data), options_(options) {}
 
     double operator()(const std::vector<double>& v, std::vector<double>& gradient) const {
-        double value = -GaussianProcess::log_likelihood(data_, options_.kernel, from_logs(v), &gradient);
-        for (std::size_t i = 0; i < v.size(); ++i) {
-            gradient[i] = -gradient[i];
-            const bool scatter = i + 1 == v.size();
-            const bool scale = i + 2 == v.size();
-            const double middle = scatter ? std::log(options_.expected_scatter) : scale ? 0 : std::log(0.6);
-            const double width = scatter ? 2.0 : scale ? 1.5 : 1.0;
-            value += 0.5 * std::pow((v[i] - middle) / width, 2);
-            gradient[i] += (v[i] - middle) / (width * width);
+        const double value = -GaussianProcess::log_posterior(data_, options_, from_logs(v), &gradient);
+        for (double& g : gradient) {
+            g = -g;
         }
         return value;
     }
@@ -287,6 +281,28 @@ double GaussianProcess::log_likelihood(const GpData& data, Kernel kernel, const 
         }
     }
     return value;
+}
+
+double GaussianProcess::log_posterior(const GpData& data, const GpOptions& options, const GpParameters& p, std::vector<double>* gradient) {
+    double value = log_likelihood(data, options.kernel, p, gradient);
+    const auto v = logs(p);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const bool scatter = i + 1 == v.size();
+        const bool scale = i + 2 == v.size();
+        const double middle = scatter ? std::log(options.expected_scatter) : scale ? 0 : std::log(0.6);
+        const double width = scatter ? 2.0 : scale ? 1.5 : 1.0;
+        value -= 0.5 * std::pow((v[i] - middle) / width, 2);
+        if (gradient != nullptr) {
+            (*gradient)[i] -= (v[i] - middle) / (width * width);
+        }
+    }
+    return value;
+}
+
+std::vector<double> GaussianProcess::solved(std::vector<double> values) const {
+    Eigen::Map<VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
+    state_->factor.solveInPlace(vector);
+    return values;
 }
 
 double GaussianProcess::mean(std::span<const double> x, std::span<const double> trend, double amplitude) const {

@@ -47,6 +47,12 @@ struct GpParameters {
     double scatter = 1e-3;       ///< standard deviation of what neither the process nor the stated noise explains
 };
 
+/// Parameters and their weight among others.
+struct GpWeighted {
+    GpParameters parameters;
+    double weight = 1;
+};
+
 struct GpOptions {
     Kernel kernel = Kernel::matern52;
     int iterations = 60;             ///< evaluations of the likelihood a start
@@ -69,6 +75,11 @@ public:
     [[nodiscard]] double log_likelihood() const;
     static double log_likelihood(const GpData& data, Kernel kernel, const GpParameters& parameters, std::vector<double>* gradient);
 
+    /// The same with the priors of fit(), up to a constant: what fit() maximises.
+    static double log_posterior(const GpData& data, const GpOptions& options, const GpParameters& parameters, std::vector<double>* gradient);
+    /// Points and weights (sum 1) that stand for the posterior of lengths and scale around its maximum `best`, which comes first; the scatter stays.
+    static std::vector<GpWeighted> posterior_design(const GpData& data, const GpOptions& options, const GpParameters& best);
+
     /// Mean of the force at a point with the trend functions and the amplitude there.
     [[nodiscard]] double mean(std::span<const double> x, std::span<const double> trend, double amplitude = 1) const;
     /// Variance of the force itself (scatter and noise not included).
@@ -82,6 +93,9 @@ public:
         double log_density = 0;        ///< sum of the log densities of the measured values
     };
     [[nodiscard]] LeftOut leave_one_out() const;
+
+    /// (covariance of the data)^-1 times a vector over the data.
+    [[nodiscard]] std::vector<double> solved(std::vector<double> values) const;
 
     /// Weights of the data in the mean, and the coefficients of the trend.
     [[nodiscard]] const std::vector<double>& weights() const;

@@ -36,6 +36,15 @@ GridAxis::GridAxis(std::vector<double> points) : x_(std::move(points)) {
         }
         first_[b] = static_cast<std::uint32_t>(i);
     }
+    for (std::size_t b = 0; b < buckets; ++b) {
+        // And one ulp late. The last bucket takes all that rounds beyond it.
+        const double end = lower_ + (static_cast<double>(b + 1) / per_unit_) * (1 + 1e-15) + std::abs(lower_) * 1e-15;
+        std::size_t last = first_[b];
+        while (b + 1 == buckets ? last + 1 < cells : end >= stop_[last]) {
+            ++last;
+        }
+        steps_ = std::max(steps_, static_cast<unsigned>(last - first_[b]));
+    }
 }
 
 void CubicGrid::set_axes(std::vector<std::vector<double>> points) {
@@ -219,7 +228,7 @@ void CubicGrid::build_cells() {
         const auto& x = axes_[0].points();
         const auto& y = axes_[1].points();
         const std::size_t columns = y.size() - 1;
-        cells_.resize((x.size() - 1) * columns * 16);
+        bicubics_.resize((x.size() - 1) * columns);
         for (std::size_t i = 0; i + 1 < x.size(); ++i) {
             for (std::size_t j = 0; j < columns; ++j) {
                 const double* p00 = &nodes_[4 * (i * y.size() + j)];
@@ -231,7 +240,7 @@ void CubicGrid::build_cells() {
                 const auto v1 = cubic(hx, p00[4], p10[4], p00[5], p10[5]);
                 const auto s0 = cubic(hx, p00[2], p10[2], p00[3], p10[3]);
                 const auto s1 = cubic(hx, p00[6], p10[6], p00[7], p10[7]);
-                double* cell = &cells_[16 * (i * columns + j)];
+                double* cell = bicubics_[i * columns + j].c;
                 for (std::size_t power = 0; power < 4; ++power) {
                     const auto c = cubic(hy, v0[power], v1[power], s0[power], s1[power]);
                     for (std::size_t q = 0; q < 4; ++q) {
@@ -253,7 +262,7 @@ double CubicGrid::from_cells_1(const Spot& s, double* slope) const noexcept {
 }
 
 double CubicGrid::from_cells_2(const Spot* s, double* slope) const noexcept {
-    const double* c = &cells_[16 * (s[0].cell * (axes_[1].size() - 1) + s[1].cell)];
+    const double* c = bicubics_[s[0].cell * (axes_[1].size() - 1) + s[1].cell].c;
     const double u = s[0].offset;
     const double v = s[1].offset;
     double p[4];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -30,8 +31,9 @@ public:
     [[nodiscard]] std::size_t cell(double x) const noexcept {
         const auto bucket = static_cast<std::size_t>((x - lower_) * per_unit_);
         std::size_t i = first_[bucket < last_bucket_ ? bucket : last_bucket_];
-        while (x >= stop_[i]) {
-            ++i;
+        // Always the same number of steps (one unless the axis is very uneven), and no branch that depends on x.
+        for (unsigned step = 0; step < steps_; ++step) {
+            i += x >= stop_[i] ? 1 : 0;
         }
         return i;
     }
@@ -41,6 +43,7 @@ private:
     std::vector<double> stop_;  ///< upper end of each cell; infinite for the last
     std::vector<std::uint32_t> first_;
     std::size_t last_bucket_ = 0;
+    unsigned steps_ = 0;  ///< largest number of cells that a bucket reaches beyond its first
     double lower_ = 0;
     double per_unit_ = 0;
 };
@@ -78,6 +81,9 @@ public:
 
     /// Value at a point, held at the ends of each axis (slope 0 beyond); `slope` may be null. NaN in, NaN out.
     double value(const double* point, double* slope) const noexcept;
+    /// value() of many points, bit for bit, several times as fast on two axes: `points` [count * dimensions], `value` [count], `slope` (may be
+    /// null) [count * dimensions].
+    void values(const double* points, std::size_t count, double* value, double* slope) const noexcept;
     /// The same with the function continued along its end slopes beyond the axes.
     double continued(const double* point, double* slope) const noexcept;
 
@@ -89,20 +95,12 @@ public:
     };
     [[nodiscard]] Spot spot(std::size_t k, double x) const noexcept {
         const GridAxis& a = axes_[k];
+        double inside = x > a.lower() ? x : a.lower();  // a NaN goes to the lower end
+        inside = inside < a.upper() ? inside : a.upper();
         Spot s;
-        if (!(x >= a.lower())) {
-            s.held = true;
-            s.offset = x < a.lower() ? 0 : x - x;  // NaN stays NaN
-            return s;
-        }
-        if (x > a.upper()) {
-            s.held = true;
-            s.cell = a.size() - 2;
-            s.offset = a.upper() - a.points()[s.cell];
-            return s;
-        }
-        s.cell = a.cell(x);
-        s.offset = x - a.points()[s.cell];
+        s.held = !(x == inside);
+        s.cell = a.cell(inside);
+        s.offset = std::isnan(x) ? x : inside - a.points()[s.cell];
         return s;
     }
 
@@ -117,8 +115,13 @@ private:
 
     std::vector<GridAxis> axes_;
     std::array<std::size_t, max_axes> stride_{};  ///< in nodes
+    /// Bicubic coefficients of one cell, powers of the first axis side by side; two cache lines.
+    struct alignas(64) Bicubic {
+        double c[16];
+    };
     std::vector<double> nodes_;
-    std::vector<double> cells_;  ///< polynomial coefficients a cell for one (4) and two axes (16)
+    std::vector<double> cells_;      ///< one axis: four polynomial coefficients a cell
+    std::vector<Bicubic> bicubics_;  ///< two axes
 };
 
 }  // namespace underbody::tables

@@ -178,16 +178,20 @@ TEST_P(CHeader, EvaluatesLikeTheTableInsideAndOutside) {
         check_header(two_axes(range), false, GetParam());
     }
     check_header(three_axes(), false, GetParam());
+    check_header(three_axes(), true, GetParam());
     check_header(one_axis(), true, GetParam());
     check_header(two_axes(), true, GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(Compilers, CHeader, ::testing::Values("gcc", "clang"));
 
-TEST(Exports, OfCsvReadBackAsTheSameTable) {
+/// Both formats come back as the table they were made from.
+void check_read_back(const std::string& format) {
     core::TemporaryFolder folder;
     for (const ForceTable& table : {one_axis(), two_axes(), three_axes(), test::ref_a_spline(), two_axes(tables::RangePolicy::extrapolate)}) {
-        export_table(table, "csv", folder.path() / "t.csv", {});
-        const ForceTable again = ForceTable::read(folder.path() / "t.csv", "lift_force");
+        const auto path = folder.path() / ("t." + format);
+        export_table(table, format, path, {});
+        const ForceTable again = ForceTable::read(path, "lift_force");
+        EXPECT_EQ(again.kind(), "exported grid");
         const std::size_t n = table.axes().size();
         ASSERT_EQ(again.axes().size(), n);
         const auto points = random_points(table, 10000);
@@ -202,6 +206,29 @@ TEST(Exports, OfCsvReadBackAsTheSameTable) {
             }
         }
     }
+}
+
+TEST(Exports, OfCsvReadBackAsTheSameTable) { check_read_back("csv"); }
+TEST(Exports, OfJsonReadBackAsTheSameTable) { check_read_back("json"); }
+
+TEST(Exports, OfJsonThatAreNoTablesSayWhatIsWrong) {
+    core::TemporaryFolder folder;
+    const auto message = [&](const std::string& text) {
+        core::write_file(folder.path() / "t.json", text);
+        try {
+            ForceTable::read(folder.path() / "t.json", "lift_force");
+        } catch (const core::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_THAT(message("{\"a\": }"), HasSubstr("not JSON"));
+    EXPECT_THAT(message("{\"a\": 1}"), HasSubstr("not a force table"));
+    EXPECT_THAT(message("{\"format\": \"Underbody force table\"}"), HasSubstr("not complete"));
+    export_table(one_axis(), "json", folder.path() / "ours.json");
+    auto json = nlohmann::json::parse(core::read_file(folder.path() / "ours.json"));
+    json["hermite"].erase(json["hermite"].begin());
+    EXPECT_THAT(message(json.dump()), HasSubstr("grid points together"));
 }
 
 /// What the JSON itself says about evaluating it, done by its words.
@@ -258,8 +285,8 @@ TEST(Exports, OfJsonEvaluateByTheirOwnWords) {
         export_table(table, "json", folder.path() / "t.json", {});
         const JsonTable json{nlohmann::json::parse(core::read_file(folder.path() / "t.json"))};
         const std::size_t n = table.axes().size();
-        const auto points = random_points(table, 2000);
-        for (int i = 0; i < 2000; ++i) {
+        const auto points = random_points(table, 10000);
+        for (int i = 0; i < 10000; ++i) {
             const auto e = table.at({&points[i * n], n});
             const auto [value, sigma] = json.at(&points[i * n]);
             ASSERT_NEAR(value, e.value, 1e-12 * (1 + std::abs(e.value)));
@@ -347,8 +374,8 @@ TEST(Exports, OfMatReadBackByMatioAndByOctave) {
         j["hermite"].push_back(std::vector<double>(&read["hermite"][i], &read["hermite"][i] + 4));
     }
     const JsonTable by_matio{j};
-    const auto points = random_points(table, 2000);
-    for (int i = 0; i < 2000; ++i) {
+    const auto points = random_points(table, 10000);
+    for (int i = 0; i < 10000; ++i) {
         const auto e = table.at({&points[i * 2], 2});
         const auto [value, sigma] = by_matio.at(&points[i * 2]);
         ASSERT_NEAR(value, e.value, 1e-12 * (1 + std::abs(e.value)));
@@ -361,13 +388,16 @@ TEST(Exports, OfMatReadBackByMatioAndByOctave) {
     const std::string script = "f=fopen('points.bin');p=reshape(fread(f,'double'),2,[])';fclose(f);[v,s,g,o]=lift_at(p);f=fopen('out.bin','w');fwrite(f,[v s g o]','double');fclose(f);";
     ASSERT_EQ(std::system(("cd '" + folder.path().string() + "' && $(command -v octave-cli || command -v octave) --eval \"" + script + "\" > /dev/null 2>&1").c_str()), 0);
     const std::string bytes = core::read_file(folder.path() / "out.bin");
-    ASSERT_EQ(bytes.size(), 2000 * 5 * sizeof(double));
-    std::vector<double> out(10000);
+    ASSERT_EQ(bytes.size(), 10000 * 5 * sizeof(double));
+    std::vector<double> out(50000);
     std::memcpy(out.data(), bytes.data(), bytes.size());
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 10000; ++i) {
         const auto e = table.at({&points[i * 2], 2});
         ASSERT_NEAR(out[5 * i], e.value, 1e-12 * (1 + std::abs(e.value)));
+        ASSERT_NEAR(out[5 * i + 1], e.slope[0], 1e-9 * (1 + std::abs(e.slope[0])));
+        ASSERT_NEAR(out[5 * i + 2], e.slope[1], 1e-9 * (1 + std::abs(e.slope[1])));
         ASSERT_NEAR(out[5 * i + 3], e.sigma, 1e-12 * (1 + e.sigma));
+        ASSERT_EQ(out[5 * i + 4] != 0, e.outside);
     }
 }
 
@@ -377,6 +407,12 @@ TEST(Exports, OfJsbsimInterpolateLinearlyWithinWhatTheySay) {
     for (const auto& table : {one_axis(), two_axes()}) {
         const auto result = export_table(table, "jsbsim", folder.path() / "t.xml");
         const std::string xml = core::read_file(folder.path() / "t.xml");
+        if (have("python3")) {
+            EXPECT_EQ(std::system(("python3 -c \"import xml.dom.minidom as m;d=m.parse('" + (folder.path() / "t.xml").string() + "');assert len(d.getElementsByTagName('function'))==" +
+                                   std::to_string(2 + table.axes().size()) + "\"")
+                                      .c_str()),
+                      0);
+        }
         const std::size_t at = xml.find("<function name=\"underbody/lift_force\">");
         ASSERT_NE(at, std::string::npos);
         const std::size_t begin = xml.find("<tableData>", at) + 11;
@@ -491,6 +527,22 @@ TEST(Exports, OfFmuAreLoadedAndEvaluateLikeTheTable) {
             ASSERT_NE(instance, nullptr);
             ASSERT_EQ(enter(instance), 0);
             ASSERT_EQ(leave(instance), 0);
+            if (type == 0) {
+                // The life of a model-exchange instance without states: events once, then continuous time.
+                struct {
+                    int flags[5];
+                    double next;
+                } event = {{1, 1, 1, 1, 1}, 0};
+                ASSERT_EQ(reinterpret_cast<int (*)(void*, void*)>(::dlsym(library, "fmi2NewDiscreteStates"))(instance, &event), 0);
+                EXPECT_EQ(event.flags[0], 0) << "no further events";
+                ASSERT_EQ(reinterpret_cast<Plain>(::dlsym(library, "fmi2EnterContinuousTimeMode"))(instance), 0);
+                ASSERT_EQ(reinterpret_cast<int (*)(void*, double)>(::dlsym(library, "fmi2SetTime"))(instance, 1.5), 0);
+                double none = 0;
+                ASSERT_EQ(reinterpret_cast<int (*)(void*, double*, std::size_t)>(::dlsym(library, "fmi2GetDerivatives"))(instance, &none, 0), 0);
+                int asks_event = 1, asks_end = 1;
+                ASSERT_EQ(reinterpret_cast<int (*)(void*, int, int*, int*)>(::dlsym(library, "fmi2CompletedIntegratorStep"))(instance, 1, &asks_event, &asks_end), 0);
+                EXPECT_EQ(asks_event + asks_end, 0);
+            }
             auto points = random_points(table, 10000);
             const unsigned inputs[4] = {0, 1, 2, 3};
             for (int i = 0; i < 10000; ++i) {
@@ -510,6 +562,16 @@ TEST(Exports, OfFmuAreLoadedAndEvaluateLikeTheTable) {
                 ASSERT_EQ(out[2 + n] != 0, e.outside);
                 for (std::size_t k = 0; k < n; ++k) {
                     ASSERT_NEAR(out[1 + k], e.slope[k], 1e-9 * (1 + std::abs(e.slope[k])));
+                }
+                if (i % 100 == 0) {
+                    using Directional = int (*)(void*, const unsigned*, std::size_t, const unsigned*, std::size_t, const double*, double*);
+                    const double along[4] = {0.5, -2, 1, 1};
+                    double change = 0, expected = 0;
+                    for (std::size_t k = 0; k < n; ++k) {
+                        expected += along[k] * e.slope[k];
+                    }
+                    ASSERT_EQ(reinterpret_cast<Directional>(::dlsym(library, "fmi2GetDirectionalDerivative"))(instance, outputs.data(), 1, inputs, n, along, &change), 0);
+                    ASSERT_NEAR(change, expected, 1e-9 * (1 + std::abs(expected)));
                 }
             }
             free_instance(instance);

@@ -1,13 +1,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 
 #include "core/error.h"
 #include "core/random.h"
 #include "surrogates/tables/force_table.h"
 #include "surrogates/tables/grid.h"
+#include "surrogates/tables/many_points.h"
 #include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody {
@@ -112,6 +115,57 @@ TEST(ForceTable, OfTwoAxesNeverLeavesTheRangeOfTheCornersOfItsCell) {
                 const double corner[2] = {x[i], y[j]};
                 ASSERT_NEAR(table.value(corner), z[i * columns + j], 1e-14);
             }
+        }
+    }
+}
+
+TEST(ForceTable, GivesManyPointsAtOnceTheSameBitsAsOneByOne) {
+    const auto same = [](double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b)); };
+    core::Random random(21);
+    for (const bool wide : {false, true}) {
+        std::vector<double> x, y;
+        for (int i = 0; i < 37; ++i) {
+            x.push_back(wide ? 0.001 * std::pow(300.0, i / 36.0) : 0.002 * (i + 1));
+            y.push_back(-0.1 + 0.005 * i);
+        }
+        const ForceTable table = monotone(test::grid_table(x, y, [](double a, double b) { return std::sin(70 * a) + b * std::cos(9 * a); }));
+        for (const std::size_t count : {0, 1, 3, 4, 127, 128, 129, 1001}) {
+            std::vector<double> points, value(count), slope(2 * count);
+            for (std::size_t i = 0; i < count; ++i) {
+                points.push_back(random.below(10) == 0 ? x[random.below(37)] : random.uniform(-0.05, 0.4));
+                points.push_back(random.below(10) == 0 ? y[random.below(37)] : random.uniform(-0.15, 0.12));
+                points.back() = random.below(50) == 0 ? std::nan("") : points.back();
+            }
+            tables::values(table, points.data(), count, value.data(), slope.data());
+            for (std::size_t i = 0; i < count; ++i) {
+                double one_slope[2];
+                const double one = table.value(&points[2 * i], one_slope);
+                ASSERT_TRUE(same(one, value[i]));
+                ASSERT_TRUE(same(one_slope[0], slope[2 * i]));
+                ASSERT_TRUE(same(one_slope[1], slope[2 * i + 1]));
+            }
+            std::vector<double> alone(count);
+            tables::values(table, points.data(), count, alone.data());
+            for (std::size_t i = 0; i < count; ++i) {
+                ASSERT_TRUE(same(alone[i], value[i]));
+            }
+        }
+    }
+}
+
+TEST(ForceTable, FindsTheCellOnAxesHoweverUneven) {
+    core::Random random(5);
+    for (int trial = 0; trial < 40; ++trial) {
+        std::vector<double> x{random.uniform(-3, 3)};
+        for (std::size_t i = 0, n = 1 + random.below(40); i < n; ++i) {
+            x.push_back(x.back() + std::exp(random.uniform(-12, 2)));
+        }
+        const tables::GridAxis axis(x);
+        for (int i = 0; i < 400; ++i) {
+            const double at = i < 2 * static_cast<int>(x.size()) ? std::nextafter(x[i / 2], i % 2 == 0 ? x.front() : x.back()) : random.uniform(x.front(), x.back());
+            const std::size_t cell = axis.cell(at);
+            ASSERT_LT(cell + 1, x.size());
+            ASSERT_TRUE(at >= x[cell] && (at < x[cell + 1] || cell + 2 == x.size())) << at;
         }
     }
 }

@@ -1,15 +1,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <iostream>
 
 #include "core/error.h"
 #include "core/random.h"
+#include "surrogates/tables/figures.h"
 #include "surrogates/tables/force_table.h"
 #include "surrogates/tables/gaussian_process.h"
+#include "surrogates/tables/many_points.h"
 #include "surrogates/tables/select.h"
 #include "tests/support/support.h"
 #include "tests/surrogates/tables/tables_support.h"
@@ -132,7 +136,7 @@ TEST(GaussianProcessTable, HasSlopesThatAreTheDerivativesOfItsValueAndFollowsThe
     data.add_numbers("speed", "m/s", u);
     data.add_numbers("lift_force", "N", f);
     const ForceTable table = ForceTable::fit(data, "lift_force", process());
-    EXPECT_THAT(table.remarks().back().message, HasSubstr("speed squared"));
+    EXPECT_THAT(table.remarks().back().message, HasSubstr("force over speed squared"));
     double worst = 0;
     for (int i = 0; i < 300; ++i) {
         double x[3] = {1e-3 * std::pow(100.0, random.uniform(0.03, 0.97)), random.uniform(-0.045, 0.045), random.uniform(0.33, 0.97)};
@@ -151,38 +155,172 @@ TEST(GaussianProcessTable, HasSlopesThatAreTheDerivativesOfItsValueAndFollowsThe
     EXPECT_LT(worst, 0.1);
 }
 
-TEST(GaussianProcessTable, CoversTheTruthAsOftenAsItSays) {
-    // 200 random splits of known functions with noise: the 95 % band holds the truth in 90 to 99 % of the held-out points.
-    const std::vector<std::function<double(double)>> functions = {
-        [](double x) { return std::sin(6 * x); }, [](double x) { return std::exp(-3 * x) + 0.3 * x; }, [](double x) { return 1 / (0.2 + x) - 2 * std::exp(-20 * (x - 0.5) * (x - 0.5)); },
-        [](double x) { return x * x * x - x; }};
+/// A known function of axes on [0, 1], measured with noise at random places.
+struct Known {
+    std::size_t points;
+    double noise;
+    std::function<double(const double*)> f;
+};
+
+/// Share of the places between random points where the 95 % band holds the truth, over random splits of the functions in turn.
+double coverage(const std::vector<Known>& functions, const std::vector<std::pair<std::string, std::string>>& axes, int splits) {
     int inside = 0, all = 0;
-    for (int split = 0; split < 200; ++split) {
+    for (int split = 0; split < splits; ++split) {
         core::Random random(1000, static_cast<std::uint64_t>(split));
-        const auto& f = functions[split % functions.size()];
-        const double noise = 0.03;
-        std::vector<double> x, y, s;
-        for (int i = 0; i < 24; ++i) {
-            x.push_back(random.uniform());
-            y.push_back(f(x.back()) + random.normal(0, noise));
-            s.push_back(noise);
+        const Known& known = functions[static_cast<std::size_t>(split) % functions.size()];
+        std::vector<std::vector<double>> x(axes.size());
+        std::vector<double> y, s;
+        double at[3];
+        for (std::size_t i = 0; i < known.points; ++i) {
+            for (std::size_t k = 0; k < axes.size(); ++k) {
+                x[k].push_back(at[k] = random.uniform());
+            }
+            y.push_back(known.f(at) + random.normal(0, known.noise));
+            s.push_back(known.noise);
         }
         core::Table data;
-        data.add_numbers("gap", "m", x);
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            data.add_numbers(axes[k].first, axes[k].second, x[k]);
+        }
         data.add_numbers("lift_force", "N", y);
         data.add_numbers("lift_force_sigma", "N", s);
         const ForceTable table = ForceTable::fit(data, "lift_force", process());
-        for (int i = 0; i < 20; ++i) {
-            const double at = random.uniform(table.axes()[0].lower, table.axes()[0].upper);
-            const auto e = table.at({&at, 1});
-            inside += std::abs(e.value - f(at)) <= 1.96 * e.sigma ? 1 : 0;
+        for (int i = 0; i < 25; ++i) {
+            for (std::size_t k = 0; k < axes.size(); ++k) {
+                at[k] = random.uniform(table.axes()[k].lower, table.axes()[k].upper);
+            }
+            const auto e = table.at({at, axes.size()});
+            inside += std::abs(e.value - known.f(at)) <= 1.96 * e.sigma ? 1 : 0;
             ++all;
         }
     }
-    const double share = static_cast<double>(inside) / all;
-    std::cout << "coverage of the 95 % band: " << share << "\n";
+    return static_cast<double>(inside) / all;
+}
+
+/// All 200 splits in a long run, a share of them otherwise.
+int splits(int usual) { return std::getenv("UNDERBODY_LONG_RUN") != nullptr ? 200 : usual; }
+
+TEST(GaussianProcessTable, CoversTheTruthAsOftenAsItSaysOnOneAxis) {
+    const double share = coverage({{24, 0.03, [](const double* x) { return std::sin(6 * x[0]); }},
+                                   {24, 0.03, [](const double* x) { return std::exp(-3 * x[0]) + 0.3 * x[0]; }},
+                                   {24, 0.03, [](const double* x) { return 1 / (0.2 + x[0]) - 2 * std::exp(-20 * (x[0] - 0.5) * (x[0] - 0.5)); }},
+                                   {12, 0.03, [](const double* x) { return x[0] * x[0] * x[0] - x[0]; }},
+                                   {8, 0.05, [](const double* x) { return 2 * x[0]; }}},
+                                  {{"depth", "m"}}, 200);
+    std::cout << "coverage of the 95 % band, one axis: " << share << "\n";
     EXPECT_GT(share, 0.90);
     EXPECT_LT(share, 0.99);
+}
+
+TEST(GaussianProcessTable, CoversTheTruthAsOftenAsItSaysOnTwoAxes) {
+    const double share = coverage({{30, 0.05, [](const double* x) { return std::sin(3 * x[0]) + std::cos(4 * x[1]); }},
+                                   {30, 0.03, [](const double* x) { return std::sin(4 * x[0]) * x[1] + x[0]; }},
+                                   {20, 0.02, [](const double* x) { return x[0] * x[0] + x[0] * x[1] - x[1]; }},
+                                   {12, 0.05, [](const double* x) { return x[0] - 2 * x[1]; }}},
+                                  {{"temperature", "K"}, {"depth", "m"}}, splits(40));
+    std::cout << "coverage of the 95 % band, two axes: " << share << "\n";
+    EXPECT_GT(share, 0.90);
+    EXPECT_LT(share, 0.99);
+}
+
+TEST(GaussianProcessTable, CoversTheTruthAsOftenAsItSaysOnThreeAxes) {
+    const double share = coverage({{60, 0.1, [](const double* x) { return std::sin(4 * x[0]) + 0.7 * std::pow(std::sin(3 * x[1]), 2) + 0.3 * x[2] * std::sin(4 * x[0]); }},
+                                   {40, 0.05, [](const double* x) { return std::sin(3 * x[0] * x[1]) + std::exp(-2 * x[2]); }}},
+                                  {{"temperature", "K"}, {"depth", "m"}, {"pitch_rate", "rad/s"}}, splits(10));
+    std::cout << "coverage of the 95 % band, three axes: " << share << "\n";
+    EXPECT_GT(share, 0.90);
+    EXPECT_LT(share, 0.99);
+}
+
+TEST(GaussianProcessTable, DrawsFromItsJointPosterior) {
+    core::Random random(31);
+    std::vector<double> x, y, s;
+    for (int i = 0; i < 14; ++i) {
+        x.push_back(i < 7 ? 0.05 * i : 0.65 + 0.05 * (i - 7));  // nothing known between 0.3 and 0.65
+        y.push_back(std::sin(5 * x.back()) + random.normal(0, 0.05));
+        s.push_back(0.05);
+    }
+    core::Table data;
+    data.add_numbers("depth", "m", x);
+    data.add_numbers("lift_force", "N", y);
+    data.add_numbers("lift_force_sigma", "N", s);
+    const ForceTable table = ForceTable::fit(data, "lift_force", process());
+    const double at[4] = {0.15, 0.48, 0.50, 0.85};
+    const int draws = 600;
+    double mean[4] = {}, product[4][4] = {};
+    for (int draw = 0; draw < draws; ++draw) {
+        const auto drawn = table.drawn(static_cast<std::uint64_t>(draw));
+        double deviation[4];
+        for (int i = 0; i < 4; ++i) {
+            deviation[i] = drawn.value(&at[i]) - table.value(&at[i]);
+            mean[i] += deviation[i] / draws;
+        }
+        for (int i = 0; i < 4; ++i) {
+            for (int j = 0; j < 4; ++j) {
+                product[i][j] += deviation[i] * deviation[j] / draws;
+            }
+        }
+    }
+    for (int i = 0; i < 4; ++i) {
+        const double sigma = table.sigma(&at[i]);
+        EXPECT_NEAR(mean[i], 0, 0.2 * sigma);
+        EXPECT_NEAR(std::sqrt(product[i][i]), sigma, 0.15 * sigma) << at[i];
+    }
+    const auto correlation = [&](int i, int j) { return product[i][j] / std::sqrt(product[i][i] * product[j][j]); };
+    EXPECT_GT(correlation(1, 2), 0.95) << "neighbours in the gap of the points move together";
+    EXPECT_LT(std::abs(correlation(0, 3)), 0.4) << "places that points keep apart do not";
+    EXPECT_GT(table.sigma(&at[1]), 2 * table.sigma(&at[0]));
+}
+
+TEST(GaussianProcessTable, KnowsTheHullOfItsPoints) {
+    core::Random random(12);
+    std::vector<double> p, d, f;
+    for (int i = 0; i < 40; ++i) {  // a triangle: depth below 1 - temperature
+        const double a = random.uniform(), b = random.uniform();
+        p.push_back(std::min(a, b));
+        d.push_back(1 - std::max(a, b));
+        f.push_back(p.back() + 2 * d.back());
+    }
+    p.insert(p.end(), {0, 1, 0});
+    d.insert(d.end(), {0, 0, 1});
+    f.insert(f.end(), {0, 1, 2});
+    core::Table data;
+    data.add_numbers("temperature", "K", p);
+    data.add_numbers("depth", "m", d);
+    data.add_numbers("lift_force", "N", f);
+    const ForceTable table = ForceTable::fit(data, "lift_force");
+    const double inside[2] = {0.3, 0.4}, edge[2] = {0.5, 0.5}, corner[2] = {1, 1};
+    EXPECT_EQ(tables::beyond_points(table, inside), 0);
+    EXPECT_NEAR(tables::beyond_points(table, edge), 0, 1e-9);
+    EXPECT_NEAR(tables::beyond_points(table, corner), std::sqrt(0.5), 1e-9);
+    EXPECT_FALSE(table.at(corner).outside) << "no axis is exceeded";
+    const auto figure = tables::map_figure(table, "temperature", "depth");
+    const auto blank = std::count_if(figure.maps[0].values.begin(), figure.maps[0].values.end(), [](double v) { return std::isnan(v); });
+    EXPECT_NEAR(static_cast<double>(blank) / static_cast<double>(figure.maps[0].values.size()), 0.5, 0.05);
+    EXPECT_THAT(figure.caption, HasSubstr("outside the points"));
+}
+
+TEST(GaussianProcessTable, FindsTheFreeStreamValueThatTheForceDecaysTo) {
+    core::Random random(3);
+    std::vector<double> h, p, f, s;
+    for (int i = 0; i < 50; ++i) {
+        h.push_back(0.002 * std::pow(200.0, random.uniform()));
+        p.push_back(random.uniform(-0.05, 0.05));
+        f.push_back(0.25 + (4e-4 + 0.02 * p.back()) / h.back() + random.normal(0, 0.004));
+        s.push_back(0.004);
+    }
+    core::Table data;
+    data.add_numbers("gap", "m", h);
+    data.add_numbers("pitch", "rad", p);
+    data.add_numbers("lift_force", "N", f);
+    data.add_numbers("lift_force_sigma", "N", s);
+    const ForceTable table = ForceTable::fit(data, "lift_force");
+    EXPECT_THAT(table.remarks().back().message, HasSubstr("decay to the free-stream value"));
+    const std::string& words = table.remarks().back().message;
+    const std::size_t at = words.find("free-stream value 0") + 18;
+    EXPECT_NEAR(std::stod(words.substr(at)), 0.25, 0.06) << words;
+    const double far[2] = {0.39, 0};
+    EXPECT_NEAR(table.value(far), 0.251, 0.01);
 }
 
 /// Each set point left out in turn: how often the rest predicts it within twice the stated error.
@@ -235,13 +373,13 @@ TEST(GaussianProcessTable, PredictsHeldOutGapsOfTheSharedCfd) {
     };
     const double gaps = share({level, front}, {"gap"}, FitOptions::Kind::automatic);
     const double gaps_by_process = share({level, front}, {"gap"}, FitOptions::Kind::gaussian_process);
-    // Scattered gaps and pitches: leaving out a point of the rim is extrapolation in all but name, and the process cannot know of a
-    // cliff that only that point shows (3 mm, 2 degrees nose down: 0.41 N where the rest says -0.2 N).
+    // Scattered gaps and pitches: what is left to miss is a cliff that one point alone shows (3 mm, 2 degrees nose down: 0.41 N where
+    // the rest says -0.2 N).
     const double pitches = share({pitched}, {"gap", "pitch"}, FitOptions::Kind::automatic);
     std::cout << "held-out gaps within twice the stated error: " << gaps << ", by Gaussian process " << gaps_by_process << ", over gap and pitch " << pitches << "\n";
     EXPECT_GE(gaps, 0.95);
-    EXPECT_GE(gaps_by_process, 0.9);
-    EXPECT_GE(pitches, 0.8);
+    EXPECT_GE(gaps_by_process, 0.95);
+    EXPECT_GE(pitches, 0.93);
 }
 
 TEST(GaussianProcessTable, RefusesPointsThatCannotTellTheAxesApart) {

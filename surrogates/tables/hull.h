@@ -1,0 +1,25 @@
+// How far a place is from where scattered points are: the distance from their convex hull. For the files of this room only.
+#pragma once
+
+#include <vector>
+
+#include "surrogates/tables/set_points.h"
+
+namespace underbody::tables {
+
+/// Convex hull of points in one to four axes. Coordinates count in shares of each axis's range; a gap that spans a factor of four or more
+/// counts by its logarithm.
+class Hull {
+public:
+    Hull(const std::vector<TableAxis>& axes, const std::vector<std::vector<double>>& points);
+
+    /// 0 inside, to rounding. Coordinates beyond an axis count as its end. (Wolfe 1976, Finding the nearest point in a polytope.)
+    [[nodiscard]] double distance(const double* point) const;
+
+private:
+    [[nodiscard]] double coordinate(std::size_t axis, double x) const;
+    std::vector<TableAxis> axes_;
+    std::vector<double> points_;  ///< [point * axes]
+};
+
+}  // namespace underbody::tables

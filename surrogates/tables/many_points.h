@@ -1,0 +1,19 @@
+// A table at many points at once, and how far a point lies from the points that a table was made of.
+#pragma once
+
+#include <cstddef>
+
+#include "surrogates/tables/force_table.h"
+
+namespace underbody::tables {
+
+/// ForceTable::value() of many points, bit for bit the same and several times as fast for two axes: `points` [count * axes], `value` [count], `slope` (may be
+/// null) [count * axes], all SI.
+void values(const ForceTable& table, const double* points, std::size_t count, double* value, double* slope = nullptr) noexcept;
+
+/// Scattered points of two and more axes: distance of a point from their convex hull in shares of the axes' ranges (of the logarithm of a gap that spans a
+/// factor of four or more). > 0: no points lie around, the error is that of an extrapolation although no axis is exceeded. 0 inside, for one axis and
+/// for grids. Beyond an axis its end counts.
+double beyond_points(const ForceTable& table, const double* point);
+
+}  // namespace underbody::tables

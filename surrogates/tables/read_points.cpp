@@ -1,0 +1,98 @@
+// A table of points from a file: CSV, or the JSON of an exported table.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/units.h"
+#include "surrogates/tables/select.h"
+
+namespace underbody::tables {
+
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+    throw core::InputError("parse", what, {path.string(), {}, {}, {}}, "a JSON table is one that 'underbody export --format json' wrote");
+}
+
+core::Table table_of(const nlohmann::json& json, const std::filesystem::path& path) {
+    const std::string quantity = json.at("quantity");
+    const std::string unit = json.at("unit");
+    const auto& axes = json.at("axes");
+    const std::size_t n = axes.size();
+    if (n < 1 || n > 4) {
+        refuse(path, "the table has " + std::to_string(n) + " axes; one to four are possible");
+    }
+    std::vector<std::vector<double>> grid;
+    std::size_t count = 1;
+    for (const auto& axis : axes) {
+        grid.push_back(axis.at("points").get<std::vector<double>>());
+        count *= grid.back().size();
+    }
+    const auto hermite = json.at("hermite").get<std::vector<std::vector<double>>>();
+    auto sigma = json.at("sigma").get<std::vector<double>>();
+    sigma.resize(sigma.empty() ? count : sigma.size(), 0.0);
+    const std::size_t width = std::size_t{1} << n;
+    if (hermite.size() != count || sigma.size() != count || json.at("cell_error").size() != n || json.at("growth").size() != n) {
+        refuse(path, "the axes have " + std::to_string(count) + " grid points together, hermite " + std::to_string(hermite.size()) + " and sigma " + std::to_string(sigma.size()));
+    }
+    std::vector<std::vector<double>> places(n), derivatives(width);
+    for (std::size_t node = 0; node < count; ++node) {
+        if (hermite[node].size() != width) {
+            refuse(path, "entry " + std::to_string(node) + " of hermite has " + std::to_string(hermite[node].size()) + " numbers instead of " + std::to_string(width));
+        }
+        std::size_t rest = node;
+        for (std::size_t k = n; k-- > 0;) {
+            places[k].push_back(grid[k][rest % grid[k].size()]);
+            rest /= grid[k].size();
+        }
+        for (std::size_t m = 0; m < width; ++m) {
+            derivatives[m].push_back(hermite[node][m]);
+        }
+        sigma[node] = sigma[node] > 0 ? sigma[node] : std::nan("");
+    }
+    core::Table table;
+    table.source = path.string();
+    nlohmann::json facts{{"underbody_table", 1}, {"range", json.value("outside", "clamp")}, {"quantity", quantity}, {"cell_error", json.at("cell_error")}, {"growth", json.at("growth")}};
+    for (std::size_t k = 0; k < n; ++k) {
+        facts["axes"].push_back(axes[k].at("name"));
+        table.add_numbers(axes[k].at("name"), core::si_unit(axes[k].at("unit").get<std::string>()), places[k]);
+    }
+    table.comments.push_back(facts.dump());
+    table.add_numbers(quantity, core::si_unit(unit), derivatives[0]);
+    table.add_numbers(quantity + "_sigma", core::si_unit(unit), sigma);
+    for (std::size_t m = 1; m < width; ++m) {
+        std::string name = quantity + "_per";
+        std::string per = unit;
+        for (std::size_t k = 0; k < n; ++k) {
+            if ((m >> k & 1) != 0) {
+                name += "_" + axes[k].at("name").get<std::string>();
+                per += " (" + axes[k].at("unit").get<std::string>() + ")^-1";
+            }
+        }
+        table.add_numbers(name, core::si_unit(per), derivatives[m]);
+    }
+    return table;
+}
+
+}  // namespace
+
+core::Table read_points(const std::filesystem::path& path) {
+    if (path.extension() != ".json") {
+        return core::read_csv(path);
+    }
+    const core::MappedFile file(path);
+    try {
+        const auto json = nlohmann::json::parse(file.bytes());
+        if (!json.is_object() || json.value("format", "") != "Underbody force table") {
+            refuse(path, "this is not a force table");
+        }
+        return table_of(json, path);
+    } catch (const nlohmann::json::parse_error& error) {
+        throw core::InputError("parse", "this is not JSON", {path.string(), {}, {}, error.byte});
+    } catch (const nlohmann::json::exception& error) {
+        refuse(path, std::string("the table is not complete: ") + error.what());
+    }
+}
+
+}  // namespace underbody::tables
