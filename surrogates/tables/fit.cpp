@@ -1,5 +1,6 @@
 #include "surrogates/tables/fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -98,35 +99,19 @@ std::vector<double> correlation_factor(const std::vector<double>& x) {
     return factor;
 }
 
-}  // namespace
-
-std::shared_ptr<const ForceTable::Impl> drawn_from(const ForceTable::Impl& table, std::uint64_t seed) {
-    auto drawn = std::make_shared<ForceTable::Impl>(table);
-    const CubicGrid& grid = table.surface;
-    const std::size_t n = grid.dimensions();
-    const std::size_t count = grid.nodes();
-    if (table.processes) {
-        // Straight from the joint posterior; splines carry the deviation between the nodes.
-        const CubicGrid deviation(grid.points(), table.processes->deviation(grid.hermite(), seed), SlopeRule::not_a_knot);
-        std::vector<double> hermite = grid.hermite();
-        for (std::size_t i = 0; i < hermite.size(); ++i) {
-            hermite[i] += deviation.hermite()[i];
-        }
-        drawn->surface = CubicGrid(grid.points(), std::move(hermite));
-        drawn->processes.reset();
-        drawn->kind += ", drawn";
-        return drawn;
+/// Independent normal numbers on a grid, correlated along every axis.
+std::vector<double> correlated_field(const std::vector<std::vector<double>>& points, std::uint64_t seed) {
+    std::size_t count = 1;
+    for (const auto& x : points) {
+        count *= x.size();
     }
     core::Random random(seed);
     std::vector<double> field(count);
     for (double& z : field) {
         z = random.normal();
     }
-    std::vector<std::vector<double>> points;
     std::size_t stride = count;
-    for (std::size_t k = 0; k < n; ++k) {
-        const auto& x = grid.axis(k).points();
-        points.push_back(x);
+    for (const auto& x : points) {
         stride /= x.size();
         const auto factor = correlation_factor(x);
         std::vector<double> line(x.size());
@@ -145,18 +130,59 @@ std::shared_ptr<const ForceTable::Impl> drawn_from(const ForceTable::Impl& table
             }
         }
     }
-    std::vector<double> values(count);
-    std::vector<double> at(n);
-    for (std::size_t node = 0; node < count; ++node) {
+    return field;
+}
+
+/// The grid lines, and the middles between them along axes with an error of interpolation there.
+std::vector<std::vector<double>> points_with_middles(const ForceTable::Impl& table) {
+    auto points = table.surface.points();
+    for (std::size_t k = 0; k < points.size() && !table.error.empty(); ++k) {
+        const auto& cells = table.error.cell_error(k);
+        if (std::none_of(cells.begin(), cells.end(), [](double e) { return e > 0; }) || points[k].size() > 300) {
+            continue;
+        }
+        std::vector<double> finer{points[k].front()};
+        for (std::size_t i = 1; i < points[k].size(); ++i) {
+            finer.push_back(0.5 * (points[k][i - 1] + points[k][i]));
+            finer.push_back(points[k][i]);
+        }
+        points[k] = std::move(finer);
+    }
+    return points;
+}
+
+}  // namespace
+
+std::shared_ptr<const ForceTable::Impl> drawn_from(const ForceTable::Impl& table, std::uint64_t seed) {
+    auto drawn = std::make_shared<ForceTable::Impl>(table);
+    drawn->kind += ", drawn";
+    drawn->processes.reset();
+    const auto add = [&](const CubicGrid& mean, std::vector<double> deviation, SlopeRule rule) {
+        const CubicGrid moved(mean.points(), deviation, rule);
+        std::vector<double> hermite = mean.hermite();
+        for (std::size_t i = 0; i < hermite.size(); ++i) {
+            hermite[i] += moved.hermite()[i];
+        }
+        drawn->surface = CubicGrid(mean.points(), std::move(hermite));
+    };
+    if (table.processes) {
+        // Straight from the joint posterior; splines carry the deviation between the nodes.
+        add(table.surface, table.processes->deviation(table.surface.hermite(), seed), SlopeRule::not_a_knot);
+        return drawn;
+    }
+    const auto points = points_with_middles(table);
+    const CubicGrid mean = table.surface.resampled(points);
+    std::vector<double> deviation = correlated_field(points, seed);
+    std::vector<double> at(points.size());
+    for (std::size_t node = 0; node < deviation.size(); ++node) {
         std::size_t rest = node;
-        for (std::size_t k = n; k-- > 0;) {
+        for (std::size_t k = points.size(); k-- > 0;) {
             at[k] = points[k][rest % points[k].size()];
             rest /= points[k].size();
         }
-        values[node] = grid.hermite()[node << n] + field[node] * table.error.sigma(at.data(), nullptr);
+        deviation[node] *= table.error.sigma(at.data(), nullptr);
     }
-    drawn->surface = CubicGrid(std::move(points), values, table.rule);
-    drawn->kind += ", drawn";
+    add(mean, std::move(deviation), SlopeRule::monotone);
     return drawn;
 }
 

@@ -323,6 +323,19 @@ TEST(ForceTable, CarriesTheErrorsOfItsPoints) {
     EXPECT_NEAR(std::sqrt(sum / 400), 0.2, 0.03);
 }
 
+TEST(ForceTable, DrawsWhatItsInterpolationMayMissBetweenExactPoints) {
+    const ForceTable table = monotone(csv("gap [mm], lift_force [N]\n1, 3\n2, 1\n3, 2\n4, 0\n5, 2\n"));
+    const double at = 0.002, between = 0.0025;
+    double sum = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        const auto drawn = table.drawn(seed);
+        ASSERT_NEAR(drawn.value(&at), 1, 1e-12);
+        sum += std::pow(drawn.value(&between) - table.value(&between), 2);
+    }
+    EXPECT_GT(table.sigma(&between), 0.05);
+    EXPECT_NEAR(std::sqrt(sum / 400), table.sigma(&between), 0.15 * table.sigma(&between));
+}
+
 TEST(ForceTable, FindsItsAxesAndConditions) {
     const auto data = csv("gap [mm], pitch [deg], speed [m/s], lift_force [N]\n1,0,0.5,1\n2,0,0.5,2\n2,1,0.5,4\n1,1,0.5,3\n");
     const ForceTable table = monotone(data);

@@ -28,7 +28,7 @@ struct Both {
         core::Random random(77);
         data.axes = axes;
         data.trends = 1;
-        data.trend_variance = 1e8;  // theirs is a constant without a prior
+        data.trend_variance = 1e6;  // theirs is a constant without a prior; more would cost digits
         for (unsigned i = 0; i < count; ++i) {
             double sum = 0;
             for (unsigned k = 0; k < axes; ++k) {
@@ -66,8 +66,8 @@ void expect_the_same(const Both& both, const OT::CovarianceModel& kernel, const 
         const std::vector<double> x(at.begin(), at.end());
         const double mean = result.getConditionalMean(at)[0];
         const double variance = result.getConditionalMarginalVariance(at);
-        EXPECT_NEAR(ours.mean(x, {&one, 1}), mean, 1e-6 * (1 + std::abs(mean)));
-        EXPECT_NEAR(ours.variance(x, {&one, 1}), variance, 2e-6 * (1 + variance));
+        EXPECT_NEAR(ours.mean(x, {&one, 1}), mean, 1e-5 * (1 + std::abs(mean)));
+        EXPECT_NEAR(ours.variance(x, {&one, 1}), variance, 1e-5 * (1 + variance));
     }
 }
 
