@@ -131,6 +131,10 @@ private:
             throw core::UsageError("usage", "forward and up are not perpendicular", {}, "for instance --forward +x --up +z");
         }
         axes_.starboard = cross(axes_.forward, axes_.up);
+        result_.forward = axes_.forward;
+        result_.up = axes_.up;
+        result_.starboard = axes_.starboard;
+        result_.mirror_axis = mirror_.axis;
     }
 
     void refuse_importer_errors() {
@@ -599,8 +603,24 @@ private:
             std::string text = "the surface is not closed (closure " + core::format_number(result_.closure, 3) + "): 1 kPa of reference pressure would change the force by " +
                                shown({1000 * result_.force_per_reference_pascal[0], 1000 * result_.force_per_reference_pascal[1], 1000 * result_.force_per_reference_pascal[2]}) + " N";
             const std::string half = half_model_hint();
-            warn(text + (half.empty() ? "" : "; " + half));
+            const std::string one = opening_zone();
+            warn(text + (!one.empty() ? "; it closes without zone '" + one + "' (a ground?): name the zones of the body with --zones" : half.empty() ? "" : "; " + half));
         }
+    }
+
+    /// The one zone without which the surface closes; empty when there is none.
+    [[nodiscard]] std::string opening_zone() const {
+        for (const auto& without : result_.zones) {
+            Vector area_vector{};
+            for (const auto& zone : result_.zones) {
+                area_vector = plus(area_vector, zone.area_vector, &zone == &without ? 0 : 1);
+            }
+            const double rest = result_.area - without.area;
+            if (result_.zones.size() > 1 && rest > 0 && norm(area_vector) < 1e-3 * rest) {
+                return without.name;
+            }
+        }
+        return {};
     }
 
     /// An opening that looks along one axis where the surface ends: a half model whose plane was not named.

@@ -96,6 +96,8 @@ struct LoadsResult {
     Wrench viscous;
     Vector reference{};
     std::string reference_from;          ///< "given", "centre of the base (zone 'base')", ...
+    Vector forward{}, up{}, starboard{}; ///< the vehicle's axes as unit vectors of the file's
+    int mirror_axis = -1;                ///< 0, 1, 2: a half model, all sums are of both halves; -1: the body as it is
     NamedLoads named;                    ///< of the total
     NamedLoads named_pressure;
     NamedLoads named_viscous;

@@ -68,30 +68,46 @@ std::string set_point_of(const LoadsCase& one) {
     return key;
 }
 
-double scatter_of(const LoadsCase& one, const std::string& name) { return value_of(one.numbers, name + "_scatter", 0.0); }
+double scatter_of(const LoadsCase& one, const std::string& name) { return value_of(one.scatters, name, value_of(one.numbers, name + "_scatter", 0.0)); }
 
-LoadsCase study_of(const std::vector<const LoadsCase*>& group, const std::string& column) {
-    const LoadsCase* finest = group.front();
-    for (const LoadsCase* one : group) {
-        if (value_of(one->numbers, column, 0.0) > value_of(finest->numbers, column, 0.0)) {
-            finest = one;
+/// Size of a case's mesh from its number of cells, or from that of the faces that were integrated.
+double mesh_size_of(const LoadsCase& one, const std::string& column) {
+    if (column == "faces") {
+        std::size_t faces = 0;
+        for (const auto& zone : one.loads.zones) {
+            faces += zone.faces;
+        }
+        return mesh_size(value_of(one.numbers, column, static_cast<double>(faces)), 2);
+    }
+    return mesh_size(value_of(one.numbers, column, 0.0));
+}
+
+LoadsCase study_of(std::vector<const LoadsCase*> group, const std::string& column) {
+    if (group.size() > 1) {  // finest first
+        std::stable_sort(group.begin(), group.end(), [&](const LoadsCase* a, const LoadsCase* b) { return mesh_size_of(*a, column) < mesh_size_of(*b, column); });
+        for (std::size_t i = 1; i < group.size(); ++i) {
+            if (!(mesh_size_of(*group[i], column) > mesh_size_of(*group[i - 1], column) * (1 + 1e-9))) {
+                throw core::InputError("range", "'" + group[i]->file + "' and '" + group[i - 1]->file + "' are the same case on meshes of the same size", {},
+                                       "a mesh study needs meshes that differ in '" + column + "', and conditions that tell other cases apart");
+            }
         }
     }
+    const LoadsCase* finest = group.front();
     LoadsCase result = *finest;
     const auto names = six(finest->loads);
     for (std::size_t i = 0; i < names.size(); ++i) {
-        std::vector<MeshValue> values;
-        for (const LoadsCase* one : group) {
-            values.push_back({mesh_size(value_of(one->numbers, column, 0.0)), six(one->loads)[i].value});
-        }
         double mesh = 0;
-        if (values.size() > 1) {
+        if (group.size() > 1) {
+            std::vector<MeshValue> values;
+            for (const LoadsCase* one : group) {
+                values.push_back({mesh_size_of(*one, column), six(one->loads)[i].value});
+            }
             result.meshes.emplace_back(names[i].name, mesh_uncertainty(values));
             mesh = result.meshes.back().second.standard_uncertainty;
         }
-        const double scatter = scatter_of(*finest, names[i].name);
-        if (values.size() > 1 || scatter > 0) {
-            result.sigmas.emplace_back(names[i].name, combined(std::vector<double>{mesh, scatter}));
+        const double sigma = combined(std::vector<double>{mesh, scatter_of(*finest, names[i].name)});
+        if (sigma > 0) {  // nought is no standard deviation: of what symmetry makes nought, say
+            result.sigmas.emplace_back(names[i].name, sigma);
         }
     }
     return result;
@@ -99,12 +115,20 @@ LoadsCase study_of(const std::vector<const LoadsCase*>& group, const std::string
 
 }  // namespace
 
+std::vector<LoadsCase> with_iteration_sigmas(const std::vector<LoadsCase>& cases) {
+    std::vector<LoadsCase> result;
+    for (const auto& one : cases) {
+        result.push_back(study_of({&one}, {}));
+    }
+    return result;
+}
+
 std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const std::string& column) {
     std::vector<std::pair<std::string, std::vector<const LoadsCase*>>> groups;
     for (const auto& one : cases) {
         const bool has = std::any_of(one.numbers.begin(), one.numbers.end(), [&](const auto& n) { return n.first == column; });
-        if (!has) {
-            std::vector<std::string> names;
+        if (!has && column != "faces") {
+            std::vector<std::string> names = {"faces"};
             for (const auto& number : one.numbers) {
                 names.push_back(number.first);
             }
@@ -140,7 +164,7 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases)
             }
             const double scale = load.unit == "N m" ? force * length : force;
             const double other = value_of(one.numbers, load.name, 0.0);
-            result.push_back({one.file, load.name, load.value, other, scale > 0 ? std::abs(load.value - other) / scale : 0});
+            result.push_back({one.file, load.name, {}, load.value, other, scale > 0 ? std::abs(load.value - other) / scale : 0});
         }
     }
     return result;
@@ -150,7 +174,7 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
     core::Table table;
     const std::vector<LoadsColumn> loads = cases.empty() ? std::vector<LoadsColumn>() : table_row(cases.front().loads);
     const auto free_name = [&](const std::string& name) {
-        const bool taken = name == "file" || name == "closure" || std::any_of(loads.begin(), loads.end(), [&](const LoadsColumn& c) { return c.name == name || c.name + "_sigma" == name; });
+        const bool taken = name == "file" || name == "values_from" || name == "reference_x" || name == "reference_y" || name == "reference_z" || std::any_of(loads.begin(), loads.end(), [&](const LoadsColumn& c) { return c.name == name || c.name + "_sigma" == name; });
         return taken ? name + "_stated" : name;
     };
     for (const auto& name : names_in(cases, [](const LoadsCase& c) -> const auto& { return c.texts; })) {
@@ -183,10 +207,21 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
             table.add_numbers(loads[i].name + "_sigma", loads[i].unit, std::move(sigmas));
         }
     }
+    for (std::size_t k = 0; k < 3 && !cases.empty(); ++k) {
+        std::vector<double> values;
+        for (const auto& one : cases) {
+            values.push_back(one.loads.reference[k]);
+        }
+        table.add_numbers(std::string("reference_") + "xyz"[k], "m", std::move(values));
+    }
     std::vector<std::string> files;
+    std::vector<std::string> origins;
     for (const auto& one : cases) {
         files.push_back(one.file);
+        origins.push_back(one.loads.values_from);
+        std::replace(origins.back().begin(), origins.back().end(), ',', ' ');
     }
+    table.add_text("values_from", std::move(origins));
     table.add_text("file", std::move(files));
     return table;
 }
@@ -210,6 +245,9 @@ nlohmann::json loads_table_json(const std::vector<LoadsCase>& cases) {
         }
         for (const auto& [name, study] : one.meshes) {
             entry["mesh_uncertainty"][name] = study;
+        }
+        if (!one.comparisons.empty()) {
+            entry["comparison"] = one.comparisons;
         }
         files.push_back(std::move(entry));
     }

@@ -8,6 +8,7 @@
 
 #include "core/table.h"
 #include "postproc/loads.h"
+#include "postproc/stated_loads.h"
 #include "postproc/uncertainty.h"
 
 namespace underbody::postproc {
@@ -20,27 +21,28 @@ struct LoadsCase {
     LoadsResult loads;
     std::vector<std::pair<std::string, double>> sigmas;             ///< lift_force -> standard uncertainty, SI
     std::vector<std::pair<std::string, MeshUncertainty>> meshes;    ///< lift_force -> what the mesh study says
+    std::vector<std::pair<std::string, double>> scatters{};         ///< lift_force -> standard uncertainty by iteration (iteration_sigmas)
+    std::vector<Comparison> comparisons{};                          ///< with the solver's own report
 };
 
-/// Texts, numbers, loads (table_row), file: one row a case. A condition that a case does not have is missing there.
-/// `written_units`: condition -> the unit to write it in. A condition called like a load (a manifest that already has
-/// lift_force) is kept as NAME_stated.
+/// Texts, numbers, loads (table_row) with their NAME_sigma, the reference point, values_from, file: one row a case. A
+/// condition that a case does not have is missing there. `written_units`: condition -> the unit to write it in. A
+/// condition called like a load (a manifest that already has lift_force) is kept as NAME_stated.
 core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<std::pair<std::string, std::string>>& written_units = {});
 
-/// Cases that differ in their mesh alone (the number of cells in condition `column`; same texts but `mesh`, same set
-/// points: gap, pitch, speed ...) become one, that of the finest mesh, with the uncertainty of each load from
-/// mesh_uncertainty(); a condition NAME_scatter (iteration) is added in. Cases with one mesh stay, without a sigma
-/// unless they have a scatter. Throws core::InputError when no case has the column.
+/// The cases with the standard uncertainty of each load from its iteration alone: `scatters`, else the condition
+/// NAME_scatter. Loads without either get none.
+std::vector<LoadsCase> with_iteration_sigmas(const std::vector<LoadsCase>& cases);
+
+/// Cases that differ in their mesh alone (the number of cells in condition `column`, or "faces": of the surface that was
+/// integrated; same texts but `mesh`, same set points: gap, pitch, speed ...) become one, that of the finest mesh, with
+/// the uncertainty of each load from mesh_uncertainty(), that of the iteration added in. Cases with one mesh stay, with
+/// the sigma of the iteration when it is known. Throws core::InputError: a case without the column, two cases of one
+/// set point with the same number.
 std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const std::string& column = "cells");
 
-/// A load against the same quantity in the conditions (a manifest that holds the solver's own forces).
-struct Comparison {
-    std::string file;
-    std::string quantity;
-    double value = 0;
-    double stated = 0;
-    double of_force = 0;  ///< |value - stated| over the size of the stated lift, drag and side force (moments: times the root of the area)
-};
+/// The loads against the same quantities in the conditions (a manifest that holds the solver's own forces). The measure
+/// `of_force` is over the size of the stated lift, drag and side force.
 std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases);
 
 /// {"files": [loads of each, with "conditions"]}

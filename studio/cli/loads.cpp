@@ -2,6 +2,8 @@
 #include "postproc/loads.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/loads_table.h"
+#include "postproc/stated_loads.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
@@ -24,6 +27,7 @@ struct Options {
     std::string reference, base = "*base*", forward = "+x", up = "+z", symmetry, fluid = "automatic";
     std::string density, speed, length, width, height, reference_pressure;
     std::string mesh_study, check;
+    std::vector<std::string> reports, monitors;
     int stations = 0;
     bool accept_problems = false;
     FieldOptions field;
@@ -33,20 +37,47 @@ std::optional<double> optional_quantity(const std::string& text, const char* uni
     return text.empty() ? std::nullopt : std::optional<double>(core::parse_in(text, unit));
 }
 
-postproc::Vector point_from(const std::string& text) {
+/// The point of the moments: "x,y,z" with lengths or names of conditions ("0,0,gap"), else the manifest's columns reference_x, _y, _z.
+std::optional<postproc::Vector> reference_of(const std::string& text, const ConditionedFile& file) {
+    const auto condition = [&](const std::string& name) {
+        const auto found = std::find_if(file.numbers.begin(), file.numbers.end(), [&](const auto& entry) { return entry.first == name; });
+        return found == file.numbers.end() ? std::nullopt : std::optional<double>(found->second);
+    };
+    if (text.empty()) {
+        const auto x = condition("reference_x");
+        const auto y = condition("reference_y");
+        const auto z = condition("reference_z");
+        if (!x && !y && !z) {
+            return std::nullopt;
+        }
+        if (!x || !y || !z) {
+            throw core::InputError("missing", "a reference point needs reference_x, reference_y and reference_z", {file.path, {}, {}, {}});
+        }
+        return postproc::Vector{*x, *y, *z};
+    }
     const auto parts = core::split(text, ',');
     if (parts.size() != 3) {
-        throw core::UsageError("usage", "'" + text + "' is no point", {}, "give x,y,z in m, or with units: \"0,0,5 mm\"");
+        throw core::UsageError("usage", "'" + text + "' is no point", {}, "give x,y,z in m, or with units: \"0,0,5 mm\", or conditions: \"0,0,gap\"");
     }
-    return {core::parse_in(parts[0], "m"), core::parse_in(parts[1], "m"), core::parse_in(parts[2], "m")};
+    postproc::Vector point{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::string part(core::trimmed(parts[k]));
+        const auto known = condition(part);
+        if (!known && !part.empty() && std::isalpha(static_cast<unsigned char>(part.front())) != 0) {
+            std::vector<std::string> names;
+            for (const auto& entry : file.numbers) {
+                names.push_back(entry.first);
+            }
+            throw core::UsageError("usage", "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'", {}, core::did_you_mean(part, names));
+        }
+        point[k] = known ? *known : core::parse_in(part, "m");
+    }
+    return point;
 }
 
 postproc::LoadsOptions loads_options(const Options& given) {
     postproc::LoadsOptions options;
     options.zones = given.field.zones;
-    if (!given.reference.empty()) {
-        options.reference = point_from(given.reference);
-    }
     options.base = given.base;
     options.forward = postproc::axis_from(given.forward);
     options.up = postproc::axis_from(given.up);
@@ -65,13 +96,18 @@ std::string cell(double value) {
     return std::string(text.size() < 13 ? 13 - text.size() : 1, ' ') + text;
 }
 
-void print(Shell& shell, const postproc::LoadsResult& result) {
+void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons);
+
+void print(Shell& shell, const postproc::LoadsCase& one) {
+    const postproc::LoadsResult& result = one.loads;
     const auto& [total, pressure, viscous] = std::tie(result.named, result.named_pressure, result.named_viscous);
     const auto line = [&](const std::string& name, double postproc::NamedLoads::*which, const char* unit) {
-        shell.print(name + std::string(16 - name.size(), ' ') + cell(total.*which) + cell(pressure.*which) + cell(viscous.*which) + "  " + unit);
+        const auto sigma = std::find_if(one.sigmas.begin(), one.sigmas.end(), [&](const auto& entry) { return entry.first == name; });
+        shell.print(name + std::string(16 - name.size(), ' ') + cell(total.*which) + cell(pressure.*which) + cell(viscous.*which) +
+                    (one.sigmas.empty() ? "" : sigma == one.sigmas.end() ? "            -" : cell(sigma->second)) + "  " + unit);
     };
     shell.print(result.file);
-    shell.print("                        total     pressure      viscous");
+    shell.print(std::string("                        total     pressure      viscous") + (one.sigmas.empty() ? "" : "        sigma"));
     line("lift_force", &postproc::NamedLoads::lift_force, "N, up");
     line("drag_force", &postproc::NamedLoads::drag_force, "N, against the motion");
     line("side_force", &postproc::NamedLoads::side_force, "N, to starboard");
@@ -96,27 +132,123 @@ void print(Shell& shell, const postproc::LoadsResult& result) {
     shell.print("from values on " + result.values_from + "; closure " + core::format_number(result.closure, 3) + "; 1 kPa of reference pressure would add " +
                 vector({1000 * result.force_per_reference_pascal[0], 1000 * result.force_per_reference_pascal[1], 1000 * result.force_per_reference_pascal[2]}) + " N");
     shell.print("sides: " + result.orientation);
+    if (!result.stations.empty()) {
+        shell.print("what the part behind each place carries (along forward from the reference point):\n     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
+        for (const auto& station : result.stations) {
+            shell.print("   " + cell(station.position) + "    " + cell(station.behind.lift_force) + "    " + cell(station.behind.drag_force) + "       " + cell(station.behind.pitch_moment));
+        }
+    }
+    print(shell, one.comparisons);
 }
 
-/// The loads against those that the manifest states; exit code 4 when one is further off than allowed.
+std::string of_force(const postproc::Comparison& one) { return core::format_number(100 * one.of_force, 3) + " % of the force apart"; }
+
+/// What the solver states beside what was integrated; rows of single zones and parts only with --verbose.
+void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
+    std::string file;
+    for (const auto& one : comparisons) {
+        if (one.stated_in != file) {
+            file = one.stated_in;
+            shell.print("the solver's own, in " + file + ":");
+        }
+        const bool zone = one.quantity.find(" on '") != std::string::npos && std::count(one.quantity.begin(), one.quantity.end(), '\'') == 2;
+        const bool part = zone || one.quantity.find(" part of ") != std::string::npos;
+        if (!part || shell.verbose) {
+            shell.print("  " + one.quantity + std::string(one.quantity.size() < 14 ? 14 - one.quantity.size() : 1, ' ') + cell(one.stated) + "  " + of_force(one));
+        }
+    }
+    if (!comparisons.empty()) {
+        const auto worst = std::max_element(comparisons.begin(), comparisons.end(), [](const auto& a, const auto& b) { return a.of_force < b.of_force; });
+        shell.print("  " + std::to_string(comparisons.size()) + " numbers compared, furthest: " + worst->quantity + ", " + of_force(*worst));
+    }
+}
+
+/// The loads against those that somebody states; exit code 4 when one is further off than allowed.
 int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double allowed) {
-    const auto comparisons = postproc::compare_with_stated(cases);
+    auto comparisons = postproc::compare_with_stated(cases);
+    for (const auto& one : cases) {
+        comparisons.insert(comparisons.end(), one.comparisons.begin(), one.comparisons.end());
+    }
     if (comparisons.empty()) {
-        throw core::InputError("missing", "nothing to check against: the manifest states no loads", {}, "columns such as lift_force, drag_force, pitch_moment");
+        throw core::InputError("missing", "nothing to check against: no report beside the file and no loads in a manifest", {},
+                               "give a force report with --report, a monitor with --monitor, or a manifest with columns such as lift_force, drag_force, pitch_moment");
     }
     double worst = 0;
     int failed = 0;
     for (const auto& one : comparisons) {
         worst = std::max(worst, one.of_force);
-        if (one.of_force > allowed) {
+        if (!(one.of_force <= allowed)) {
             ++failed;
-            shell.warn(one.file + ": " + one.quantity + " is " + core::format_number(one.value, 5) + ", stated " + core::format_number(one.stated, 5) + ": " +
-                       core::format_number(100 * one.of_force, 3) + " % of the force apart");
+            shell.warn(one.file + ": " + one.quantity + " is " + core::format_number(one.value, 5) + ", stated " + core::format_number(one.stated, 5) +
+                       (one.stated_in.empty() ? "" : " in " + one.stated_in) + ": " + of_force(one));
         }
     }
     shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " + core::format_number(100 * worst, 3) + " % of the force apart, " +
                std::to_string(failed) + " beyond " + core::format_number(100 * allowed, 3) + " %");
     return failed > 0 ? check_failed : done;
+}
+
+/// "{stem}" in a report's name is the name of the CFD file without its ending; the report then lies relative to that file.
+std::string beside(const std::string& report, const std::string& file) {
+    const auto at = report.find("{stem}");
+    if (at == std::string::npos) {
+        return report;
+    }
+    std::string name = report;
+    name.replace(at, 6, postproc::case_stem(file));
+    return (std::filesystem::path(file).parent_path() / name).string();
+}
+
+/// What the solver states of a case: beside the file, in the reports and monitors that were named; the later counts.
+void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one) {
+    auto stated = postproc::stated_beside(one.file, one.loads);
+    for (const auto& report : given.reports) {
+        const std::string path = beside(report, one.file);
+        const auto more = std::filesystem::is_directory(path) ? postproc::stated_by_openfoam(path, one.loads) : postproc::stated_in_report(path);
+        if (more.empty()) {
+            throw core::InputError("missing", "no forces in '" + path + "'", {}, "an OpenFOAM case keeps them under postProcessing");
+        }
+        stated.insert(stated.end(), more.begin(), more.end());
+    }
+    for (const auto& text : given.monitors) {
+        stated.push_back(postproc::stated_by_monitor(postproc::monitor_source(beside(text, one.file)), one.loads));
+    }
+    for (const auto& load : stated) {
+        if (load.history && load.part == postproc::LoadPart::total) {
+            shell.detail(load.file + ": " + load.quantity + " " + load.history->text);
+            if (!load.history->settled) {
+                shell.warn(load.file + ": " + load.quantity + " has not settled: " + load.history->text);
+            }
+        }
+    }
+    core::Problems notes;
+    one.comparisons = postproc::compare_with_solver(one.loads, stated, notes);
+    one.scatters = postproc::iteration_sigmas(one.loads, stated);
+    shell.show(notes);
+}
+
+postproc::LoadsCase case_of(Shell& shell, const Options& given, const ConditionedFile& file, postproc::LoadsOptions options) {
+    postproc::ReadOptions read = given.field.read_options();
+    read.zones = given.field.zones;
+    read.surfaces_only = true;
+    const postproc::Field field = postproc::read_field(file.path, read, shell.progress());
+    shell.show(field.problems);
+    options.reference = reference_of(given.reference, file);
+    postproc::LoadsCase one{file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {}, {}};
+    std::erase_if(one.numbers, [](const auto& entry) { return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z"; });
+    shell.show(one.loads.problems);
+    take_stated(shell, given, one);
+    return one;
+}
+
+void show_studies(Shell& shell, const std::vector<postproc::LoadsCase>& cases) {
+    for (const auto& one : cases) {
+        for (const auto& [name, study] : one.meshes) {
+            if (study.verdict != postproc::MeshVerdict::same) {
+                shell.info(one.file + ": " + name + ": " + study.text);
+            }
+        }
+    }
 }
 
 int run(Shell& shell, const Options& given) {
@@ -127,34 +259,23 @@ int run(Shell& shell, const Options& given) {
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
     for (std::size_t i = 0; i < batch.files.size(); ++i) {
-        const auto& file = batch.files[i];
-        shell.progress().report(static_cast<double>(i) / static_cast<double>(batch.files.size()), file.path);
-        postproc::ReadOptions read = given.field.read_options();
-        read.zones = given.field.zones;
-        read.surfaces_only = true;
-        const postproc::Field field = postproc::read_field(file.path, read, shell.progress());
-        shell.show(field.problems);
-        cases.push_back({file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {}, {}});
-        shell.show(cases.back().loads.problems);
+        shell.progress().check();
+        shell.progress().report(static_cast<double>(i) / static_cast<double>(batch.files.size()), batch.files[i].path);
+        cases.push_back(case_of(shell, given, batch.files[i], options));
     }
     const int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
-    if (!given.mesh_study.empty()) {
-        cases = postproc::mesh_studies(cases, given.mesh_study);
-        for (const auto& one : cases) {
-            for (const auto& [name, study] : one.meshes) {
-                shell.detail(one.file + ": " + name + ": " + study.text);
-            }
-        }
-    }
+    cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study);
+    show_studies(shell, cases);
     const bool table = batch.files.size() > 1 || !given.manifest.empty() || !given.out.empty();
     if (!given.out.empty()) {
         core::write_csv(given.out, postproc::loads_table(cases, batch.number_units));
         shell.info("wrote " + given.out);
     }
     if (shell.json) {
-        shell.print_json(table ? postproc::loads_table_json(cases) : nlohmann::json(cases.front().loads));
+        const nlohmann::json all = postproc::loads_table_json(cases);
+        shell.print_json(table ? all : all["files"].front());
     } else if (!table) {
-        print(shell, cases.front().loads);
+        print(shell, cases.front());
     } else if (given.out.empty()) {
         std::string text = core::write_csv(postproc::loads_table(cases, batch.number_units));
         text.pop_back();
@@ -171,7 +292,7 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("files", o->files, "CFD files, or patterns such as 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv'");
     command->add_option("--manifest", o->manifest, "table with a column `file`; its other columns are the conditions")->check(CLI::ExistingFile);
     command->add_option("-o,--out", o->out, "write a table (CSV) with one row a file");
-    command->add_option("--reference", o->reference, "point of the moments \"x,y,z\" in the file's axes (default: the centre of the base)");
+    command->add_option("--reference", o->reference, "point of the moments \"x,y,z\" in the file's axes, also by conditions: \"0,0,gap\" (default: the centre of the base)");
     command->add_option("--base", o->base, "zone whose centre is the default reference")->capture_default_str();
     command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane, with its place if not 0: y, or y=0.1");
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
@@ -183,9 +304,11 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("--length", o->length, "for coefficients (default: of the bounding box)");
     command->add_option("--width", o->width, "for coefficients");
     command->add_option("--height", o->height, "for coefficients");
-    command->add_option("--mesh-study", o->mesh_study, "condition with the number of cells: cases that differ in it alone become one, with NAME_sigma")->type_name("COLUMN");
-    command->add_option("--check", o->check, "compare with the loads that the manifest states; exit code 4 when further apart than this share of the force (0.01, \"1 %\")");
-    command->add_option("--stations", o->stations, "running integral along the body in so many steps (--json)")->check(CLI::Range(0, 10000));
+    command->add_option("--mesh-study", o->mesh_study, "condition with the number of cells, or faces: cases that differ in it alone become one, with NAME_sigma")->type_name("COLUMN");
+    command->add_option("--report", o->reports, "the solver's force report, or the OpenFOAM case, to compare with ({stem}: the file's name without ending); found by itself when it lies beside the file");
+    command->add_option("--monitor", o->monitors, "history of a load, QUANTITY=FILE:COLUMN or \"QUANTITY [UNIT]=FILE\": its last value is compared, its scatter becomes NAME_sigma");
+    command->add_option("--check", o->check, "exit code 4 when the loads are further from those stated (report, monitor, manifest) than this share of the force (0.01, \"1 %\")");
+    command->add_option("--stations", o->stations, "running integral along the body in so many steps")->check(CLI::Range(0, 10000));
     command->add_flag("--accept-problems", o->accept_problems, "go on although the file has errors such as faces without area");
     o->field.add_to(*command);
     command->footer(
@@ -193,8 +316,11 @@ void add_loads_command(CLI::App& app, Shell& shell) {
         "  underbody loads body.csv --symmetry y\n"
         "  underbody loads body.csv --zones 'hull*,base' --reference \"0,0,5 mm\" --json\n"
         "  underbody loads case.cas.h5 --density \"998 kg/m^3\" --speed \"0.5 m/s\" --length \"203.2 mm\"\n"
+        "  underbody loads body.csv --symmetry y --stations 20\n"
         "  underbody loads 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --symmetry y --out loads.csv\n"
-        "  underbody loads --manifest forces.csv --symmetry y --check 0.01\n"
+        "  underbody loads case.cas.gz --report forces.txt --check \"0.1 %\"\n"
+        "  underbody loads case.dat.h5 --monitor lift_force=lift-rfile.out --monitor \"drag_force [N]=report.out:drag\"\n"
+        "  underbody loads --manifest forces.csv --symmetry y --reference \"0,0,gap\" --check 0.01\n"
         "  underbody loads --manifest forces.csv --symmetry y --mesh-study cells --out loads.csv");
     shell.on(command, [&shell, o] { return run(shell, *o); });
 }

@@ -200,6 +200,14 @@ TEST(Loads, SettleTheSidesOfEachZone) {
     }
 }
 
+TEST(Loads, NameTheZoneThatOpensTheSurface) {
+    Field with_ground = box(false, false);
+    with_ground.zones.push_back(make_zone("ground", {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}}, {{0, 1, 2, 3}}, [](const Vector&) { return 1.0; }));
+    const auto result = loads(with_ground);
+    ASSERT_FALSE(result.problems.empty());
+    EXPECT_THAT(result.problems.back().message, HasSubstr("closes without zone 'ground'"));
+}
+
 TEST(Loads, TakeTheSidesAsToldWhenTold) {
     LoadsOptions options;
     options.fluid = FluidSide::as_in_file;

@@ -1,6 +1,7 @@
 // info, import, loads, views and probe as a user runs them.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -70,6 +71,84 @@ TEST_F(PostprocCommands, LoadsAreCheckedAgainstAManifest) {
     EXPECT_EQ(wrong.exit_code, 4);
     EXPECT_THAT(wrong.errors, testing::HasSubstr("b-h10.csv: lift_force is -1, stated -1.2"));
     EXPECT_EQ(run({"loads", "a-h5.csv", "--manifest", "stated.csv", "--check", "0.01"}).exit_code, 0);
+}
+
+TEST_F(PostprocCommands, LoadsAreCheckedAgainstTheSolversOwnReport) {
+    const auto report = [](const std::string& lift) {
+        return "Forces - Direction Vector (0 0 1)\nZone Pressure Viscous Total Pressure Viscous Total\nbase 2 0 2 0 0 0\nhull -3 0 -3 0 0 0\nNet " + lift + " 0 " + lift + " 0 0 0\n";
+    };
+    core::write_file(folder_.path() / "right.txt", report("-1"));
+    core::write_file(folder_.path() / "a-h5-forces.txt", report("-1.02"));  // found by its name
+    const auto found = run({"loads", "a-h5.csv"});
+    EXPECT_EQ(found.exit_code, 0) << found.errors;
+    EXPECT_THAT(found.output, testing::HasSubstr("the solver's own, in a-h5-forces.txt"));
+    EXPECT_THAT(found.output, testing::HasSubstr("2 % of the force apart"));
+    const auto wrong = run({"loads", "a-h5.csv", "--check", "1 %", "--json"});
+    EXPECT_EQ(wrong.exit_code, 4);
+    EXPECT_THAT(wrong.errors, testing::HasSubstr("lift_force is -1, stated -1.02 in a-h5-forces.txt"));
+    const json comparison = json::parse(wrong.output)["comparison"];
+    ASSERT_EQ(comparison.size(), 9U);
+    EXPECT_NEAR(comparison[6]["difference"].get<double>(), 0.02, 1e-12);
+    EXPECT_EQ(run({"loads", "b-h10.csv", "--report", "right.txt", "--check", "0.1 %"}).exit_code, 0);
+    EXPECT_EQ(run({"loads", "b-h10.csv", "--report", "{stem}-forces.txt", "--check", "0.1 %"}).exit_code, 3);  // there is none
+    const auto nothing = run({"loads", "b-h10.csv", "--check", "0.1 %"});
+    EXPECT_EQ(nothing.exit_code, 3);
+    EXPECT_THAT(nothing.errors, testing::HasSubstr("nothing to check against"));
+}
+
+TEST_F(PostprocCommands, LoadsTakeTheirScatterFromAMonitor) {
+    std::string monitor = "\"lift\"\n\"Iteration\" \"lift\"\n(\"Iteration\" \"lift\")\n";
+    for (int i = 1; i <= 100; ++i) {
+        monitor += std::to_string(i) + (i % 2 == 0 ? " -1.01\n" : " -0.99\n");
+    }
+    core::write_file(folder_.path() / "a-h5-lift.out", monitor);
+    core::write_file(folder_.path() / "b-h10-lift.out", monitor);
+    const auto table = run({"loads", "{variant}-h{gap:mm}.csv", "--monitor", "lift_force={stem}-lift.out", "--out", "loads.csv"});
+    EXPECT_EQ(table.exit_code, 0) << table.errors;
+    const core::Table read = core::read_csv(folder_.path() / "loads.csv");
+    EXPECT_NEAR(read.numbers("lift_force_sigma")[1], 0.01, 1e-3);
+    EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out", "--check", "0.5 %"}).exit_code, 4);
+    EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out", "--check", "1.5 %"}).exit_code, 0);
+    EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift=a-h5-lift.out"}).exit_code, 2);
+    EXPECT_THAT(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out"}).output, testing::HasSubstr("sigma"));
+}
+
+TEST_F(PostprocCommands, LoadsSayTheirReferencePointAndTakeAStatedOne) {
+    EXPECT_THAT(run({"loads", "a-h5.csv"}).output, testing::HasSubstr("about 1, 0.5, 0 m: centre of the base (zone 'base')"));
+    EXPECT_NEAR(run_json({"loads", "a-h5.csv", "--reference", "0,0.5,5 mm"})["pitch_moment"].get<double>(), -1, 1e-12);
+    const auto by_gap = run({"loads", "{variant}-h{gap:mm}.csv", "--reference", "0,0.5,gap"});
+    EXPECT_EQ(by_gap.exit_code, 0) << by_gap.errors;
+    const core::Table table = core::read_csv(by_gap.output, "stdout");
+    EXPECT_NEAR(table.numbers("reference_z")[1], 0.01, 1e-12);
+    core::write_file(folder_.path() / "points.csv", "reference_x [mm], reference_y [mm], reference_z [mm], file\n0, 500, 0, a-h5.csv\n2000, 500, 0, b-h10.csv\n");
+    const core::Table stated = core::read_csv(run({"loads", "--manifest", "points.csv"}).output, "stdout");
+    EXPECT_NEAR(stated.numbers("pitch_moment")[0], -1, 1e-12);
+    EXPECT_NEAR(stated.numbers("pitch_moment")[1], 1, 1e-12);
+    EXPECT_EQ(stated.numbers("reference_x")[1], 2);
+    EXPECT_EQ(run({"loads", "a-h5.csv", "--reference", "0,0"}).exit_code, 2);
+    EXPECT_EQ(run({"loads", "a-h5.csv", "--reference", "0,0,gap"}).exit_code, 2);
+}
+
+TEST_F(PostprocCommands, LoadsOfThreeMeshesGetTheirUncertaintyFromPatterns) {
+    UNDERBODY_NEEDS_SHARED("cfd/fields/ellipse-h5-p0-fine.csv");
+    std::filesystem::create_directory_symlink(test::shared_folder() / "cfd" / "fields", folder_.path() / "fields");
+    const auto run_it = run({"loads", "fields/{variant}-h{gap:mm}-p{pitch:deg}.csv", "fields/{variant}-h{gap:mm}-p{pitch:deg}-coarse.csv",
+                             "fields/{variant}-h{gap:mm}-p{pitch:deg}-fine.csv", "--symmetry", "y", "--mesh-study", "faces", "--out", "loads.csv"});
+    EXPECT_EQ(run_it.exit_code, 0) << run_it.errors;
+    EXPECT_THAT(run_it.errors, testing::HasSubstr("no convergence"));  // lift at 5 mm
+    EXPECT_THAT(run_it.errors, testing::HasSubstr("GCI"));
+    const core::Table table = core::read_csv(folder_.path() / "loads.csv");
+    EXPECT_EQ(table.rows(), 43U);
+    std::size_t with_sigma = 0;
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+        const double sigma = table.numbers("lift_force_sigma")[i];
+        with_sigma += std::isfinite(sigma) ? 1 : 0;
+        if (std::isfinite(sigma)) {
+            EXPECT_LT(sigma, 0.1 * std::abs(table.numbers("lift_force")[i]));
+            EXPECT_GT(sigma, 0);
+        }
+    }
+    EXPECT_EQ(with_sigma, 2U);
 }
 
 TEST_F(PostprocCommands, ImportWritesVtkFiles) {

@@ -1,0 +1,293 @@
+// Loads against what a solver states of itself: force reports, monitors, OpenFOAM's forces.
+#include "postproc/stated_loads.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "core/random.h"
+#include "core/text.h"
+#include "postproc/loads_table.h"
+#include "tests/support/support.h"
+
+namespace underbody::postproc {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A box of 2 x 1 x 0.5 m with p = 1 + z and a shear of (0.1, 0, 0) Pa on its base: base (0.2, 0, 2) N, hull (0, 0, -3) N.
+/// The half of it with y > 0 when asked for.
+std::string box(bool half) {
+    const std::string y0 = half ? "0.5" : "0";
+    const std::string head = "[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa ]\n";
+    const auto node = [&](const char* x, const std::string& y, const char* z, const char* p, const char* shear) {
+        return std::string(x) + "," + y + "," + z + "," + p + "," + shear + ",0,0\n";
+    };
+    std::string bottom;
+    std::string all;
+    for (const auto& [z, p] : {std::pair{"0", "1"}, {"0.5", "1.5"}}) {
+        for (const auto& [x, y] : {std::pair{"0", y0}, {"2", y0}, {"2", std::string("1")}, {"0", std::string("1")}}) {
+            all += node(x, y, z, p, "0");
+            bottom += *z == '0' && z[1] == 0 ? node(x, y, z, p, "0.1") : "";
+        }
+    }
+    return "[Name]\nbase\n\n" + head + bottom + "\n[Faces]\n0,3,2,1\n\n[Name]\nhull\n\n" + head + all + "\n[Faces]\n" + (half ? "" : "0,1,5,4\n") + "1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,6,7\n";
+}
+
+class StatedLoads : public testing::Test {
+protected:
+    LoadsResult loads_of(bool half = false) {
+        core::write_file(folder_.path() / "box.csv", box(half));
+        LoadsOptions options;
+        if (half) {
+            options.symmetry = "y=0.5";
+        }
+        return loads(read_field(folder_.path() / "box.csv"), options);
+    }
+    fs::path written(const std::string& name, const std::string& text) {
+        core::write_file(folder_.path() / name, text);
+        return folder_.path() / name;
+    }
+    core::TemporaryFolder folder_;
+};
+
+const std::string report =
+    "Forces - Direction Vector (0 0 1)\n"
+    "                 Forces (n)                                  Coefficients\n"
+    "Zone             Pressure         Viscous          Total            Pressure         Viscous          Total\n"
+    "base             2                0                2                3.2              0                3.2\n"
+    "hull             -3               0                -3               -4.8             0                -4.8\n"
+    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- ----------------\n"
+    "Net              -1               0                -1               -1.6             0                -1.6\n\n"
+    "Forces - Direction Vector (-2 0 0)\n"
+    "Zone             Pressure         Viscous          Total            Pressure         Viscous          Total\n"
+    "base             0                -0.2             -0.2             0                0                0\n"
+    "hull             0                0                0                0                0                0\n"
+    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- ----------------\n"
+    "Net              0                -0.2             -0.2             0                0                0\n\n"
+    "Moments - Moment Center (0 0 0) Moment Axis (0 1 0)\n"
+    "Zone             Pressure         Viscous          Total            Pressure         Viscous          Total\n"
+    "base             -2               0                -2               0                0                0\n"
+    "hull             3                0                3                0                0                0\n"
+    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- ----------------\n"
+    "Net              1                0                1                0                0                0\n";
+
+TEST_F(StatedLoads, OfAForceReportAreComparedRowByRow) {
+    const LoadsResult result = loads_of();
+    const auto stated = stated_in_report(written("forces.txt", report));
+    ASSERT_EQ(stated.size(), 27U);
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(result, stated, notes);
+    EXPECT_TRUE(notes.empty());
+    ASSERT_EQ(comparisons.size(), 27U);
+    for (const auto& one : comparisons) {
+        EXPECT_NEAR(one.value, one.stated, 1e-12) << one.quantity;
+        EXPECT_LT(one.of_force, 1e-12);
+    }
+    EXPECT_EQ(comparisons[0].quantity, "lift_force on 'base'");
+    EXPECT_EQ(comparisons[6].quantity, "lift_force");
+    EXPECT_EQ(comparisons[15].quantity, "drag_force");
+    EXPECT_EQ(comparisons[16].quantity, "pressure part of drag_force");
+    EXPECT_THAT(comparisons[24].quantity, HasSubstr("moment about (0, 1, 0) at (0, 0, 0) m"));
+}
+
+TEST_F(StatedLoads, ThatDifferAreSeenWithTheirShareOfTheForce) {
+    const LoadsResult result = loads_of();
+    std::string off = report;
+    off.replace(off.find("Net              -1 "), 20, "Net              -1.1");
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(result, stated_in_report(written("forces.txt", off)), notes);
+    const auto net = std::find_if(comparisons.begin(), comparisons.end(), [](const Comparison& c) { return c.quantity == "pressure part of lift_force"; });
+    ASSERT_NE(net, comparisons.end());
+    EXPECT_NEAR(net->of_force, 0.1 / std::hypot(1, 0.2), 1e-12);
+}
+
+TEST_F(StatedLoads, OfZonesThatWereNotIntegratedAreLeftOutAloud) {
+    const LoadsResult result = loads_of();
+    std::string other = report;
+    for (auto at = other.find("hull"); at != std::string::npos; at = other.find("hull")) {
+        other.replace(at, 4, "keel");
+    }
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(result, stated_in_report(written("forces.txt", other)), notes);
+    EXPECT_EQ(comparisons.size(), 9U);  // those of the base
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].message, HasSubstr("'keel'"));
+}
+
+TEST_F(StatedLoads, OfAHalfModelAreDoubledAndWhatBothHalvesCancelIsLeftOut) {
+    const LoadsResult result = loads_of(true);
+    EXPECT_NEAR(result.named.lift_force, -1, 1e-12);
+    const std::string half =
+        "Forces\nZone Pressure Viscous Total Pressure Viscous Total\n"
+        "base (0 0 1) (0.1 0 0) (0.1 0 1) (0 0 0) (0 0 0) (0 0 0)\n"
+        "hull (0 0.7 -1.5) (0 0 0) (0 0.7 -1.5) (0 0 0) (0 0 0) (0 0 0)\n"
+        "Net (0 0.7 -0.5) (0.1 0 0) (0.1 0.7 -0.5) (0 0 0) (0 0 0) (0 0 0)\n";
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(result, stated_in_report(written("forces.txt", half)), notes);
+    EXPECT_EQ(comparisons.size(), 18U);  // x and z
+    for (const auto& one : comparisons) {
+        EXPECT_NEAR(one.value, one.stated, 1e-12) << one.quantity;
+    }
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].message, HasSubstr("9 that both halves cancel"));
+}
+
+TEST_F(StatedLoads, LieBesideAFileUnderItsName) {
+    const LoadsResult result = loads_of();
+    EXPECT_TRUE(stated_beside(folder_.path() / "box.csv", result).empty());
+    written("box-forces.txt", report);
+    written("boxes.txt", report);              // another case
+    written("box-notes.txt", "nothing here");  // no report
+    EXPECT_EQ(stated_beside(folder_.path() / "box.csv", result).size(), 27U);
+}
+
+// ---- monitors ----
+
+std::string monitor(double mean, double scatter, std::uint64_t seed = 3) {
+    core::Random random(seed);
+    std::string text = "\"lift-rfile\"\n\"Iteration\" \"lift etc..\"\n(\"Iteration\" \"lift\" \"drag\")\n";
+    for (int i = 1; i <= 600; ++i) {
+        const double approach = 3 * std::exp(-i / 25.0);
+        text += std::to_string(i) + " " + core::format_number(mean + approach + scatter * random.normal()) + " " + core::format_number(0.2 + approach) + "\n";
+    }
+    return text;
+}
+
+TEST_F(StatedLoads, OfAMonitorGiveTheirLastValueAndTheScatterOfTheirTail) {
+    const LoadsResult result = loads_of();
+    const auto path = written("report.out", monitor(-1, 0.01));
+    MonitorSource source = monitor_source("lift_force=" + path.string() + ":lift");
+    EXPECT_EQ(source.column, "lift");
+    const StatedLoad lift = stated_by_monitor(source, result);
+    ASSERT_TRUE(lift.history);
+    EXPECT_NEAR(lift.history->standard_uncertainty, 0.01, 0.001);
+    EXPECT_NEAR(lift.value, -1, 0.04);
+    const auto sigmas = iteration_sigmas(result, {lift});
+    ASSERT_EQ(sigmas.size(), 1U);
+    EXPECT_EQ(sigmas[0].first, "lift_force");
+    core::Problems notes;
+    EXPECT_LT(compare_with_solver(result, {lift}, notes)[0].of_force, 0.04);
+    // A coefficient with its scale as the unit.
+    source = monitor_source("lift_force [2.5 N]=" + path.string() + ":lift");
+    EXPECT_NEAR(stated_by_monitor(source, result).value, 2.5 * lift.value, 1e-12);
+    // Of a half model both count twice.
+    const LoadsResult half = loads_of(true);
+    EXPECT_NEAR(iteration_sigmas(half, {lift})[0].second, 2 * sigmas[0].second, 1e-15);
+}
+
+TEST_F(StatedLoads, OfAMonitorAreRefusedWhenTheyAreNotClear) {
+    const LoadsResult result = loads_of();
+    const auto path = written("report.out", monitor(-1, 0.01));
+    const auto message = [](auto&& act) {
+        try {
+            act();
+        } catch (const core::Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("accepted");
+    };
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string()), result); }), HasSubstr("several columns"));
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string() + ":lft"), result); }), HasSubstr("did you mean 'lift'?"));
+    EXPECT_THAT(message([] { monitor_source("lift_froce=a.out"); }), HasSubstr("did you mean 'lift_force'?"));
+    EXPECT_THAT(message([] { monitor_source("lift_force [m]=a.out"); }), HasSubstr("no unit of lift_force"));
+    EXPECT_THAT(message([] { monitor_source("a.out"); }), HasSubstr("no QUANTITY=FILE"));
+    const auto brief = written("short.out", "(\"Iteration\" \"lift\")\n1 2\n2 2\n");
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + brief.string()), result); }), HasSubstr("too short"));
+}
+
+// ---- OpenFOAM ----
+
+/// Force and moment files of a case whose forces settle on those of the box, moments about the origin.
+void write_openfoam(const fs::path& folder, int from, int to, double error) {
+    std::string force = "# Force\n# CofR       : (0 0 0)\n#\n# Time        \t(total_x total_y total_z)\t(pressure_x pressure_y pressure_z)\t(viscous_x viscous_y viscous_z)\n";
+    std::string moment = "# Moment\n# CofR       : (0 0 0)\n#\n# Time        \t(total_x total_y total_z)\t(pressure_x pressure_y pressure_z)\t(viscous_x viscous_y viscous_z)\n";
+    for (int i = from; i <= to; ++i) {
+        const double z = -1 + error * (i % 2 == 0 ? 1 : -1);
+        const std::string time = std::to_string(i) + "\t";
+        const auto triple = [](double x, double y, double w) { return "(" + core::format_number(x) + " " + core::format_number(y) + " " + core::format_number(w) + ")"; };
+        force += time + triple(0.2, 0, z) + "\t" + triple(0, 0, z) + "\t" + triple(0.2, 0, 0) + "\n";
+        // r x F with the pressure at (1, 0.5, 0) and the shear at (1, 0.5, 0): (0.5 z, -z, 0) and (0, 0, -0.1)
+        moment += time + triple(0.5 * z, -z, -0.1) + "\t" + triple(0.5 * z, -z, 0) + "\t" + triple(0, 0, -0.1) + "\n";
+    }
+    core::write_file(folder / "postProcessing" / "forces" / std::to_string(from - 1) / "force.dat", force);
+    core::write_file(folder / "postProcessing" / "forces" / std::to_string(from - 1) / "moment.dat", moment);
+}
+
+TEST_F(StatedLoads, OfOpenFoamCarryOverRestartsAndMoveToTheReferencePoint) {
+    const LoadsResult result = loads_of();
+    write_openfoam(folder_.path(), 1, 100, 0.5);
+    write_openfoam(folder_.path(), 51, 150, 0.001);
+    core::write_file(folder_.path() / "system" / "controlDict",
+                     "functions { other { type x; } forces { type forces; // patches (keel);\n patches (base \"hul.*\"); rho rhoInf; rhoInf 998; } }\n");
+    const auto stated = stated_by_openfoam(folder_.path(), result);
+    ASSERT_EQ(stated.size(), 18U);
+    EXPECT_THAT(stated[0].zones, testing::ElementsAre("base", "hull"));
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(result, stated, notes);
+    ASSERT_EQ(comparisons.size(), 18U);
+    for (const auto& one : comparisons) {
+        EXPECT_NEAR(one.value, one.stated, 0.0011) << one.quantity;
+    }
+    EXPECT_EQ(comparisons[0].quantity, "lift_force");
+    EXPECT_NEAR(comparisons[0].stated, -0.999, 1e-12);  // the last row of the restart
+    ASSERT_TRUE(stated[0].history);
+    EXPECT_NEAR(stated[0].history->deviation, 0.001, 1e-4);
+    const auto sigmas = iteration_sigmas(result, stated);
+    EXPECT_EQ(sigmas.size(), 6U);
+}
+
+TEST_F(StatedLoads, OfOlderOpenFoamAreReadFromOneFile) {
+    const LoadsResult result = loads_of();
+    std::string text = "# Forces\n# CofR : (1 0.5 0)\n# Time forces(pressure viscous porous) moment(pressure viscous porous)\n";
+    for (int i = 1; i <= 10; ++i) {
+        text += std::to_string(i) + "\t((0 0 -1) (0.2 0 0) (0 0 0)) ((0 0 0) (0 0 0) (0 0 0))\n";
+    }
+    core::write_file(folder_.path() / "postProcessing" / "forces1" / "0" / "forces.dat", text);
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(result, stated_by_openfoam(folder_.path(), result), notes);
+    ASSERT_EQ(comparisons.size(), 18U);
+    for (const auto& one : comparisons) {
+        EXPECT_NEAR(one.value, one.stated, 1e-12) << one.quantity;
+    }
+    core::write_file(folder_.path() / "postProcessing" / "forces1" / "0" / "forces.dat", text + "11 ((0 0 -1) (0.2 0\n");
+    EXPECT_THROW(stated_by_openfoam(folder_.path(), result), core::InputError);
+}
+
+// ---- into the table ----
+
+TEST_F(StatedLoads, BecomeSigmasOfTheTableTogetherWithTheMesh) {
+    LoadsCase one;
+    one.file = "a.csv";
+    one.numbers = {{"gap", 0.005}, {"cells", 8000}, {"drag_force_scatter", 0.02}};
+    one.loads = loads_of();
+    one.scatters = {{"lift_force", 0.01}};
+    LoadsCase fine = one;
+    fine.file = "b.csv";
+    fine.numbers[1].second = 64000;
+    fine.loads.named.lift_force -= 0.03;
+    const auto alone = loads_table(with_iteration_sigmas({one}));
+    EXPECT_NEAR(alone.numbers("lift_force_sigma")[0], 0.01, 1e-15);
+    EXPECT_NEAR(alone.numbers("drag_force_sigma")[0], 0.02, 1e-15);
+    EXPECT_EQ(alone.find("pitch_moment_sigma"), nullptr);
+    EXPECT_EQ(alone.numbers("reference_x")[0], 1);
+    EXPECT_EQ(alone.text("values_from")[0], "nodes");
+    // Two meshes, ratio 2, order 2: 3 * 0.03 / 3 is the 95 % interval.
+    const auto both = loads_table(mesh_studies({one, fine}));
+    ASSERT_EQ(both.rows(), 1U);
+    EXPECT_NEAR(both.numbers("lift_force_sigma")[0], std::hypot(0.015, 0.01), 1e-12);
+    EXPECT_EQ(both.find("side_force_sigma"), nullptr);  // nought on both meshes
+    // By the faces of the surface: the same number of them is no study, and the error names both files.
+    try {
+        mesh_studies({one, fine}, "faces");
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("'b.csv' and 'a.csv'"));
+    }
+}
+
+}  // namespace
+}  // namespace underbody::postproc
