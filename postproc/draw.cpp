@@ -238,8 +238,9 @@ private:
         }
         auto* property = actor->GetProperty();
         property->SetOpacity(surface.opacity);
-        property->SetAmbient(surface.values.empty() ? 0.35 : 0.58);
-        property->SetDiffuse(surface.values.empty() ? 0.65 : 0.42);
+        // Values are read off the colours: shading may hint at the shape but not change them.
+        property->SetAmbient(surface.values.empty() ? 0.35 : 0.80);
+        property->SetDiffuse(surface.values.empty() ? 0.65 : 0.20);
         property->SetSpecular(surface.values.empty() ? 0.04 : 0.0);
         property->SetSpecularPower(30);
         if (surface.edges) {
@@ -260,7 +261,10 @@ private:
         contours->SetInputData(&data);
         int i = 0;
         for (const double tick : round_ticks(range_.first, range_.second, count)) {
-            contours->SetValue(i++, tick);
+            const bool zero = std::abs(tick) < 1e-9 * (range_.second - range_.first);
+            if (scene_.colours != ColourMap::diverging || !zero) {  // where nothing differs the line of zero is noise
+                contours->SetValue(i++, tick);
+            }
         }
         contours->Update();
         vtkNew<vtkPolyDataMapper> mapper;

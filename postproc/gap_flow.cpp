@@ -1,6 +1,9 @@
 // What flows through the gap under the base.
+#include <vtkCellData.h>
 #include <vtkCutter.h>
 #include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
@@ -74,6 +77,32 @@ struct Sums {
     }
 };
 
+/// Values of cells, spread to the nodes, lose what the walls hold back: beside a wall the mean of the nodes is not the
+/// value of the cell. What is missing in each cell, so that sums over cuts are those of the cells.
+void keep_what_spreading_lost(vtkUnstructuredGrid& volume, const std::string& name) {
+    auto* in_cells = volume.GetCellData()->GetArray(name.c_str());
+    auto* at_nodes = volume.GetPointData()->GetArray(name.c_str());
+    if (in_cells == nullptr || at_nodes == nullptr) {
+        return;
+    }
+    vtkNew<vtkDoubleArray> lost;
+    lost->SetName((name + "_lost").c_str());
+    lost->SetNumberOfComponents(in_cells->GetNumberOfComponents());
+    lost->SetNumberOfTuples(volume.GetNumberOfCells());
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < volume.GetNumberOfCells(); ++cell) {
+        volume.GetCellPoints(cell, ids);
+        for (int k = 0; k < in_cells->GetNumberOfComponents(); ++k) {
+            double mean = 0;
+            for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i) {
+                mean += at_nodes->GetComponent(ids->GetId(i), k);
+            }
+            lost->SetComponent(cell, k, in_cells->GetComponent(cell, k) - mean / static_cast<double>(std::max<vtkIdType>(1, ids->GetNumberOfIds())));
+        }
+    }
+    volume.GetCellData()->AddArray(lost);
+}
+
 /// Base, axes and volume, ready for cuts.
 class Gap {
 public:
@@ -90,6 +119,8 @@ public:
         if (volume_ == nullptr || volume_->GetPointData()->GetArray("velocity") == nullptr) {
             throw core::InputError("missing", "the flow through the gap needs a volume with a velocity", place_of(field), "CFD-Post surfaces do not hold one");
         }
+        keep_what_spreading_lost(*volume_, "velocity");
+        keep_what_spreading_lost(*volume_, "pressure");
         for (const Zone* zone : base_) {
             Box one{};
             zone->surface->GetBounds(one.data());
@@ -152,16 +183,24 @@ public:
         const SurfaceArrays cut(*triangles->GetOutput());
         auto* velocity = triangles->GetOutput()->GetPointData()->GetArray("velocity");
         auto* pressure = triangles->GetOutput()->GetPointData()->GetArray("pressure");
+        auto* lost_velocity = triangles->GetOutput()->GetCellData()->GetArray("velocity_lost");
+        auto* lost_pressure = triangles->GetOutput()->GetCellData()->GetArray("pressure_lost");
         Sums sums;
         for (std::size_t f = 0; f < cut.faces(); ++f) {
+            Point more_velocity{};
+            if (lost_velocity != nullptr) {
+                lost_velocity->GetTuple(static_cast<vtkIdType>(f), more_velocity.data());
+            }
+            const double more_pressure = lost_pressure == nullptr ? 0 : lost_pressure->GetComponent(static_cast<vtkIdType>(f), 0);
             std::vector<Corner> polygon;
             for (Index i = cut.offsets()[f]; i < cut.offsets()[f + 1]; ++i) {
                 const Index node = cut.connectivity()[static_cast<std::size_t>(i)];
                 const double* x = cut.points().data() + 3 * node;
                 Point v{};
                 velocity->GetTuple(node, v.data());
+                v = plus(v, more_velocity);
                 polygon.push_back({dot({x[0], x[1], x[2]}, starboard_), dot({x[0], x[1], x[2]}, options_.up), -dot(v, options_.forward), std::sqrt(dot(v, v)),
-                                   pressure == nullptr ? 0 : pressure->GetComponent(node, 0)});
+                                   pressure == nullptr ? 0 : pressure->GetComponent(node, 0) + more_pressure});
             }
             polygon = clipped(polygon, &Corner::side, section.left, -1);
             polygon = clipped(polygon, &Corner::side, section.right, 1);

@@ -196,7 +196,7 @@ vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::
     }
     vtkNew<vtkCellDataToPointData> to_points;
     to_points->SetInputConnection(append->GetOutputPort());
-    to_points->PassCellDataOff();
+    to_points->PassCellDataOn();
     to_points->Update();
     auto result = vtkSmartPointer<vtkUnstructuredGrid>::New();
     result->ShallowCopy(to_points->GetOutput());
@@ -233,7 +233,45 @@ DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point&
     return drawn;
 }
 
-std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest) {
+namespace {
+
+/// The velocity without its part through the mirror plane at the plane's own nodes (averages of cells leave some there).
+vtkSmartPointer<vtkDataArray> velocity_along(vtkUnstructuredGrid& volume, const ViewMirror& mirror) {
+    auto* velocity = volume.GetPointData()->GetArray("velocity");
+    if (velocity == nullptr || mirror.axis < 0) {
+        return velocity;
+    }
+    auto along = vtkSmartPointer<vtkDoubleArray>::New();
+    along->DeepCopy(velocity);
+    along->SetName("velocity");
+    const double near = 1e-6 * volume.GetLength();
+    for (vtkIdType i = 0; i < volume.GetNumberOfPoints(); ++i) {
+        if (std::abs(volume.GetPoint(i)[mirror.axis] - mirror.at) < near) {
+            along->SetComponent(i, mirror.axis, 0);
+        }
+    }
+    return along;
+}
+
+DrawnLine line_of(vtkPolyData& traced, vtkIdType cell) {
+    auto* velocity = traced.GetPointData()->GetArray("velocity");
+    vtkNew<vtkIdList> ids;
+    traced.GetCellPoints(cell, ids);
+    DrawnLine line;
+    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i) {
+        Point p{};
+        traced.GetPoint(ids->GetId(i), p.data());
+        double v[3];
+        velocity->GetTuple(ids->GetId(i), v);
+        line.points.push_back(p);
+        line.values.push_back(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    }
+    return line;
+}
+
+}  // namespace
+
+std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest, const ViewMirror& mirror) {
     vtkNew<vtkPoints> points;
     for (const auto& seed : seeds) {
         points->InsertNextPoint(seed.data());
@@ -241,7 +279,8 @@ std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vecto
     vtkNew<vtkPolyData> source;
     source->SetPoints(points);
     vtkNew<vtkUnstructuredGrid> with_vectors;
-    with_vectors->ShallowCopy(&volume);
+    with_vectors->CopyStructure(&volume);
+    with_vectors->GetPointData()->AddArray(velocity_along(volume, mirror));
     with_vectors->GetPointData()->SetActiveVectors("velocity");
     vtkNew<vtkStreamTracer> tracer;
     tracer->SetInputData(with_vectors);
@@ -255,24 +294,29 @@ std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vecto
     tracer->SetComputeVorticity(false);
     tracer->Update();
     vtkPolyData* traced = tracer->GetOutput();
-    auto* velocity = traced->GetPointData()->GetArray("velocity");
-    std::vector<DrawnLine> lines;
-    vtkNew<vtkIdList> ids;
-    for (vtkIdType c = 0; velocity != nullptr && c < traced->GetNumberOfCells(); ++c) {
-        traced->GetCellPoints(c, ids);
-        DrawnLine line;
-        for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i) {
-            Point p{};
-            traced->GetPoint(ids->GetId(i), p.data());
-            double v[3];
-            velocity->GetTuple(ids->GetId(i), v);
-            line.points.push_back(p);
-            line.values.push_back(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-        }
-        if (line.points.size() > 1) {
-            lines.push_back(std::move(line));
-        }
+    auto* seed_of = traced->GetCellData()->GetArray("SeedIds");
+    std::vector<DrawnLine> lines(seeds.size());
+    if (traced->GetPointData()->GetArray("velocity") == nullptr) {
+        return {};
     }
+    for (vtkIdType c = 0; c < traced->GetNumberOfCells(); ++c) {
+        DrawnLine half = line_of(*traced, c);
+        if (half.points.size() < 2) {
+            continue;
+        }
+        const auto seed = seed_of == nullptr ? static_cast<std::size_t>(c) % seeds.size() : static_cast<std::size_t>(seed_of->GetComponent(c, 0));
+        DrawnLine& whole = lines[seed];
+        if (whole.points.empty()) {
+            whole = std::move(half);
+            continue;
+        }
+        // The two halves of a line begin at its seed.
+        std::reverse(whole.points.begin(), whole.points.end());
+        std::reverse(whole.values.begin(), whole.values.end());
+        whole.points.insert(whole.points.end(), half.points.begin() + 1, half.points.end());
+        whole.values.insert(whole.values.end(), half.values.begin() + 1, half.values.end());
+    }
+    std::erase_if(lines, [](const DrawnLine& line) { return line.points.size() < 2; });
     return lines;
 }
 

@@ -39,13 +39,15 @@ DrawnSurface drawn_surface(const Zone& zone, const std::string& array);
 void mirror_into(DrawnSurface& surface, const ViewMirror& mirror);
 DrawnLine mirrored(const DrawnLine& line, const ViewMirror& mirror);
 
-/// All volumes in one grid with the given arrays at the points; nullptr when the field has no volume with cells.
+/// All volumes in one grid with the given arrays at the points, and in the cells too where the file has them there;
+/// nullptr when the field has no volume with cells.
 vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::vector<std::string>& arrays);
 
 /// The grid cut by a plane, as triangles with values at their points.
 DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point& normal, const std::string& array);
 
-/// Streamlines of `velocity` (point data) through the seeds, both ways; values are speeds.
-std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest);
+/// Streamlines of `velocity` (point data) through the seeds, each one line from upstream to downstream; values are
+/// speeds. No stream crosses the mirror plane of a half model.
+std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest, const ViewMirror& mirror = {});
 
 }  // namespace underbody::postproc

@@ -18,6 +18,7 @@
 #include "core/text.h"
 #include "postproc/colours.h"
 #include "postproc/loads.h"
+#include "postproc/stated_loads.h"
 #include "postproc/view_parts.h"
 
 namespace underbody::postproc {
@@ -41,18 +42,21 @@ public:
         body_ = empty_box();
         base_box_ = empty_box();
         for (const Zone* zone : zones_) {
-            Box box{};
-            zone->surface->GetBounds(box.data());
-            widen(body_, box);
             if (matches(options.base, zone->name)) {
-                widen(base_box_, box);
+                widen(base_box_, box_of(*zone));
                 has_base_ = true;
             }
+        }
+        if (options.zones.empty()) {  // a ground is a wall too, but it would hide the body
+            std::erase_if(zones_, [&](const Zone* zone) { return !near_body(*zone); });
+        }
+        for (const Zone* zone : zones_) {
+            widen(body_, box_of(*zone));
         }
         find_mirror();
         name_ = options.case_name;
         if (name_.empty() && !field.files.empty()) {
-            name_ = std::filesystem::path(field.files.front()).filename().string();
+            name_ = case_stem(field.files.front());
         }
     }
 
@@ -256,26 +260,41 @@ private:
         if (!has_base_) {
             return true;
         }
+        return diagonal(box_of(zone)) < 4 * diagonal(base_box_);
+    }
+    [[nodiscard]] static Box box_of(const Zone& zone) {
         Box box{};
         zone.surface->GetBounds(box.data());
-        return diagonal(box) < 4 * diagonal(base_box_);
+        return box;
     }
 
     [[nodiscard]] Box body_without_ground() const {
         Box box = empty_box();
         for (const Zone* zone : zones_) {
             if (near_body(*zone)) {
-                Box one{};
-                zone->surface->GetBounds(one.data());
-                widen(box, one);
+                widen(box, box_of(*zone));
             }
         }
         return box;
     }
 
+public:
+    /// Both halves of the body, without a ground.
+    [[nodiscard]] Box whole_body() const {
+        Box box = body_without_ground();
+        if (mirror_.axis >= 0) {
+            const auto k = static_cast<std::size_t>(mirror_.axis);
+            const double reach = std::max(std::abs(box[2 * k] - mirror_.at), std::abs(box[2 * k + 1] - mirror_.at));
+            box[2 * k] = mirror_.at - reach;
+            box[2 * k + 1] = mirror_.at + reach;
+        }
+        return box;
+    }
+
+private:
     /// The body with some room, not beyond what there is.
     [[nodiscard]] Box surroundings(const DrawnSurface& plane) const {
-        Box box = body_without_ground();
+        Box box = options_.box.value_or(body_without_ground());
         const double length = diagonal(box);
         Box all = empty_box();
         for (const auto& p : plane.points) {
@@ -286,7 +305,7 @@ private:
             box[2 * k] = std::max(box[2 * k] - share * length, std::min(all[2 * k], box[2 * k]));
             box[2 * k + 1] = std::min(box[2 * k + 1] + share * length, std::max(all[2 * k + 1], box[2 * k + 1]));
         }
-        return options_.box.value_or(box);
+        return box;
     }
 
     [[nodiscard]] static std::pair<double, double> range_within(const DrawnSurface& surface, const Box& box) {
@@ -333,7 +352,7 @@ private:
                 }
             }
         }
-        for (auto& line : streamlines(*volume, seeds, 3 * diagonal(base_box_))) {
+        for (auto& line : streamlines(*volume, seeds, 3 * diagonal(base_box_), mirror_)) {
             line.width = 2;
             if (mirror_.axis >= 0) {
                 scene.lines.push_back(mirrored(line, mirror_));
@@ -352,14 +371,7 @@ private:
         scene.value_name = "speed";
         scene.value_unit = "m/s";
         scene.camera = from_below();
-        Box box = body_without_ground();
-        if (mirror_.axis >= 0) {
-            const auto k = static_cast<std::size_t>(mirror_.axis);
-            const double reach = std::max(std::abs(box[2 * k] - mirror_.at), std::abs(box[2 * k + 1] - mirror_.at));
-            box[2 * k] = mirror_.at - reach;
-            box[2 * k + 1] = mirror_.at + reach;
-        }
-        scene.camera.box = options_.box.value_or(box);
+        scene.camera.box = options_.box.value_or(whole_body());
         scene.camera.zoom = 0.98;
         scene.title = "streamlines in the gap";
         composed.caption = "Through the middle of the gap (" + core::format_number(1000 * gap, 3) + " mm at the centre of the base), seen from below, bow to the right.";
@@ -471,10 +483,12 @@ std::vector<View> views(const Field& field, const ViewOptions& options, core::Pr
 ViewOptions shared_view_options(const std::vector<const Field*>& fields, const ViewOptions& options, core::Progress& progress) {
     ViewOptions shared = options;
     shared.ranges.clear();
+    Box box = empty_box();
     for (const Field* field : fields) {
         ViewOptions own = options;
         own.ranges.clear();
         const Composer composer(*field, own);
+        widen(box, composer.whole_body());
         for (const auto& name : composer.possible()) {
             progress.check();
             const auto range = range_of(composer.compose(name).scene);
@@ -485,6 +499,9 @@ ViewOptions shared_view_options(const std::vector<const Field*>& fields, const V
                 found->second = {std::min(found->second.first, range.first), std::max(found->second.second, range.second)};
             }
         }
+    }
+    if (!options.box && box[0] <= box[1]) {
+        shared.box = box;
     }
     for (const auto& given : options.ranges) {  // what the caller fixed stays
         std::erase_if(shared.ranges, [&](const auto& entry) { return entry.first == given.first || entry.first.starts_with(given.first + "-"); });

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/field.h"
+#include "postproc/kinematic.h"
 #include "postproc/loads.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
@@ -120,7 +121,7 @@ void add_probe_command(CLI::App& app, Shell& shell) {
     command->add_option("--base", o->base, "zone above the gap")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
-    command->add_option("--density", o->density, "for the mass flow, when the file does not say it");
+    command->add_option("--density", o->density, "for the mass flow, and for files that hold pressure over density");
     command->add_option("-o,--out", o->out, "write the table (CSV)");
     o->field.add_to(*command);
     command->footer(
@@ -130,8 +131,11 @@ void add_probe_command(CLI::App& app, Shell& shell) {
         "  underbody probe body.csv --point \"0,0,5 mm\" --arrays pressure");
     shell.on(command, [&shell, o] {
         postproc::ReadOptions read = o->field.read_options();
-        const auto field = postproc::read_field(o->file, read, shell.progress());
+        auto field = postproc::read_field(o->file, read, shell.progress());
         shell.show(field.problems);
+        if (!o->density.empty()) {
+            postproc::multiply_by_density(field, core::parse_in(o->density, "kg/m^3"));
+        }
         const core::Table table = look(field, *o, shell);
         if (!o->out.empty()) {
             core::write_csv(o->out, table);

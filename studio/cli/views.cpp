@@ -10,8 +10,10 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/field.h"
+#include "postproc/kinematic.h"
 #include "postproc/loads.h"
 #include "postproc/probe.h"
+#include "postproc/stated_loads.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
@@ -28,7 +30,7 @@ struct Options {
     std::string out = "views";
     std::vector<std::string> names;
     std::vector<std::string> ranges;
-    std::string symmetry, base = "*base*", forward = "+x", up = "+z", difference;
+    std::string symmetry, base = "*base*", forward = "+x", up = "+z", difference, density;
     int width = 1200, height = 800;
     bool list = false;
     FieldOptions field;
@@ -55,16 +57,6 @@ postproc::ViewOptions view_options(const Options& given) {
         options.ranges.emplace_back(text.substr(0, equals), std::pair{si(low), si(high)});
     }
     return options;
-}
-
-std::string stem_of(const std::string& file) {
-    std::string stem = fs::path(file).filename().string();
-    for (const char* ending : {".gz", ".csv", ".cas", ".h5", ".case", ".encas", ".cgns", ".vtp", ".vtu"}) {
-        if (stem.ends_with(ending)) {
-            stem.resize(stem.size() - std::string(ending).size());
-        }
-    }
-    return stem;
 }
 
 /// Writes pictures and remembers what was written.
@@ -100,7 +92,7 @@ bool has_profile(const std::vector<std::string>& names) {
 
 void draw_case(Shell& shell, const Options& given, const postproc::Field& field, const postproc::ViewOptions& shared, const std::string& prefix, Album& album) {
     postproc::ViewOptions options = shared;
-    options.case_name = stem_of(field.files.front());
+    options.case_name = postproc::case_stem(field.files.front());
     auto possible = postproc::possible_views(field, options);
     if (has_profile(possible)) {
         possible.emplace_back("profile-gap");
@@ -132,12 +124,23 @@ void draw_case(Shell& shell, const Options& given, const postproc::Field& field,
     }
 }
 
+/// Pictures show pascal: what a file has over density needs one.
+void use_density(Shell& shell, const Options& given, postproc::Field& field) {
+    const auto density = given.density.empty() ? field.density : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
+    if (density) {
+        postproc::multiply_by_density(field, *density);
+    } else if (postproc::is_kinematic(field)) {
+        shell.warn(field.files.front() + ": pressure is over density here: --density \"998 kg/m^3\" draws it");
+    }
+}
+
 int run(Shell& shell, const Options& given) {
     const Batch batch = find_files(given.files, "");
     std::vector<postproc::Field> fields;
     for (const auto& file : batch.files) {
         fields.push_back(postproc::read_field(file.path, given.field.read_options(), shell.progress()));
         shell.show(fields.back().problems);
+        use_density(shell, given, fields.back());
     }
     Album album(shell, given);
     postproc::ViewOptions options = view_options(given);
@@ -155,7 +158,7 @@ int run(Shell& shell, const Options& given) {
             options = postproc::shared_view_options(all, options, shell.progress());
         }
         for (const auto& field : fields) {
-            draw_case(shell, given, field, options, fields.size() > 1 ? stem_of(field.files.front()) + "-" : "", album);
+            draw_case(shell, given, field, options, fields.size() > 1 ? postproc::case_stem(field.files.front()) + "-" : "", album);
         }
     }
     if (shell.json) {
@@ -179,6 +182,7 @@ void add_views_command(CLI::App& app, Shell& shell) {
     command->add_option("--base", o->base, "zone that is the base")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
+    command->add_option("--density", o->density, "for files that hold pressure over density (OpenFOAM)");
     command->add_option("--width", o->width, "pixels")->check(CLI::Range(64, 8192))->capture_default_str();
     command->add_option("--height", o->height, "pixels")->check(CLI::Range(64, 8192))->capture_default_str();
     o->field.add_to(*command);
@@ -186,6 +190,7 @@ void add_views_command(CLI::App& app, Shell& shell) {
         "Examples:\n"
         "  underbody views body.csv --symmetry y --out pictures\n"
         "  underbody views case.cas.gz --zones base,hull --symmetry y --view speed-symmetry,streamlines-gap\n"
+        "  underbody views case --density \"998 kg/m^3\" --symmetry y      an OpenFOAM case\n"
         "  underbody views h2.csv h5.csv --symmetry y                    one range and camera for both\n"
         "  underbody views coarse.csv fine.csv --symmetry y --difference pressure");
     shell.on(command, [&shell, o] { return run(shell, *o); });

@@ -52,6 +52,16 @@ TEST(ViewsOfAVolume, ShowTheSymmetryPlaneAndTheGap) {
     EXPECT_THAT(names, testing::IsSupersetOf({"pressure-underbody", "pressure-hull", "pressure-symmetry", "speed-symmetry", "streamlines-gap"}));
 }
 
+TEST(ViewsOfAVolume, LeaveAGroundOutThatWouldHideTheBody) {
+    UNDERBODY_NEEDS_SHARED("cfd/volume/ellipse-h5-coarse.cas.gz");
+    ReadOptions surfaces;
+    surfaces.surfaces_only = true;
+    const Field field = read_field(test::shared_folder() / "cfd/volume/ellipse-h5-coarse.cas.gz", surfaces);
+    ViewOptions named = half_model();
+    named.zones = {"base", "hull"};
+    EXPECT_EQ(view(field, "pressure-underbody", half_model()).png, view(field, "pressure-underbody", named).png);
+}
+
 TEST(ViewsOfTwoCases, ShareRangesAndShowTheirDifference) {
     UNDERBODY_NEEDS_SHARED("cfd/fields/ellipse-h5-p0-coarse.csv");
     const auto folder = test::shared_folder() / "cfd/fields";
@@ -63,6 +73,8 @@ TEST(ViewsOfTwoCases, ShareRangesAndShowTheirDifference) {
     const View a = view(coarse, "pressure-underbody", shared);
     const View b = view(medium, "pressure-underbody", shared);
     EXPECT_EQ(a.range, b.range);
+    ASSERT_TRUE(shared.box);  // and the camera: both halves of both bodies
+    EXPECT_NEAR((*shared.box)[2], -(*shared.box)[3], 1e-6);
     const View difference = difference_view(coarse, medium, "pressure", options);
     EXPECT_EQ(difference.range.first, -difference.range.second);
     EXPECT_LT(difference.range.second, 60);

@@ -1,0 +1,15 @@
+// Pressure and wall shear over density, as incompressible solvers keep them.
+#pragma once
+
+#include "postproc/field.h"
+
+namespace underbody::postproc {
+
+/// True when the field has p/rho (or wall shear over rho) and no pressure in Pa beside it.
+bool is_kinematic(const Field& field);
+
+/// Multiplies kinematic_pressure and kinematic_wall_shear by the density [kg/m^3], on nodes, faces and cells: they
+/// become pressure and wall_shear [Pa]. Other arrays stay. Arrays that other fields share are not touched.
+void multiply_by_density(Field& field, double density);
+
+}  // namespace underbody::postproc
