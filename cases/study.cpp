@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "cases/sweep.h"
 #include "core/name_pattern.h"
 #include "core/text.h"
 #include "core/toml.h"
@@ -233,6 +234,45 @@ void read_frame(Study& study, const TomlTable& root) {
     }
 }
 
+std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
+    if (!root.has("sweep")) {
+        return std::nullopt;
+    }
+    const TomlTable table = root.table("sweep");
+    SweepSpec sweep;
+    sweep.folder = table.string_or("folder", "runs");
+    std::vector<std::string> known;
+    for (const auto& body : study.bodies) {
+        known.push_back(body.name);
+    }
+    for (const auto& name : table.has("bodies") ? table.strings("bodies") : known) {
+        const auto body = std::find_if(study.bodies.begin(), study.bodies.end(), [&](const BodySpec& b) { return b.name == name; });
+        if (body == study.bodies.end()) {
+            throw core::InputError("name", table.path_of("bodies") + ": there is no [[body]] named '" + name + "'", table.place("bodies"), core::did_you_mean(name, known));
+        }
+        sweep.bodies.push_back(*body);
+    }
+    const auto list = [&](const char* key, const char* unit, std::optional<double> fallback) {
+        if (!table.has(key) && fallback) {
+            return std::vector<double>{*fallback};
+        }
+        return table.is_array(key) ? table.quantities(key, unit) : std::vector<double>{table.quantity(key, unit)};
+    };
+    sweep.gaps = list("gap", "m", std::nullopt);
+    sweep.pitches = list("pitch", "rad", 0.0);
+    sweep.speeds = list("speed", "m/s", study.reference.number("speed"));
+    sweep.conditions = read_conditions(table.table_or_empty("conditions"));
+    sweep.kinematic_viscosity = table.quantity_or("kinematic_viscosity", "m^2/s", sweep.kinematic_viscosity);
+    sweep.cell = table.quantity_or("cell", "1", sweep.cell);
+    sweep.surface_level = static_cast<int>(table.integer_or("surface_level", sweep.surface_level));
+    sweep.layers = static_cast<int>(table.integer_or("layers", sweep.layers));
+    sweep.iterations = static_cast<int>(table.integer_or("iterations", sweep.iterations));
+    if (sweep.bodies.empty() || sweep.gaps.empty() || sweep.pitches.empty() || sweep.speeds.empty()) {
+        throw core::InputError("missing", "a sweep needs a [[body]], a gap and a speed", table.place(), "bodies = [\"ellipse\"], gap = [\"2 mm\", \"5 mm\"], speed = \"0.5 m/s\"");
+    }
+    return sweep;
+}
+
 }  // namespace
 
 Study Study::open(const fs::path& path) {
@@ -251,11 +291,18 @@ Study Study::open(const fs::path& path) {
     for (const auto& table : root.tables("case")) {
         add_cases(study, table);
     }
-    std::sort(study.cases.begin(), study.cases.end(), [](const Case& a, const Case& b) { return a.file < b.file; });
     std::set<std::string> bodies;
     for (const auto& table : root.tables("body")) {
         study.bodies.push_back({unique_name(table, bodies), table.file("shape")});
     }
+    study.sweep = read_sweep(study, root);
+    for (auto& solved : solved_cases(study)) {
+        const auto same = std::find_if(study.cases.begin(), study.cases.end(), [&](const Case& other) { return other.file == solved.file; });
+        if (same == study.cases.end()) {  // a [[case]] may name them itself
+            study.cases.push_back(std::move(solved));
+        }
+    }
+    std::sort(study.cases.begin(), study.cases.end(), [](const Case& a, const Case& b) { return a.file < b.file; });
     std::set<std::string> pictures;
     for (const auto& table : root.tables("picture")) {
         PictureSpec spec;

@@ -108,6 +108,21 @@ struct VerifySpec {
     double tolerance = 0.01;  ///< of the force's size; a column QUANTITY_scatter of the report widens it by twice itself
 };
 
+/// [sweep]: cases to be made by CFD, every body at every gap, pitch and speed.
+struct SweepSpec {
+    std::string folder;               ///< of the cases, relative to the study
+    std::vector<BodySpec> bodies;     ///< those of [[body]] that are named, or all
+    std::vector<double> gaps;         ///< m
+    std::vector<double> pitches;      ///< rad
+    std::vector<double> speeds;       ///< m/s
+    Conditions conditions;            ///< further conditions of these cases (mesh = "coarse")
+    double kinematic_viscosity = 1e-6;
+    double cell = 0.125;              ///< of the background mesh, in body lengths
+    int surface_level = 3;            ///< halvings of the cell at the body
+    int layers = 3;
+    int iterations = 400;
+};
+
 /// What `study.toml` says, checked. Immutable.
 class Study {
 public:
@@ -133,6 +148,7 @@ public:
     std::vector<VerifySpec> verifications;
     bool thesis = false;              ///< redraw the thesis's figures of chapters 7 and 8 and check its statements
     std::vector<CompareSpec> comparisons;
+    std::optional<SweepSpec> sweep;
 
     [[nodiscard]] std::vector<const Case*> select(const Conditions& where) const;
     [[nodiscard]] const TableSpec* find_table(const std::string& name) const;

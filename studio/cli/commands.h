@@ -9,8 +9,6 @@ namespace underbody::studio {
 
 class Shell;
 
-using AddCommand = void (*)(CLI::App& app, Shell& shell);
-
 #define UNDERBODY_COMMANDS(X) \
     X(body) \
     X(info) \
@@ -25,6 +23,8 @@ using AddCommand = void (*)(CLI::App& app, Shell& shell);
     X(table) \
     X(export) \
     X(study) \
+    X(solve) \
+    X(sweep) \
     X(learn) \
     X(estimate) \
     X(control) \

@@ -1,0 +1,186 @@
+#include "cases/openfoam_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+
+namespace underbody::cases {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The number behind a word at the beginning of a line of a dictionary: "endTime 400;".
+std::optional<double> entry_of(const fs::path& dictionary, const std::string& word) {
+    std::ifstream in(dictionary);
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        const bool begins = at == 0 || text[at - 1] == '\n' || text[at - 1] == ' ' || text[at - 1] == ';';
+        const std::size_t end = text.find(';', at);
+        if (begins && end != std::string::npos) {
+            if (const auto value = core::parse_number(std::string_view(text).substr(at + word.size(), end - at - word.size()))) {
+                return value;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+constexpr const char* script_log = "log.Allrun";
+
+/// The log of the step that was written last.
+fs::path newest_log(const fs::path& folder) {
+    fs::path newest;
+    fs::file_time_type when = fs::file_time_type::min();
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("log.") && name != script_log && entry.is_regular_file(ignored) && (newest.empty() || entry.last_write_time(ignored) > when)) {
+            newest = entry.path();
+            when = entry.last_write_time(ignored);
+        }
+    }
+    return newest;
+}
+
+/// The end of a file.
+std::string tail_of(const fs::path& file, std::streamoff bytes) {
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    if (!in) {
+        return {};
+    }
+    const std::streamoff size = in.tellg();
+    in.seekg(std::max<std::streamoff>(0, size - bytes));
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What OpenFOAM said when it failed: the lines of its fatal error, else the last ones.
+std::string last_words(const fs::path& log) {
+    const std::string text = tail_of(log, 1 << 16);
+    const auto fatal = text.rfind("FOAM FATAL");
+    std::vector<std::string> lines;
+    for (const auto line : core::split(std::string_view(text).substr(fatal == std::string::npos ? 0 : fatal), '\n')) {
+        const auto bare = core::trimmed(line);
+        if (!bare.empty()) {
+            lines.emplace_back(bare);
+        }
+    }
+    if (text.find("sigFpe") != std::string::npos) {
+        return "a floating-point exception: the solution diverged";
+    }
+    const std::size_t most = 4;
+    const std::size_t first = fatal == std::string::npos && lines.size() > most ? lines.size() - most : 0;
+    std::string words;
+    for (std::size_t i = first; i < std::min(lines.size(), first + most); ++i) {
+        words += (words.empty() ? "" : " ") + lines[i];
+    }
+    return words;
+}
+
+}  // namespace
+
+double RunState::fraction() const {
+    if (iteration <= 0 || iterations <= 0) {
+        return step.empty() ? 0 : 0.05;
+    }
+    return 0.1 + 0.9 * std::min(1.0, static_cast<double>(iteration) / iterations);
+}
+
+RunState run_state(const fs::path& folder) {
+    RunState state;
+    const fs::path control = folder / "system" / "controlDict";
+    const auto end = entry_of(control, "endTime");
+    const auto step = entry_of(control, "deltaT");
+    if (end && step && *step > 0) {
+        state.iterations = static_cast<int>(std::lround(*end / *step));
+    }
+    const fs::path log = newest_log(folder);
+    if (log.empty()) {
+        return state;
+    }
+    state.step = log.filename().string().substr(4);
+    const std::string text = tail_of(log, 1 << 14);
+    const auto at = text.rfind("\nTime = ");
+    if (at != std::string::npos && state.step.ends_with("Foam")) {
+        const std::string_view rest = std::string_view(text).substr(at + 8);
+        if (const auto time = core::parse_number(rest.substr(0, rest.find_first_of(" s\n")))) {
+            state.iteration = static_cast<int>(std::lround(*time / step.value_or(1)));
+        }
+    }
+    return state;
+}
+
+bool is_solved(const fs::path& folder) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder / "constant" / "polyMesh", ignored)) {
+        return false;
+    }
+    double last = 0;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const auto time = core::parse_number(entry.path().filename().string());
+        if (time && entry.is_directory(ignored) && fs::exists(entry.path() / "U")) {
+            last = std::max(last, *time);
+        }
+    }
+    const auto wanted = entry_of(folder / "system" / "controlDict", "endTime");
+    if (last > 0 && wanted && last >= *wanted * (1 - 1e-9)) {
+        return true;
+    }
+    return last > 0 && tail_of(folder / "log.simpleFoam", 1 << 14).find("solution converged") != std::string::npos;
+}
+
+void need_openfoam() {
+    for (const char* program : {"blockMesh", "simpleFoam"}) {
+        if (!find_program(program)) {
+            throw core::SystemError("missing", std::string("OpenFOAM is not here: there is no '") + program + "' on the PATH", {}, "install it: apt install openfoam");
+        }
+    }
+}
+
+OpenFoamRun::OpenFoamRun(fs::path folder) : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
+    const fs::path script = folder_ / "Allrun";
+    if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
+        throw core::InputError("missing", fs::exists(folder_) ? "there is no Allrun in this folder" : "there is no such folder", {folder_.string(), {}, {}, {}},
+                               "underbody body domain SHAPE.toml --gap 5mm --out FOLDER writes a case");
+    }
+    if (!fs::is_regular_file(folder_ / "system" / "controlDict")) {
+        throw core::InputError("missing", "the case has no system/controlDict", {folder_.string(), {}, {}, {}});
+    }
+    need_openfoam();
+    // Debian's OpenFOAM needs this one variable and nothing sourced.
+    std::vector<std::pair<std::string, std::string>> environment;
+    if (std::getenv("WM_PROJECT_DIR") == nullptr) {
+        environment.emplace_back("WM_PROJECT_DIR", "/usr/share/openfoam");
+    }
+    const fs::path at = fs::absolute(folder_);
+    child_.emplace("/bin/sh", std::vector<std::string>{"./Allrun"}, at, at / script_log, environment);
+}
+
+bool OpenFoamRun::finished() {
+    const auto code = child_->ended();
+    if (!code) {
+        return false;
+    }
+    if (*code == 0) {
+        return true;
+    }
+    // The script names the step that failed; a script of another make may not.
+    fs::path log = folder_ / script_log;
+    const std::string text = "\n" + tail_of(log, 4096);
+    if (const auto failed = text.find(" failed: see "); failed != std::string::npos) {
+        const auto begin = text.rfind('\n', failed) + 1;
+        const fs::path named = folder_ / ("log." + text.substr(begin, failed - begin));
+        log = fs::is_regular_file(named) ? named : log;
+    }
+    throw core::InputError("solver", "the solver ended with code " + std::to_string(*code) + ": " + last_words(log), {log.string(), {}, {}, {}});
+}
+
+double OpenFoamRun::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+}  // namespace underbody::cases
