@@ -114,7 +114,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
     command->footer(
         "Examples:\n"
         "  underbody discover model.toml --data runs --out found        report, new model and discovery.json in found/\n"
-        "  underbody discover model.toml --data runs --out found --json the same, discovery.json on stdout as well\n"
+        "  underbody discover model.toml --data runs --out found --json   the same, discovery.json on stdout as well\n"
         "  underbody predict found/model.toml --data other-runs         the new model on data it has not seen\n"
         "  underbody discover --reduce log.csv --out bench.csv          raw log of a load cell to forces, by its pump-off blocks\n"
         "  underbody discover --measured-studies ../shared/measured --out studies   the shipped studies of measurements by others\n"

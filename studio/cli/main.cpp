@@ -3,6 +3,19 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 
+namespace {
+
+/// What every command takes is said by every command's help.
+void mention_common_options(CLI::App& app) {
+    for (auto* command : app.get_subcommands([](CLI::App*) { return true; })) {
+        const std::string footer = command->get_footer();
+        command->footer(footer + (footer.empty() ? "" : "\n") + "With every command: --json, --quiet, --verbose, --threads N (underbody --help)");
+        mention_common_options(*command);
+    }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
     using namespace underbody::studio;
     CLI::App app{"Underbody: CFD post-processing and ground-effect design studio", "underbody"};
@@ -24,5 +37,6 @@ int main(int argc, char** argv) {
 #define UNDERBODY_ADD(name) add_##name##_command(app, shell);
     UNDERBODY_COMMANDS(UNDERBODY_ADD)
 #undef UNDERBODY_ADD
+    mention_common_options(app);
     return shell.run(app, argc, argv);
 }

@@ -3,15 +3,18 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/parallel.h"
+#include "studio/cli/usage.h"
 
 namespace underbody::studio {
 
@@ -49,17 +52,21 @@ private:
     std::chrono::steady_clock::time_point last_;
 };
 
-core::Progress::Listener listener() {
+core::Progress::Listener listener(const bool& quiet) {
     if (::isatty(2) == 0) {
         return {};
     }
     auto bar = std::make_shared<Bar>();
-    return [bar](double fraction, const std::string& what) { (*bar)(fraction, what); };
+    return [bar, &quiet](double fraction, const std::string& what) {
+        if (!quiet) {
+            (*bar)(fraction, what);
+        }
+    };
 }
 
 }  // namespace
 
-Shell::Shell() : progress_(listener()) {}
+Shell::Shell() : progress_(listener(quiet)) {}
 
 void Shell::on(CLI::App* command, std::function<int()> action) {
     command->callback([this, action = std::move(action)] { action_ = action; });
@@ -140,6 +147,9 @@ int Shell::run_action() {
     } catch (const core::Error& error) {
         report(error, "error");
         return wrong_input;
+    } catch (const std::filesystem::filesystem_error& error) {
+        report(core::SystemError("file", error.code().message(), {error.path1().string(), {}, {}, {}}), "error");
+        return wrong_input;
     } catch (const std::bad_alloc&) {
         report(core::SystemError("memory", "not enough memory"), "error");
         return wrong_input;
@@ -161,21 +171,9 @@ int Shell::run(CLI::App& app, int argc, const char* const* argv) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
             return app.exit(error, std::cout, std::cerr);  // --help, --version
         }
-        std::string hint = "underbody --help";
-        std::vector<std::string> commands;
-        for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-            commands.push_back(command->get_name());
-        }
-        for (const auto* command : app.get_subcommands()) {
-            hint = "underbody " + command->get_name() + " --help";
-        }
-        if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
-            const std::string near = core::nearest_name(argv[1], commands);
-            if (!near.empty()) {
-                hint = "did you mean 'underbody " + near + "'?";
-            }
-        }
-        report(core::UsageError("usage", error.what(), {}, hint), "wrong use");
+        // The parser may have stopped before it set its flags.
+        json = json || std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
+        report(usage_error(app, error), "wrong use");
         return wrong_usage;
     }
     const int code = run_action();

@@ -39,7 +39,7 @@ public:
     /// Problems of a reader, as warnings.
     void show(const core::Problems& problems);
 
-    /// Draws a bar on stderr when it is a terminal; Ctrl-C cancels it.
+    /// Draws a bar on stderr when it is a terminal and nobody asked for quiet; Ctrl-C cancels it.
     core::Progress& progress() { return progress_; }
 
     /// Parses, runs, turns exceptions into exit codes and messages.
