@@ -101,7 +101,7 @@ MonitorSource monitor_source(const std::string& text) {
         }
         source.unit = std::string(core::trimmed(std::string_view(head).substr(open + 1, head.size() - open - 2)));
         head = std::string(core::trimmed(std::string_view(head).substr(0, open)));
-        if (const auto number = source.unit.find_first_not_of("+-.0123456789eE"); number != 0 && number != std::string::npos && source.unit[number - 1] == ' ') {
+        if (const auto number = source.unit.find_first_not_of("+-.0123456789eE"); number != 0 && number != std::string::npos && source.unit[number] == ' ') {
             const core::Quantity scaled = core::parse_quantity(source.unit);
             source.scale = scaled.value;
             source.unit = scaled.unit;
