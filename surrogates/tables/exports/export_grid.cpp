@@ -47,15 +47,11 @@ std::vector<std::vector<double>> chosen_points(const ForceTable& table, const Cu
     return points;
 }
 
-double range_of(const CubicGrid& grid) {
-    double low = INFINITY;
-    double high = -INFINITY;
-    for (std::size_t i = 0; i < grid.nodes(); ++i) {
-        const double v = grid.hermite()[i << grid.dimensions()];
-        low = std::min(low, v);
-        high = std::max(high, v);
-    }
-    return high - low;
+/// Of the points: a grid may reach far beyond the forces that were measured, where no points are.
+double range_of_points(const ForceTable::Impl& table) {
+    const auto& values = table.points.numbers(table.quantity);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return *high - *low;
 }
 
 /// The error at the nodes of another grid; cell errors stay with the cells they came from.
@@ -184,7 +180,7 @@ ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, co
         surface = surface.resampled(chosen_points(table, surface, options));
     }
     if (options.max_error > 0) {
-        const double allowed = options.max_error * range_of(full.surface);
+        const double allowed = options.max_error * range_of_points(full);
         const double spent = options.points.empty() ? 0 : largest_difference(full.surface, surface);
         if (spent < allowed) {
             surface = surface.resampled(thinned_points(surface, allowed - spent, progress));

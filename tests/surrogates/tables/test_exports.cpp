@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -322,6 +323,29 @@ TEST(Exports, ThinTheGridAndKeepTheErrorAskedFor) {
     EXPECT_LE(worst, 0.0051 * (high - low));
     EXPECT_GT(result.error, 0);
     EXPECT_THAT(core::read_file(folder.path() / "thin.csv"), HasSubstr("Differs from the full table by at most"));
+}
+
+TEST(Exports, AreThinnedByTheRangeOfThePointsNotOfTheCornersWithoutAny) {
+    // A steep force along a diagonal band: the corners of the grid are extrapolated far beyond what was measured.
+    std::vector<double> g, p, f;
+    for (int i = 0; i < 12; ++i) {
+        for (const int j : {-1, 0, 1}) {
+            g.push_back(0.002 + 0.001 * i);
+            p.push_back(0.01 * (i + j) - 0.05);
+            f.push_back(std::exp(-200 * g.back()) + 4 * p.back() + 30 * p.back() * p.back());
+        }
+    }
+    core::Table data;
+    data.add_numbers("gap", "m", g);
+    data.add_numbers("pitch", "rad", p);
+    data.add_numbers("lift_force", "N", f);
+    core::TemporaryFolder folder;
+    ExportOptions options;
+    options.max_error = 0.01;
+    const auto result = export_table(ForceTable::fit(data, "lift_force"), "csv", folder.path() / "thin.csv", options);
+    const auto [low, high] = std::minmax_element(f.begin(), f.end());
+    EXPECT_GT(result.error, 0);
+    EXPECT_LE(result.error, 0.01 * (*high - *low));
 }
 
 TEST(Exports, InTheDownFrameTurnTheirSigns) {
