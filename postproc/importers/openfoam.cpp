@@ -1,13 +1,13 @@
 // OpenFOAM cases: the faces of polyMesh with the two cells beside them, the fields of one time, patches as surfaces.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/text.h"
-#include "core/units.h"
 #include "postproc/importers/face_mesh.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/openfoam_fields.h"
 #include "postproc/importers/openfoam_input.h"
 #include "postproc/importers/steps.h"
 #include "postproc/importers/understood.h"
@@ -17,27 +17,6 @@ namespace underbody::postproc {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int volume_zone = 1;
-constexpr int inner_code = 2;
-constexpr int patch_code = 4;
-
-struct Patch {
-    std::string name;
-    std::string type;
-    std::uint64_t start = 0;
-    std::uint64_t count = 0;
-};
-
-/// One folder with polyMesh and times: the whole case, or the share of one processor.
-struct Piece {
-    fs::path folder;
-    std::vector<Patch> patches;
-    std::uint64_t first_face = 0;  ///< ids from 0 in the whole mesh
-    std::uint64_t first_cell = 0;
-    std::uint64_t cells = 0;
-    std::vector<std::size_t> blocks;  ///< of the mesh, one a patch
-};
 
 bool is_folder(const fs::path& path) {
     std::error_code error;
@@ -74,26 +53,6 @@ std::vector<std::pair<double, fs::path>> times_in(const fs::path& folder) {
     return times;
 }
 
-/// "0 2 -2 0 0 0 0" as a unit.
-std::string unit_of(const std::vector<double>& powers) {
-    constexpr std::array bases = {"kg", "m", "s", "K", "mol", "A", "cd"};
-    std::string unit;
-    for (std::size_t i = 0; i < std::min(powers.size(), bases.size()); ++i) {
-        if (powers[i] != 0) {
-            unit += (unit.empty() ? "" : " ") + std::string(bases[i]) +
-                    (powers[i] == 1 ? "" : "^" + core::format_number(powers[i]));
-        }
-    }
-    return unit.empty() ? "1" : unit;
-}
-
-/// The values that a field file gives to one patch.
-struct PatchValues {
-    std::string type;
-    std::vector<double> uniform;
-    Buffer<double> list;
-};
-
 class Reader {
 public:
     Reader(const fs::path& path, const ReadOptions& options, core::Progress& progress)
@@ -108,27 +67,22 @@ private:
     }
     void find_pieces();
     void choose_time();
-    void read_mesh(Piece& piece);
-    [[nodiscard]] fs::path mesh_file(const Piece& piece, const std::string& name) const;
-    void read_points(const Piece& piece, std::vector<std::uint32_t>& place);
-    void read_patches(Piece& piece, std::uint64_t inner, std::uint64_t faces);
-    void cut_faces(Piece& piece, const Buffer<std::uint32_t>& offsets, const Buffer<std::uint32_t>& nodes,
+    void read_mesh(FoamPiece& piece);
+    [[nodiscard]] fs::path mesh_file(const FoamPiece& piece, const std::string& name) const;
+    void read_points(const FoamPiece& piece, std::vector<std::uint32_t>& place);
+    void read_patches(FoamPiece& piece, std::uint64_t inner, std::uint64_t faces);
+    void cut_faces(FoamPiece& piece, const Buffer<std::uint32_t>& offsets, const Buffer<std::uint32_t>& nodes,
                    const Buffer<std::uint32_t>& owner, const Buffer<std::uint32_t>& neighbour,
                    const std::vector<std::uint32_t>& place);
-    int zone_of(const Patch& patch);
-    void read_fields(const Piece& piece);
-    void read_field(const Piece& piece, const fs::path& file);
-    void add_patch(const Piece& piece, std::size_t patch, const ValueBlock& like, const PatchValues* given,
-                   const Buffer<double>& inner);
-    void name_quantity(ValueBlock& block, const std::vector<double>& dimensions) const;
-    PatchValues read_patch_values(FoamInput& in, std::size_t components) const;
+    int zone_of(const FoamPatch& patch);
     void finish(Field& field) const;
+    void find_density(Field& field) const;
 
     fs::path path_;
     fs::path folder_;
     const ReadOptions& options_;
     core::Progress& progress_;
-    std::vector<Piece> pieces_;
+    std::vector<FoamPiece> pieces_;
     std::vector<double> times_;
     std::string time_name_;
     FaceMesh mesh_;
@@ -189,7 +143,7 @@ void Reader::choose_time() {
 }
 
 /// Of the chosen time or the last one before it that has it (moving meshes), else of constant.
-fs::path Reader::mesh_file(const Piece& piece, const std::string& name) const {
+fs::path Reader::mesh_file(const FoamPiece& piece, const std::string& name) const {
     const auto times = times_in(piece.folder);
     const auto chosen = core::parse_number(time_name_);
     for (auto it = times.rbegin(); it != times.rend(); ++it) {
@@ -206,7 +160,7 @@ fs::path Reader::mesh_file(const Piece& piece, const std::string& name) const {
 }
 
 /// Points of processors go to the places that the whole case had, when these are known.
-void Reader::read_points(const Piece& piece, std::vector<std::uint32_t>& place) {
+void Reader::read_points(const FoamPiece& piece, std::vector<std::uint32_t>& place) {
     FoamInput in(mesh_file(piece, "points"));
     Buffer<double> points = in.reals(3);
     const std::uint64_t count = points.size() / 3;
@@ -252,14 +206,14 @@ void Reader::read_points(const Piece& piece, std::vector<std::uint32_t>& place) 
     mesh_.nodes = last;
 }
 
-void Reader::read_patches(Piece& piece, std::uint64_t inner, std::uint64_t faces) {
+void Reader::read_patches(FoamPiece& piece, std::uint64_t inner, std::uint64_t faces) {
     FoamInput in(mesh_file(piece, "boundary"));
     if (!in.accept('(')) {
         in.count();
         in.expect("(");
     }
     while (!in.accept(')')) {
-        Patch patch;
+        FoamPatch patch;
         patch.name = in.token();
         in.expect("{");
         for (std::string key = in.token(); key != "}"; key = in.token()) {
@@ -292,8 +246,8 @@ void Reader::read_patches(Piece& piece, std::uint64_t inner, std::uint64_t faces
     }
 }
 
-int Reader::zone_of(const Patch& patch) {
-    const auto [found, fresh] = zones_.try_emplace(patch.name, volume_zone + 1 + static_cast<int>(zones_.size()));
+int Reader::zone_of(const FoamPatch& patch) {
+    const auto [found, fresh] = zones_.try_emplace(patch.name, foam_volume_zone + 1 + static_cast<int>(zones_.size()));
     if (fresh) {
         mesh_.labels.push_back({found->second, patch.type, patch.name});
     }
@@ -301,7 +255,7 @@ int Reader::zone_of(const Patch& patch) {
 }
 
 /// OpenFOAM's normals point from owner to neighbour; turned round they point into the owner, as a FaceMesh wants.
-void Reader::cut_faces(Piece& piece, const Buffer<std::uint32_t>& offsets, const Buffer<std::uint32_t>& nodes,
+void Reader::cut_faces(FoamPiece& piece, const Buffer<std::uint32_t>& offsets, const Buffer<std::uint32_t>& nodes,
                        const Buffer<std::uint32_t>& owner, const Buffer<std::uint32_t>& neighbour,
                        const std::vector<std::uint32_t>& place) {
     const auto add = [&](int zone, int kind, std::uint64_t first, std::uint64_t count) {
@@ -334,17 +288,17 @@ void Reader::cut_faces(Piece& piece, const Buffer<std::uint32_t>& offsets, const
         mesh_.face_blocks.push_back(std::move(block));
     };
     if (neighbour.size() > 0 && !options_.surfaces_only) {
-        add(0, inner_code, 0, neighbour.size());
+        add(0, foam_inner_code, 0, neighbour.size());
     }
     for (const auto& patch : piece.patches) {
         // Faces between processors are inside the mesh.
         const bool inside = patch.type.starts_with("processor");
         piece.blocks.push_back(mesh_.face_blocks.size());
-        add(inside ? 0 : zone_of(patch), inside ? inner_code : patch_code, patch.start, patch.count);
+        add(inside ? 0 : zone_of(patch), inside ? foam_inner_code : foam_patch_code, patch.start, patch.count);
     }
 }
 
-void Reader::read_mesh(Piece& piece) {
+void Reader::read_mesh(FoamPiece& piece) {
     mesh_.file = (piece.folder / "constant" / "polyMesh").string();
     std::vector<std::uint32_t> place;
     read_points(piece, place);
@@ -379,197 +333,29 @@ void Reader::read_mesh(Piece& piece) {
     mesh_.cells += piece.cells;
 }
 
-/// What the numbers are, out of the dimensions that the file states.
-void Reader::name_quantity(ValueBlock& block, const std::vector<double>& dimensions) const {
-    const CanonicalName canonical = canonical_name(block.variable);
-    const std::string unit = unit_of(dimensions);
-    block.canonical = canonical.name;
-    block.unit = canonical.unit.empty() ? core::si_unit(unit) : canonical.unit;
-    if (canonical.unit.empty() || core::same_dimension(unit, canonical.unit)) {
+/// The density that the case's function objects take for their forces: incompressible cases state it nowhere else.
+void Reader::find_density(Field& field) const {
+    const fs::path control = folder_ / "system" / "controlDict";
+    if (!kinematic_ || !FoamInput::exists(control)) {
         return;
     }
-    const bool over_density = unit == "m^2 s^-2";
-    const bool known = over_density && (canonical.name == "pressure" || canonical.name == "wall_shear");
-    block.canonical = known ? "kinematic_" + canonical.name : block.variable;
-    block.unit = known ? "m^2/s^2" : core::si_unit(unit);
-}
-
-PatchValues Reader::read_patch_values(FoamInput& in, std::size_t components) const {
-    PatchValues values;
-    in.expect("{");
-    for (std::string key = in.token(); key != "}"; key = in.token()) {
-        if (key.empty()) {
-            in.fail("the file ends within a patch");
-        }
-        if (key == "type") {
-            values.type = in.token();
-            in.expect(";");
-        } else if (key == "value") {
-            const std::string how = in.token();
-            if (how == "uniform") {
-                values.uniform = in.value(components);
-                in.expect(";");
-            } else if (how == "nonuniform") {
-                in.token();  // List<...>
-                values.list = in.reals(components);
-                in.expect(";");
-            } else if (how != ";") {
-                in.skip_entry();  // "$internalField"
+    std::set<double> stated;
+    try {
+        FoamInput in(control);
+        for (std::string word = in.token(); !word.empty(); word = in.token()) {
+            if (word != "rhoInf") {
+                continue;
             }
-        } else if (!key.starts_with("#")) {
-            in.skip_entry();
-        }
-    }
-    return values;
-}
-
-/// Boundary conditions that state no value take it from the cell beside the face.
-void Reader::add_patch(const Piece& piece, std::size_t patch, const ValueBlock& like, const PatchValues* given,
-                       const Buffer<double>& inner) {
-    const FaceBlock& faces = mesh_.face_blocks[piece.blocks[patch]];
-    const auto n = static_cast<std::size_t>(like.components);
-    const std::string& type = given != nullptr ? given->type : piece.patches[patch].type;
-    if (faces.kind == inner_code || faces.count == 0 || type == "empty") {
-        return;
-    }
-    ValueBlock block;
-    block.variable = like.variable;
-    block.canonical = like.canonical;
-    block.unit = like.unit;
-    block.zone = faces.zone;
-    block.first = faces.first;
-    block.count = faces.count;
-    block.components = like.components;
-    block.values.grow_to(faces.count * n);
-    if (given != nullptr && !given->list.empty()) {
-        if (given->list.size() != block.values.size()) {
-            refuse(piece.folder / time_name_ / like.variable,
-                   "patch '" + piece.patches[patch].name + "' has " + std::to_string(given->list.size() / n) +
-                       " values for " + std::to_string(faces.count) + " faces");
-        }
-        std::copy(given->list.begin(), given->list.end(), block.values.begin());
-    } else {
-        for (std::size_t i = 0; i < faces.count; ++i) {
-            const std::size_t cell = faces.c0[i] - 1 - piece.first_cell;
-            for (std::size_t k = 0; k < n; ++k) {
-                block.values[i * n + k] = given != nullptr && !given->uniform.empty()   ? given->uniform[k]
-                                          : given != nullptr && type == "noSlip"        ? 0
-                                          : inner.empty()                               ? std::nan("")
-                                                                                        : inner[cell * n + k];
+            if (const auto value = core::parse_number(in.token())) {  // "rho rhoInf;" is not the value
+                stated.insert(*value);
             }
         }
+    } catch (const core::InputError&) {
+        return;  // a dictionary that only the solver understands says nothing to us
     }
-    values_.push_back(std::move(block));
-}
-
-void Reader::read_field(const Piece& piece, const fs::path& file) {
-    FoamInput in(file);
-    const std::string& type = in.class_name();
-    const std::size_t components = type.starts_with("vol") && type.ends_with("Field") ? FoamInput::components_of(type) : 0;
-    ValueBlock block;
-    block.variable = file.filename().string();
-    if (block.variable.ends_with(".gz")) {
-        block.variable.resize(block.variable.size() - 3);
-    }
-    if (components == 0) {
-        return;
-    }
-    in.allow_repeated(std::max(mesh_.cells, mesh_.faces));
-    block.on_cells = true;
-    block.zone = volume_zone;
-    block.components = static_cast<int>(components);
-    block.first = piece.first_cell + 1;
-    block.count = piece.cells;
-    std::vector<double> dimensions;
-    Buffer<double> inner;
-    std::map<std::string, PatchValues> patches;
-    bool closed = false;
-    for (std::string key = in.token(); !key.empty(); key = in.token()) {
-        if (key == "dimensions") {
-            in.expect("[");
-            while (!in.accept(']')) {
-                dimensions.push_back(in.number());
-                if (dimensions.size() > 7) {
-                    in.fail("more than seven dimensions");
-                }
-            }
-            in.expect(";");
-            name_quantity(block, dimensions);
-            const auto wanted = [&](const std::string& name) { return matches_any(options_.arrays, name); };
-            if (!wanted(block.variable) && !wanted(block.canonical) &&
-                !(block.canonical.starts_with("kinematic_") && wanted(block.canonical.substr(10)))) {
-                return;
-            }
-        } else if (key == "internalField") {
-            const std::string how = in.token();
-            if (how == "nonuniform") {
-                in.token();
-                inner = in.reals(components);
-            } else if (how == "uniform") {
-                const auto one = in.value(components);
-                inner.grow_to(piece.cells * components);
-                for (std::size_t i = 0; i < inner.size(); ++i) {
-                    inner[i] = one[i % components];
-                }
-            } else {
-                in.fail("expected 'uniform' or 'nonuniform', found '" + how.substr(0, 40) + "'");
-            }
-            in.expect(";");
-            if (inner.size() != piece.cells * components) {
-                in.fail("the field has " + std::to_string(inner.size() / components) + " values for " +
-                        std::to_string(piece.cells) + " cells: it belongs to another mesh");
-            }
-        } else if (key == "boundaryField") {
-            in.expect("{");
-            for (std::string name = in.token(); name != "}"; name = in.token()) {
-                if (name.empty()) {
-                    in.fail("the file ends within the boundary field");
-                }
-                patches[name] = read_patch_values(in, components);
-            }
-            closed = true;
-        } else if (!key.starts_with("#")) {
-            in.skip_entry();
-        }
-    }
-    if (dimensions.empty() || inner.size() != piece.cells * components || !closed) {
-        in.fail("the field is not whole: is the file cut short?");
-    }
-    // The function object's wall shear stress acts on the fluid; ours on the body.
-    const double sign = block.canonical.ends_with("wall_shear") ? -1 : 1;
-    for (std::size_t p = 0; p < piece.patches.size(); ++p) {
-        const auto found = patches.find(piece.patches[p].name);
-        const std::size_t before = values_.size();
-        add_patch(piece, p, block, found != patches.end() ? &found->second : nullptr, inner);
-        for (std::size_t v = before; v < values_.size() && sign < 0; ++v) {
-            for (double& x : values_[v].values) {
-                x = -x;
-            }
-        }
-    }
-    kinematic_ = kinematic_ || block.canonical == "kinematic_pressure";
-    if (!options_.surfaces_only && sign > 0) {
-        block.values = std::move(inner);
-        values_.push_back(std::move(block));
-    }
-}
-
-void Reader::read_fields(const Piece& piece) {
-    if (time_name_.empty()) {
-        return;
-    }
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(piece.folder / time_name_, error)) {
-        const std::string name = entry.path().filename().string();
-        if (entry.is_regular_file(error) && name.front() != '.' && !name.ends_with("~")) {
-            files.push_back(entry.path());
-        }
-    }
-    std::sort(files.begin(), files.end());
-    for (const auto& file : files) {
-        progress_.check();
-        read_field(piece, file);
+    if (stated.size() == 1 && *stated.begin() > 0) {
+        field.density = *stated.begin();
+        field.metadata.emplace_back("density [kg/m^3]", core::format_number(*field.density) + " (rhoInf of the case's function objects)");
     }
 }
 
@@ -606,23 +392,28 @@ Field Reader::read() {
     mesh_.dimension = 3;
     mesh_.length_unit = "m";
     mesh_.length_unit_known = true;
-    mesh_.labels.push_back({volume_zone, "fluid", "internalMesh"});
+    mesh_.labels.push_back({foam_volume_zone, "fluid", "internalMesh"});
     for (auto& piece : pieces_) {
         progress_.report(0.5 * static_cast<double>(&piece - pieces_.data()) / static_cast<double>(pieces_.size()),
                          "reading the mesh in " + piece.folder.filename().string());
         read_mesh(piece);
     }
     CellBlock cells;
-    cells.zone = volume_zone;
+    cells.zone = foam_volume_zone;
     cells.count = mesh_.cells;
     mesh_.cell_blocks.push_back(std::move(cells));
     check_mesh(mesh_, options_.surfaces_only, progress_);
+    progress_.report(0.5, "reading the fields of time " + time_name_);
+    FoamFields fields(mesh_, options_, progress_, values_);
     for (const auto& piece : pieces_) {
-        progress_.report(0.5, "reading the fields of time " + time_name_);
-        read_fields(piece);
+        if (!time_name_.empty()) {
+            fields.read(piece, piece.folder / time_name_);
+        }
     }
+    kinematic_ = fields.kinematic();
     Field field = field_from(std::move(mesh_), std::move(values_), options_, progress_);
     finish(field);
+    find_density(field);
     return field;
 }
 

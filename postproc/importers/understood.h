@@ -13,7 +13,8 @@ auto telling(Read&& read, Understood&& understood) {
     try {
         return read();
     } catch (const core::InputError& error) {
-        if (error.message().find("understood so far") != std::string::npos) {
+        const bool of_content = error.kind() == "format" || error.kind() == "parse";
+        if (!of_content || error.message().find("understood so far") != std::string::npos) {
             throw;
         }
         throw core::InputError(error.kind(), error.message() + "; understood so far: " + understood(), error.place(),

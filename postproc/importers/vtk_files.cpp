@@ -31,6 +31,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/ply.h"
 #include "postproc/importers/trial.h"
 #include "postproc/importers/vtk_problems.h"
 
@@ -294,6 +295,9 @@ void check_leaf(const fs::path& path, vtkDataSet& data) {
             check_cells(path, cells, points);
         }
     } else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(&data)) {
+        if (points > 0 && grid->GetNumberOfCells() == 0) {
+            refuse(path, "a grid of " + std::to_string(points) + " points without cells");
+        }
         check_cells(path, grid->GetCells(), points);
         if (grid->GetCellTypesArray() != nullptr && grid->GetCellTypesArray()->GetNumberOfTuples() != grid->GetNumberOfCells()) {
             refuse(path, "its cells and their kinds differ in number");
@@ -321,13 +325,13 @@ template <typename Reader, typename Prepare>
 vtkSmartPointer<vtkDataObject> output_of(const fs::path& path, Prepare&& prepare) {
     try_in_child(path, [&] {
         auto reader = vtkSmartPointer<Reader>::New();
-        const VtkProblems problems(*reader);
+        const VtkProblems problems;
         prepare(*reader);
         reader->Update();
         check_leaves(path, reader->GetOutputDataObject(0));
     });
     auto reader = vtkSmartPointer<Reader>::New();
-    const VtkProblems problems(*reader);
+    const VtkProblems problems;
     prepare(*reader);
     reader->Update();
     if (problems.any() || reader->GetErrorCode() != vtkErrorCode::NoError) {
@@ -384,6 +388,14 @@ Field read_legacy(const fs::path& path, const ReadOptions& options, core::Progre
     return read_one(path, "VTK legacy", output_of<vtkGenericDataObjectReader>(path, prepare), options);
 }
 
+/// The first bytes: content decides, an ending may lie.
+std::string head_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string head(16, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    return head;
+}
+
 bool is_surface(std::string_view head, const fs::path& path) {
     const std::string ending = core::lower_case(path.extension().string());
     if (head.starts_with("ply\n") || head.starts_with("ply\r\n")) {
@@ -404,7 +416,8 @@ bool is_surface(std::string_view head, const fs::path& path) {
 Field read_surface(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
     const std::string ending = core::lower_case(path.extension().string());
     Field field;
-    if (ending == ".ply") {
+    if (head_of(path).starts_with("ply")) {
+        check_ply(path);
         field = read_one(path, "surface (PLY)", output_of<vtkPLYReader>(path), options);
     } else if (ending == ".obj") {
         field = read_one(path, "surface (OBJ)", output_of<vtkOBJReader>(path), options);

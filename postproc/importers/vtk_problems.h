@@ -1,47 +1,65 @@
 // What a VTK reader complains of becomes text for an error of ours, and does not reach the terminal.
 #pragma once
 
-#include <vtkCallbackCommand.h>
-#include <vtkCommand.h>
-#include <vtkObject.h>
+#include <vtkLogger.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 
 #include <string>
 
 namespace underbody::postproc {
 
+/// While one lives, VTK's complaints (of a reader and of the readers that it uses) are kept instead of shown.
 class VtkProblems {
 public:
-    explicit VtkProblems(vtkObject& reader) : command_(vtkSmartPointer<vtkCallbackCommand>::New()) {
-        command_->SetClientData(this);
-        command_->SetCallback([](vtkObject*, unsigned long, void* self, void* text) {
-            static_cast<VtkProblems*>(self)->note(static_cast<const char*>(text));
-        });
-        reader.AddObserver(vtkCommand::ErrorEvent, command_);
+    VtkProblems() : window_(vtkSmartPointer<Window>::New()), before_(vtkOutputWindow::GetInstance()), verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
+        vtkOutputWindow::SetInstance(window_);
+        vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
     }
     ~VtkProblems() {
-        command_->SetClientData(nullptr);
-        command_->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
+        vtkLogger::SetStderrVerbosity(verbosity_);
+        vtkOutputWindow::SetInstance(before_);
     }
     VtkProblems(const VtkProblems&) = delete;
     VtkProblems& operator=(const VtkProblems&) = delete;
 
-    [[nodiscard]] bool any() const { return !first_.empty(); }
+    [[nodiscard]] bool any() const { return !window_->first.empty(); }
     /// The first complaint, without VTK's place in its source.
-    [[nodiscard]] std::string first() const { return first_.empty() ? "no reason given" : first_; }
+    [[nodiscard]] std::string first() const { return any() ? window_->first : "no reason given"; }
 
 private:
-    void note(const char* text) {
-        if (first_.empty()) {
-            first_ = text != nullptr ? text : "unknown";
-            const std::size_t colon = first_.find("): ");
-            first_ = colon == std::string::npos ? first_ : first_.substr(colon + 3);
-            first_ = first_.substr(0, first_.find('\n'));
-            first_ = first_.empty() ? "unknown" : first_;
+    class Window : public vtkOutputWindow {
+    public:
+        static Window* New() { VTK_STANDARD_NEW_BODY(Window); }
+        void DisplayText(const char* /*text*/) override {}
+        // Some readers only warn of data that end too early.
+        void DisplayWarningText(const char* text) override { note_if_error(text); }
+        void DisplayGenericWarningText(const char* text) override { note_if_error(text); }
+        void DisplayErrorText(const char* text) override { note(text); }
+        std::string first;
+
+    private:
+        void note_if_error(const char* text) {
+            const std::string whole = text != nullptr ? text : "";
+            if (whole.find("rror") != std::string::npos || whole.find("end of file") != std::string::npos) {
+                note(text);
+            }
         }
-    }
-    vtkSmartPointer<vtkCallbackCommand> command_;
-    std::string first_;
+        void note(const char* text) {
+            if (!first.empty()) {
+                return;
+            }
+            first = text != nullptr ? text : "unknown";
+            const std::size_t colon = first.find("): ");
+            first = colon == std::string::npos ? first : first.substr(colon + 3);
+            first = first.substr(0, first.find('\n'));
+            first = first.empty() ? "unknown" : first;
+        }
+    };
+    vtkSmartPointer<Window> window_;
+    vtkSmartPointer<vtkOutputWindow> before_;
+    vtkLogger::Verbosity verbosity_;
 };
 
 }  // namespace underbody::postproc

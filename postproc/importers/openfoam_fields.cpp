@@ -1,0 +1,237 @@
+#include "postproc/importers/openfoam_fields.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/text.h"
+#include "core/units.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& what) {
+    throw core::InputError("format", what, {file.string(), {}, {}, {}}, "the case is damaged or incomplete");
+}
+
+/// "0 2 -2 0 0 0 0" as a unit.
+std::string unit_of(const std::vector<double>& powers) {
+    constexpr std::array bases = {"kg", "m", "s", "K", "mol", "A", "cd"};
+    std::string unit;
+    for (std::size_t i = 0; i < std::min(powers.size(), bases.size()); ++i) {
+        if (powers[i] != 0) {
+            unit += (unit.empty() ? "" : " ") + std::string(bases[i]) +
+                    (powers[i] == 1 ? "" : "^" + core::format_number(powers[i]));
+        }
+    }
+    return unit.empty() ? "1" : unit;
+}
+
+}  // namespace
+
+/// What the numbers are, out of the dimensions that the file states.
+void FoamFields::name_quantity(ValueBlock& block, const std::vector<double>& dimensions) {
+    const CanonicalName canonical = canonical_name(block.variable);
+    const std::string unit = unit_of(dimensions);
+    block.canonical = canonical.name;
+    block.unit = canonical.unit.empty() ? core::si_unit(unit) : canonical.unit;
+    if (canonical.unit.empty() || core::same_dimension(unit, canonical.unit)) {
+        return;
+    }
+    const bool over_density = unit == "m^2 s^-2";
+    const bool known = over_density && (canonical.name == "pressure" || canonical.name == "wall_shear");
+    block.canonical = known ? "kinematic_" + canonical.name : block.variable;
+    block.unit = known ? "m^2/s^2" : core::si_unit(unit);
+}
+
+FoamFields::PatchValues FoamFields::patch_values(FoamInput& in, std::size_t components) {
+    PatchValues values;
+    in.expect("{");
+    for (std::string key = in.token(); key != "}"; key = in.token()) {
+        if (key.empty()) {
+            in.fail("the file ends within a patch");
+        }
+        if (key == "type") {
+            values.type = in.token();
+            in.expect(";");
+        } else if (key == "value") {
+            const std::string how = in.token();
+            if (how == "uniform") {
+                values.uniform = in.value(components);
+                in.expect(";");
+            } else if (how == "nonuniform") {
+                in.token();  // List<...>
+                values.list = in.reals(components);
+                in.expect(";");
+            } else if (how != ";") {
+                in.skip_entry();  // "$internalField"
+            }
+        } else if (!key.starts_with("#")) {
+            in.skip_entry();
+        }
+    }
+    return values;
+}
+
+/// Boundary conditions that state no value take it from the cell beside the face.
+void FoamFields::add_patch(const FoamPiece& piece, std::size_t patch, const ValueBlock& like, const PatchValues* given,
+                           const Buffer<double>& inner, const fs::path& file) {
+    const FaceBlock& faces = mesh_.face_blocks[piece.blocks[patch]];
+    const auto n = static_cast<std::size_t>(like.components);
+    const std::string& type = given != nullptr ? given->type : piece.patches[patch].type;
+    if (faces.kind == foam_inner_code || faces.count == 0 || type == "empty") {
+        return;
+    }
+    ValueBlock block;
+    block.variable = like.variable;
+    block.canonical = like.canonical;
+    block.unit = like.unit;
+    block.zone = faces.zone;
+    block.first = faces.first;
+    block.count = faces.count;
+    block.components = like.components;
+    block.values.grow_to(faces.count * n);
+    if (given != nullptr && !given->list.empty()) {
+        if (given->list.size() != block.values.size()) {
+            refuse(file, "patch '" + piece.patches[patch].name + "' has " + std::to_string(given->list.size() / n) +
+                       " values for " + std::to_string(faces.count) + " faces");
+        }
+        std::copy(given->list.begin(), given->list.end(), block.values.begin());
+    } else {
+        for (std::size_t i = 0; i < faces.count; ++i) {
+            const std::size_t cell = faces.c0[i] - 1 - piece.first_cell;
+            for (std::size_t k = 0; k < n; ++k) {
+                block.values[i * n + k] = given != nullptr && !given->uniform.empty()   ? given->uniform[k]
+                                          : given != nullptr && type == "noSlip"        ? 0
+                                          : inner.empty()                               ? std::nan("")
+                                                                                        : inner[cell * n + k];
+            }
+        }
+    }
+    values_.push_back(std::move(block));
+}
+
+bool FoamFields::is_wanted(const ValueBlock& block) const {
+    const auto wanted = [&](const std::string& name) { return matches_any(options_.arrays, name); };
+    return wanted(block.variable) || wanted(block.canonical) ||
+           (block.canonical.starts_with("kinematic_") && wanted(block.canonical.substr(10)));
+}
+
+/// The rest of the entry "internalField".
+Buffer<double> FoamFields::inner_values(FoamInput& in, std::size_t components, std::uint64_t cells) {
+    Buffer<double> values;
+    const std::string how = in.token();
+    if (how == "nonuniform") {
+        in.token();  // List<...>
+        values = in.reals(components);
+    } else if (how == "uniform") {
+        const auto one = in.value(components);
+        values.grow_to(cells * components);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            values[i] = one[i % components];
+        }
+    } else {
+        in.fail("expected 'uniform' or 'nonuniform', found '" + how.substr(0, 40) + "'");
+    }
+    in.expect(";");
+    if (values.size() != cells * components) {
+        in.fail("the field has " + std::to_string(values.size() / components) + " values for " + std::to_string(cells) +
+                " cells: it belongs to another mesh");
+    }
+    return values;
+}
+
+void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
+    FoamInput in(file);
+    const std::string& type = in.class_name();
+    const std::size_t components = type.starts_with("vol") && type.ends_with("Field") ? FoamInput::components_of(type) : 0;
+    ValueBlock block;
+    block.variable = file.filename().string();
+    if (block.variable.ends_with(".gz")) {
+        block.variable.resize(block.variable.size() - 3);
+    }
+    if (components == 0) {
+        return;
+    }
+    in.allow_repeated(std::max(mesh_.cells, mesh_.faces));
+    block.on_cells = true;
+    block.zone = foam_volume_zone;
+    block.components = static_cast<int>(components);
+    block.first = piece.first_cell + 1;
+    block.count = piece.cells;
+    std::vector<double> dimensions;
+    Buffer<double> inner;
+    std::map<std::string, PatchValues> patches;
+    bool closed = false;
+    for (std::string key = in.token(); !key.empty(); key = in.token()) {
+        if (key == "dimensions") {
+            in.expect("[");
+            while (!in.accept(']')) {
+                dimensions.push_back(in.number());
+                if (dimensions.size() > 7) {
+                    in.fail("more than seven dimensions");
+                }
+            }
+            in.expect(";");
+            name_quantity(block, dimensions);
+            if (!is_wanted(block)) {
+                return;
+            }
+        } else if (key == "internalField") {
+            inner = inner_values(in, components, piece.cells);
+        } else if (key == "boundaryField") {
+            in.expect("{");
+            for (std::string name = in.token(); name != "}"; name = in.token()) {
+                if (name.empty()) {
+                    in.fail("the file ends within the boundary field");
+                }
+                patches[name] = patch_values(in, components);
+            }
+            closed = true;
+        } else if (!key.starts_with("#")) {
+            in.skip_entry();
+        }
+    }
+    if (dimensions.empty() || inner.size() != piece.cells * components || !closed) {
+        in.fail("the field is not whole: is the file cut short?");
+    }
+    // The function object's wall shear stress acts on the fluid; ours on the body.
+    const double sign = block.canonical.ends_with("wall_shear") ? -1 : 1;
+    for (std::size_t p = 0; p < piece.patches.size(); ++p) {
+        const auto found = patches.find(piece.patches[p].name);
+        const std::size_t before = values_.size();
+        add_patch(piece, p, block, found != patches.end() ? &found->second : nullptr, inner, file);
+        for (std::size_t v = before; v < values_.size() && sign < 0; ++v) {
+            for (double& x : values_[v].values) {
+                x = -x;
+            }
+        }
+    }
+    kinematic_ = kinematic_ || block.canonical == "kinematic_pressure";
+    if (!options_.surfaces_only && sign > 0) {
+        block.values = std::move(inner);
+        values_.push_back(std::move(block));
+    }
+}
+
+void FoamFields::read(const FoamPiece& piece, const fs::path& time) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(time, error)) {
+        const std::string name = entry.path().filename().string();
+        if (entry.is_regular_file(error) && name.front() != '.' && !name.ends_with("~")) {
+            files.push_back(entry.path());
+        }
+    }
+    std::sort(files.begin(), files.end());
+    for (const auto& file : files) {
+        progress_.check();
+        read_field(piece, file);
+    }
+}
+
+}  // namespace underbody::postproc

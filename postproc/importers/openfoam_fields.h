@@ -1,0 +1,70 @@
+// The fields of one time of an OpenFOAM case, on its cells and patches.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "postproc/importers/face_mesh.h"
+#include "postproc/importers/openfoam_input.h"
+
+namespace underbody::postproc {
+
+constexpr int foam_volume_zone = 1;
+constexpr int foam_inner_code = 2;  ///< faces inside the mesh, as Fluent numbers them
+constexpr int foam_patch_code = 4;
+
+struct FoamPatch {
+    std::string name;
+    std::string type;
+    std::uint64_t start = 0;
+    std::uint64_t count = 0;
+};
+
+/// One folder with polyMesh and times: the whole case, or the share of one processor.
+struct FoamPiece {
+    std::filesystem::path folder;
+    std::vector<FoamPatch> patches;
+    std::uint64_t first_face = 0;  ///< ids from 0 in the whole mesh
+    std::uint64_t first_cell = 0;
+    std::uint64_t cells = 0;
+    std::vector<std::size_t> blocks;  ///< of the mesh, one a patch
+};
+
+/// Gives every cell and every patch the values of the fields that are asked for.
+class FoamFields {
+public:
+    /// The mesh must outlive this; values go into `out`.
+    FoamFields(const FaceMesh& mesh, const ReadOptions& options, core::Progress& progress, std::vector<ValueBlock>& out)
+        : mesh_(mesh), options_(options), progress_(progress), values_(out) {}
+
+    /// All fields in the folder of a time. Throws InputError for one that is damaged or of another mesh.
+    void read(const FoamPiece& piece, const std::filesystem::path& time);
+    /// Is the pressure one over density?
+    [[nodiscard]] bool kinematic() const { return kinematic_; }
+
+private:
+    /// What a field file gives to one patch.
+    struct PatchValues {
+        std::string type;
+        std::vector<double> uniform;
+        Buffer<double> list;
+    };
+
+    void read_field(const FoamPiece& piece, const std::filesystem::path& file);
+    void add_patch(const FoamPiece& piece, std::size_t patch, const ValueBlock& like, const PatchValues* given,
+                   const Buffer<double>& inner, const std::filesystem::path& file);
+    [[nodiscard]] bool is_wanted(const ValueBlock& block) const;
+    static Buffer<double> inner_values(FoamInput& in, std::size_t components, std::uint64_t cells);
+    static void name_quantity(ValueBlock& block, const std::vector<double>& dimensions);
+    static PatchValues patch_values(FoamInput& in, std::size_t components);
+
+    const FaceMesh& mesh_;
+    const ReadOptions& options_;
+    core::Progress& progress_;
+    std::vector<ValueBlock>& values_;
+    bool kinematic_ = false;
+};
+
+}  // namespace underbody::postproc
