@@ -180,7 +180,7 @@ void add_plain_base(SurfaceBuilder& builder, Chain outer) {
                     const Vec3 p = body.ellipsoid_point(0, pi * w);
                     return Vec3{scale * p.x, w == 0 || w == 1 ? 0.0 : scale * p.y, 0};
                 },
-                [&](const Vec3&) { return edge; });
+                [&](const Vec3&) { return edge; }, 2);
             inner = builder.add(points);
         }
         fill_strip(builder.half, inner, outer, base_patch);

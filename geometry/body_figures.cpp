@@ -14,7 +14,8 @@ namespace {
 constexpr double sharp = 12 * std::numbers::pi / 180;
 constexpr core::Colour ink{30, 30, 30, 255}, blue{0, 114, 178, 255}, grey{120, 120, 120, 255};
 
-std::string mm(double metres) { return core::format_number(std::round(metres * 1e5) / 100, 6) + " mm"; }
+// Four figures: what a mesh cuts off a curve (203.18 of 203.2 mm) is no dimension of the body.
+std::string mm(double metres) { return core::format_number(1e3 * metres, 4) + " mm"; }
 
 core::FigureCurve line(double x0, double y0, double x1, double y1, core::Colour colour, double width = 1) {
     core::FigureCurve curve;

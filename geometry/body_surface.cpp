@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 #include "geometry/surface_builder.h"
 
@@ -22,7 +24,7 @@ std::vector<Vec3> half_ring(const ExactBody& body, double height, double edge) {
             }
             return p;
         },
-        [edge](const Vec3&) { return edge; });
+        [edge](const Vec3&) { return edge; }, 2);  // with its mirror image a ring has four points at least
 }
 
 SurfaceMesh half_of(const ExactBody& body, double base_edge, double refinement, core::Progress& progress) {
@@ -116,10 +118,23 @@ SurfaceMesh make_surface(const BodyShape& shape, const SurfaceOptions& options, 
     const auto wanted = static_cast<double>(options.triangles);
     double edge = 0.7 * std::sqrt(ellipsoid_area / (0.433 * std::min(wanted, 2000.0)));
     SurfaceMesh half;
-    for (int trial = 0; trial < 5; ++trial) {
-        half = half_of(body, edge, options.edge_refinement, progress);
+    for (int trial = 0, failures = 0; trial < 5; ++trial) {
+        try {
+            half = half_of(body, edge, options.edge_refinement, progress);
+        } catch (const std::logic_error& error) {
+            // Chords of two curves cross where these run close together: shorter edges part them.
+            if (++failures > 3) {
+                throw core::InputError(
+                    "surface",
+                    "no surface of about " + std::to_string(options.triangles) + " triangles: " + error.what(), {},
+                    "ask for more triangles, or take a less extreme shape");
+            }
+            edge *= 0.7;
+            trial = 3;  // what is made with them is the surface, though it has more triangles
+            continue;
+        }
         const double ratio = 2 * static_cast<double>(half.triangles.size()) / wanted;
-        if (ratio > 0.93 && ratio < 1.08) {
+        if ((ratio > 0.93 && ratio < 1.08) || failures > 0) {
             break;
         }
         edge *= std::sqrt(ratio);

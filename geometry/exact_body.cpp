@@ -238,7 +238,8 @@ Vec3 ExactBody::bent(const Vec3& p) const {
     if (!is_bent() || p.z >= depth_) {
         return p;
     }
-    const double g = square((depth_ - p.z) / depth_);
+    // What stands below the base moves with it and keeps its shape.
+    const double g = square(std::min(1.0, (depth_ - p.z) / depth_));
     const double x = p.x - base_centre_;
     return {p.x, p.y * (1 + taper_ * x * g), p.z + slope_ * x * g};
 }
@@ -247,8 +248,12 @@ Vec3 ExactBody::unbent(const Vec3& p) const {
     if (!is_bent() || p.z >= depth_) {
         return p;
     }
+    const double x = p.x - base_centre_;
+    if (p.z <= slope_ * x) {
+        return {p.x, p.y / (1 + taper_ * x), p.z - slope_ * x};
+    }
     // With v = depth - height: v' = v - k v^2, k = slope x / depth^2.
-    const double x = p.x - base_centre_, k = slope_ * x / square(depth_), bent_v = depth_ - p.z;
+    const double k = slope_ * x / square(depth_), bent_v = depth_ - p.z;
     const double v = 2 * bent_v / (1 + std::sqrt(std::max(0.0, 1 - 4 * k * bent_v)));
     const double g = square(v / depth_);
     return {p.x, p.y / (1 + taper_ * x * g), depth_ - v};

@@ -48,7 +48,8 @@ public:
         if (height >= depth_) {
             return m.one;
         }
-        const double v = (depth_ - height) / depth_, widening = taper_ * v * v, lifting = -2 * slope_ * v / depth_;
+        const double v = std::min(1.0, (depth_ - height) / depth_), widening = taper_ * v * v;
+        const double lifting = height < 0 ? 0 : -2 * slope_ * v / depth_;
         // about the centre of the base
         const double x = m.x - centre_ * m.one, xx = m.xx - centre_ * (2 * m.x - centre_ * m.one);
         return m.one + (widening + lifting) * x + widening * lifting * xx;

@@ -323,10 +323,10 @@ void check(const BodyShape& shape, const core::TomlTable* table) {
     const Checker checker(table);
     const double smallest = 1e-4, largest = 1e3;
     checker.length("body", "length", shape.length, smallest, largest, "the length of the ellipsoid");
-    checker.length("body", "width", shape.width, std::max(smallest, shape.length / 20), 20 * shape.length,
-                   "the width of the ellipsoid (from a twentieth to twenty times its length)");
-    checker.length("body", "height", shape.height, std::max(smallest, shape.length / 20), 20 * shape.length,
-                   "the height of the ellipsoid (from a twentieth to twenty times its length)");
+    checker.length("body", "width", shape.width, std::max(smallest, shape.length / 10), 10 * shape.length,
+                   "the width of the ellipsoid, from a tenth to ten times its length");
+    checker.length("body", "height", shape.height, std::max(smallest, shape.length / 20), 5 * shape.length,
+                   "the height of the ellipsoid, from a twentieth to five times its length");
     checker.number("body", "base_cut", shape.base_cut, 0.05, 0.98,
                    "how far below the centre the base lies, in semi-heights");
     check_base(shape, checker);

@@ -148,6 +148,30 @@ TEST(Family, RoundsTheEdgeWithTheRadiusAsked) {
     EXPECT_NEAR((sharp - round) / lost, 1, 1e-5);
 }
 
+TEST(Family, MakesFlatAndTallBodiesWithAProtrusionDeeperThanTheirCut) {
+    BodyShape flat;
+    flat.length = 0.0306;
+    flat.width = 0.2059;
+    flat.height = 0.0021;
+    flat.base_cut = 0.45;
+    flat.base = BaseKind::rectangle;
+    flat.taper = 0.3;
+    flat.base_pitch = 0.2 * degree;
+    flat.protrusion = Protrusion{0.35, 0.001, 0.003, ProtrusionProfile::rounded, 0.00026, {}};
+    BodyShape tall;
+    tall.length = 0.1;
+    tall.width = 0.05;
+    tall.height = 0.5;
+    tall.base_cut = 0.1;
+    for (const BodyShape& shape : {flat, tall}) {
+        const Certificate certificate = certify(made(shape, 3000), shape);
+        EXPECT_TRUE(certificate.passed());
+        EXPECT_LT(std::abs(certificate.exact->volume_error), 0.05);
+    }
+    EXPECT_NEAR(bounding_box(patch_of(made(flat, 8000), "protrusion")).lower.z, -0.001, 2e-5)
+        << "as high as asked, tapered and pitched or not";
+}
+
 // Random valid and invalid shapes -----------------------------------------------------------------------------------
 
 BodyShape random_shape(core::Random& random) {
