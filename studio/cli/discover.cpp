@@ -29,6 +29,7 @@ struct Arguments {
     std::string log;
     std::string settle = "0 s";
     bool without_thrust = false;
+    std::vector<std::string> candidates;
 };
 
 void print(Shell& shell, const discovery::Discovery& found, const std::filesystem::path& folder) {
@@ -104,17 +105,20 @@ void add_discover_command(CLI::App& app, Shell& shell) {
     command->add_option("--out", arguments->out, "folder for model.toml, report.html and discovery.json")->required();
     command->add_option("--horizon", arguments->horizon, "length of the prediction windows of a time series");
     command->add_option("--seed", arguments->seed, "seed of all random draws");
-    command->add_option("--placebo", arguments->placebo, "static sets: simulated twins with nothing missing that go through the same procedure (0: none)");
+    command->add_option("--placebo", arguments->placebo, "simulated twins with nothing missing that go through the same procedure (0: none)");
     command->add_option("--measured-studies", arguments->measured,
                         "instead of a model and data: the folder of third-party measurements that the shipped studies (cases/measured) read");
     command->add_option("--reduce", arguments->log,
                         "instead of a model and data: the raw log of a load cell (time, gap, jet_voltage, one force); --out is then the table of forces");
     command->add_option("--settle", arguments->settle, "with --reduce: left out at the beginning of each block");
     command->add_flag("--without-thrust", arguments->without_thrust, "with --reduce: take the force at the largest gap of each voltage off");
+    command->add_option("--candidates", arguments->candidates, "effects to consider, by name, comma separated (default: all that such data can show)")
+        ->delimiter(',');
     command->footer(
         "Examples:\n"
         "  underbody discover model.toml --data runs --out found        report, new model and discovery.json in found/\n"
         "  underbody discover model.toml --data runs --out found --json   the same, discovery.json on stdout as well\n"
+        "  underbody discover model.toml --data runs --out found --candidates coulomb_friction,linear_damping\n"
         "  underbody predict found/model.toml --data other-runs         the new model on data it has not seen\n"
         "  underbody discover --reduce log.csv --out bench.csv          raw log of a load cell to forces, by its pump-off blocks\n"
         "  underbody discover --measured-studies ../shared/measured --out studies   the shipped studies of measurements by others\n"
@@ -136,6 +140,10 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         options.horizon = core::parse_in(arguments->horizon, "s");
         options.seed = arguments->seed;
         options.placebo_twins = arguments->placebo;
+        options.candidates = arguments->candidates;
+        for (const std::string& name : options.candidates) {
+            (void)dynamics::effect(name);   // says the nearest name where there is none
+        }
         const discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
         shell.show(found.problems);
         discovery::write_discovery(found, model, data, arguments->out, renderer);

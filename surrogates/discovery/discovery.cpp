@@ -96,7 +96,9 @@ nlohmann::json to_json(const ErrorChange& change) {
                         {"before", to_json(change.before)},
                         {"after", to_json(change.after)},
                         {"in_noise", {{"before", change.before.rmse / noise}, {"after", change.after.rmse / noise}}}};
-    if (change.horizon > 0) {
+    if (std::isinf(change.horizon)) {
+        json["free_run"] = true;
+    } else if (change.horizon > 0) {
         json["horizon_s"] = change.horizon;
     }
     return json;
@@ -113,6 +115,7 @@ nlohmann::json to_json(const Consequence& consequence) {
     return {{"equilibria", equilibria},
             {"region_before", consequence.region_before},
             {"region_after", consequence.region_after},
+            {"estimator", {{"quantity", "heave_velocity"}, {"unit", "m/s"}, {"rmse_before", consequence.estimator_before}, {"rmse_after", consequence.estimator_after}}},
             {"text", consequence.text}};
 }
 

@@ -74,6 +74,8 @@ struct Consequence {
     std::vector<EquilibriumPair> equilibria;
     std::map<std::string, double> region_before;  ///< class -> area fraction
     std::map<std::string, double> region_after;
+    double estimator_before = 0;                  ///< m/s, error of the velocity that a state estimator with this model gives; 0: not computed
+    double estimator_after = 0;
     std::string text;
 };
 
@@ -111,9 +113,10 @@ struct Discovery {
 struct DiscoverOptions {
     double horizon = 2;            ///< s, of the windows of the time-series error
     std::uint64_t seed = 1;
+    std::vector<std::string> candidates;   ///< effects to consider; empty: all that such data can show
     bool consequence = true;
     bool figures = true;
-    std::size_t placebo_twins = 0; ///< static sets: how many twins the placebo runs through the whole procedure
+    std::size_t placebo_twins = 0; ///< how many clean twins the placebo makes (static sets: whole procedure; time series: the gate)
 };
 
 /// The whole loop. Throws core::InputError where nothing can be said; what is doubtful but usable is in `problems`.

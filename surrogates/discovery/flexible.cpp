@@ -22,13 +22,16 @@ SplineBasis::SplineBasis(const std::vector<double>& values, std::size_t columns)
     for (std::size_t k = 0; k <= count; ++k) {
         knots_.push_back(quantile(distinct, static_cast<double>(k) / static_cast<double>(count)));
     }
+    for (const double knot : knots_) {
+        per_span_.push_back(1 / std::max((knots_.back() - knot) / width_, 1e-12));
+    }
     shift_.assign(count, 0);
     scale_.assign(count, 1);
     std::vector<double> sum(count, 0);
     std::vector<double> square(count, 0);
     std::vector<double> out(count);
     for (const double value : values) {
-        raw(value, out.data());
+        raw(value, out.data(), nullptr);
         for (std::size_t k = 0; k < count; ++k) {
             sum[k] += out[k];
             square[k] += out[k] * out[k];
@@ -42,39 +45,48 @@ SplineBasis::SplineBasis(const std::vector<double>& values, std::size_t columns)
     }
 }
 
-void SplineBasis::raw(double value, double* out) const {
+void SplineBasis::raw(double value, double* out, double* slope) const {
     // Hastie, Tibshirani and Friedman, Elements of Statistical Learning (2009), eq. 5.4-5.5
     const std::size_t last = knots_.size() - 1;
-    const auto cube = [&](double knot) {
-        const double d = (value - knot) / width_;
-        return d > 0 ? d * d * d : 0.0;
-    };
-    const auto truncated = [&](std::size_t k) {
-        return (cube(knots_[k]) - cube(knots_[last])) / std::max((knots_[last] - knots_[k]) / width_, 1e-12);
-    };
-    out[0] = (value - knots_.front()) / width_;
+    const double per_width = 1 / width_;
+    const auto above = [&](std::size_t k) { return std::max(0.0, (value - knots_[k]) * per_width); };
+    out[0] = (value - knots_.front()) * per_width;
+    if (slope != nullptr) {
+        slope[0] = per_width;
+    }
     if (last < 2) {
         return;
     }
-    const double end = truncated(last - 1);
+    const double end = above(last);
+    const double end_cube = end * end * end;
+    const double before = above(last - 1);
+    const double tail = (before * before * before - end_cube) * per_span_[last - 1];
+    const double tail_slope = 3 * (before * before - end * end) * per_span_[last - 1];
     for (std::size_t k = 0; k + 1 < last; ++k) {
-        out[k + 1] = truncated(k) - end;
+        const double d = above(k);
+        out[k + 1] = (d * d * d - end_cube) * per_span_[k] - tail;
+        if (slope != nullptr) {
+            slope[k + 1] = (3 * (d * d - end * end) * per_span_[k] - tail_slope) * per_width;
+        }
     }
 }
 
-void SplineBasis::evaluate(double value, double* out) const {
+void SplineBasis::evaluate(double value, double* out, double* slope) const {
     if (scale_.empty()) {
         return;
     }
-    raw(value, out);
+    raw(value, out, slope);
     for (std::size_t k = 0; k < scale_.size(); ++k) {
         out[k] = (out[k] - shift_[k]) * scale_[k];
+        if (slope != nullptr) {
+            slope[k] *= scale_[k];
+        }
     }
 }
 
 FlexibleBasis::FlexibleBasis(const std::vector<std::vector<double>>& values, std::size_t columns_each) {
     for (const std::vector<double>& variable : values) {
-        splines_.emplace_back(variable, columns_each);
+        splines_.emplace_back(variable, std::min(columns_each, most_columns));
         columns_ *= 1 + splines_.back().columns();
     }
 }
@@ -82,17 +94,72 @@ FlexibleBasis::FlexibleBasis(const std::vector<std::vector<double>>& values, std
 void FlexibleBasis::evaluate(const double* point, double* out) const {
     out[0] = 1;
     std::size_t filled = 1;
-    std::vector<double> own;
+    double own[most_columns];
     for (std::size_t v = 0; v < splines_.size(); ++v) {
-        own.resize(splines_[v].columns());
-        splines_[v].evaluate(point[v], own.data());
+        splines_[v].evaluate(point[v], own);
         const std::size_t before = filled;
-        for (const double factor : own) {
+        for (std::size_t j = 0; j < splines_[v].columns(); ++j) {
             for (std::size_t k = 0; k < before; ++k) {
-                out[filled++] = factor * out[k];
+                out[filled++] = own[j] * out[k];
             }
         }
     }
+}
+
+double FlexibleBasis::sum(const double* coefficients, const double* point, double* slopes) const {
+    double own[most_columns];
+    double own_slope[most_columns];
+    if (splines_.empty()) {
+        return coefficients[0];
+    }
+    if (splines_.size() == 1) {
+        splines_[0].evaluate(point[0], own, own_slope);
+        double total = coefficients[0];
+        slopes[0] = 0;
+        for (std::size_t j = 0; j < splines_[0].columns(); ++j) {
+            total += coefficients[j + 1] * own[j];
+            slopes[0] += coefficients[j + 1] * own_slope[j];
+        }
+        return total;
+    }
+    // the last variable is the outermost: coefficients of its columns are themselves sums over the others
+    double all[6 * most_columns];
+    double all_slope[6 * most_columns];
+    for (std::size_t v = 0; v < splines_.size(); ++v) {
+        all[v * most_columns] = 1;
+        all_slope[v * most_columns] = 0;
+        splines_[v].evaluate(point[v], own, own_slope);
+        slopes[v] = 0;
+        for (std::size_t j = 0; j < splines_[v].columns() && j + 1 < most_columns; ++j) {
+            all[v * most_columns + j + 1] = own[j];
+            all_slope[v * most_columns + j + 1] = own_slope[j];
+        }
+    }
+    double total = 0;
+    std::size_t digit[6] = {};
+    for (std::size_t column = 0; column < columns_; ++column) {
+        if (coefficients[column] != 0) {
+            double product = coefficients[column];
+            for (std::size_t v = 0; v < splines_.size(); ++v) {
+                product *= all[v * most_columns + digit[v]];
+            }
+            total += product;
+            for (std::size_t s = 0; s < splines_.size(); ++s) {
+                double part = coefficients[column];
+                for (std::size_t v = 0; v < splines_.size(); ++v) {
+                    part *= v == s ? all_slope[v * most_columns + digit[v]] : all[v * most_columns + digit[v]];
+                }
+                slopes[s] += part;
+            }
+        }
+        for (std::size_t v = 0; v < splines_.size(); ++v) {
+            if (++digit[v] <= splines_[v].columns()) {
+                break;
+            }
+            digit[v] = 0;
+        }
+    }
+    return total;
 }
 
 DesignMatrix orthonormal(const DesignMatrix& matrix) {
@@ -130,6 +197,80 @@ double explained_square(const DesignMatrix& orthonormal_columns, const std::vect
         sum += dot * dot;
     }
     return sum;
+}
+
+DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& matrix) {
+    if (taken.columns == 0) {
+        return orthonormal(matrix);
+    }
+    using Map = Eigen::Map<const Eigen::MatrixXd>;
+    const Map q(taken.values.data(), static_cast<Eigen::Index>(taken.rows), static_cast<Eigen::Index>(taken.columns));
+    Eigen::MatrixXd left = Map(matrix.values.data(), static_cast<Eigen::Index>(matrix.rows), static_cast<Eigen::Index>(matrix.columns));
+    DesignMatrix result = matrix;
+    for (Eigen::Index k = 0; k < left.cols(); ++k) {
+        const double size = left.col(k).norm();
+        left.col(k) -= q * (q.transpose() * left.col(k));
+        if (left.col(k).norm() < 1e-6 * size) {
+            left.col(k).setZero();
+        }
+    }
+    result.values.assign(left.data(), left.data() + left.size());
+    return orthonormal(result);
+}
+
+std::vector<double> leave_groups_out(const DesignMatrix& jacobian, const std::vector<double>& residuals,
+                                     const std::vector<std::size_t>& begin, const std::vector<double>& cost,
+                                     const std::vector<double>& numbers, double ridge) {
+    const Eigen::Map<const Eigen::MatrixXd> j(jacobian.values.data(), static_cast<Eigen::Index>(jacobian.rows),
+                                              static_cast<Eigen::Index>(jacobian.columns));
+    const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
+    const Eigen::MatrixXd normal = j.transpose() * j;
+    Eigen::VectorXd slope = j.transpose() * r;
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+        slope(static_cast<Eigen::Index>(k)) += ridge * numbers[k];
+    }
+    std::vector<double> result = cost;
+    for (std::size_t g = 0; g < cost.size(); ++g) {
+        const Eigen::Index from = static_cast<Eigen::Index>(begin[g]);
+        const Eigen::Index count = static_cast<Eigen::Index>(begin[g + 1] - begin[g]);
+        const Eigen::MatrixXd own = j.middleRows(from, count);
+        Eigen::MatrixXd others = normal - own.transpose() * own;
+        others.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff() + 1e-12 + ridge;
+        const Eigen::VectorXd move = others.ldlt().solve(own.transpose() * r.segment(from, count) - slope);
+        const Eigen::VectorXd change = own * move;
+        result[g] += 2 * change.dot(r.segment(from, count)) + change.squaredNorm();
+    }
+    return result;
+}
+
+std::vector<double> grouped_variances(const DesignMatrix& jacobian, const std::vector<double>& residuals,
+                                      const std::vector<std::size_t>& begin) {
+    const Eigen::Map<const Eigen::MatrixXd> j(jacobian.values.data(), static_cast<Eigen::Index>(jacobian.rows),
+                                              static_cast<Eigen::Index>(jacobian.columns));
+    const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
+    const Eigen::Index n = j.cols();
+    Eigen::MatrixXd normal = j.transpose() * j;
+    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() + 1e-300;
+    const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(n, n);
+    const std::size_t groups = begin.size() - 1;
+    for (std::size_t g = 0; g < groups; ++g) {
+        const Eigen::Index from = static_cast<Eigen::Index>(begin[g]);
+        const Eigen::Index count = static_cast<Eigen::Index>(begin[g + 1] - begin[g]);
+        const Eigen::VectorXd score = j.middleRows(from, count).transpose() * r.segment(from, count);
+        middle += score * score.transpose();
+    }
+    if (groups > 1) {
+        middle *= static_cast<double>(groups) / static_cast<double>(groups - 1);
+    }
+    const Eigen::MatrixXd grouped = inverse * middle * inverse;
+    std::vector<double> variances(static_cast<std::size_t>(n), 0);
+    for (Eigen::Index k = 0; k < n; ++k) {
+        if (j.col(k).squaredNorm() > 0) {
+            variances[static_cast<std::size_t>(k)] = std::max(inverse(k, k), groups > 2 ? grouped(k, k) : 0);
+        }
+    }
+    return variances;
 }
 
 RidgeFit ridge_fit(const DesignMatrix& matrix, const std::vector<double>& y) {

@@ -14,12 +14,13 @@ public:
     /// `columns` at most the number of distinct values less one. Knots stand at quantiles of the distinct values.
     SplineBasis(const std::vector<double>& values, std::size_t columns);
     [[nodiscard]] std::size_t columns() const { return scale_.size(); }
-    /// Writes columns() numbers. Beyond the outermost knots the functions go on as straight lines.
-    void evaluate(double value, double* out) const;
+    /// Writes columns() numbers, and their slopes where asked for. Beyond the outermost knots the functions go on as straight lines.
+    void evaluate(double value, double* out, double* slope = nullptr) const;
 
 private:
-    void raw(double value, double* out) const;
+    void raw(double value, double* out, double* slope) const;
     std::vector<double> knots_;
+    std::vector<double> per_span_;   ///< 1 over the distance from a knot to the last one, in widths
     double width_ = 1;
     std::vector<double> shift_;
     std::vector<double> scale_;
@@ -33,6 +34,9 @@ public:
     FlexibleBasis(const std::vector<std::vector<double>>& values, std::size_t columns_each);
     [[nodiscard]] std::size_t columns() const { return columns_; }
     void evaluate(const double* point, double* out) const;
+    /// Sum of coefficients times columns, and its slope along each variable.
+    [[nodiscard]] double sum(const double* coefficients, const double* point, double* slopes) const;
+    static constexpr std::size_t most_columns = 16;   ///< of one variable
 
 private:
     std::vector<SplineBasis> splines_;
@@ -51,6 +55,21 @@ struct DesignMatrix {
 DesignMatrix orthonormal(const DesignMatrix& matrix);
 /// Sum of squares of `y` in the span of orthonormal columns.
 double explained_square(const DesignMatrix& orthonormal_columns, const std::vector<double>& y);
+
+/// Columns of `matrix` with their parts in the span of `taken` (orthonormal) removed, made orthonormal.
+DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& matrix);
+
+/// Cost of each group of rows (begin[g] .. begin[g + 1]) with the numbers behind the columns fitted to the other groups alone, to first
+/// order about a fit of all groups whose residuals are `residuals` and whose cost by group is `cost`: cost[g] + |r + J d|^2 - |r|^2.
+/// With a ridge about zero of that weight on the numbers, which stand at `numbers` (empty: no ridge).
+std::vector<double> leave_groups_out(const DesignMatrix& jacobian, const std::vector<double>& residuals,
+                                     const std::vector<std::size_t>& begin, const std::vector<double>& cost,
+                                     const std::vector<double>& numbers = {}, double ridge = 0);
+
+/// Variances of the numbers behind the columns from how much groups of rows disagree (sandwich of Huber 1967, grouped), each at least
+/// that of white unit residuals; 0 for a column of zeros.
+std::vector<double> grouped_variances(const DesignMatrix& jacobian, const std::vector<double>& residuals,
+                                      const std::vector<std::size_t>& begin);
 
 /// Least squares with a ridge chosen by generalised cross-validation (Golub, Heath and Wahba 1979).
 struct RidgeFit {

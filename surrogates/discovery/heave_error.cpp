@@ -10,8 +10,11 @@
 
 namespace underbody::discovery {
 
-void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& fitted_noise,
                     double horizon, std::vector<double>& sum_of_squares, std::vector<double>& counts) {
+    // a filter that takes its model for perfect would carry the model's error into the state that a window starts from
+    HeaveNoise noise = fitted_noise;
+    noise.process = std::max(noise.process, 1e-9);
     const std::vector<std::size_t>& chosen = experiment.chosen();
     sum_of_squares.assign(chosen.size(), 0);
     counts.assign(chosen.size(), 0);
@@ -50,6 +53,28 @@ void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamic
             first = last;
         }
     }
+}
+
+double estimator_error(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                       const std::vector<dynamics::EffectUse>& better, const HeaveNoise& better_noise) {
+    std::vector<double> innovations, states;
+    double sum = 0;
+    double count = 0;
+    for (const std::size_t r : experiment.chosen()) {
+        const HeaveRecord& record = experiment.records().records[r];
+        innovations.clear();
+        states.clear();
+        filter_innovations(record, experiment.explanation(r, uses), noise, innovations, &states);
+        const SmoothedRun reference = smooth_with_force(record, experiment.explanation(r, better), better_noise, 0.001 * record.plant->terms.mass);
+        for (std::size_t k = 0; k < record.time.size(); ++k) {
+            if (record.time[k] - record.time.front() > 2) {
+                const double difference = states[2 * k + 1] - reference.velocity[k];
+                sum += difference * difference;
+                count += 1;
+            }
+        }
+    }
+    return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
 dynamics::EffectUse force_table(const FlexibleForce& force) {

@@ -14,6 +14,10 @@ namespace underbody::discovery {
 void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
                     double horizon, std::vector<double>& sum_of_squares, std::vector<double>& counts);
 
+/// Root mean square of the velocity that a Kalman filter with one explanation gives, less the velocity smoothed with the better one, m/s.
+double estimator_error(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                       const std::vector<dynamics::EffectUse>& better, const HeaveNoise& better_noise);
+
 /// A smooth force as an effect for model.toml: a table over its variables.
 dynamics::EffectUse force_table(const FlexibleForce& force);
 

@@ -14,6 +14,8 @@ namespace {
 constexpr double process_floor = 1e-12;   ///< m^2/s^3: below it nothing changes any more
 constexpr double process_ceiling = 1e-2;
 constexpr double two_pi = 6.283185307179586;
+constexpr double small_force = 0.003;     ///< N, of a smooth correction: scale of its coefficients
+constexpr double smooth_ridge = 0.5;      ///< their prior: a standard deviation of 1.4 times that scale
 
 double sum_of_squares(const std::vector<double>& values) {
     double sum = 0;
@@ -68,12 +70,6 @@ HeaveExperiment::HeaveExperiment(const dynamics::Model& model, const HeaveRecord
     if (records_.velocity_measured) {
         noise_.velocity = choose("heave_velocity", declared_velocity_noise, records_.velocity_noise, velocity_from_);
     }
-    for (const dynamics::ForceSource& source : model_.forces) {
-        if (source.quantity == "lift_force") {
-            declared_factor_ = source.factor;
-            break;
-        }
-    }
 }
 
 std::size_t HeaveExperiment::readings() const {
@@ -95,7 +91,7 @@ HeaveExplanation HeaveExperiment::explanation(std::size_t record, const std::vec
     result.terms = bare_[record];
     for (const dynamics::EffectUse& use : uses) {
         if (use.name == "declared_parameter") {
-            result.lift_gain *= use.values[0] / declared_factor_;
+            result.lift_gain *= lift_gain_of(use, record);
         } else {
             dynamics::effect(use.name).add_to(result.terms, use, model_);
         }
@@ -103,6 +99,24 @@ HeaveExplanation HeaveExperiment::explanation(std::size_t record, const std::vec
     result.flexible = flexible;
     result.hold = hold_;
     return result;
+}
+
+double HeaveExperiment::lift_gain_of(const dynamics::EffectUse& use, std::size_t record) const {
+    for (std::size_t k = 0; k < model_.forces.size(); ++k) {
+        const dynamics::ForceSource& source = model_.forces[k];
+        const std::string prefix = "force." + std::to_string(k + 1) + ".";
+        if (use.parameter == prefix + "factor") {
+            return use.values[0] / source.factor;
+        }
+        for (const dynamics::ForceScale& scale : source.scales) {
+            if (use.parameter == prefix + "scale." + dynamics::channel_name(scale.channel) + ".exponent") {
+                const double held = std::abs(records_.records[record].plant->held().get(scale.channel, scale.reference));
+                const double ratio = std::max(0.0, held - scale.dead_band) / (scale.reference - scale.dead_band);
+                return ratio > 0 ? std::pow(ratio, use.values[0] - scale.exponent) : 1;
+            }
+        }
+    }
+    return 1;
 }
 
 double HeaveExperiment::evaluate(const std::vector<dynamics::EffectUse>& uses, const FlexibleForce* flexible, const HeaveNoise& noise,
@@ -262,23 +276,60 @@ HeaveExperiment::Result HeaveExperiment::fit(const Hypothesis& hypothesis, const
     result.fitted.occam = occam_factor(hypothesis, readings());
     std::vector<double> innovations;
     evaluate(hypothesis.with(result.fitted.fit.parameters), nullptr, best_noise, innovations, &result.fitted.cost_of_group);
+    DesignMatrix columns = answers(hypothesis, result.fitted.fit.parameters, best_noise, innovations);
+    for (std::size_t j = 0; j < columns.columns; ++j) {
+        const FitParameter& p = hypothesis.parameters[j];
+        const double at = result.fitted.fit.parameters[j];
+        if (at - p.lower < 1e-9 * (p.upper - p.lower) || p.upper - at < 1e-9 * (p.upper - p.lower)) {
+            std::fill_n(columns.values.begin() + static_cast<std::ptrdiff_t>(j * columns.rows), columns.rows, 0.0);  // it will not move
+        }
+    }
+    result.fitted.held_out = held_out_cost(columns, innovations, result.fitted.cost_of_group);
+    const std::vector<double> variances = grouped_variances(columns, innovations, begins());
+    for (std::size_t j = 0; j < variances.size(); ++j) {
+        if (variances[j] > 0) {
+            result.fitted.fit.sigma[j] = std::sqrt(variances[j]) * hypothesis.parameters[j].typical;
+        }
+    }
+    if (std::find(hypothesis.names.begin(), hypothesis.names.end(), "coulomb_friction") != hypothesis.names.end()) {
+        widen_for_friction(result, columns, innovations);
+    }
     return result;
 }
 
-HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
-                                                    const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin,
-                                                    double base_cost) const {
-    Smooth result;
-    FlexibleForce& force = result.force;
+/// Nobody knows over which speed friction changes its sign: what the numbers would be for a width five times the catalogue's goes into
+/// their errors.
+void HeaveExperiment::widen_for_friction(Result& result, const DesignMatrix& columns, const std::vector<double>& innovations) const {
+    const Hypothesis& hypothesis = result.fitted.hypothesis;
+    std::vector<double> wider;
+    for (const std::size_t r : chosen_) {
+        HeaveExplanation other = explanation(r, hypothesis.with(result.fitted.fit.parameters));
+        other.terms.friction_width *= 5;
+        filter_innovations(records_.records[r], other, result.noise, wider);
+    }
+    for (std::size_t i = 0; i < wider.size(); ++i) {
+        wider[i] = innovations[i] - wider[i];
+    }
+    const std::vector<double> shift = ridge_fit(columns, wider).coefficients;
+    for (std::size_t j = 0; j < shift.size(); ++j) {
+        double& sigma = result.fitted.fit.sigma[j];
+        sigma = std::hypot(sigma, shift[j] * hypothesis.parameters[j].typical);
+    }
+}
+
+FlexibleForce HeaveExperiment::flat_force(const std::vector<FlexibleForce::Variable>& variables,
+                                          const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                          std::size_t columns_each) const {
+    FlexibleForce force;
     force.variables = variables;
     std::vector<std::vector<double>> values(variables.size());
-    std::vector<double> innovations;
+    std::vector<double> innovations, states, input;
     for (const std::size_t r : chosen_) {
         const HeaveRecord& record = records_.records[r];
         const HeaveExplanation declared = explanation(r, uses);
-        std::vector<double> states;
-        filter_innovations(record, declared, begin, innovations, &states);
-        std::vector<double> input;
+        innovations.clear();
+        states.clear();
+        filter_innovations(record, declared, noise, innovations, &states);
         transform_input(record, declared, input);
         for (std::size_t k = 5; k < record.time.size(); k += 5) {
             for (std::size_t v = 0; v < variables.size(); ++v) {
@@ -297,16 +348,81 @@ HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleFo
         }
         force.lower.push_back(low);
         force.upper.push_back(high);
-        result.fit.variables.emplace_back();
     }
-    for (std::size_t v = 0; v < variables.size(); ++v) {
-        result.fit.variables[v] = variable_name(variables[v]);
-    }
-    force.basis = FlexibleBasis(values, variables.size() == 1 ? 6 : 3);
+    force.basis = FlexibleBasis(values, columns_each > 0 ? columns_each : variables.size() == 1 ? 7 : 3);
     force.coefficients.assign(force.basis.columns(), 0);
+    return force;
+}
+
+DesignMatrix HeaveExperiment::answers(const FlexibleForce& force, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                      const std::vector<double>& innovations) const {
+    constexpr double small = 3e-6;  // N
+    DesignMatrix matrix;
+    matrix.rows = innovations.size();
+    FlexibleForce moved = force;
+    std::vector<double> there;
+    for (std::size_t k = 0; k < force.coefficients.size(); ++k) {
+        moved.coefficients[k] += small;
+        evaluate(uses, &moved, noise, there);
+        moved.coefficients[k] = force.coefficients[k];
+        ++matrix.columns;
+        for (std::size_t i = 0; i < matrix.rows; ++i) {
+            matrix.values.push_back((there[i] - innovations[i]) * (small_force / small));
+        }
+    }
+    return matrix;
+}
+
+DesignMatrix HeaveExperiment::answers(const Hypothesis& hypothesis, std::span<const double> numbers, const HeaveNoise& noise,
+                                      const std::vector<double>& innovations) const {
+    DesignMatrix matrix;
+    matrix.rows = innovations.size();
+    std::vector<double> moved(numbers.begin(), numbers.end());
+    std::vector<double> there;
+    for (std::size_t j = 0; j < moved.size(); ++j) {
+        const FitParameter& p = hypothesis.parameters[j];
+        const double step = 1e-3 * p.typical * (moved[j] + 1e-3 * p.typical > p.upper ? -1 : 1);
+        moved[j] = numbers[j] + step;
+        evaluate(hypothesis.with(moved), nullptr, noise, there);
+        moved[j] = numbers[j];
+        ++matrix.columns;
+        for (std::size_t i = 0; i < matrix.rows; ++i) {
+            matrix.values.push_back((there[i] - innovations[i]) * (p.typical / step));
+        }
+    }
+    return matrix;
+}
+
+std::vector<std::size_t> HeaveExperiment::begins() const {
+    std::vector<std::size_t> list{0};
+    for (const std::size_t r : chosen_) {
+        const HeaveRecord& record = records_.records[r];
+        list.push_back(list.back() + record.time.size() * (record.velocity.empty() ? 1 : 2));
+    }
+    return list;
+}
+
+std::vector<double> HeaveExperiment::held_out_cost(const DesignMatrix& columns, const std::vector<double>& innovations,
+                                                   const std::vector<double>& by_record) const {
+    const std::vector<std::size_t> begin = begins();
+    if (by_record.size() < 2 || columns.columns == 0) {
+        return by_record;
+    }
+    return leave_groups_out(columns, innovations, begin, by_record);
+}
+
+HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
+                                                    const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin,
+                                                    double base_cost, std::size_t columns_each) const {
+    Smooth result;
+    FlexibleForce& force = result.force;
+    force = flat_force(variables, uses, begin, columns_each);
+    for (const FlexibleForce::Variable variable : variables) {
+        result.fit.variables.emplace_back(variable_name(variable));
+    }
     std::vector<FitParameter> parameters;
     for (std::size_t k = 0; k < force.coefficients.size(); ++k) {
-        parameters.push_back({"c" + std::to_string(k), "N", -10, 10, 0, 0.003});
+        parameters.push_back({"c" + std::to_string(k), "N", -10, 10, 0, small_force});
     }
     HeaveNoise noise = begin;
     FlexibleForce trial = force;
@@ -314,25 +430,51 @@ HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleFo
         trial.coefficients.assign(p.begin(), p.end());
         return evaluate(uses, &trial, noise, r) - sum_of_squares(r);
     };
-    Fit best = least_squares(parameters, residuals, {3, 0.5, 0.05});
+    // the innovations are nearly linear in the coefficients: one step at a time, and between steps as little process noise as they allow
+    Fit best;
+    best.cost = 1e300;
+    best.parameters.assign(parameters.size(), 0);
     HeaveNoise best_noise = noise;
-    while (noise.process > process_floor) {
-        noise.process = std::max(process_floor, noise.process * 0.1);
+    std::vector<double> scratch;
+    for (int round = 0; round < 8; ++round) {
         for (std::size_t k = 0; k < parameters.size(); ++k) {
             parameters[k].start = best.parameters[k];
         }
-        Fit fit = least_squares(parameters, residuals, {2, 0.5, 0.05});
-        if (!(fit.cost < best.cost - 0.5)) {
+        noise = best_noise;
+        const double before = best.cost;
+        Fit fit = least_squares(parameters, residuals, {1, 0.5, smooth_ridge, true});
+        if (fit.cost < best.cost) {
+            best = std::move(fit);
+        }
+        for (int misses = 0; noise.process > process_floor && misses < 2;) {
+            noise.process = std::max(process_floor, noise.process * 0.1);
+            const double cost = residuals(best.parameters, scratch) + sum_of_squares(scratch);
+            if (cost < best.cost) {
+                best.cost = cost;
+                best_noise = noise;
+            } else {
+                ++misses;
+            }
+        }
+        if (before - best.cost < 2) {
             break;
         }
-        best = std::move(fit);
-        best_noise = noise;
     }
     force.coefficients = best.parameters;
     result.noise = best_noise;
+    result.cost = best.cost;
     result.fit.gain = base_cost - best.cost;
     result.fit.degrees = static_cast<double>(force.coefficients.size());
     result.fit.p = chi_squared_tail(result.fit.gain, result.fit.degrees);
+    std::vector<double> by_record;
+    evaluate(uses, &force, best_noise, result.residuals, &by_record);
+    std::vector<double> numbers = best.parameters;
+    for (double& number : numbers) {
+        number /= small_force;
+    }
+    result.held_out = by_record.size() < 2 ? by_record
+                                           : leave_groups_out(answers(force, uses, best_noise, result.residuals), result.residuals, begins(),
+                                                              by_record, numbers, smooth_ridge);
     return result;
 }
 

@@ -59,9 +59,32 @@ public:
         SmoothFit fit;
         FlexibleForce force;
         HeaveNoise noise;
+        double cost = 0;                     ///< -2 log likelihood
+        std::vector<double> held_out;        ///< by run, with coefficients from the other runs
+        std::vector<double> residuals;       ///< innovations with it
     };
     [[nodiscard]] Smooth fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
-                                    const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin, double base_cost) const;
+                                    const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin, double base_cost,
+                                    std::size_t columns_each = 0) const;
+
+    /// The smooth force with its knots where the states of these effects are, all coefficients zero. `columns_each` variable; 0: seven
+    /// for one variable, three each for several.
+    [[nodiscard]] FlexibleForce flat_force(const std::vector<FlexibleForce::Variable>& variables,
+                                           const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                           std::size_t columns_each = 0) const;
+    /// What a small change of each coefficient does to the innovations, one column each.
+    [[nodiscard]] DesignMatrix answers(const FlexibleForce& force, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                       const std::vector<double>& innovations) const;
+    /// What a small change of each free number does, at these numbers.
+    [[nodiscard]] DesignMatrix answers(const Hypothesis& hypothesis, std::span<const double> numbers, const HeaveNoise& noise,
+                                       const std::vector<double>& innovations) const;
+
+    /// -2 log likelihood of each run when the free numbers behind `columns` are fitted to the other runs alone (to first order).
+    /// `by_record` is the cost with numbers fitted to all. With one run: that cost.
+    [[nodiscard]] std::vector<double> held_out_cost(const DesignMatrix& columns, const std::vector<double>& innovations,
+                                                    const std::vector<double>& by_record) const;
+    /// Where the innovations of the chosen records begin, and where the last ends.
+    [[nodiscard]] std::vector<std::size_t> begins() const;
 
     /// Frequencies at which a periodic force would explain most, with amplitude and phase: starts for the hypothesis.
     [[nodiscard]] std::vector<std::vector<double>> periodic_starts(const std::vector<dynamics::EffectUse>& uses,
@@ -71,6 +94,9 @@ public:
     [[nodiscard]] std::size_t readings() const;
 
 private:
+    void widen_for_friction(Result& result, const DesignMatrix& columns, const std::vector<double>& innovations) const;
+    /// What a corrected declared number makes of the lift of the tables in this record.
+    [[nodiscard]] double lift_gain_of(const dynamics::EffectUse& use, std::size_t record) const;
     const dynamics::Model& model_;
     const HeaveRecords& records_;
     std::vector<std::size_t> chosen_;
@@ -79,7 +105,6 @@ private:
     std::string gap_from_;
     std::string velocity_from_;
     core::Problems problems_;
-    double declared_factor_ = 1;
     bool hold_ = true;
 };
 

@@ -33,6 +33,57 @@ core::FigureCurve binned_mean(std::vector<std::pair<double, double>> points, con
     return curve;
 }
 
+/// Amplitude of a force at some frequencies (Hann window over each run, mean square over runs), mN.
+class Spectrum {
+public:
+    Spectrum() : power_(frequencies().size(), 0) {}
+
+    static const std::vector<double>& frequencies() {
+        static const std::vector<double> list = [] {
+            std::vector<double> made;
+            for (double f = 0.04; f < 5; f *= 1.09) {
+                made.push_back(f);
+            }
+            return made;
+        }();
+        return list;
+    }
+
+    void add(const std::vector<double>& time, const std::vector<double>& force) {
+        constexpr double two_pi = 6.283185307179586;
+        const double begin = time.front();
+        const double length = time.back() - begin;
+        for (std::size_t f = 0; f < power_.size(); ++f) {
+            double s = 0;
+            double c = 0;
+            double weight = 0;
+            for (std::size_t k = 0; k < time.size(); ++k) {
+                const double window = 1 - std::cos(two_pi * (time[k] - begin) / length);
+                s += window * force[k] * std::sin(two_pi * frequencies()[f] * time[k]);
+                c += window * force[k] * std::cos(two_pi * frequencies()[f] * time[k]);
+                weight += window;
+            }
+            power_[f] += 4e6 * (s * s + c * c) / (weight * weight);
+        }
+        ++runs_;
+    }
+
+    [[nodiscard]] core::FigureCurve curve(const std::string& name, core::Colour colour) const {
+        core::FigureCurve result;
+        result.name = name;
+        result.colour = colour;
+        result.x = frequencies();
+        for (const double power : power_) {
+            result.y.push_back(std::sqrt(power / std::max(runs_, 1)));
+        }
+        return result;
+    }
+
+private:
+    std::vector<double> power_;
+    int runs_ = 0;
+};
+
 }  // namespace
 
 std::vector<core::Figure> heave_figures(const HeaveExperiment& experiment, const HeaveNoise& noise,
@@ -50,6 +101,12 @@ std::vector<core::Figure> heave_figures(const HeaveExperiment& experiment, const
     over_time.x = {"time", "s", 0, 0, false};
     over_time.y = {"residual force", "mN", 0, 0, false};
     over_time.caption = "The same over time. With what was found it should wander about zero.";
+    core::Figure over_frequency;
+    over_frequency.title = "Residual force over frequency";
+    over_frequency.x = {"frequency", "Hz", 0, 0, true};
+    over_frequency.y = {"amplitude", "mN", 0, 0, false};
+    over_frequency.caption = "Amplitude of the smoothed residual force, root of the mean square over the runs. A peak is a periodic force, much at the "
+                             "left a slow or constant one.";
     HeaveNoise calm = noise;
     calm.process = 1e-9;
     for (const bool after : {false, true}) {
@@ -57,12 +114,14 @@ std::vector<core::Figure> heave_figures(const HeaveExperiment& experiment, const
             continue;
         }
         std::vector<std::pair<double, double>> gap, velocity;
+        Spectrum spectrum;
         const core::Colour colour = after ? core::palette(0) : core::Colour{170, 170, 170, 255};
         const std::string name = after ? "with what was found" : "as declared";
         for (const std::size_t r : experiment.chosen()) {
             const HeaveRecord& record = experiment.records().records[r];
             const SmoothedRun run = smooth_with_force(record, experiment.explanation(r, after ? uses : std::vector<dynamics::EffectUse>{}), calm,
                                                       0.001 * record.plant->terms.mass);
+            spectrum.add(run.time, run.force);
             for (std::size_t k = 10; k + 10 < run.time.size(); ++k) {
                 gap.emplace_back(1000 * run.gap[k], 1000 * run.force[k]);
                 velocity.emplace_back(1000 * run.velocity[k], 1000 * run.force[k]);
@@ -78,10 +137,11 @@ std::vector<core::Figure> heave_figures(const HeaveExperiment& experiment, const
                 over_time.curves.push_back(std::move(curve));
             }
         }
+        over_frequency.curves.push_back(spectrum.curve(name, colour));
         over_gap.curves.push_back(binned_mean(std::move(gap), name, colour));
         over_velocity.curves.push_back(binned_mean(std::move(velocity), name, colour));
     }
-    return {over_gap, over_velocity, over_time, probability_figure(result), error_figure(result)};
+    return {over_gap, over_velocity, over_time, over_frequency, probability_figure(result), error_figure(result)};
 }
 
 }  // namespace underbody::discovery

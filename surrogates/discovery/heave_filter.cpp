@@ -9,7 +9,8 @@ namespace underbody::discovery {
 namespace {
 
 constexpr double two_pi = 6.283185307179586;
-constexpr double longest_step = 0.05;  ///< s, of the integrator
+constexpr double longest_step = 0.05;    ///< s, of the integrator
+constexpr double shortest_step = 0.001;  ///< s
 
 /// The heave equation as plain numbers, with the slopes that the covariance needs.
 class Equation {
@@ -22,6 +23,9 @@ public:
             memory = 0;
         }
     }
+
+    /// To be called before the motion to step k is asked for.
+    void to_step(const HeaveRecord& record, std::size_t k) { scale_ = record.lift_scale.empty() ? 1 : record.lift_scale[k]; }
 
     /// Virtual mass and its slope.
     double inertia(double h, double& slope) const {
@@ -56,8 +60,8 @@ public:
             force_h = force_h * factor + lift * factor_slope;
             lift *= factor;
         }
-        force_h *= gain_;
-        double force = terms_.constant + u + gain_ * lift - terms_.stiffness * (h - terms_.stiffness_gap);
+        force_h *= gain_ * scale_;
+        double force = terms_.constant + u + gain_ * scale_ * lift - terms_.stiffness * (h - terms_.stiffness_gap);
         force_h -= terms_.stiffness;
         const double relative = w - terms_.current;
         const double size = std::abs(relative);
@@ -91,7 +95,7 @@ public:
             force += extra.force(extra.parameters, t, h, w);
         }
         if (flexible_ != nullptr) {
-            force += (*flexible_)(h, w, t, u);
+            force += flexible_->value(h, w, t, u, force_h, force_w);
         }
         for (const auto& correction : terms_.corrections) {
             double point[tables::max_axes] = {};
@@ -129,27 +133,46 @@ public:
         }
     }
 
-    /// One Runge-Kutta step; the memory of the flow follows the mean motion.
-    void advance(double t, double dt, double u0, double u1, double variance, double& h, double& w) {
-        const double um = 0.5 * (u0 + u1);
-        const double a1 = acceleration(t, h, w, u0, variance);
-        const double w2 = w + 0.5 * dt * a1;
-        const double a2 = acceleration(t + 0.5 * dt, h + 0.5 * dt * w, w2, um, variance);
-        const double w3 = w + 0.5 * dt * a2;
-        const double a3 = acceleration(t + 0.5 * dt, h + 0.5 * dt * w2, w3, um, variance);
-        const double w4 = w + dt * a3;
-        const double a4 = acceleration(t + dt, h + dt * w3, w4, u1, variance);
+    /// How a step changes small differences of (gap, velocity).
+    struct Transition {
+        double hh = 1, hw = 0, wh = 0, ww = 1;
+    };
+
+    /// One step of at most `rest`, less where the motion is stiff: exact for the equation linearised where the step begins
+    /// (exponential Rosenbrock-Euler, Hochbruck and Ostermann 2010), its matrix functions as series. Returns its length.
+    double advance(double t, double rest, double u, double variance, double& h, double& w, Transition& transition) {
+        double slope_h = 0;
+        double slope_w = 0;
+        const double a = acceleration(t + 0.5 * rest, h, w, u, variance, slope_h, slope_w);
+        double dt = rest;
+        const double stiffness = std::max(std::abs(slope_w), std::sqrt(std::abs(slope_h)));
+        if (stiffness * dt > 0.8) {
+            dt = std::max(0.8 / stiffness, std::min(rest, shortest_step));
+        }
+        const double jerk = slope_h * w + slope_w * a;
+        const double snap = slope_h * a + slope_w * jerk;
         const double before = w;
-        h += dt / 6 * (w + 2 * w2 + 2 * w3 + w4);
-        w += dt / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+        h += dt * (w + dt * (a / 2 + dt * (jerk / 6 + dt * snap / 24)));
+        w += dt * (a + dt * (jerk / 2 + dt * snap / 6));
+        const double q = 0.5 * dt * dt;
+        transition.hh = 1 + q * slope_h;
+        transition.hw = dt + q * slope_w;
+        transition.wh = dt * slope_h + q * slope_h * slope_w;
+        transition.ww = std::max(0.0, 1 + dt * slope_w + q * (slope_h + slope_w * slope_w));
         if (history_) {
             const dynamics::HistoryKernel& kernel = dynamics::history_kernel();
+            if (dt != decay_step_) {
+                decay_step_ = dt;
+                for (std::size_t i = 0; i < dynamics::history_states; ++i) {
+                    decay_[i] = std::exp(-kernel.rate[i] * dt);
+                }
+            }
             for (std::size_t i = 0; i < dynamics::history_states; ++i) {
                 // d memory/dt = -rate (memory + w), exact for a velocity held at its mean over the step
-                const double decay = std::exp(-kernel.rate[i] * dt);
-                memory_[i] = memory_[i] * decay - (1 - decay) * 0.5 * (before + w);
+                memory_[i] = memory_[i] * decay_[i] - (1 - decay_[i]) * 0.5 * (before + w);
             }
         }
+        return dt;
     }
 
 private:
@@ -157,10 +180,13 @@ private:
     const dynamics::Curve& curve_;
     const FlexibleForce* flexible_;
     double gain_;
+    double scale_ = 1;
     const dynamics::Conditions& held_;
     bool rough_;
     bool history_;
     double memory_[dynamics::history_states];
+    double decay_[dynamics::history_states] = {};
+    double decay_step_ = -1;
 };
 
 /// Where the motion begins, roughly: a straight line through the first second.
@@ -193,9 +219,9 @@ struct Covariance {
 
 }  // namespace
 
-double FlexibleForce::operator()(double h, double w, double t, double u) const {
+double FlexibleForce::value(double h, double w, double t, double u, double& slope_h, double& slope_w) const {
     double point[4];
-    double out[128];
+    double slopes[4] = {};
     for (std::size_t v = 0; v < variables.size(); ++v) {
         const double value = variables[v] == Variable::gap              ? h
                              : variables[v] == Variable::heave_velocity ? w
@@ -203,16 +229,28 @@ double FlexibleForce::operator()(double h, double w, double t, double u) const {
                                                                         : u;
         point[v] = std::clamp(value, lower[v], upper[v]);
     }
-    basis.evaluate(point, out);
-    double sum = 0;
-    for (std::size_t k = 0; k < coefficients.size(); ++k) {
-        sum += coefficients[k] * out[k];
+    const double sum = basis.sum(coefficients.data(), point, slopes);
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        if (point[v] > lower[v] && point[v] < upper[v]) {
+            slope_h += variables[v] == Variable::gap ? slopes[v] : 0;
+            slope_w += variables[v] == Variable::heave_velocity ? slopes[v] : 0;
+        }
     }
     return sum;
 }
 
 void transform_input(const HeaveRecord& record, const HeaveExplanation& explanation, std::vector<double>& input) {
     const dynamics::HeaveTerms& terms = explanation.terms;
+    const std::vector<double>& prepared = explanation.hold ? record.held_input : record.linear_input;
+    if (terms.input_delay == 0 && terms.input_dead_zone == 0 && terms.input_lag == 0 && prepared.size() == record.time.size()) {
+        input = prepared;
+        if (terms.input_gain != 1) {
+            for (double& u : input) {
+                u *= terms.input_gain;
+            }
+        }
+        return;
+    }
     const std::vector<double>& time = record.raw_time;
     const std::size_t n = time.size();
     std::vector<double> felt = record.raw_input;
@@ -269,6 +307,18 @@ void transform_input(const HeaveRecord& record, const HeaveExplanation& explanat
     }
 }
 
+void prepare_input(HeaveRecord& record) {
+    HeaveExplanation as_recorded;
+    record.held_input.clear();
+    record.linear_input.clear();
+    std::vector<double> linear;
+    as_recorded.hold = false;
+    transform_input(record, as_recorded, linear);
+    as_recorded.hold = true;
+    transform_input(record, as_recorded, record.held_input);
+    record.linear_input = std::move(linear);
+}
+
 double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
                           std::vector<double>& innovations, std::vector<double>* states) {
     Equation equation(record, explanation);
@@ -310,36 +360,27 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
         if (k > 0) {
             double rest = record.time[k] - record.time[k - 1];
             double t = record.time[k - 1];
-            const int parts = static_cast<int>(std::ceil(rest / longest_step));
-            const double dt = rest / parts;
-            for (int part = 0; part < parts; ++part) {
-                const double u0 = input[k];
-                const double u1 = input[k];
-                double slope_h = 0;
-                double slope_w = 0;
-                const double variance = p.ww;
-                equation.acceleration(t, h, w, u0, variance, slope_h, slope_w);
-                // exp(A dt) to second order, A = [0 1; slope_h slope_w]
-                const double q = 0.5 * dt * dt;
-                const double f11 = 1 + q * slope_h;
-                const double f12 = dt + q * slope_w;
-                const double f21 = dt * slope_h + q * slope_h * slope_w;
-                const double f22 = std::max(0.0, 1 + dt * slope_w + q * (slope_h + slope_w * slope_w));
-                equation.advance(t, dt, u0, u1, variance, h, w);
-                const double phi = std::exp(-dt / noise.slow_time);
-                n *= phi;
+            equation.to_step(record, k);
+            while (rest > 1e-9) {
+                Equation::Transition f;
+                const double dt = equation.advance(t, std::min(rest, longest_step), input[k], p.ww, h, w, f);
                 const Covariance o = p;
-                const double a = f11 * o.hh + f12 * o.hw;
-                const double b = f11 * o.hw + f12 * o.ww;
-                const double c = f21 * o.hh + f22 * o.hw;
-                const double d = f21 * o.hw + f22 * o.ww;
-                p.hh = a * f11 + b * f12 + noise.process * dt * dt * dt / 3;
-                p.hw = a * f21 + b * f22 + noise.process * dt * dt / 2;
-                p.ww = c * f21 + d * f22 + noise.process * dt;
-                p.hn = phi * (f11 * o.hn + f12 * o.wn);
-                p.wn = phi * (f21 * o.hn + f22 * o.wn);
-                p.nn = phi * phi * o.nn + slow * (1 - phi * phi);
+                const double a = f.hh * o.hh + f.hw * o.hw;
+                const double b = f.hh * o.hw + f.hw * o.ww;
+                const double c = f.wh * o.hh + f.ww * o.hw;
+                const double d = f.wh * o.hw + f.ww * o.ww;
+                p.hh = a * f.hh + b * f.hw + noise.process * dt * dt * dt / 3;
+                p.hw = a * f.wh + b * f.ww + noise.process * dt * dt / 2;
+                p.ww = c * f.wh + d * f.ww + noise.process * dt;
+                if (slow > 0) {
+                    const double phi = std::exp(-dt / noise.slow_time);
+                    n *= phi;
+                    p.hn = phi * (f.hh * o.hn + f.hw * o.wn);
+                    p.wn = phi * (f.wh * o.hn + f.ww * o.wn);
+                    p.nn = phi * phi * o.nn + slow * (1 - phi * phi);
+                }
                 t += dt;
+                rest -= dt;
             }
         }
         if (std::isfinite(record.gap[k])) {
@@ -411,30 +452,17 @@ SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation&
     for (std::size_t k = 0; k < n; ++k) {
         Matrix f{1, 0, 0, 0, 1, 0, 0, 0, 1};
         if (k > 0) {
-            const double rest = record.time[k] - record.time[k - 1];
-            const int parts = static_cast<int>(std::ceil(rest / longest_step));
-            const double dt = rest / parts;
-            for (int part = 0; part < parts; ++part) {
-                const double share = static_cast<double>(part) / parts;
-                const double t = record.time[k - 1] + rest * share;
-                const double u0 = input[k] + x[2];
-                const double u1 = u0;
-                double slope_h = 0;
-                double slope_w = 0;
+            double rest = record.time[k] - record.time[k - 1];
+            double t = record.time[k - 1];
+            equation.to_step(record, k);
+            while (rest > 1e-9) {
                 double mass_slope = 0;
-                equation.acceleration(t, x[0], x[1], u0, p[4], slope_h, slope_w);
                 const double per_mass = 1 / equation.inertia(x[0], mass_slope);
-                equation.advance(t, dt, u0, u1, p[4], x[0], x[1]);
-                const double q = 0.5 * dt * dt;
-                const Matrix g{1 + q * slope_h,
-                               dt + q * slope_w,
-                               q * per_mass,
-                               dt * slope_h,
-                               std::max(0.0, 1 + dt * slope_w),
-                               dt * per_mass,
-                               0,
-                               0,
-                               1};
+                Equation::Transition m;
+                const double dt = equation.advance(t, std::min(rest, longest_step), input[k] + x[2], p[4], x[0], x[1], m);
+                t += dt;
+                rest -= dt;
+                const Matrix g{m.hh, m.hw, 0.5 * dt * dt * per_mass, m.wh, m.ww, dt * per_mass, 0, 0, 1};
                 Matrix gp{}, next{}, gf{};
                 for (int i = 0; i < 3; ++i) {
                     for (int j = 0; j < 3; ++j) {
@@ -546,6 +574,20 @@ SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation&
     return run;
 }
 
+void step_once(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t k, double& gap,
+               double& velocity) {
+    Equation equation(record, explanation);
+    equation.start_history(velocity);
+    equation.to_step(record, k);
+    double t = record.time[k - 1];
+    for (double rest = record.time[k] - t; rest > 1e-9;) {
+        Equation::Transition transition;
+        const double dt = equation.advance(t, std::min(rest, longest_step), input[k], 0, gap, velocity, transition);
+        t += dt;
+        rest -= dt;
+    }
+}
+
 void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t first,
               std::size_t last, double gap, double velocity, std::vector<double>& predicted) {
     Equation equation(record, explanation);
@@ -563,11 +605,14 @@ void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, co
     };
     predicted.push_back(reading(first));
     for (std::size_t k = first + 1; k <= last; ++k) {
-        const double rest = record.time[k] - record.time[k - 1];
-        const int parts = static_cast<int>(std::ceil(rest / longest_step));
-        for (int part = 0; part < parts; ++part) {
-            const double share = static_cast<double>(part) / parts;
-            equation.advance(record.time[k - 1] + rest * share, rest / parts, input[k], input[k], 0, h, w);
+        double rest = record.time[k] - record.time[k - 1];
+        double t = record.time[k - 1];
+        equation.to_step(record, k);
+        while (rest > 1e-9) {
+            Equation::Transition transition;
+            const double dt = equation.advance(t, std::min(rest, longest_step), input[k], 0, h, w, transition);
+            t += dt;
+            rest -= dt;
         }
         predicted.push_back(reading(k));
     }

@@ -28,7 +28,13 @@ struct FlexibleForce {
     std::vector<double> coefficients;   ///< N, one per column
     /// Holds the force constant beyond what was seen.
     std::vector<double> lower, upper;
-    [[nodiscard]] double operator()(double h, double w, double t, double u) const;
+    [[nodiscard]] double operator()(double h, double w, double t, double u) const {
+        double slope_h = 0;
+        double slope_w = 0;
+        return value(h, w, t, u, slope_h, slope_w);
+    }
+    /// Adds its slopes along gap and velocity to what is there.
+    double value(double h, double w, double t, double u, double& slope_h, double& slope_w) const;
 };
 
 /// One explanation, ready to run.
@@ -39,7 +45,11 @@ struct HeaveExplanation {
     bool hold = true;                    ///< the recorded input is held from sample to sample (digital controller); else linear between
 };
 
+/// Fills held_input and linear_input from the recorded input: to be called whenever that was changed.
+void prepare_input(HeaveRecord& record);
+
 /// Recorded input as the body feels it (delay, dead zone, gain, lag): input[k] is its mean from the record's time k-1 to k.
+/// A record without held_input is worked out from its raw input.
 void transform_input(const HeaveRecord& record, const HeaveExplanation& explanation, std::vector<double>& input);
 
 /// Runs the filter over one record. Appends the normalised innovations (gap, then velocity when measured, of each step; 0 where
@@ -56,6 +66,10 @@ struct SmoothedRun {
 /// `force_walk` N/sqrt(s): how fast the residual force may change.
 SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
                               double force_walk);
+
+/// Motion of the explanation from step k - 1 to step k under input[k]. Without the memory of a history force.
+void step_once(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t k, double& gap,
+               double& velocity);
 
 /// Free run of the explanation from (gap, velocity) at step `first` to step `last`: predicted gap readings.
 void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t first,

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <optional>
 
 #include "core/text.h"
+#include "surrogates/discovery/heave_filter.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
@@ -129,29 +132,201 @@ std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector
     return step_of;
 }
 
-void check_scale(const dynamics::MeasuredRun& run, const std::vector<double>& gap, const dynamics::HeavePlant& plant) {
-    const double middle = median(gap);
+/// Readings at the ends of a sensor's range: many at exactly the largest or smallest value, in one piece.
+std::size_t drop_saturated(std::vector<double>& values, double noise) {
+    std::size_t dropped = 0;
+    for (const bool upper : {true, false}) {
+        double end = upper ? -1e300 : 1e300;
+        for (const double value : values) {
+            if (std::isfinite(value)) {
+                end = upper ? std::max(end, value) : std::min(end, value);
+            }
+        }
+        // a sensor without noise of its own repeats values by rounding; a saturated one repeats its end alone
+        const auto at_end = static_cast<std::size_t>(std::count(values.begin(), values.end(), end));
+        std::size_t longest = 0;
+        std::size_t run = 0;
+        for (const double value : values) {
+            run = value == end ? run + 1 : 0;
+            longest = std::max(longest, run);
+        }
+        if (at_end > std::max<std::size_t>(8, values.size() / 100) && longest >= 5 && noise > 0) {
+            std::replace(values.begin(), values.end(), end, std::nan(""));
+            dropped += at_end;
+        }
+    }
+    return dropped;
+}
+
+/// Why the declared model cannot run this run; empty where it can. `doubt` is filled where it can with a reserve.
+std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, std::string& doubt, bool& unit) {
     const double lower = plant.terms.table_lower;
     const double upper = plant.terms.table_upper;
     if (lower < -1e299 || upper > 1e299) {
-        return;
+        return "";
     }
-    const core::Place place{run.table.source, {}, {}, {}};
+    std::vector<double> finite;
+    std::copy_if(gap.begin(), gap.end(), std::back_inserter(finite), [](double x) { return std::isfinite(x); });
+    const double middle = median(finite);
     const auto inside = [&](double value) { return value > lower - 0.05 * (upper - lower) && value < upper + 0.05 * (upper - lower); };
+    const std::string where = "(" + core::format_number(lower, 4) + " to " + core::format_number(upper, 4) + " m)";
+    unit = false;
     if (!inside(middle)) {
-        for (const double factor : {1e-3, 1e3}) {
-            if (inside(middle * factor)) {
-                throw core::InputError("unit", "the gap is " + core::format_number(middle, 4) + " m in the middle, outside the tables (" +
-                                                   core::format_number(lower, 4) + " to " + core::format_number(upper, 4) + " m)",
-                                       place, std::string("a thousandth or a thousandfold fits: is the column's unit ") +
-                                                  (factor < 1 ? "mm" : "m written as mm") + "?");
+        unit = inside(middle * 1e-3) || inside(middle * 1e3);
+        return "its gap, " + core::format_number(middle, 4) + " m in the middle, lies outside the tables of the declared model " + where +
+               (unit ? ": a thousandth or a thousandfold would fit" : "");
+    }
+    double outside = 0;
+    double count = 0;
+    for (const double value : gap) {
+        if (std::isfinite(value)) {
+            count += 1;
+            outside += value < lower || value > upper ? 1 : 0;
+        }
+    }
+    if (outside > 0.5 * count) {
+        return "it spends " + core::format_number(100 * outside / count, 2) + " % of its time outside the tables of the declared model " + where;
+    }
+    if (outside > 0.02 * count) {
+        doubt = "spends " + core::format_number(100 * outside / count, 2) + " % of its time outside the tables of the declared model " + where +
+                ", where they hold their end values: what is found there may be the missing table";
+    }
+    return "";
+}
+
+/// Slope of a measured velocity against the differences of the gap over a fifth of a second; NaN where nothing moves.
+double velocity_slope(const HeaveRecord& record, double gap_noise) {
+    double cross = 0;
+    double square = 0;
+    const std::size_t reach = 5;
+    for (std::size_t k = reach; k < record.time.size(); k += reach) {
+        double sum = 0;
+        std::size_t count = 0;
+        for (std::size_t i = k - reach; i <= k; ++i) {
+            if (std::isfinite(record.velocity[i])) {
+                sum += record.velocity[i];
+                ++count;
             }
         }
-        throw core::InputError("range", "the declared model cannot run this experiment: the gap " + core::format_number(middle, 4) +
-                                            " m lies outside its tables (" + core::format_number(lower, 4) + " to " +
-                                            core::format_number(upper, 4) + " m)",
-                               place, "give the model a table that covers the gaps that were measured");
+        const double rate = (record.gap[k] - record.gap[k - reach]) / (record.time[k] - record.time[k - reach]);
+        if (std::isfinite(rate) && count > reach / 2) {
+            const double noise = gap_noise / (record.time[k] - record.time[k - reach]);
+            cross += rate * sum / static_cast<double>(count);
+            square += rate * rate - noise * noise;   // two averages of two readings
+        }
     }
+    return square > 0 ? cross / square : std::nan("");
+}
+
+bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+/// The same run twice would make everything look more certain than it is.
+void drop_copies(HeaveRecords& result, const dynamics::Measurements& data) {
+    for (std::size_t a = 0; a < result.records.size(); ++a) {
+        for (std::size_t b = result.records.size(); b-- > a + 1;) {
+            if (same_numbers(result.records[a].gap, result.records[b].gap) && same_numbers(result.records[a].raw_input, result.records[b].raw_input)) {
+                remark(result.problems, result.records[b].name + " is the same as " + result.records[a].name + ", reading by reading: used once",
+                       data.runs[result.records[b].run].table.source);
+                result.records.erase(result.records.begin() + static_cast<std::ptrdiff_t>(b));
+            }
+        }
+    }
+}
+
+/// Conditions that changed within a run: over each step what the lift of the one table source is, over what it is with the condition held
+/// at its mean. A channel that cannot be followed so is named in `held_at_mean`.
+std::vector<double> lift_over_steps(const dynamics::Model& model, const dynamics::MeasuredRun& run, const dynamics::Conditions& held,
+                                    const std::vector<std::size_t>& step_of, std::size_t steps, std::string& held_at_mean) {
+    std::vector<double> scale;
+    std::size_t sources = 0;
+    for (const dynamics::ForceSource& source : model.forces) {
+        sources += source.quantity == "lift_force" ? 1 : 0;
+    }
+    for (const core::Column& column : run.table.columns()) {
+        Channel channel{};
+        if (column.is_text() || !dynamics::find_channel(column.name, channel) || channel == Channel::time || channel == Channel::gap ||
+            channel == Channel::heave_velocity || channel == Channel::input_force) {
+            continue;
+        }
+        std::vector<double> finite;
+        std::copy_if(column.numbers.begin(), column.numbers.end(), std::back_inserter(finite), [](double x) { return std::isfinite(x); });
+        const double middle = held.get(channel, 0);
+        if (finite.empty() || robust_sigma(finite) < 0.01 * std::abs(middle)) {
+            continue;
+        }
+        for (const dynamics::ForceSource& source : model.forces) {
+            const bool axis = std::find(source.axes.begin(), source.axes.end(), channel) != source.axes.end();
+            const auto own = std::find_if(source.scales.begin(), source.scales.end(), [&](const auto& s) { return s.channel == channel; });
+            if (source.quantity != "lift_force" || (!axis && own == source.scales.end())) {
+                continue;
+            }
+            const auto strength = [&](double x) {
+                return std::pow(std::max(0.0, std::abs(x) - own->dead_band) / (own->reference - own->dead_band), own->exponent);
+            };
+            if (axis || sources != 1 || !(strength(middle) > 0)) {
+                held_at_mean = column.name;
+                continue;
+            }
+            std::vector<double> sum(steps, 0), count(steps, 0);
+            for (std::size_t i = 0; i < step_of.size(); ++i) {
+                if (std::isfinite(column.numbers[i])) {
+                    sum[step_of[i]] += strength(column.numbers[i]);
+                    count[step_of[i]] += 1;
+                }
+            }
+            scale.resize(steps, 1);
+            double last = 1;
+            for (std::size_t k = 0; k < steps; ++k) {
+                last = count[k] > 0 ? sum[k] / count[k] / strength(middle) : last;
+                scale[k] *= last;
+            }
+        }
+    }
+    return scale;
+}
+
+/// A velocity that does not belong to its gap is left out, everywhere: the filter would trust it.
+void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) {
+    if (!result.velocity_measured) {
+        return;
+    }
+    std::vector<double> slopes;
+    for (const HeaveRecord& record : result.records) {
+        if (record.velocity.empty()) {
+            continue;
+        }
+        const double slope = velocity_slope(record, result.gap_noise);
+        if (std::isfinite(slope)) {
+            slopes.push_back(slope);
+        }
+    }
+    const double slope = slopes.empty() ? 1 : median(slopes);
+    std::string text;
+    if (slope < -0.5 && slope > -2) {
+        text = "heave_velocity has the opposite sign of the gap's changes (positive is up: it is turned round)";
+    } else if (std::abs(slope) < 0.5 || std::abs(slope) > 2) {
+        const bool thousand = (slope > 500 && slope < 2000) || (slope > 5e-4 && slope < 2e-3);
+        text = "heave_velocity is " + core::format_number(slope, 3) + " times what the gap's changes say" +
+               (thousand ? ": a unit wrong by a thousand?" : ": another channel, another run, or swapped columns?") + " It is not used";
+    }
+    if (text.empty()) {
+        return;
+    }
+    remark(result.problems, text, data.folder.string());
+    const bool turn = slope < -0.5 && slope > -2;
+    for (HeaveRecord& record : result.records) {
+        if (turn) {
+            for (double& value : record.velocity) {
+                value = -value;
+            }
+        } else {
+            record.velocity.clear();
+            record.velocity_share.clear();
+        }
+    }
+    result.velocity_measured = turn;
 }
 
 }  // namespace
@@ -162,6 +337,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
     std::vector<double> velocity_noises;
     std::vector<double> steps;
     std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
+    bool unit = false;
     for (std::size_t r = 0; r < data.runs.size(); ++r) {
         const dynamics::MeasuredRun& run = data.runs[r];
         const std::string file = run.table.source;
@@ -178,15 +354,39 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         record.plant = plant;
         const std::vector<double>& time = run.table.numbers("time");
         std::vector<double> gap = run.table.numbers("gap");
-        if (stuck(gap)) {
+        const double noise = noise_from_second_differences(gap);
+        const std::size_t saturated = drop_saturated(gap, noise);
+        if (saturated > 0) {
+            remark(result.problems, std::to_string(saturated) + " gap readings of " + run.name +
+                                        " stand exactly at the end of the sensor's range (saturated): not used", file);
+        }
+        if (stuck(gap) || 2 * saturated > gap.size()) {
             remark(result.problems, "the gap of " + run.name + " stands still for a fifth of the run: a stuck sensor? the run is left out", file);
             continue;
         }
-        check_scale(run, gap, *plant);
-        const double noise = noise_from_second_differences(gap);
+        std::string doubt;
+        const std::string reason = cannot_run(gap, *plant, doubt, unit);
+        if (!reason.empty()) {
+            remark(result.problems, run.name + " is left out: " + reason, file);
+            continue;
+        }
+        if (!doubt.empty()) {
+            remark(result.problems, run.name + " " + doubt, file);
+        }
+        const std::vector<double> pushed = run.values("input_force");
+        const double input_noise = pushed.size() == gap.size() ? noise_from_second_differences(pushed) : 0;
+        const std::optional<double> declared = data.declared_noise("gap");
+        if (declared && noise < 0.05 * *declared && input_noise > 0.5 * *declared && input_noise < 2 * *declared) {
+            remark(result.problems, run.name + " is left out: gap has no noise and input_force that of the gap sensor; the two columns look swapped", file);
+            continue;
+        }
         const std::size_t outliers = drop_outliers(gap, std::max(noise, 1e-9));
         if (outliers > 0) {
             remark(result.problems, std::to_string(outliers) + " gap readings of " + run.name + " lie far from their neighbours: not used", file);
+        }
+        if (!std::isfinite(noise)) {
+            remark(result.problems, run.name + " is left out: it has hardly any gap readings", file);
+            continue;
         }
         gap_noises.push_back(noise);
         for (std::size_t i = 1; i < time.size(); ++i) {
@@ -194,14 +394,23 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         }
         const std::vector<std::size_t> step_of = make_steps(time, record.time);
         average(time, gap, step_of, record.time.size(), record.gap, record.gap_share);
+        std::string held_at_mean;
+        record.lift_scale = lift_over_steps(model, run, held, step_of, record.time.size(), held_at_mean);
+        if (!held_at_mean.empty()) {
+            remark(result.problems, held_at_mean + " changes within " + run.name + " and moves a table or one of several sources of lift: held at its mean", file);
+        }
         const core::Column* velocity = run.table.find("heave_velocity");
         if (velocity != nullptr && !velocity->is_text()) {
             std::vector<double> values = velocity->numbers;
             const double own = noise_from_second_differences(values);
-            drop_outliers(values, std::max(own, 1e-9));
-            velocity_noises.push_back(own);
-            average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
-            result.velocity_measured = true;
+            if (stuck(values) || !std::isfinite(own)) {
+                remark(result.problems, "heave_velocity of " + run.name + " stands still for a fifth of the run or is missing: it is not used", file);
+            } else {
+                drop_outliers(values, std::max(own, 1e-9));
+                velocity_noises.push_back(own);
+                average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
+                result.velocity_measured = true;
+            }
         }
         record.raw_time = time;
         record.raw_input = run.values("input_force");
@@ -219,15 +428,23 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
             remark(result.problems, run.name + " has fewer than 20 steps: left out", file);
             continue;
         }
+        prepare_input(record);
         result.records.push_back(std::move(record));
     }
     if (result.records.empty()) {
-        throw core::InputError("range", "no run can be used", core::Place{data.folder.string(), {}, {}, {}},
-                               result.problems.empty() ? "" : result.problems.front().message);
+        const std::string first = result.problems.empty() ? "" : result.problems.front().message;
+        throw core::InputError(unit ? "unit" : "range",
+                               "no run can be used" + (first.empty() ? std::string() : ": " + first),
+                               core::Place{data.folder.string(), {}, {}, {}},
+                               unit ? "is the column's unit mm, or m written as mm?"
+                                    : "give the model tables that cover the gaps that were measured, or runs within them; `underbody predict` "
+                                      "shows the model beside each run");
     }
     result.raw_step = median(steps);
     result.gap_noise = median(gap_noises);
     result.velocity_noise = velocity_noises.empty() ? 0 : median(velocity_noises);
+    drop_copies(result, data);
+    check_velocities(result, data);
     return result;
 }
 

@@ -24,7 +24,10 @@ struct HeaveRecord {
     std::vector<double> velocity_share;
     std::vector<double> raw_time;        ///< of the recorded input
     std::vector<double> raw_input;       ///< N; zero when none was recorded
+    std::vector<double> held_input;      ///< N, mean of the recorded input over each step, held between its samples
+    std::vector<double> linear_input;    ///< the same, linear between its samples
     double lift_factor = 1;              ///< multiplies the folded lift curve
+    std::vector<double> lift_scale;      ///< likewise over each step, where a condition changed within the run; empty: it did not
 };
 
 /// Steps of the filter, s.

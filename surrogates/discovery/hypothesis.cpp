@@ -295,7 +295,7 @@ std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const st
     return list;
 }
 
-std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool /*velocity_measured*/) {
+std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying) {
     std::vector<Hypothesis> list;
     for (const dynamics::Effect* effect : dynamics::effects()) {
         const dynamics::EffectInfo& info = effect->info();
@@ -311,6 +311,15 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool /*ve
         if (info.name == "gap_sensor_delay" || info.name == "input_delay" || info.name == "actuator_lag") {
             // a reading later than that is no reading; the filter's expansion in the delay ends there as well
             hypothesis.parameters.front().upper = std::min(hypothesis.parameters.front().upper, info.name == "gap_sensor_delay" ? 0.5 : 5.0);
+        }
+        if (info.name == "linear_damping" && model.drag_heave.kind == dynamics::DragLaw::Kind::linear_quadratic) {
+            hypothesis.parameters.front().lower = -model.drag_heave.linear;   // water takes energy, it does not give any
+        }
+        if (info.name == "quadratic_damping" && model.drag_heave.kind == dynamics::DragLaw::Kind::linear_quadratic) {
+            hypothesis.parameters.front().lower = -model.drag_heave.quadratic;
+        }
+        if (info.name == "added_mass") {
+            hypothesis.parameters.front().lower = -0.9 * model.heave_mass();
         }
         if (info.name == "gap_dependent_added_mass") {
             start({{0.5, 0.02}, {0.5, 0.06}, {0.5, 0.2}});
@@ -343,22 +352,50 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool /*ve
         }
     }
     if (sources == 1) {
-        // the scale of the force table is the declared number that has no name of its own in the catalogue
-        Hypothesis hypothesis;
-        hypothesis.names = {"declared_parameter"};
-        dynamics::EffectUse use = dynamics::neutral_use("declared_parameter");
-        use.parameter = "force." + std::to_string(which + 1) + ".factor";
-        const double declared = model.forces[which].factor;
-        use.values[0] = declared;
-        hypothesis.form = use.parameter;
-        hypothesis.uses = {use};
-        hypothesis.parameters = {{"value", "1", 0.05 * declared, 20 * declared, declared, 0.1 * declared}};
-        hypothesis.slots = {{0, 0}};
-        hypothesis.starts = {{1.02 * declared}};
-        hypothesis.depends_on = {"gap"};
-        list.push_back(std::move(hypothesis));
+        // the scale of the force table and its exponents are the declared numbers that have no name of their own in the catalogue
+        const auto add = [&](const std::string& parameter, double declared, double size, double lower, double upper,
+                             const std::string& depends) {
+            Hypothesis hypothesis;
+            hypothesis.names = {"declared_parameter"};
+            dynamics::EffectUse use = dynamics::neutral_use("declared_parameter");
+            use.parameter = parameter;
+            use.values[0] = declared;
+            hypothesis.form = parameter;
+            hypothesis.uses = {use};
+            hypothesis.parameters = {{"value", "1", lower, upper, declared, size}};
+            hypothesis.slots = {{0, 0}};
+            hypothesis.starts = {{declared + 0.2 * size}};
+            hypothesis.depends_on = {"gap"};
+            if (!depends.empty()) {
+                hypothesis.depends_on.push_back(depends);
+            }
+            list.push_back(std::move(hypothesis));
+        };
+        const dynamics::ForceSource& source = model.forces[which];
+        const std::string prefix = "force." + std::to_string(which + 1) + ".";
+        add(prefix + "factor", source.factor, 0.1 * source.factor, 0.05 * source.factor, 20 * source.factor, "");
+        for (const dynamics::ForceScale& scale : source.scales) {
+            if (std::find(varying.begin(), varying.end(), scale.channel) != varying.end()) {
+                const std::string channel = dynamics::channel_name(scale.channel);
+                add(prefix + "scale." + channel + ".exponent", scale.exponent, 0.2, -6, 10, channel);
+            }
+        }
     }
     return list;
+}
+
+void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& names) {
+    if (names.empty()) {
+        return;
+    }
+    std::erase_if(list, [&](const Hypothesis& h) {
+        return !std::all_of(h.names.begin(), h.names.end(),
+                            [&](const std::string& own) { return std::find(names.begin(), names.end(), own) != names.end(); });
+    });
+    if (list.empty()) {
+        throw core::InputError("option", "none of the candidates asked for can be seen in such data", {},
+                               "leave the list of candidates out to have all tried");
+    }
 }
 
 Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b) {

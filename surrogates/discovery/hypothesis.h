@@ -44,9 +44,18 @@ struct FittedHypothesis {
     double cost = 0;      ///< -2 log likelihood
     double occam = 0;     ///< -2 log of the prior volume that the data leave: what free numbers cost
     std::vector<double> cost_of_group;  ///< cost by run (or group of set points)
+    std::vector<double> held_out;       ///< cost of each run (group) with numbers from the other runs; empty: not computed
     double explained = 0;               ///< cost of the model as declared less `cost`
     std::vector<double> explained_by_group;
-    [[nodiscard]] double score() const { return cost + occam; }
+    /// What numbers fitted to other runs lose: 0 when nothing was held out.
+    [[nodiscard]] double optimism() const {
+        double sum = -cost;
+        for (const double own : held_out) {
+            sum += own;
+        }
+        return held_out.empty() ? 0 : sum;
+    }
+    [[nodiscard]] double score() const { return cost + optimism() + occam; }
 };
 
 /// The names that a static set with these varying channels and measured quantities can show against this model, each with its variants.
@@ -54,8 +63,12 @@ struct FittedHypothesis {
 std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const std::vector<dynamics::Channel>& varying,
                                           const std::vector<std::string>& quantities);
 
-/// The names that heave time series can show; `declared` are declared parameters of the model that have no name of their own.
-std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, bool velocity_measured);
+/// The names that heave time series can show. `varying`: conditions that differ from run to run; a declared exponent over one of them
+/// may be off.
+std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<dynamics::Channel>& varying);
+
+/// Leaves those whose every name is among `names` (empty: all). Throws core::InputError when none is left.
+void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& names);
 
 /// Both at once. Parameters of `a` start at `start_a` (fitted), those of `b` where they stand.
 Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b);

@@ -22,13 +22,20 @@ public:
         fit.log_determinant = evaluate(fit.parameters, fit.residuals);
         fit.cost = cost(fit.residuals, fit.log_determinant);
         double damping = 1e-3;
+        bool fresh = false;   // the Jacobian belongs to where the fit stands, but for a step that gained less than the tolerance
         for (int i = 0; i < options_.iterations && count_ > 0; ++i) {
             linearise(fit);
-            if (!step(fit, damping)) {
+            fresh = true;
+            if (promised(fit) < options_.tolerance) {
+                break;
+            }
+            const Taken taken = step(fit, damping);
+            fresh = taken != Taken::far;
+            if (fresh) {
                 break;
             }
         }
-        if (count_ > 0) {
+        if (count_ > 0 && !fresh && options_.iterations > 1) {   // a single step is part of a longer search: its errors are not asked for
             linearise(fit);
         }
         spread(fit);
@@ -50,10 +57,12 @@ private:
         return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
     }
 
+    double centre(std::size_t j) const { return options_.about_zero ? 0 : parameters_[j].start; }
+
     double prior(const std::vector<double>& p) const {
         double sum = 0;
         for (std::size_t j = 0; j < count_; ++j) {
-            const double distance = (p[j] - parameters_[j].start) / parameters_[j].typical;
+            const double distance = (p[j] - centre(j)) / parameters_[j].typical;
             sum += options_.ridge * distance * distance;
         }
         return sum;
@@ -87,18 +96,43 @@ private:
         for (std::size_t j = 0; j < count_; ++j) {
             const Eigen::Index k = static_cast<Eigen::Index>(j);
             normal_(k, k) += options_.ridge;
-            gradient_(k) += options_.ridge * (fit.parameters[j] - parameters_[j].start) / parameters_[j].typical;
+            gradient_(k) += options_.ridge * (fit.parameters[j] - centre(j)) / parameters_[j].typical;
         }
     }
 
-    bool step(Fit& fit, double& damping) {
-        const double before = fit.cost + prior(fit.parameters);
-        for (int attempt = 0; attempt < 6; ++attempt) {
-            Eigen::MatrixXd damped = normal_;
-            for (Eigen::Index k = 0; k < damped.rows(); ++k) {
+    enum class Taken { none, small, far };
+
+    /// True where a number stands at a bound and the cost falls beyond it.
+    bool held(const Fit& fit, std::size_t j) const {
+        const double slope = gradient_(static_cast<Eigen::Index>(j));
+        return (fit.parameters[j] <= parameters_[j].lower && slope > 0) || (fit.parameters[j] >= parameters_[j].upper && slope < 0);
+    }
+
+    /// Normal equations with the numbers held at their bounds taken out.
+    Eigen::VectorXd move_of(const Fit& fit, double damping) const {
+        Eigen::MatrixXd damped = normal_;
+        Eigen::VectorXd slope = gradient_;
+        for (std::size_t j = 0; j < count_; ++j) {
+            const Eigen::Index k = static_cast<Eigen::Index>(j);
+            if (held(fit, j)) {
+                damped.row(k).setZero();
+                damped.col(k).setZero();
+                damped(k, k) = 1;
+                slope(k) = 0;
+            } else {
                 damped(k, k) += damping * std::max(normal_(k, k), 1e-12) + 1e-12;
             }
-            const Eigen::VectorXd move = -damped.ldlt().solve(gradient_);
+        }
+        return -damped.ldlt().solve(slope);
+    }
+
+    /// Fall of the cost that a full step of the linearised problem promises.
+    double promised(const Fit& fit) const { return -gradient_.dot(move_of(fit, 0)); }
+
+    Taken step(Fit& fit, double& damping) {
+        const double before = fit.cost + prior(fit.parameters);
+        for (int attempt = 0; attempt < 6; ++attempt) {
+            const Eigen::VectorXd move = move_of(fit, damping);
             std::vector<double> there = fit.parameters;
             for (std::size_t j = 0; j < count_; ++j) {
                 const double wanted = there[j] + move(static_cast<Eigen::Index>(j)) * parameters_[j].typical;
@@ -114,11 +148,11 @@ private:
                 fit.log_determinant = log_determinant;
                 fit.cost = reached;
                 damping = std::max(damping * 0.1, 1e-9);
-                return go_on;
+                return go_on ? Taken::far : Taken::small;
             }
             damping = std::max(damping, 1e-6) * 10;
         }
-        return false;
+        return Taken::none;
     }
 
     void spread(Fit& fit) const {

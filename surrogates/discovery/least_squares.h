@@ -25,6 +25,7 @@ struct FitOptions {
     int iterations = 12;
     double tolerance = 1e-3;  ///< stop when the cost falls by less
     double ridge = 0;         ///< weight of ((p - start)/typical)^2 in the cost: a weak prior
+    bool about_zero = false;  ///< the ridge pulls to zero instead
 };
 
 struct Fit {

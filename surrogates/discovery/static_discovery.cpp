@@ -118,6 +118,7 @@ private:
     void fit_singles() {
         std::vector<Hypothesis> candidates = static_hypotheses(experiment_.model(), experiment_.varying(), experiment_.quantities());
         keep_lengths_inside(candidates);
+        keep_only(candidates, options_.candidates);
         experiment_.residuals(train_, {}, null_residuals_);
         null_cost_ = sum_of_squares(null_residuals_);
         fitted_.resize(candidates.size());

@@ -18,6 +18,7 @@ struct Extra {
     double a = 0;   ///< strength
     double b = 0;   ///< a shape, drawn by seed
     double c = 0;
+    double form = 0;   ///< 0..1: which form of the law
 };
 
 struct Plant {
@@ -30,10 +31,14 @@ struct Plant {
         for (const Extra& e : extras) {
             if (e.name == "added_mass") {
                 m += e.a;
-            } else if (e.name == "gap_dependent_added_mass") {
+            } else if (e.name == "gap_dependent_added_mass" && e.form < 0.5) {
                 const double grow = e.a * std::exp(-h / e.b);
                 m += grow;
                 slope -= grow / e.b;
+            } else if (e.name == "gap_dependent_added_mass") {
+                const double base = 1 + h / e.b;
+                m += e.a * std::pow(base, -1.5);
+                slope -= 1.5 * e.a * std::pow(base, -2.5) / e.b;
             }
         }
         return m;
@@ -50,10 +55,10 @@ struct Plant {
             else if (n == "surface_roughness") lift *= 1 + e.a * (e.b - h) / (e.b + h);
             else if (n == "declared_parameter") lift *= 1 + e.a;
             else if (n == "constant_force") f += e.a;
-            else if (n == "coulomb_friction") f -= e.a * (1 + 0.15 * std::exp(-w * w / 1.6e-5)) * std::tanh(w / 8e-4);
-            else if (n == "linear_damping") f -= e.a * w / (1 + 1.5 * std::abs(w));
-            else if (n == "quadratic_damping") f -= e.a * std::copysign(std::pow(std::abs(w), 1.93), w);
-            else if (n == "squeeze_film_damping") f -= e.a * w / std::pow(h + 6e-4, 2.9);
+            else if (n == "coulomb_friction") f -= e.a * (1 + 0.3 * e.form * std::exp(-w * w / 1.6e-5)) * std::tanh(w / (4e-4 + 1.2e-3 * e.c));
+            else if (n == "linear_damping") f -= e.a * w / (1 + 3 * e.form * std::abs(w));
+            else if (n == "quadratic_damping") f -= e.a * std::copysign(std::pow(std::abs(w), 1.88 + 0.2 * e.form), w);
+            else if (n == "squeeze_film_damping") f -= e.a * w / std::pow(h + 1e-3 * e.form, 2.8 + 0.3 * e.c);
             else if (n == "tether_stiffness") f -= e.a * (h - e.b) * (1 + 0.1 * (h - e.b));
             else if (n == "periodic_disturbance") f += e.a * (std::sin(2 * pi * e.b * t + e.c) + 0.08 * std::sin(4 * pi * e.b * t));
             else if (n == "input_gain") felt *= 1 + e.a;
@@ -66,6 +71,11 @@ struct Plant {
             else if (n == "warming") f += e.a * std::tanh((t - 18 - 10 * e.b) / 4);
             else if (n == "one_sided") f -= e.a * std::max(0.0, w) * (1 + 20 * std::max(0.0, w));
             else if (n == "rectifier") f += e.a * std::abs(u - 0.035) / 0.03;
+            else if (n == "ripple") f += e.a * std::sin(h / (0.018 + 0.01 * e.b) + 6 * e.form);
+            else if (n == "film_cell") f += e.a * w * std::exp(-std::pow((h - 0.1 - 0.08 * e.b) / 0.035, 2));
+            else if (n == "above_a_speed") f -= e.a * 0.5 * (std::tanh((w - 0.012) / 0.003) + std::tanh((w + 0.012) / 0.003));
+            else if (n == "thrust_near_wall") f += e.a * (u - 0.03) * std::exp(-std::pow((h - 0.09) / 0.04, 2));
+            else if (n == "jump_in_gap") f += e.a * std::tanh((h - 0.1 - 0.06 * e.b) / 0.008);
         }
         (void)history;
         const double drag = linear * relative + quadratic * relative * std::abs(relative);
@@ -86,7 +96,7 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
     const int sub = std::max(1, static_cast<int>(std::lround(dt / fine)));
     const double step = dt / sub;
     const double begin = 0.03 + 0.1 * random.uniform() * (1 + random.uniform());
-    double h = begin, w = 0, integral = 0, felt = 0, held = 0;
+    double h = begin, w = 0, integral = 0, felt = 0, held = 0, lagged = 0;
     double estimate = h, slope = 0;
     std::vector<double> commands;
     const double stiff = style == 0 ? 0.25 + 0.2 * random.uniform() : 0.7 + 0.4 * random.uniform();
@@ -133,15 +143,20 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
         track.input.push_back(u);
         for (int s = 0; s < sub; ++s) {
             const double now = t + s * step;
-            const double late = now - plant.input_delay;
+            const double late = now + 0.5 * step - plant.input_delay;
             const int index = std::clamp(static_cast<int>(std::floor(late / dt + 1e-9)), 0, k);
             held = commands[static_cast<std::size_t>(index)];
-            felt = plant.lag > 0 ? felt + (held - felt) * (1 - std::exp(-step / plant.lag)) : held;
             if (k == 0 && s == 0) {
-                felt = held;
+                lagged = held;
                 for (double& m : memory) {
                     m = 0;
                 }
+            }
+            felt = held;
+            if (plant.lag > 0) {
+                const double rise = 1 - std::exp(-step / plant.lag);
+                felt = held + (lagged - held) * rise * plant.lag / step;   // mean over the step
+                lagged += (held - lagged) * rise;
             }
             double slope_of_mass = 0;
             double basset = 0, extra_mass = 0;
@@ -241,6 +256,12 @@ Plant plant_of(const std::vector<std::string>& names, const std::vector<double>&
             plant.extras.push_back({names[i], a, r, 0});
         else plant.extras.push_back({names[i], std::abs(a), r, 0});
     }
+    for (std::size_t i = 0; i < plant.extras.size(); ++i) {
+        plant.extras[i].form = std::fmod(7.31 * shape.front() + 0.37 * static_cast<double>(i), 1.0);
+        if (plant.extras[i].c == 0) {
+            plant.extras[i].c = std::fmod(13.7 * shape.front() + 0.11, 1.0);
+        }
+    }
     return plant;
 }
 
@@ -289,7 +310,7 @@ Sample make_heave(const Case& wanted) {
             laws[i] == "gap_dependent_added_mass" || laws[i] == "linear_damping" || laws[i] == "declared_parameter" ||
             laws[i] == "input_gain" || laws[i] == "surface_roughness") {
             strength[i] = sign * 0.02;
-        } else if (laws[i] == "quadratic_damping" || laws[i] == "one_sided" || laws[i] == "cross" || laws[i] == "history_force") {
+        } else if (laws[i] == "quadratic_damping" || laws[i] == "one_sided" || laws[i] == "cross" || laws[i] == "film_cell" || laws[i] == "thrust_near_wall" || laws[i] == "history_force") {
             strength[i] = sign * 0.3;
         } else if (laws[i] == "squeeze_film_damping") {
             strength[i] = sign * 3e-6;
@@ -310,10 +331,11 @@ Sample make_heave(const Case& wanted) {
     const Plant plant = plant_of(laws, strength, shape);
     Sample sample;
     sample.names = wanted.names;
-    sample.strength = strength.empty() ? 0 : strength.front();
+    sample.strength = plant.lag + plant.input_delay + plant.sensor_delay + plant.bias + (plant.extras.empty() ? 0 : plant.extras.front().a);
     if (!laws.empty() && wanted.names.front() == "unknown") {
-        sample.depends_on = wanted.law == "bump" ? std::vector<std::string>{"gap"}
-                            : wanted.law == "cross" ? std::vector<std::string>{"gap", "heave_velocity"}
+        sample.depends_on = wanted.law == "bump" || wanted.law == "ripple" || wanted.law == "jump_in_gap" ? std::vector<std::string>{"gap"}
+                            : wanted.law == "thrust_near_wall" ? std::vector<std::string>{"gap", "input_force"}
+                            : wanted.law == "cross" || wanted.law == "film_cell" ? std::vector<std::string>{"gap", "heave_velocity"}
                             : wanted.law == "warming" ? std::vector<std::string>{"time"}
                             : wanted.law == "rectifier" ? std::vector<std::string>{"input_force"}
                                                         : std::vector<std::string>{"heave_velocity"};

@@ -509,7 +509,7 @@ std::vector<std::string> effects_of(const std::string& family) {
 
 std::vector<std::string> unknown_laws(const std::string& family) {
     if (family == "heave") {
-        return {"bump", "wiggle", "cross", "warming", "one_sided", "rectifier"};
+        return {"bump", "wiggle", "cross", "warming", "one_sided", "rectifier", "ripple", "film_cell", "above_a_speed", "thrust_near_wall", "jump_in_gap"};
     }
     if (family == "towed") {
         return {"stall", "slope", "hump"};

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "make_data.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/heave_experiment.h"
@@ -15,6 +17,7 @@ Discovery found_on(const std::function<double(double, double, double)>& extra, s
     const dynamics::Model model = test::heave_model(folder.path());
     DiscoverOptions options;
     options.figures = options.consequence = false;
+    options.placebo_twins = 2;
     return discover(model, test::heave_runs(extra, 4, rate, seed), options);
 }
 
@@ -26,6 +29,9 @@ TEST(HeaveDiscovery, SaysNoneOnCleanRuns) {
     EXPECT_TRUE(found.model.effects.empty());
     EXPECT_EQ(found.error.front().before.rmse, found.error.front().after.rmse);
     EXPECT_NEAR(found.error.front().before.rmse, 2e-4, 3e-5);
+    EXPECT_TRUE(found.depends_on.empty());
+    EXPECT_EQ(found.placebo.twins, 2U);
+    EXPECT_EQ(found.placebo.alarms, 0U);
 }
 
 TEST(HeaveDiscovery, NamesFrictionInsideTheClosedLoop) {
@@ -70,6 +76,11 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
     table.add_numbers("gap", "m", millimetres);
     table.add_numbers("input_force", "N", data.runs[0].table.numbers("input_force"));
     wrong.runs[0].table = table;
+    const HeaveRecords one_left = prepare_heave_records(model, wrong);
+    EXPECT_EQ(one_left.records.size(), 1U);
+    ASSERT_FALSE(one_left.problems.empty());
+    EXPECT_NE(one_left.problems.front().message.find("thousand"), std::string::npos) << one_left.problems.front().message;
+    wrong.runs.pop_back();
     try {
         (void)prepare_heave_records(model, wrong);
         ADD_FAILURE() << "a gap of a hundred metres was taken";
@@ -88,6 +99,147 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
     EXPECT_EQ(records.records.size(), 1U);
     ASSERT_FALSE(records.problems.empty());
     EXPECT_NE(records.problems.front().message.find("stuck"), std::string::npos);
+}
+
+namespace {
+
+/// Two short runs, changed by `change` before the loop sees them.
+Discovery found_on_changed(const std::function<void(dynamics::Measurements&)>& change, int runs = 4, double extra = 0.0) {
+    core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    dynamics::Measurements data = test::heave_runs([extra](double, double, double) { return extra; }, runs, 50, 11);
+    change(data);
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    return discover(model, data, options);
+}
+
+bool says(const core::Problems& problems, const std::string& words) {
+    return std::any_of(problems.begin(), problems.end(), [&](const core::Problem& p) { return p.message.find(words) != std::string::npos; });
+}
+
+core::Table with_column(const core::Table& table, const std::string& name, const std::function<double(std::size_t, double)>& of) {
+    core::Table changed;
+    changed.source = table.source;
+    for (const core::Column& column : table.columns()) {
+        std::vector<double> values = column.numbers;
+        for (std::size_t i = 0; i < values.size() && column.name == name; ++i) {
+            values[i] = of(i, values[i]);
+        }
+        changed.add_numbers(column.name, column.unit, values);
+    }
+    return changed;
+}
+
+}  // namespace
+
+TEST(HeaveInput, TurnedRoundIsFoundOutAndTheVerdictStands) {
+    const Discovery found = found_on_changed([](dynamics::Measurements& data) {
+        for (auto& run : data.runs) {
+            run.table = with_column(run.table, "input_force", [](std::size_t, double u) { return -u; });
+        }
+    });
+    EXPECT_TRUE(says(found.problems, "turned round")) << found.sentence;
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, AThousandfoldUnitIsSaid) {
+    const Discovery found = found_on_changed([](dynamics::Measurements& data) {
+        for (auto& run : data.runs) {
+            run.table = with_column(run.table, "input_force", [](std::size_t, double u) { return 1000 * u; });
+        }
+    });
+    EXPECT_TRUE(says(found.problems, "thousand")) << found.sentence;
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, AClockThatRunsBehindIsAligned) {
+    const Discovery found = found_on_changed([](dynamics::Measurements& data) {
+        for (auto& run : data.runs) {
+            const std::vector<double> u = run.table.numbers("input_force");
+            run.table = with_column(run.table, "input_force", [&](std::size_t i, double) { return u[i >= 10 ? i - 10 : 0]; });
+        }
+    });
+    EXPECT_TRUE(says(found.problems, "clocks")) << found.sentence;
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, OneRunIsUsedAndItsLimitsAreSaid) {
+    const Discovery found = found_on_changed([](dynamics::Measurements&) {}, 1, 0.004);
+    EXPECT_TRUE(says(found.problems, "held out"));
+    EXPECT_EQ(found.verdict, "effect") << found.sentence;
+}
+
+TEST(HeaveInput, TheSameRunTwiceIsUsedOnce) {
+    const Discovery found = found_on_changed([](dynamics::Measurements& data) {
+        data.runs[1].table = data.runs[0].table;
+        data.runs[2].table = data.runs[0].table;
+        data.runs[3].table = data.runs[0].table;
+    });
+    EXPECT_TRUE(says(found.problems, "used once"));
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, RunsThatContradictEachOtherAreNamed) {
+    core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    dynamics::Measurements data = test::heave_runs([](double, double, double) { return 0.005; }, 5, 50, 12);
+    const dynamics::Measurements other = test::heave_runs([](double, double, double) { return -0.005; }, 5, 50, 12);
+    data.runs[2].table = other.runs[2].table;
+    for (auto& run : data.runs) {
+        run.use = dynamics::RunUse::train;
+    }
+    data.runs[4].use = dynamics::RunUse::test;
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    const Discovery found = discover(model, data, options);
+    EXPECT_TRUE(says(found.problems, "contradict")) << found.sentence;
+    EXPECT_TRUE(says(found.problems, "run-3")) << found.sentence;
+}
+
+TEST(HeaveInput, NoiseFiguresWrongByTwoAreFoundOut) {
+    const Discovery found = found_on_changed([](dynamics::Measurements& data) { data.noise["gap"] = 1e-4; });
+    EXPECT_TRUE(says(found.problems, "declared noise of gap"));
+    EXPECT_NEAR(found.noise.at("gap").value, 2e-4, 2e-5);
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, SaturatedReadingsGapsAndOutliersDoNotMakeAnEffect) {
+    const Discovery found = found_on_changed([](dynamics::Measurements& data) {
+        for (auto& run : data.runs) {
+            run.table = with_column(run.table, "gap", [](std::size_t i, double h) {
+                return i > 400 && i < 500 ? std::nan("") : i % 97 == 0 ? h + 0.03 : std::min(h, 0.2);
+            });
+        }
+    });
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, BodiesThatHardlyMoveAreSaidToTellLittle) {
+    core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    dynamics::Measurements data;
+    data.noise["gap"] = 2e-4;
+    core::Random random(3);
+    for (int r = 0; r < 3; ++r) {
+        std::vector<double> time, gap, input;
+        for (int k = 0; k < 1500; ++k) {
+            time.push_back(0.02 * k);
+            gap.push_back(0.1 + 2e-4 * random.normal());
+            input.push_back(0.03 - test::lift_of(0.1));
+        }
+        dynamics::MeasuredRun run;
+        run.name = "run-" + std::to_string(r + 1);
+        run.table.source = run.name;
+        run.table.add_numbers("time", "s", time);
+        run.table.add_numbers("gap", "m", gap);
+        run.table.add_numbers("input_force", "N", input);
+        data.runs.push_back(std::move(run));
+    }
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    const Discovery found = discover(model, data, options);
+    EXPECT_TRUE(says(found.problems, "hardly moves")) << found.sentence;
 }
 
 TEST(HeaveResidual, IsTheForceThatWasLeftOut) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "core/random.h"
 #include "surrogates/discovery/flexible.h"
@@ -104,4 +105,90 @@ TEST(Flexible, RidgeFitFollowsASmoothFunctionOfTwoVariables) {
     }
     EXPECT_LE(explained_square(q, y), total * (1 + 1e-12));
     EXPECT_GE(explained_square(q, y), total - fit.residual_square - 1e-9);
+}
+
+TEST(Flexible, LeavingAGroupOutIsTheRefitToTheOthers) {
+    // y = p x + noise in three groups: the cost of each group with p from the other two, by hand
+    core::Random random(5);
+    DesignMatrix jacobian;
+    jacobian.rows = 30;
+    jacobian.columns = 1;
+    std::vector<double> y;
+    for (int i = 0; i < 30; ++i) {
+        jacobian.values.push_back(1 + 0.1 * i);
+        y.push_back(2 * jacobian.values.back() + random.normal());
+    }
+    const std::vector<std::size_t> begin{0, 10, 20, 30};
+    const auto fit = [&](std::size_t without) {
+        double xy = 0, xx = 0;
+        for (std::size_t i = 0; i < 30; ++i) {
+            if (i < begin[without] || i >= begin[without + 1]) {
+                xy += jacobian.values[i] * y[i];
+                xx += jacobian.values[i] * jacobian.values[i];
+            }
+        }
+        return xy / xx;
+    };
+    double xy = 0, xx = 0;
+    for (std::size_t i = 0; i < 30; ++i) {
+        xy += jacobian.values[i] * y[i];
+        xx += jacobian.values[i] * jacobian.values[i];
+    }
+    // residuals y - p x have the derivative -x
+    std::vector<double> residuals, cost(3, 0);
+    DesignMatrix slope = jacobian;
+    for (std::size_t i = 0; i < 30; ++i) {
+        residuals.push_back(y[i] - xy / xx * jacobian.values[i]);
+        cost[i / 10] += residuals.back() * residuals.back();
+        slope.values[i] = -jacobian.values[i];
+    }
+    const std::vector<double> held_out = leave_groups_out(slope, residuals, begin, cost);
+    for (std::size_t g = 0; g < 3; ++g) {
+        double expected = 0;
+        for (std::size_t i = begin[g]; i < begin[g + 1]; ++i) {
+            expected += std::pow(y[i] - fit(g) * jacobian.values[i], 2);
+        }
+        EXPECT_NEAR(held_out[g], expected, 1e-6 * expected) << g;
+    }
+}
+
+TEST(Flexible, GroupsThatDisagreeWidenTheError) {
+    DesignMatrix jacobian;
+    jacobian.rows = 40;
+    jacobian.columns = 1;
+    jacobian.values.assign(40, 1.0);
+    std::vector<double> residuals(40);
+    for (std::size_t i = 0; i < 40; ++i) {
+        residuals[i] = i < 20 ? 1.0 : -1.0;   // two halves pull the mean apart
+    }
+    const double alone = 1.0 / 40;
+    EXPECT_NEAR(grouped_variances(jacobian, residuals, {0, 40})[0], alone, 1e-9);
+    // four groups: sum of squared scores 4 * 100, times 4/3, over 40 squared
+    EXPECT_NEAR(grouped_variances(jacobian, residuals, {0, 10, 20, 30, 40})[0], 400.0 * 4 / 3 / 1600, 1e-9);
+}
+
+TEST(Flexible, SlopesOfASumAreItsDifferences) {
+    core::Random random(6);
+    std::vector<std::vector<double>> values(2);
+    for (int i = 0; i < 200; ++i) {
+        values[0].push_back(random.normal());
+        values[1].push_back(random.uniform());
+    }
+    const FlexibleBasis basis(values, 3);
+    std::vector<double> coefficients(basis.columns()), columns(basis.columns());
+    for (double& c : coefficients) {
+        c = random.normal();
+    }
+    const double at[2] = {0.3, 0.4};
+    double slopes[2];
+    const double value = basis.sum(coefficients.data(), at, slopes);
+    basis.evaluate(at, columns.data());
+    EXPECT_NEAR(value, std::inner_product(columns.begin(), columns.end(), coefficients.begin(), 0.0), 1e-12);
+    for (int v = 0; v < 2; ++v) {
+        double up[2] = {at[0], at[1]}, down[2] = {at[0], at[1]}, unused[2];
+        up[v] += 1e-5;
+        down[v] -= 1e-5;
+        const double expected = (basis.sum(coefficients.data(), up, unused) - basis.sum(coefficients.data(), down, unused)) / 2e-5;
+        EXPECT_NEAR(slopes[v], expected, 1e-5 * (1 + std::abs(expected))) << v;
+    }
 }

@@ -1,0 +1,178 @@
+// What a heave verdict is told with: error before and after, rivals, limits, and doubts about the data.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "core/text.h"
+#include "surrogates/discovery/heave_error.h"
+#include "surrogates/discovery/heave_figures.h"
+#include "surrogates/discovery/heave_loop.h"
+#include "surrogates/discovery/heave_next.h"
+#include "surrogates/discovery/statistics.h"
+#include "surrogates/discovery/wording.h"
+
+namespace underbody::discovery {
+
+void HeaveLoop::warn(const std::string& text) {
+    result_.problems.push_back({core::Problem::Severity::warning, text, core::Place{data_.folder.string(), {}, {}, {}}});
+}
+
+void HeaveLoop::measure_error() {
+    const HeaveRecords& records = test_records_ ? *test_records_ : records_;
+    HeaveExperiment test(model_, records, test_, data_.declared_noise("gap"), data_.declared_noise("heave_velocity"));
+    test.set_hold(experiment_->hold());
+    for (const double horizon : {options_.horizon, 5 * options_.horizon, std::numeric_limits<double>::infinity()}) {
+        ErrorChange change;
+        change.channel = std::string("gap");
+        change.unit = std::string("m");
+        change.horizon = horizon;
+        change.noise = null_noise_.gap;
+        std::vector<double> square, count;
+        horizon_errors(test, {}, null_noise_, horizon, square, count);
+        change.before = error_by_groups(square, count, options_.seed);
+        change.after = change.before;
+        if (!uses_.empty()) {
+            horizon_errors(test, uses_, after_noise_, horizon, square, count);
+            change.after = error_by_groups(square, count, options_.seed);
+        }
+        if (std::isfinite(change.before.rmse) && std::isfinite(change.after.rmse)) {
+            result_.error.push_back(change);
+        }
+    }
+    result_.consequence.estimator_before = estimator_error(test, {}, null_noise_, uses_, after_noise_);
+    result_.consequence.estimator_after = uses_.empty() ? result_.consequence.estimator_before
+                                                        : estimator_error(test, uses_, after_noise_, uses_, after_noise_);
+}
+
+FoundEffect HeaveLoop::found(std::size_t index, double probability) const {
+    const FittedHypothesis& one = fitted_[index];
+    FoundEffect effect = found_effect(one, probability);
+    const auto helped = std::count_if(one.explained_by_group.begin(), one.explained_by_group.end(), [](double x) { return x > 0; });
+    effect.evidence = "-2 log likelihood falls by " + core::format_number(one.explained, 4) + " for " +
+                      std::to_string(one.hypothesis.parameters.size()) + " free number(s), in " + std::to_string(helped) + " of " +
+                      std::to_string(one.explained_by_group.size()) + " runs" +
+                      (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
+    return effect;
+}
+
+void HeaveLoop::describe() {
+    result_.noise["gap"] = {null_noise_.gap, "m",
+                            experiment_->gap_noise_from() + (null_noise_.slow > 0 ? ", with coloured noise of " +
+                                core::format_number(null_noise_.slow, 3) + " m and " + core::format_number(null_noise_.slow_time, 2) + " s beside it" : ""),
+                            records_.gap_noise};
+    if (records_.velocity_measured) {
+        result_.noise["heave_velocity"] = {null_noise_.velocity, "m/s", experiment_->velocity_noise_from(), records_.velocity_noise};
+    }
+    result_.stability = stability();
+    if (result_.verdict == "effect") {
+        const FittedHypothesis& best = fitted_[attribution_.chosen];
+        for (FoundEffect& effect : split_by_name(found(attribution_.chosen, attribution_.shares.front().probability), best)) {
+            result_.effects.push_back(std::move(effect));
+        }
+    } else if (result_.verdict == "unknown") {
+        FoundEffect unknown;
+        unknown.name = "unknown";
+        unknown.probability = attribution_.unknown_probability;
+        unknown.depends_on = whole_.variables;
+        unknown.uses = uses_;
+        unknown.explained = whole_.gain;
+        unknown.evidence = "the best named effect (" + fitted_[attribution_.chosen].hypothesis.label() + ") leaves " +
+                           core::format_number(100 * rest_.share, 3) +
+                           " % of the structure; a smooth force over " + list_of(whole_.variables) + " takes its place";
+        result_.effects.push_back(std::move(unknown));
+    }
+    for (const Attribution::Share& share : attribution_.shares) {
+        const bool is_verdict = result_.verdict == "effect" && share.hypothesis == attribution_.chosen;
+        if (!is_verdict && result_.alternatives.size() < 6 && (share.probability > 1e-3 || result_.alternatives.size() < 3)) {
+            FoundEffect rival = found(share.hypothesis, share.probability);
+            rival.name = fitted_[share.hypothesis].hypothesis.label();
+            if (result_.verdict == "effect") {
+                rival.told_apart_by = heave_told_apart(*experiment_, fitted_[attribution_.chosen], fitted_[share.hypothesis]);
+            }
+            result_.alternatives.push_back(std::move(rival));
+        }
+    }
+    if (result_.verdict == "effect" && attribution_.unknown_probability > 1e-3) {
+        FoundEffect unknown;
+        unknown.name = "unknown";
+        unknown.probability = attribution_.unknown_probability;
+        unknown.depends_on = rest_.fit.variables;
+        result_.alternatives.push_back(std::move(unknown));
+    }
+    for (std::size_t i = 0; i < singles_; ++i) {
+        const FittedHypothesis& one = fitted_[i];
+        result_.limits.push_back({one.hypothesis.names.front(), one.hypothesis.parameters.front().name, 5 * one.fit.sigma.front(),
+                                  one.hypothesis.parameters.front().unit});
+    }
+    next_heave_experiment(*experiment_, fitted_, attribution_, result_);
+    for (const core::Problems* list : std::initializer_list<const core::Problems*>{&data_.problems, &records_.problems, &experiment_->problems()}) {
+        result_.problems.insert(result_.problems.end(), list->begin(), list->end());
+    }
+    check_excitation();
+    check_runs_agree();
+    if (options_.consequence) {
+        Consequence found = heave_consequence(model_, result_.model, records_, progress_);
+        found.estimator_before = result_.consequence.estimator_before;
+        found.estimator_after = result_.consequence.estimator_after;
+        result_.consequence = std::move(found);
+    }
+    result_.sentence = verdict_sentence(result_);
+    if (options_.figures) {
+        result_.figures = heave_figures(*experiment_, null_noise_, uses_, result_);
+    }
+}
+
+void HeaveLoop::check_excitation() {
+    double widest = 0;
+    for (const std::size_t r : train_) {
+        const std::vector<double>& gap = records_.records[r].gap;
+        std::vector<double> finite;
+        std::copy_if(gap.begin(), gap.end(), std::back_inserter(finite), [](double x) { return std::isfinite(x); });
+        widest = std::max(widest, quantile(finite, 0.95) - quantile(finite, 0.05));
+    }
+    if (widest < 20 * null_noise_.gap) {
+        result_.problems.push_back({core::Problem::Severity::warning,
+                                    "the body hardly moves in any run (" + core::format_number(1000 * widest, 2) +
+                                        " mm): effects of velocity, acceleration and gap cannot be seen; only constant ones can",
+                                    core::Place{data_.folder.string(), {}, {}, {}}});
+    }
+}
+
+/// The strength of the best effect run by run: where runs disagree far beyond their errors, no one number is true of all of them.
+void HeaveLoop::check_runs_agree() {
+    const std::size_t index = result_.verdict == "effect" ? attribution_.chosen : best_single_;
+    const FittedHypothesis& best = fitted_[index];
+    const DesignMatrix columns = experiment_->answers(best.hypothesis, best.fit.parameters, noises_[index], best.fit.residuals);
+    const std::vector<std::size_t> begin = experiment_->begins();
+    const FitParameter& chief = best.hypothesis.parameters.front();
+    std::vector<double> own, error;
+    for (std::size_t g = 0; g + 1 < begin.size(); ++g) {
+        double jj = 0;
+        double jr = 0;
+        for (std::size_t i = begin[g]; i < begin[g + 1]; ++i) {
+            jj += columns.values[i] * columns.values[i];
+            jr += columns.values[i] * best.fit.residuals[i];
+        }
+        own.push_back(best.fit.parameters.front() - (jj > 0 ? jr / jj : 0) * chief.typical);
+        error.push_back(jj > 0 ? chief.typical / std::sqrt(jj) : 1e300);
+    }
+    if (own.size() < 2) {
+        return;
+    }
+    const double middle = median(own);
+    const double size = std::max(std::abs(middle - chief.start), 3 * median(error));
+    std::string against;
+    for (std::size_t g = 0; g < own.size(); ++g) {
+        if (std::abs(own[g] - middle) > 8 * error[g] && std::abs(own[g] - middle) > 0.7 * size) {
+            against += (against.empty() ? "" : ", ") + records_.records[train_[g]].name + " (" + core::format_number(own[g], 2) + " +- " +
+                       core::format_number(error[g], 2) + ")";
+        }
+    }
+    if (!against.empty()) {
+        warn("the runs contradict each other: the " + chief.name + " of " + best.hypothesis.label() + " is " + core::format_number(middle, 2) +
+             (chief.unit == "1" ? "" : " " + chief.unit) + " in most, but not in " + against + "; look at these runs apart");
+    }
+}
+
+}  // namespace underbody::discovery
