@@ -244,6 +244,8 @@ void HeaveLoop::check_input() {
     double best = fitted_[best_single_].score() - 40;
     double early = 0;
     double factor = 1;
+    const bool hold = experiment_->hold();
+    experiment_->set_hold(true);   // whether it is held between samples was asked of an input that may be wrong
     const auto attempt = [&](double seconds, double times) {
         change_input(-seconds, times);
         HeaveNoise noise = null_noise_;
@@ -270,6 +272,7 @@ void HeaveLoop::check_input() {
         attempt(0, times);
     }
     if (early == 0 && factor == 1) {
+        experiment_->set_hold(hold);
         return;
     }
     change_input(-early, factor);
@@ -280,7 +283,17 @@ void HeaveLoop::check_input() {
         warn("the motion fits an input_force " + core::format_number(factor, 4) + " times the recorded one: " +
              (factor < 0 ? "its sign is turned round (up is positive)" : "its unit is wrong by a thousand") + "; it was used so");
     }
-    experiment_->set_hold(true);   // that question was asked of the wrong input
+    // nothing is known of what was commanded after the record's end
+    for (HeaveRecord& record : records_.records) {
+        for (std::size_t k = 0; k < record.time.size(); ++k) {
+            if (record.time[k] > record.raw_time.back() + 0.02) {
+                record.gap[k] = std::nan("");
+                if (!record.velocity.empty()) {
+                    record.velocity[k] = std::nan("");
+                }
+            }
+        }
+    }
     fit_null();
     fit_singles();
     try_hold();
