@@ -35,7 +35,7 @@ struct Arguments {
 void print(Shell& shell, const discovery::Discovery& found, const std::filesystem::path& folder) {
     std::string text = found.sentence + "\n";
     for (const discovery::FoundEffect& effect : found.effects) {
-        text += "\n" + effect.name + ", probability " + core::format_number(effect.probability, 3) + "\n";
+        text += "\n" + effect.name + ", probability " + discovery::probability_text(effect.probability) + "\n";
         for (const discovery::FoundParameter& parameter : effect.parameters) {
             text += "  " + parameter.name + " = " + discovery::value_text(parameter) + "\n";
         }
@@ -43,7 +43,7 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     if (!found.alternatives.empty()) {
         text += "\nWhat else it could be:\n";
         for (const discovery::FoundEffect& rival : found.alternatives) {
-            text += "  " + rival.name + ", probability " + core::format_number(rival.probability, 3) +
+            text += "  " + rival.name + ", probability " + discovery::probability_text(rival.probability) +
                     (rival.told_apart_by.empty() ? "" : ": " + rival.told_apart_by) + "\n";
         }
     }

@@ -161,7 +161,10 @@ core::Figure error_figure(const Discovery& result) {
         bars.colour = after ? core::palette(0) : core::Colour{180, 180, 180, 255};
         for (const ErrorChange& change : result.error) {
             const ErrorEstimate& estimate = after ? change.after : change.before;
-            bars.labels.push_back(change.channel);
+            const std::string horizon = change.horizon <= 0            ? ""
+                                        : std::isinf(change.horizon) ? ", free run"
+                                                                     : ", " + core::format_number(change.horizon, 3) + " s";
+            bars.labels.push_back(change.channel + horizon);
             bars.values.push_back(estimate.rmse / std::max(change.noise, 1e-300));
             bars.errors.push_back(0.25 * (estimate.high - estimate.low) / std::max(change.noise, 1e-300));
         }

@@ -92,6 +92,10 @@ std::string value_text(const FoundParameter& parameter) {
     return (parameter.sigma > 0 ? text + " \u00b1 " + core::format_number(scale * parameter.sigma, 2) : text) + (unit.empty() ? "" : " " + unit);
 }
 
+std::string probability_text(double probability) {
+    return probability > 0.995 ? "above 0.99" : probability < 0.005 ? "below 0.01" : core::format_number(probability, 2);
+}
+
 std::string verdict_sentence(const Discovery& discovery) {
     const std::string error =
         discovery.error.empty() || discovery.verdict == "none"
@@ -117,7 +121,7 @@ std::string verdict_sentence(const Discovery& discovery) {
                     (k + 1 == effect.parameters.size() ? ")" : "");
         }
     }
-    text += ", probability " + core::format_number(discovery.effects.front().probability, 2) + ".";
+    text += ", probability " + probability_text(discovery.effects.front().probability) + ".";
     for (const FoundEffect& rival : discovery.alternatives) {
         if (rival.probability > 0.2) {
             text += " These data cannot well tell it from " + rival.name + " (" + core::format_number(rival.probability, 2) + ").";

@@ -24,4 +24,7 @@ std::string verdict_sentence(const Discovery& discovery);
 /// "9.8 ± 0.4 mN".
 std::string value_text(const FoundParameter& parameter);
 
+/// "0.87"; "above 0.99" and "below 0.01" where more digits would promise more than anybody knows.
+std::string probability_text(double probability);
+
 }  // namespace underbody::discovery
