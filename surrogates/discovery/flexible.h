@@ -32,6 +32,13 @@ public:
     FlexibleBasis() = default;
     /// `values[v]` are the variable v's values at the data.
     FlexibleBasis(const std::vector<std::vector<double>>& values, std::size_t columns_each);
+    /// With its own number of columns for each variable.
+    FlexibleBasis(const std::vector<std::vector<double>>& values, const std::vector<std::size_t>& columns) {
+        for (std::size_t v = 0; v < values.size(); ++v) {
+            splines_.emplace_back(values[v], columns[v] < most_columns ? columns[v] : most_columns);
+            columns_ *= 1 + splines_.back().columns();
+        }
+    }
     [[nodiscard]] std::size_t columns() const { return columns_; }
     void evaluate(const double* point, double* out) const;
     /// Sum of coefficients times columns, and its slope along each variable.

@@ -319,7 +319,7 @@ void HeaveExperiment::widen_for_friction(Result& result, const DesignMatrix& col
 
 FlexibleForce HeaveExperiment::flat_force(const std::vector<FlexibleForce::Variable>& variables,
                                           const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
-                                          std::size_t columns_each) const {
+                                          std::size_t columns_more) const {
     FlexibleForce force;
     force.variables = variables;
     std::vector<std::vector<double>> values(variables.size());
@@ -349,7 +349,15 @@ FlexibleForce HeaveExperiment::flat_force(const std::vector<FlexibleForce::Varia
         force.lower.push_back(low);
         force.upper.push_back(high);
     }
-    force.basis = FlexibleBasis(values, columns_each > 0 ? columns_each : variables.size() == 1 ? 7 : 3);
+    // beside another variable laws of the gap are the bent ones; those of velocity and input are nearly straight or square
+    std::vector<std::size_t> columns(variables.size(), 7);
+    for (std::size_t v = 0; v < variables.size() && variables.size() > 1; ++v) {
+        columns[v] = variables[v] == FlexibleForce::Variable::gap ? 6 : variables.front() == FlexibleForce::Variable::gap ? 2 : 3;
+    }
+    for (std::size_t& count : columns) {
+        count += columns_more;
+    }
+    force.basis = FlexibleBasis(values, columns);
     force.coefficients.assign(force.basis.columns(), 0);
     return force;
 }
@@ -413,10 +421,10 @@ std::vector<double> HeaveExperiment::held_out_cost(const DesignMatrix& columns, 
 
 HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
                                                     const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin,
-                                                    double base_cost, std::size_t columns_each) const {
+                                                    double base_cost, std::size_t columns_more) const {
     Smooth result;
     FlexibleForce& force = result.force;
-    force = flat_force(variables, uses, begin, columns_each);
+    force = flat_force(variables, uses, begin, columns_more);
     for (const FlexibleForce::Variable variable : variables) {
         result.fit.variables.emplace_back(variable_name(variable));
     }

@@ -65,13 +65,13 @@ public:
     };
     [[nodiscard]] Smooth fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
                                     const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin, double base_cost,
-                                    std::size_t columns_each = 0) const;
+                                    std::size_t columns_more = 0) const;
 
-    /// The smooth force with its knots where the states of these effects are, all coefficients zero. `columns_each` variable; 0: seven
-    /// for one variable, three each for several.
+    /// The smooth force with its knots where the states of these effects are, all coefficients zero. Seven columns for one variable, fewer
+    /// each for several, and `columns_more` than that.
     [[nodiscard]] FlexibleForce flat_force(const std::vector<FlexibleForce::Variable>& variables,
                                            const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
-                                           std::size_t columns_each = 0) const;
+                                           std::size_t columns_more = 0) const;
     /// What a small change of each coefficient does to the innovations, one column each.
     [[nodiscard]] DesignMatrix answers(const FlexibleForce& force, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
                                        const std::vector<double>& innovations) const;

@@ -240,7 +240,7 @@ void HeaveLoop::smooth_corrections() {
 HeaveExperiment::Smooth HeaveLoop::refined(const HeaveExperiment::Smooth& begin) const {
     HeaveExperiment::Smooth best = begin;
     const bool one = begin.force.variables.size() < 2;
-    for (const std::size_t columns : one ? std::vector<std::size_t>{11, 15} : std::vector<std::size_t>{4, 5}) {
+    for (const std::size_t columns : one ? std::vector<std::size_t>{4, 8} : std::vector<std::size_t>{1}) {
         HeaveExperiment::Smooth finer = experiment_->fit_smooth(begin.force.variables, {}, null_noise_, null_cost_, columns);
         if (smooth_score(finer) < smooth_score(best)) {
             best = std::move(finer);
