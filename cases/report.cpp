@@ -49,7 +49,8 @@ public:
         comparisons();
         regions();
         measurements();
-        thesis();
+        thesis("thesis");
+        thesis("dynamics");
         trust();
         loads();
         provenance();
@@ -111,14 +112,16 @@ private:
                 facts.push_back({names.empty() ? text_in(*found, "verdict") : names, "missing in the model of '" + spec.name + "'"});
             }
         }
-        if (const auto thesis = document("thesis/thesis")) {
-            std::map<std::string, int> counts;
-            for (const auto& claim : thesis->value("claims", json::array())) {
-                ++counts[text_in(claim, "verdict")];
+        std::map<std::string, int> counts;
+        for (const char* part : {"thesis/thesis", "thesis/dynamics"}) {
+            if (const auto thesis = document(part)) {
+                for (const auto& claim : thesis->value("claims", json::array())) {
+                    ++counts[text_in(claim, "verdict")];
+                }
             }
-            for (const auto& [verdict, count] : counts) {
-                facts.push_back({std::to_string(count), "claims: " + verdict});
-            }
+        }
+        for (const auto& [verdict, count] : counts) {
+            facts.push_back({std::to_string(count), "claims: " + verdict});
         }
         if (!facts.empty()) {
             page_.facts(facts);
@@ -314,8 +317,8 @@ private:
         }
     }
 
-    void thesis() {
-        const auto found = document("thesis/thesis");
+    void thesis(const std::string& part) {
+        const auto found = document("thesis/" + part);
         if (!found) {
             return;
         }

@@ -1,45 +1,61 @@
-// Chapters 7 and 8 of the thesis: its figures from our own runs, its statements beside what we compute.
+// The thesis's figures from our own runs, and its statements beside what we compute: chapters 7 and 8, and dynamics.
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
+#include "surrogates/dynamics/thesis.h"
 #include "surrogates/estimator/thesis.h"
 
 namespace underbody::cases {
 
-void run_thesis(Engine& engine) {
-    if (!engine.study.thesis) {
-        return;
-    }
-    const Key key("thesis", {"surrogates/tables", "surrogates/dynamics", "surrogates/estimator"});
-    std::optional<estimator::ThesisStudy> thesis;
-    const auto compute = [&]() -> const estimator::ThesisStudy& {
-        if (!thesis) {
-            thesis = estimator::thesis_study(engine.progress);
+namespace {
+
+/// One part of the thesis: a document of claims and its figures. `compute` makes a study with `figures`, at most once.
+template <class Study, class Compute>
+void run_part(Engine& engine, const std::string& name, const Key& key, const Compute& make) {
+    std::optional<Study> study;
+    const auto compute = [&]() -> const Study& {
+        if (!study) {
+            study = make();
         }
-        return *thesis;
+        return *study;
     };
-    const auto made = engine.make("thesis", "thesis", key, [&] {
+    const std::optional<std::string> made = engine.make("thesis", name, key, [&] {
         nlohmann::json document;
-        estimator::to_json(document, compute());
+        to_json(document, compute());
         document["figure_names"] = nlohmann::json::array();
-        for (const auto& [name, figure] : compute().figures) {
-            document["figure_names"].push_back(name);
+        for (const auto& [figure, drawn] : compute().figures) {
+            document["figure_names"].push_back(figure);
         }
         return document.dump();
     });
     if (!made) {
         return;
     }
-    engine.add_document("thesis/thesis", *made);
-    const auto document = nlohmann::json::parse(*made);
-    for (const auto& name : document.at("figure_names")) {
-        engine.figure("thesis/" + name.get<std::string>(), key, [&] {
-            const core::Figure* figure = compute().figure(name.get<std::string>());
-            if (figure == nullptr) {
-                throw core::InputError("missing", "the thesis study lost its figure " + name.get<std::string>());
+    engine.add_document("thesis/" + name, *made);
+    const nlohmann::json document = nlohmann::json::parse(*made);
+    for (const nlohmann::json& figure : document.at("figure_names")) {
+        engine.figure("thesis/" + figure.get<std::string>(), key, [&] {
+            const core::Figure* found = compute().figure(figure.get<std::string>());
+            if (found == nullptr) {
+                throw core::InputError("missing", "the thesis study lost its figure " + figure.get<std::string>());
             }
-            return *figure;
+            return *found;
         });
+    }
+}
+
+}  // namespace
+
+void run_thesis(Engine& engine) {
+    if (engine.study.thesis) {
+        run_part<estimator::ThesisStudy>(
+            engine, "thesis", Key("thesis", {"surrogates/tables", "surrogates/dynamics", "surrogates/estimator"}),
+            [&] { return estimator::thesis_study(engine.progress); });
+    }
+    if (engine.study.thesis_dynamics) {
+        run_part<dynamics::ThesisDynamics>(engine, "dynamics",
+                                           Key("thesis dynamics", {"surrogates/tables", "surrogates/dynamics"}),
+                                           [&] { return dynamics::thesis_dynamics(engine.progress); });
     }
 }
 

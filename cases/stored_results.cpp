@@ -98,6 +98,9 @@ StudyResults stored_results(const Study& study, const RunOptions& options) {
     if (study.thesis) {
         reader.document(results, "thesis", "thesis");
     }
+    if (study.thesis_dynamics) {
+        reader.document(results, "thesis", "dynamics");
+    }
     return results;
 }
 

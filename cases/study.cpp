@@ -350,6 +350,7 @@ Study Study::open(const fs::path& path) {
         study.measurements.push_back(std::move(spec));
     }
     study.thesis = root.boolean_or("thesis", false);
+    study.thesis_dynamics = root.boolean_or("thesis_dynamics", false);
     std::set<std::string> verifications;
     for (const auto& table : root.tables("verify")) {
         VerifySpec spec;

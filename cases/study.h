@@ -147,6 +147,7 @@ public:
     std::vector<MeasurementSpec> measurements;
     std::vector<VerifySpec> verifications;
     bool thesis = false;              ///< redraw the thesis's figures of chapters 7 and 8 and check its statements
+    bool thesis_dynamics = false;     ///< check its statements on springs, sizes, voltages, releases and heading
     std::vector<CompareSpec> comparisons;
     std::optional<SweepSpec> sweep;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/text.h"
 #include "core/units.h"
@@ -14,6 +15,7 @@
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/feedback.h"
 #include "surrogates/dynamics/heave_pitch.h"
+#include "surrogates/dynamics/surface_motion.h"
 
 namespace underbody::studio {
 
@@ -25,6 +27,10 @@ struct Arguments {
     std::string sweep;
     std::string weights = "1,100,1";
     std::string out;
+    std::string at;
+    std::string gamma_chart;
+    std::string sideslip = "6 deg";
+    std::string friction_offset;
 };
 
 nlohmann::json matrix_json(const dynamics::Dense& m) {
@@ -86,32 +92,50 @@ std::vector<double> weights_of(const std::string& text) {
     return weights;
 }
 
+nlohmann::json complex_json(const std::complex<double>& value) { return {value.real(), value.imag()}; }
+
+std::string rank_text(const dynamics::LinearSystem& system, const std::string& by) {
+    const dynamics::Controllability control = dynamics::controllability(system);
+    return "  controllable by " + by + ": rank " + std::to_string(control.rank) + " of " +
+           std::to_string(system.a.rows()) + ", weakness " + core::format_number(control.weakness, 3) + "\n";
+}
+
+/// Equilibria, or the one trim that was asked for.
+std::vector<dynamics::HeaveEquilibrium> trims(std::vector<dynamics::HeaveEquilibrium> equilibria,
+                                              const std::optional<dynamics::HeaveEquilibrium>& at) {
+    return at ? std::vector<dynamics::HeaveEquilibrium>{*at} : std::move(equilibria);
+}
+
 void heave(const dynamics::Model& model, const dynamics::Conditions& held, const std::vector<double>& q,
-           nlohmann::json& json, std::string& text) {
+           const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text) {
     const dynamics::HeavePlant plant(model, held);
     json["heave"] = nlohmann::json::array();
-    for (const dynamics::HeaveEquilibrium& e : dynamics::heave_equilibria(plant)) {
+    for (const dynamics::HeaveEquilibrium& e : trims(dynamics::heave_equilibria(plant), at)) {
         double slope = 0;
-        const double mass = plant.inertia(e.gap, slope), speed = 1e-7;
+        const double mass = plant.inertia(e.gap, slope), speed = 1e-7, step = 1e-6;
         const double damping = (plant.resistance(e.gap, speed) - plant.resistance(e.gap, -speed)) / (2 * speed);
+        const double stiffness = -(plant.static_force(e.gap + step) - plant.static_force(e.gap - step)) / (2 * step);
         dynamics::LinearSystem system;
-        system.a = dynamics::Dense{{-damping / mass, -e.stiffness / mass}, {1, 0}};
+        system.a = dynamics::Dense{{-damping / mass, -stiffness / mass}, {1, 0}};
         system.b = dynamics::Dense{{1 / mass}, {0}};
         system.states = {"heave_velocity", "gap"};
         system.inputs = {"input_force"};
         const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"heave", "heave"});
         const dynamics::HeaveFeedback gains = dynamics::heave_lqr(plant, e.gap, q[0], q[1], q[2]);
         nlohmann::json one = system_json(system, modes);
+        const double trim_force = plant.static_force(e.gap);
         one["name"] = e.name;
         one["gap"] = e.gap;
-        one["stable"] = e.stable;
-        one["stiffness"] = e.stiffness;
+        one["stable"] = stiffness > 0;
+        one["stiffness"] = stiffness;
         one["damping"] = damping;
         one["virtual_mass"] = mass;
+        one["force_at_rest"] = trim_force;
         one["lqr"] = {{"velocity_gain", gains.velocity_gain}, {"gap_gain", gains.gap_gain}};
         json["heave"].push_back(one);
-        text += e.name + (e.stable ? " (stable)" : " (unstable)") + " at " + core::format_number(1e3 * e.gap, 6) +
-                " mm: stiffness " + core::format_number(e.stiffness, 4) + " N/m\n";
+        text += e.name + (stiffness > 0 ? " (stable)" : " (unstable)") + " at " +
+                core::format_number(1e3 * e.gap, 6) + " mm: stiffness " + core::format_number(stiffness, 4) + " N/m";
+        text += at ? ", held by " + core::format_number(-trim_force, 4) + " N up\n" : "\n";
         for (const dynamics::Mode& mode : modes) {
             text += mode_text(mode);
         }
@@ -120,49 +144,195 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
     }
 }
 
-void heave_pitch(const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json,
-                 std::string& text) {
+void heave_pitch(const dynamics::Model& model, const dynamics::Conditions& held,
+                 const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text) {
     const dynamics::HeavePitch plant(model, held);
     json["heave_pitch"] = nlohmann::json::array();
-    for (const dynamics::HeaveEquilibrium& e : plant.equilibria()) {
+    for (const dynamics::HeaveEquilibrium& e : trims(plant.equilibria(), at)) {
         const dynamics::LinearSystem system = plant.linearised(e.gap, e.pitch);
         const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"heave", "heave", "pitch", "pitch"});
+        const dynamics::PitchFeedback gains = dynamics::pitch_lqr(plant, e.gap, e.pitch, {});
         nlohmann::json one = system_json(system, modes);
         one["name"] = e.name;
         one["gap"] = e.gap;
         one["pitch"] = e.pitch;
-        one["stable"] = e.stable;
+        one["stable"] =
+            std::all_of(modes.begin(), modes.end(), [](const dynamics::Mode& m) { return m.value.real() < 1e-6; });
+        one["lqr"] = {{"force_gain", gains.force_gain}, {"moment_gain", gains.moment_gain}};
+        for (const std::complex<double>& pole : dynamics::closed_poles(plant, gains)) {
+            one["lqr"]["poles"].push_back(complex_json(pole));
+        }
         json["heave_pitch"].push_back(one);
         text += "heave and pitch, " + e.name + " at " + core::format_number(1e3 * e.gap, 6) + " mm, " +
                 core::format_number(57.29577951308232 * e.pitch, 4) + " deg nose up\n";
         for (const dynamics::Mode& mode : modes) {
             text += mode_text(mode);
         }
+        text += rank_text(system, "force and moment");
     }
 }
 
-void surface(const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json, std::string& text) {
+/// Yaw rate against the difference of the two aft jets, and what their angles do.
+void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficients& c, double speed, double friction,
+                  const Arguments& a, nlohmann::json& json, std::string& text) {
+    const std::optional<dynamics::EvieJets> layout = dynamics::turning_layout(model.jets);
+    if (!layout) {
+        if (!a.gamma_chart.empty()) {
+            throw core::InputError("missing", "the model has no jets that turn it", {a.model, {}, {}, {}},
+                                   "a pair aft, off the middle plane, that pushes forward and to the side");
+        }
+        return;
+    }
+    constexpr double degrees = 57.29577951308232;
+    const double beta = dynamics::pitch_free_elevation(layout->turn_x, layout->turn_z, layout->gamma);
+    const dynamics::YawTransfer transfer = dynamics::yaw_transfer(c, speed, friction, *layout);
+    nlohmann::json poles = nlohmann::json::array();
+    std::string pole_text;
+    for (const std::complex<double>& pole : transfer.poles) {
+        poles.push_back(complex_json(pole));
+        pole_text += (pole_text.empty() ? "" : ", ") + core::format_number(pole.real(), 5) +
+                     (pole.imag() != 0 ? (pole.imag() > 0 ? " + " : " - ") +
+                                             core::format_number(std::abs(pole.imag()), 5) + " i"
+                                       : "");
+    }
+    double offset = a.friction_offset.empty() ? model.vehicle.base_half_width : core::parse_in(a.friction_offset, "m");
+    offset = std::isnan(offset) ? 0 : offset;
+    const dynamics::GammaChart chart =
+        dynamics::gamma_chart(c, *layout, speed, core::parse_in(a.sideslip, "rad"), friction, offset);
+    if (!a.gamma_chart.empty()) {
+        write_picture(dynamics::gamma_figure(chart), a.gamma_chart);
+    }
+    json["turning_jets"] = {{"gamma", layout->gamma},
+                            {"beta", layout->beta},
+                            {"beta_without_pitch", beta},
+                            {"yaw_per_difference", {{"poles", poles}, {"zero", transfer.zero}}},
+                            {"needed_torque", chart.needed},
+                            {"best_gamma", chart.best_gamma},
+                            {"least_gamma", chart.least_gamma}};
+    text += "  turning jets: gamma " + core::format_number(degrees * layout->gamma, 4) + " deg, beta " +
+            core::format_number(degrees * layout->beta, 4) + " deg (thrust without pitch moment: " +
+            core::format_number(degrees * beta, 5) + " deg)\n  yaw rate per thrust difference: poles " + pole_text +
+            " 1/s, zero " + core::format_number(transfer.zero, 5) + " 1/s" +
+            (transfer.zero > 0 ? " (non-minimum phase)" : "") + "\n  yaw torque needed " +
+            core::format_number(chart.needed, 4) + " N m" +
+            (std::isnan(chart.least_gamma)
+                 ? ": more than a pair gives at any angle\n"
+                 : ": gamma at least " + core::format_number(degrees * chart.least_gamma, 4) + " deg, most torque at " +
+                       core::format_number(degrees * chart.best_gamma, 4) + " deg\n");
+}
+
+void surface(const dynamics::Model& model, const dynamics::Conditions& held, const Arguments& a, nlohmann::json& json,
+             std::string& text) {
     const double speed = held.get(dynamics::Channel::speed, 0.35);
     if (!(speed > 0)) {
         return;
     }
-    const dynamics::SurfaceCoefficients c = dynamics::surface_coefficients(model);
-    const double friction = model.contact.friction * std::max(0.0, model.vehicle.net_weight);
-    const dynamics::LinearSystem system = dynamics::surface_system(c, speed, friction);
+    const dynamics::SurfaceMotion motion(model, held);
+    std::vector<double> thrust(model.jets.size(), 0.0);
+    std::string trim = "no jets";
+    if (!model.jets.empty()) {
+        try {
+            thrust = dynamics::surface_trim_thrusts(motion, speed);
+            trim = "jets in trim";
+        } catch (const core::InputError& error) {
+            trim = std::string("jets off: ") + error.what();
+        }
+    }
+    const dynamics::SurfaceState run{speed, 0, 0, 0, 0, 0};
+    const double normal = motion.contact(run, thrust).normal;
+    if (normal < 0) {
+        text += "on the ground at " + core::format_number(speed, 4) +
+                " m/s: the body leaves it, no run on the ground\n";
+        nlohmann::json lifted = {{"speed", speed}, {"normal_force", normal}};
+        turning_jets(model, dynamics::surface_coefficients(model), speed, 0, a, lifted, text);
+        json["surface"] = lifted;
+        return;
+    }
+    const double friction = model.contact.friction * normal;
+    const dynamics::LinearSystem system = motion.linearised(run, thrust, false);
     const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"surge", "sway", "yaw", "heading"});
+    const dynamics::SurfaceCoefficients c = dynamics::surface_coefficients(model);
     const dynamics::HeadingBounds bounds = dynamics::heading_bounds(c, speed, friction);
     nlohmann::json one = system_json(system, modes);
     one["speed"] = speed;
+    one["normal_force"] = normal;
     one["friction_force"] = friction;
     one["heading_gain_bound"] = bounds.least_k2_without_friction;
-    json["surface"] = one;
-    text += "on the ground at " + core::format_number(speed, 4) + " m/s, friction " + core::format_number(friction, 3) +
-            " N\n";
+    one["trim_thrust"] = nlohmann::json::object();
+    for (std::size_t k = 0; k < thrust.size(); ++k) {
+        one["trim_thrust"][model.jets[k].name] = thrust[k];
+    }
+    text += "on the ground at " + core::format_number(speed, 4) + " m/s, normal force " +
+            core::format_number(normal, 3) + " N, friction " + core::format_number(friction, 3) + " N (" + trim + ")\n";
     for (const dynamics::Mode& mode : modes) {
         text += mode_text(mode);
     }
-    text += "  heading feedback needs more than " + core::format_number(bounds.least_k2_without_friction, 4) +
-            " N m/rad without friction\n";
+    text += rank_text(system, "surge force, side force and yaw moment");
+    if (!model.jets.empty()) {
+        const dynamics::LinearSystem by_jet = motion.linearised(run, thrust, true);
+        const dynamics::Controllability control = dynamics::controllability(by_jet);
+        one["controllability_by_jets"] = {{"rank", control.rank}, {"of", 4}, {"weakness", control.weakness}};
+        text += rank_text(by_jet, "the jets");
+    }
+    text += "  heading feedback N = K2 (psi_d - psi) - K1 r needs K2 above " +
+            core::format_number(bounds.least_k2_without_friction, 4) +
+            " N m/rad and K1 above 0 without friction; (a + k1)(a k1 + k2 - Om^2) > a k2 with it, a = " +
+            core::format_number(bounds.a, 4) + " 1/s, Om^2 = " + core::format_number(bounds.omega_squared, 4) +
+            " 1/s^2, k = K/" + core::format_number(c.inertia_r, 4) + " kg m^2\n";
+    turning_jets(model, c, speed, friction, a, one, text);
+    json["surface"] = one;
+}
+
+/// All ten states in free water about a gap, a pitch and a speed.
+void body(const dynamics::Model& model, const dynamics::Conditions& held, const dynamics::HeaveEquilibrium& at,
+          nlohmann::json& json, std::string& text) {
+    const dynamics::RigidBody plant(model, held);
+    dynamics::BodyState trim{};
+    const double speed = held.get(dynamics::Channel::speed, 0);
+    trim[dynamics::state_u] = speed * std::cos(at.pitch);
+    trim[dynamics::state_w] = speed * std::sin(at.pitch);
+    trim[dynamics::state_theta] = at.pitch;
+    trim[dynamics::state_z] = plant.height_for_gap(at.gap, at.pitch);
+    const dynamics::LinearSystem system =
+        dynamics::linearise_body(plant, trim, std::vector<double>(model.jets.size(), 0.0));
+    const std::vector<dynamics::Mode> modes = dynamics::modes(
+        system, {"surge", "sway", "heave", "pitch", "yaw", "pitch", "heading", "north", "east", "heave"});
+    json["body"] = system_json(system, modes);
+    text += "the whole body at " + core::format_number(1e3 * at.gap, 6) + " mm, " +
+            core::format_number(57.29577951308232 * at.pitch, 4) + " deg nose up, " + core::format_number(speed, 4) +
+            " m/s\n";
+    for (const dynamics::Mode& mode : modes) {
+        text += mode_text(mode);
+    }
+    if (!model.jets.empty()) {
+        text += rank_text(system, "the jets");
+    }
+}
+
+bool whole_body(const dynamics::Model& model) {
+    const dynamics::Vehicle& v = model.vehicle;
+    return !std::isnan(v.roll_inertia) && !std::isnan(v.pitch_inertia) && !std::isnan(v.yaw_inertia) &&
+           !std::isnan(v.base_depth) && !std::isnan(v.base_half_length);
+}
+
+void sweep(const dynamics::Model& model, const dynamics::Conditions& held, const Arguments& a, nlohmann::json& json) {
+    const std::vector<core::NamedRange> ranges = core::parse_ranges(a.sweep);
+    dynamics::Channel channel{};
+    if (!dynamics::find_channel(ranges.at(0).name, channel)) {
+        throw core::UsageError("name", "--sweep: '" + ranges[0].name + "' is not a condition", {},
+                               core::did_you_mean(ranges[0].name, dynamics::channel_names()));
+    }
+    const dynamics::EquilibriumSweep found =
+        dynamics::equilibrium_sweep(model, held, channel, ranges[0].lower, ranges[0].upper, 101);
+    if (!a.out.empty()) {
+        write_picture(dynamics::equilibrium_figure(found), a.out);
+    }
+    json["sweep"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < found.value.size(); ++i) {
+        for (const dynamics::HeaveEquilibrium& e : found.equilibria[i]) {
+            json["sweep"].push_back({{ranges[0].name, found.value[i]}, {"gap", e.gap}, {"stable", e.stable}});
+        }
+    }
 }
 
 int run(const Arguments& a, Shell& shell) {
@@ -172,38 +342,47 @@ int run(const Arguments& a, Shell& shell) {
          a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         given.set(value.name, value.value);
     }
+    std::optional<dynamics::HeaveEquilibrium> at;
+    if (!a.at.empty()) {
+        at.emplace();
+        at->name = "trim";
+        at->gap = std::nan("");
+        for (const core::NamedValue& value : core::parse_assignments(a.at)) {
+            (value.name == "gap" ? at->gap : value.name == "pitch" ? at->pitch : given[dynamics::Channel::speed]) =
+                value.value;
+            if (value.name != "gap" && value.name != "pitch" && value.name != "speed") {
+                throw core::UsageError("name", "--at takes gap, pitch and speed, not '" + value.name + "'");
+            }
+        }
+        if (std::isnan(at->gap)) {
+            throw core::UsageError("missing", "--at needs a gap", {}, "for instance --at gap=5mm,pitch=1deg");
+        }
+    }
     const dynamics::Conditions held = given.over(model.conditions);
     const std::vector<double> weights = weights_of(a.weights);
     shell.show(model.remarks);
     nlohmann::json json;
     std::string text;
     if (!a.sweep.empty()) {
-        const std::vector<core::NamedRange> ranges = core::parse_ranges(a.sweep);
-        dynamics::Channel channel{};
-        dynamics::find_channel(ranges.at(0).name, channel);
-        const dynamics::EquilibriumSweep sweep =
-            dynamics::equilibrium_sweep(model, held, channel, ranges[0].lower, ranges[0].upper, 101);
-        if (!a.out.empty()) {
-            write_picture(dynamics::equilibrium_figure(sweep), a.out);
-        }
-        json["sweep"] = nlohmann::json::array();
-        for (std::size_t i = 0; i < sweep.value.size(); ++i) {
-            for (const dynamics::HeaveEquilibrium& e : sweep.equilibria[i]) {
-                json["sweep"].push_back({{ranges[0].name, sweep.value[i]}, {"gap", e.gap}, {"stable", e.stable}});
-            }
-        }
+        sweep(model, held, a, json);
     } else if (!a.out.empty()) {
         throw core::UsageError("missing", "--out draws a sweep: name its range", {},
                                "for instance --sweep jet_voltage=3V:12V");
     }
-    heave(model, held, weights, json, text);
+    heave(model, held, weights, at, json, text);
     const std::vector<std::string> quantities = model.quantities();
+    const dynamics::Vehicle& v = model.vehicle;
     if (std::find(quantities.begin(), quantities.end(), "pitch_moment") != quantities.end() &&
-        !std::isnan(model.vehicle.pitch_inertia)) {
-        heave_pitch(model, held, json, text);
+        !std::isnan(v.pitch_inertia) && !std::isnan(v.base_depth) && !std::isnan(v.base_half_length)) {
+        heave_pitch(model, held, at, json, text);
     }
-    if (!std::isnan(model.vehicle.yaw_inertia)) {
-        surface(model, held, json, text);
+    if (!std::isnan(v.yaw_inertia)) {
+        surface(model, held, a, json, text);
+    } else if (!a.gamma_chart.empty()) {
+        throw core::InputError("missing", "the chart of jet angles needs vehicle.yaw_inertia", {a.model, {}, {}, {}});
+    }
+    if (at && whole_body(model)) {
+        body(model, held, *at, json, text);
     }
     if (shell.json) {
         shell.print_json(json);
@@ -216,20 +395,30 @@ int run(const Arguments& a, Shell& shell) {
 
 void add_linear_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand(
-        "linear", "small motion about each equilibrium: matrices, named modes, controllability, LQR gains");
+        "linear", "small motion about each equilibrium: matrices, named modes, controllability, LQR gains, jet angles");
     auto a = std::make_shared<Arguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
+    command->add_option("--at", a->at,
+                        "about this trim instead of the equilibria: gap=5mm,pitch=1deg,speed=0.35m/s (then also all "
+                        "states of the body)");
     command->add_option("--weights", a->weights,
                         "LQR weights q_w,q_h,r of heave velocity, gap and force (default 1,100,1)");
     command->add_option("--sweep", a->sweep, "equilibria against one condition, such as jet_voltage=3V:12V");
     command->add_option("--out", a->out, "picture of the sweep (.png, .pdf)");
+    command->add_option("--gamma-chart", a->gamma_chart,
+                        "picture of yaw torque and surge thrust against the angle of the turning jets (.png, .pdf)");
+    command->add_option("--sideslip", a->sideslip, "sideslip that the yaw torque must master (default 6 deg)");
+    command->add_option("--friction-offset", a->friction_offset,
+                        "arm of one-sided friction (default: half width of the base)");
     command->footer(
         "Examples:\n"
         "  underbody linear model.toml --conditions speed=0.5m/s\n"
+        "  underbody linear model.toml --at gap=5mm,pitch=1deg,speed=0.35m/s\n"
         "  underbody linear model.toml --sweep jet_voltage=3V:12V --out voltage.png\n"
+        "  underbody linear model.toml --gamma-chart gamma.png --sideslip 6deg\n"
         "Heave always; heave and pitch where the model has a pitch_moment table; surge, sway, yaw on the ground where "
-        "it has a yaw inertia.");
+        "it has a yaw inertia, with the poles and the zero of yaw rate per thrust difference where it has jets.");
     shell.on(command, [a, &shell] { return run(*a, shell); });
 }
 

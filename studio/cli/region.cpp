@@ -2,6 +2,7 @@
 #include "surrogates/dynamics/region.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/feedback_options.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/feedback.h"
@@ -29,6 +31,11 @@ struct Arguments {
     std::string starts;
     std::string escape;
     std::string feedback;
+    std::string lqr;
+    std::string motion = "auto";
+    std::string sweep;
+    std::string shares;
+    std::size_t steps = 5;
     std::size_t draws = 0;
     std::uint64_t seed = 1;
     bool safe = false;
@@ -36,30 +43,25 @@ struct Arguments {
     std::vector<std::string> variants;
 };
 
-dynamics::HeaveFeedback feedback_of(const std::string& text) {
-    dynamics::HeaveFeedback feedback;
-    const std::vector<core::QuantityName> known{{"gap_gain", "N/m", "", ""},
-                                                {"velocity_gain", "N s/m", "", ""},
-                                                {"reference", "m", "", ""},
-                                                {"limit", "N", "", ""}};
-    for (const core::NamedValue& value : core::parse_assignments(text, known)) {
-        if (value.name == "gap_gain") {
-            feedback.gap_gain = value.value;
-        } else if (value.name == "velocity_gain") {
-            feedback.velocity_gain = value.value;
-        } else if (value.name == "reference") {
-            feedback.reference = value.value;
-        } else if (value.name == "limit") {
-            feedback.limit = value.value;
-        } else {
-            throw core::UsageError("name", "feedback has no '" + value.name + "'", {},
-                                   "gap_gain, velocity_gain, reference, limit");
-        }
+/// Feedback in the motion that the map is of.
+void close_loop(const Arguments& a, const dynamics::Model& model, dynamics::RegionOptions& options) {
+    if (a.feedback.empty() && a.lqr.empty()) {
+        return;
     }
-    return feedback;
+    const bool pitch_axis = std::any_of(options.axes.begin(), options.axes.end(), [](const core::NamedRange& axis) {
+        return axis.name == "pitch" || axis.name == "pitch_rate";
+    });
+    using Motion = dynamics::RegionOptions::Motion;
+    if (options.motion == Motion::heave_pitch || (options.motion == Motion::automatic && pitch_axis)) {
+        const dynamics::HeavePitch plant(model, options.held);
+        options.pitch_feedback =
+            std::make_shared<dynamics::PitchFeedback>(*pitch_feedback_of(a.feedback, a.lqr, plant));
+    } else {
+        options.feedback = heave_feedback_of(a.feedback, a.lqr, model, options.held);
+    }
 }
 
-dynamics::RegionOptions options_of(const Arguments& a) {
+dynamics::RegionOptions options_of(const Arguments& a, const dynamics::Model& model) {
     dynamics::RegionOptions options;
     options.axes = core::parse_ranges(a.axes);
     const std::vector<std::string_view> sizes = core::split(a.grid, 'x');
@@ -75,9 +77,11 @@ dynamics::RegionOptions options_of(const Arguments& a) {
         options.held.set(value.name, value.value);
     }
     options.through_contact = a.through_contact;
-    if (!a.feedback.empty()) {
-        options.feedback = std::make_shared<dynamics::HeaveFeedback>(feedback_of(a.feedback));
+    if (a.motion != "auto") {
+        using Motion = dynamics::RegionOptions::Motion;
+        options.motion = a.motion == "heave" ? Motion::heave : Motion::heave_pitch;
     }
+    close_loop(a, model, options);
     if (!a.escape.empty()) {
         options.escape_gap = core::parse_in(a.escape, "m");
     }
@@ -151,6 +155,42 @@ int run_probability(const Arguments& a, const dynamics::Model& model, const dyna
     return ExitCode::done;
 }
 
+int run_sweep(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
+    const std::vector<core::NamedRange> ranges = core::parse_ranges(a.sweep);
+    if (ranges.size() != 1) {
+        throw core::UsageError("range", "--sweep takes one range, such as jet_voltage=4V:12V");
+    }
+    const dynamics::RegionSweep sweep =
+        dynamics::swept_regions(model, options, ranges[0], a.steps, shell.progress());
+    shell.show(sweep.regions.front().remarks);
+    dynamics::Channel channel{};
+    dynamics::find_channel(sweep.name, channel);
+    const bool angle = std::string(dynamics::channel_unit(channel)).starts_with("rad");
+    std::vector<std::string> names;
+    nlohmann::json json = {{"sweep", sweep.name}, {"regions", nlohmann::json::array()}};
+    for (std::size_t i = 0; i < sweep.value.size(); ++i) {
+        const std::string unit = angle ? "deg" : dynamics::channel_unit(channel);
+        names.push_back(sweep.name + " " +
+                        core::format_number(sweep.value[i] * (angle ? 57.29577951308232 : 1), 4) + " " + unit);
+        nlohmann::json one;
+        dynamics::to_json(one, sweep.regions[i]);
+        one["value"] = sweep.value[i];
+        json["regions"].push_back(one);
+        shell.print(names.back() + "\n");
+        print_classes(shell, sweep.regions[i].classes);
+    }
+    if (!a.out.empty()) {
+        write_picture(dynamics::region_overlay_figure(sweep.regions, names), a.out);
+    }
+    if (!a.shares.empty()) {
+        write_picture(dynamics::sweep_figure(sweep), a.shares);
+    }
+    if (shell.json) {
+        shell.print_json(json);
+    }
+    return ExitCode::done;
+}
+
 int run_variants(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
                  Shell& shell) {
     std::vector<dynamics::StabilityRegion> regions{dynamics::stability_region(model, options, shell.progress())};
@@ -179,12 +219,15 @@ int run_variants(const Arguments& a, const dynamics::Model& model, const dynamic
 
 int run(const Arguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
-    const dynamics::RegionOptions options = options_of(a);
+    const dynamics::RegionOptions options = options_of(a, model);
     if (!a.starts.empty()) {
         return run_starts(a, model, options, shell);
     }
     if (a.draws > 0) {
         return run_probability(a, model, options, shell);
+    }
+    if (!a.sweep.empty()) {
+        return run_sweep(a, model, options, shell);
     }
     if (!a.variants.empty()) {
         return run_variants(a, model, options, shell);
@@ -208,8 +251,12 @@ int run(const Arguments& a, Shell& shell) {
                 nlohmann::json one;
                 dynamics::to_json(one, set);
                 json["safe_sets"].push_back(one);
-                shell.print("safe about " + end.name + ": ellipse +-" + core::format_number(1e3 * set.ellipse_gap, 4) +
-                            " mm, +-" + core::format_number(1e3 * set.ellipse_velocity, 4) + " mm/s\n");
+                const auto half = [&](std::size_t axis) {
+                    const bool angle = set.axes[axis].starts_with("pitch");
+                    return core::format_number((angle ? 57.29577951308232 : 1e3) * set.ellipse[axis], 4) +
+                           (angle ? " deg" : " mm") + (set.axes[axis] == "gap" || set.axes[axis] == "pitch" ? "" : "/s");
+                };
+                shell.print("safe about " + end.name + ": ellipse +-" + half(0) + ", +-" + half(1) + "\n");
             }
         }
     }
@@ -232,13 +279,23 @@ void add_region_command(CLI::App& app, Shell& shell) {
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
     command->add_option("--escape", a->escape,
                         "gap above which the body counts as gone (default: end of the table or of the axis)");
-    command->add_option("--feedback", a->feedback,
-                        "close the loop: gap_gain=10,velocity_gain=9,reference=20mm,limit=0.05N (SI or with units)");
+    command->add_option("--feedback", a->feedback, feedback_help());
+    command->add_option("--lqr", a->lqr, lqr_help());
+    command
+        ->add_option("--motion", a->motion,
+                     "heave, heave-pitch, or auto: heave and pitch where an axis is pitch or pitch_rate")
+        ->check(CLI::IsMember({"auto", "heave", "heave-pitch"}));
+    command->add_option("--sweep", a->sweep,
+                        "a map for each of several values of a condition or a held state: jet_voltage=4V:12V, "
+                        "pitch=-2deg:2deg; --out lays their boundaries over each other");
+    command->add_option("--steps", a->steps, "values of the sweep (default 5)");
+    command->add_option("--shares", a->shares, "picture of the share of each end against what is swept");
     command->add_option("--out", a->out, "the map as a picture (.png, .pdf)");
     command->add_option("--table", a->table, "class and time of every start as a table (CSV)");
     command->add_option(
         "--starts", a->starts,
-        "a table of starts (gap, heave_velocity) instead of a grid: one row each with its class and time");
+        "a table of starts (gap, heave_velocity; with pitch or pitch_rate heave and pitch) instead of a grid: one row "
+        "each with its class and time");
     command->add_option("--draws", a->draws, "probability map: so many draws of the force tables from their error");
     command->add_option("--seed", a->seed, "seed of the draws");
     command->add_option("--with", a->variants, "further models to lay over the first");
@@ -255,6 +312,7 @@ void add_region_command(CLI::App& app, Shell& shell) {
         "  underbody region smooth.toml --with rough.toml --out both.png\n"
         "  underbody region model.toml --axes gap=1mm:30mm,pitch=-4deg:4deg    heave and pitch together (needs a "
         "pitch_moment table)\n"
+        "  underbody region model.toml --sweep jet_voltage=6V:12V --out boundaries.png --shares shares.png\n"
         "Classes: each attractor by name (A is nearest the ground), contact, escape, cycle, undecided in the time "
         "given.");
     shell.on(command, [a, &shell] { return run(*a, shell); });

@@ -1,21 +1,27 @@
-// underbody simulate: the motion from a start.
+// underbody simulate: the motion from a start, in heave, heave and pitch, on the ground, or all eleven states.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/feedback_options.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/heave.h"
+#include "surrogates/dynamics/hold.h"
+#include "surrogates/dynamics/surface_motion.h"
 
 namespace underbody::studio {
 
 namespace {
+
+using dynamics::Channel;
 
 struct Arguments {
     std::string model;
@@ -26,92 +32,358 @@ struct Arguments {
     std::string inputs;
     std::string out;
     std::string plot;
+    std::string motion = "auto";
+    std::string escape;
+    std::string feedback;
+    std::string lqr;
+    std::string hold;
+    std::string thrust;
     double tolerance = 1e-9;
     bool until_settled = false;
     bool until_contact = false;
 };
 
-/// Inputs from a table: time and any channels.
-dynamics::InputSignals read_inputs(const std::string& path) {
-    const core::Table table = core::read_csv(path);
+/// States of the body that have no place among the quantities that files share.
+const std::vector<core::QuantityName>& body_names() {
+    static const std::vector<core::QuantityName> names{{"sway_velocity", "m/s", "", ""}, {"yaw_rate", "rad/s", "", ""},
+                                                       {"heading", "rad", "", ""},       {"north", "m", "", ""},
+                                                       {"east", "m", "", ""}};
+    return names;
+}
+
+/// Where the motion starts, what is held, what varies.
+struct Start {
+    std::optional<double> gap, heave_velocity, pitch, pitch_rate, speed, sway_velocity, yaw_rate, heading, north, east;
+    [[nodiscard]] bool turns() const { return pitch || pitch_rate; }
+    [[nodiscard]] bool travels() const { return sway_velocity || yaw_rate || heading || north || east; }
+};
+
+Start start_of(const std::string& text, dynamics::Conditions& held) {
+    Start start;
+    const std::pair<const char*, std::optional<double> Start::*> states[] = {
+        {"gap", &Start::gap},           {"heave_velocity", &Start::heave_velocity},
+        {"pitch", &Start::pitch},       {"pitch_rate", &Start::pitch_rate},
+        {"sway_velocity", &Start::sway_velocity}, {"yaw_rate", &Start::yaw_rate},
+        {"heading", &Start::heading},   {"north", &Start::north},
+        {"east", &Start::east}};
+    for (const core::NamedValue& value : core::parse_assignments(text, body_names())) {
+        bool is_state = false;
+        for (const auto& [name, member] : states) {
+            if (value.name == name) {
+                start.*member = value.value;
+                is_state = true;
+            }
+        }
+        if (value.name == "speed") {
+            start.speed = value.value;
+        }
+        if (!is_state) {
+            held.set(value.name, value.value);
+        }
+    }
+    return start;
+}
+
+/// Recorded inputs from a table: time, any channels, and thrusts by the names of the jets.
+struct Inputs {
     dynamics::InputSignals signals;
-    signals.time = table.numbers("time");
-    for (std::size_t i = 1; i < signals.time.size(); ++i) {
-        if (!(signals.time[i] > signals.time[i - 1])) {
+    std::vector<double> jet_time;
+    std::vector<std::vector<double>> thrust;  ///< one per jet of the model; empty where the table has none
+
+    [[nodiscard]] bool drives_jets() const {
+        return std::any_of(thrust.begin(), thrust.end(), [](const auto& one) { return !one.empty(); });
+    }
+    [[nodiscard]] dynamics::JetCommand command(std::vector<double> steady) const {
+        return [time = jet_time, thrust = thrust, steady = std::move(steady)](double t, const dynamics::BodyState&) {
+            std::vector<double> now = steady;
+            const auto above = std::upper_bound(time.begin(), time.end(), t);
+            const std::size_t i = above == time.begin() ? 0 : static_cast<std::size_t>(above - time.begin()) - 1;
+            const std::size_t j = std::min(i + 1, time.empty() ? 0 : time.size() - 1);
+            for (std::size_t k = 0; k < thrust.size(); ++k) {
+                if (!thrust[k].empty()) {
+                    const double part =
+                        j > i ? std::clamp((t - time[i]) / (time[j] - time[i]), 0.0, 1.0) : 0.0;
+                    now[k] = thrust[k][i] + part * (thrust[k][j] - thrust[k][i]);
+                }
+            }
+            return now;
+        };
+    }
+};
+
+void read_inputs(const std::string& path, const std::vector<dynamics::Jet>& jets, Inputs& inputs) {
+    const core::Table table = core::read_csv(path);
+    const std::vector<double>& time = table.numbers("time");
+    for (std::size_t i = 1; i < time.size(); ++i) {
+        if (!(time[i] > time[i - 1])) {
             throw core::InputError("range", "time does not grow", table.place(i, "time"));
         }
     }
+    inputs.signals.time = inputs.jet_time = time;
+    inputs.thrust.resize(jets.size());
     for (const core::Column& column : table.columns()) {
-        dynamics::Channel channel{};
-        if (!column.is_text() && column.name != "time" && dynamics::find_channel(column.name, channel)) {
-            if (channel != dynamics::Channel::gap && channel != dynamics::Channel::heave_velocity) {
-                signals.signals.push_back({channel, column.numbers});
+        Channel channel{};
+        if (column.is_text() || column.name == "time") {
+            continue;
+        }
+        if (dynamics::find_channel(column.name, channel)) {
+            if (channel != Channel::gap && channel != Channel::heave_velocity) {
+                inputs.signals.signals.push_back({channel, column.numbers});
+            }
+            continue;
+        }
+        for (std::size_t k = 0; k < jets.size(); ++k) {
+            if (jets[k].name == column.name) {
+                for (std::size_t i = 0; i < time.size(); ++i) {
+                    if (!std::isfinite(column.numbers[i])) {
+                        throw core::InputError("missing", "a thrust is missing", table.place(i, column.name));
+                    }
+                }
+                inputs.thrust[k] = column.numbers;
             }
         }
     }
-    if (signals.signals.empty()) {
+    if (inputs.signals.signals.empty() && !inputs.drives_jets()) {
         throw core::InputError("missing", "there is no input in the table", {path, {}, {}, {}},
-                               "columns such as input_force [N], jet_voltage [V], speed [m/s]");
+                               "columns such as input_force [N], jet_voltage [V], speed [m/s], or a jet's name [N]");
     }
-    return signals;
 }
 
-int run(const Arguments& a, Shell& shell) {
-    const dynamics::Model model = dynamics::read_model(a.model);
-    double gap = std::nan(""), velocity = 0;
-    dynamics::InputSignals inputs;
-    if (!a.inputs.empty()) {
-        inputs = read_inputs(a.inputs);
+std::vector<double> steady_thrusts(const std::string& text, const std::vector<dynamics::Jet>& jets) {
+    std::vector<double> thrust(jets.size(), 0.0);
+    if (text.empty()) {
+        return thrust;
     }
-    for (const core::NamedValue& value : core::parse_assignments(a.from)) {
-        if (value.name == "gap") {
-            gap = value.value;
-        } else if (value.name == "heave_velocity") {
-            velocity = value.value;
-        } else {
-            inputs.held.set(value.name, value.value);
+    std::vector<core::QuantityName> names;
+    for (const dynamics::Jet& jet : jets) {
+        names.push_back({jet.name, "N", "", ""});
+    }
+    for (const core::NamedValue& value : core::parse_assignments(text, names)) {
+        for (std::size_t k = 0; k < jets.size(); ++k) {
+            if (jets[k].name == value.name) {
+                if (value.value < jets[k].minimum || value.value > jets[k].maximum) {
+                    throw core::UsageError("range", "--thrust: " + value.name + " gives " +
+                                                        core::format_number(jets[k].minimum, 4) + " to " +
+                                                        core::format_number(jets[k].maximum, 4) + " N");
+                }
+                thrust[k] = value.value;
+            }
         }
     }
+    return thrust;
+}
+
+/// Everything a motion needs, read and checked before anything runs.
+struct Job {
+    dynamics::Model model;
+    Start start;
+    Inputs inputs;
+    std::vector<double> thrust;
+    std::optional<dynamics::VehicleHold> hold;
+    dynamics::TrajectoryOptions options;
+
+    [[nodiscard]] dynamics::JetCommand command() const {
+        if (hold) {
+            return dynamics::JetHold(model, *hold, inputs.signals.held).command();
+        }
+        return model.jets.empty() ? dynamics::JetCommand() : inputs.command(thrust);
+    }
+    [[nodiscard]] dynamics::BodyOptions body_options() const {
+        dynamics::BodyOptions body;
+        body.duration = options.duration;
+        body.output_step = options.output_step;
+        body.command_step = hold ? 0.02 : 0;
+        body.escape_gap = options.escape_gap;
+        body.stop_at_contact = options.stop_at_contact;
+        body.stop_at_equilibrium = options.stop_at_equilibrium;
+        return body;
+    }
+};
+
+Job job_of(const Arguments& a) {
+    Job job{dynamics::read_model(a.model), {}, {}, {}, {}, {}};
+    job.inputs.thrust.resize(job.model.jets.size());
+    if (!a.inputs.empty()) {
+        read_inputs(a.inputs, job.model.jets, job.inputs);
+    }
+    job.start = start_of(a.from, job.inputs.signals.held);
     for (const core::NamedValue& value :
          a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
-        inputs.held.set(value.name, value.value);
+        job.inputs.signals.held.set(value.name, value.value);
     }
-    if (std::isnan(gap)) {
+    job.thrust = steady_thrusts(a.thrust, job.model.jets);
+    if (!a.hold.empty()) {
+        job.hold = hold_of(a.hold);
+    }
+    job.options.duration = core::parse_in(a.duration, "s");
+    job.options.output_step = a.step.empty() ? 0.0 : core::parse_in(a.step, "s");
+    job.options.tolerance = a.tolerance;
+    job.options.stop_at_contact = a.until_contact;
+    job.options.stop_at_equilibrium = a.until_settled;
+    job.options.escape_gap = a.escape.empty() ? 0.0 : core::parse_in(a.escape, "m");
+    if (!(job.options.duration > 0) || job.options.output_step < 0 || !(a.tolerance > 0) || a.tolerance > 0.1) {
+        throw core::UsageError("range", "--for must be positive, --step not negative, --tolerance between 0 and 0.1");
+    }
+    return job;
+}
+
+double needed_gap(const Start& start) {
+    if (!start.gap) {
         throw core::UsageError("missing", "--from needs the gap to start at", {},
                                "for instance --from gap=20mm,heave_velocity=0");
     }
-    dynamics::TrajectoryOptions options;
-    options.duration = core::parse_in(a.duration, "s");
-    options.output_step = a.step.empty() ? 0.0 : core::parse_in(a.step, "s");
-    options.tolerance = a.tolerance;
-    options.stop_at_contact = a.until_contact;
-    options.stop_at_equilibrium = a.until_settled;
-    if (!(options.duration > 0) || options.output_step < 0 || !(a.tolerance > 0) || a.tolerance > 0.1) {
-        throw core::UsageError("range", "--for must be positive, --step not negative, --tolerance between 0 and 0.1");
-    }
-    const dynamics::Trajectory motion = dynamics::simulate(model, gap, velocity, inputs, options, shell.progress());
-    shell.show(motion.remarks);
+    return *start.gap;
+}
+
+template <class Motion>
+void write_motion(const Motion& motion, const core::Figure& figure, const Arguments& a, Shell& shell) {
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), motion.table());
     }
     if (!a.plot.empty()) {
-        const dynamics::HeavePlant plant = dynamics::plant_for(model, inputs);
-        write_picture(dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a.plot);
+        write_picture(figure, a.plot);
     }
     if (shell.json) {
         nlohmann::json json;
         dynamics::to_json(json, motion);
         shell.print_json(json);
     }
+}
+
+std::string mm(double metres, int digits = 6) { return core::format_number(1e3 * metres, digits) + " mm"; }
+std::string degrees(double radians) { return core::format_number(57.29577951308232 * radians, 5) + " deg"; }
+
+std::string event_text(const std::vector<dynamics::TrajectoryEvent>& events) {
+    std::string text;
+    for (const dynamics::TrajectoryEvent& event : events) {
+        text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s, gap " + mm(event.gap, 5) + ", " +
+                core::format_number(1e3 * event.velocity, 4) + " mm/s\n";
+    }
+    return text;
+}
+
+void run_heave(const Arguments& a, Job& job, Shell& shell) {
+    const dynamics::Trajectory motion =
+        dynamics::simulate(job.model, needed_gap(job.start), job.start.heave_velocity.value_or(0), job.inputs.signals,
+                           job.options, shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
+    shell.show(motion.remarks);
+    const dynamics::HeavePlant plant = dynamics::plant_for(job.model, job.inputs.signals);
+    write_motion(motion, dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a, shell);
+    shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
+                mm(motion.gap.back()) + ", heave velocity " +
+                core::format_number(1e3 * motion.heave_velocity.back(), 4) + " mm/s\n" + event_text(motion.events));
+}
+
+void run_heave_pitch(const Arguments& a, Job& job, Shell& shell) {
+    dynamics::HeavePitch plant(job.model, job.inputs.signals.held, dynamics::varying_channels(job.inputs.signals));
+    if (const auto feedback = pitch_feedback_of(a.feedback, a.lqr, plant)) {
+        plant.close_loop(*feedback);
+    }
+    const dynamics::PitchState start{needed_gap(job.start), job.start.heave_velocity.value_or(0),
+                                     job.start.pitch.value_or(0), job.start.pitch_rate.value_or(0)};
+    dynamics::PitchTrajectory motion =
+        dynamics::simulate(plant, start, job.options, shell.progress(), job.inputs.signals);
+    add_remarks(motion.remarks, job.model);
+    shell.show(motion.remarks);
+    write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
+    const dynamics::PitchState& last = motion.state.back();
+    shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
+                mm(last[0]) + ", pitch " + degrees(last[2]) + " nose up, contact " +
+                dynamics::contact_state_name(motion.contact.back()) + "\n" + event_text(motion.events));
+}
+
+void run_surface(const Arguments& a, Job& job, Shell& shell) {
+    const dynamics::SurfaceMotion body(job.model, job.inputs.signals.held,
+                                       dynamics::varying_channels(job.inputs.signals));
+    const double speed =
+        job.start.speed.value_or(job.inputs.signals.held.over(job.model.conditions).get(Channel::speed, 0));
+    const dynamics::SurfaceState start{speed,
+                                       job.start.sway_velocity.value_or(0),
+                                       job.start.yaw_rate.value_or(0),
+                                       job.start.heading.value_or(0),
+                                       job.start.north.value_or(0),
+                                       job.start.east.value_or(0)};
+    const dynamics::SurfaceTrajectory motion = dynamics::simulate_surface(
+        body, start, job.command(), job.body_options(), shell.progress(), job.inputs.signals);
+    core::Problems remarks;
+    add_remarks(remarks, job.model);
+    shell.show(remarks);
+    write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
+    const dynamics::SurfaceState& last = motion.state.back();
+    shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, speed " +
+                core::format_number(last[0], 5) + " m/s, heading " + degrees(last[3]) + ", normal force " +
+                core::format_number(motion.contact.back().normal, 4) + " N\n");
+}
+
+void run_body(const Arguments& a, Job& job, Shell& shell) {
+    const dynamics::RigidBody body(job.model, job.inputs.signals.held,
+                                   dynamics::varying_channels(job.inputs.signals));
+    const double pitch = job.start.pitch.value_or(0), rise = job.start.heave_velocity.value_or(0);
+    dynamics::BodyState start{};
+    start[dynamics::state_u] =
+        job.start.speed.value_or(job.inputs.signals.held.over(job.model.conditions).get(Channel::speed, 0));
+    start[dynamics::state_v] = job.start.sway_velocity.value_or(0);
+    start[dynamics::state_w] = (start[dynamics::state_u] * std::sin(pitch) - rise) / std::cos(pitch);
+    start[dynamics::state_q] = job.start.pitch_rate.value_or(0);
+    start[dynamics::state_r] = job.start.yaw_rate.value_or(0);
+    start[dynamics::state_theta] = pitch;
+    start[dynamics::state_psi] = job.start.heading.value_or(0);
+    start[dynamics::state_x] = job.start.north.value_or(0);
+    start[dynamics::state_y] = job.start.east.value_or(0);
+    start[dynamics::state_z] = body.height_for_gap(needed_gap(job.start), pitch);
+    dynamics::BodyTrajectory motion = dynamics::simulate_body(body, start, job.command(), job.body_options(),
+                                                              shell.progress(), job.inputs.signals);
+    add_remarks(motion.remarks, job.model);
+    shell.show(motion.remarks);
+    write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
+    const dynamics::BodyState& last = motion.state.back();
     std::string text = "ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
-                       core::format_number(1e3 * motion.gap.back(), 6) + " mm, heave velocity " +
-                       core::format_number(1e3 * motion.heave_velocity.back(), 4) + " mm/s\n";
-    for (const dynamics::TrajectoryEvent& event : motion.events) {
-        text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s, gap " +
-                core::format_number(1e3 * event.gap, 5) + " mm, " + core::format_number(1e3 * event.velocity, 4) +
-                " mm/s\n";
+                       mm(motion.gap.back()) + ", pitch " + degrees(last[dynamics::state_theta]) +
+                       " nose up, heading " + degrees(last[dynamics::state_psi]) + ", speed " +
+                       core::format_number(last[dynamics::state_u], 5) + " m/s, contact " +
+                       dynamics::contact_state_name(motion.contact.back()) + "\n";
+    for (const dynamics::BodyTrajectory::Event& event : motion.events) {
+        text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s\n";
     }
     shell.print(text);
+}
+
+/// The least motion that has the states of the start.
+std::string motion_of(const Arguments& a, const Job& job) {
+    if (a.motion != "auto") {
+        return a.motion;
+    }
+    if (job.hold || !a.thrust.empty() || job.inputs.drives_jets() || job.start.travels()) {
+        return job.start.gap || job.start.turns() ? "body" : "surface";
+    }
+    return job.start.turns() ? "heave-pitch" : "heave";
+}
+
+int run(const Arguments& a, Shell& shell) {
+    Job job = job_of(a);
+    const std::string motion = motion_of(a, job);
+    const bool in_heave = motion == "heave" || motion == "heave-pitch";
+    if (in_heave && (job.hold || !a.thrust.empty() || job.inputs.drives_jets())) {
+        throw core::UsageError("range", "jets move the body or the body on the ground, not " + motion, {},
+                               "--motion body or --motion surface");
+    }
+    if (!in_heave && (!a.feedback.empty() || !a.lqr.empty())) {
+        throw core::UsageError("range", "--feedback and --lqr close the loop in heave and in heave and pitch", {},
+                               "for jets: --hold heading=20deg,speed=0.35m/s");
+    }
+    if (motion == "heave") {
+        const std::vector<std::string> quantities = job.model.quantities();
+        if (std::find(quantities.begin(), quantities.end(), "pitch_moment") != quantities.end() && a.motion == "auto") {
+            shell.info("heave alone, at zero pitch: the model also has pitch moments, --motion heave-pitch uses them");
+        }
+        run_heave(a, job, shell);
+    } else if (motion == "heave-pitch") {
+        run_heave_pitch(a, job, shell);
+    } else if (motion == "surface") {
+        run_surface(a, job, shell);
+    } else {
+        run_body(a, job, shell);
+    }
     return ExitCode::done;
 }
 
@@ -121,12 +393,29 @@ void add_simulate_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("simulate", "the motion of a model from a start");
     auto a = std::make_shared<Arguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
-    command->add_option("--from", a->from, "where it starts: gap=..., heave_velocity=... (default 0)")->required();
+    command
+        ->add_option("--from", a->from,
+                     "where it starts: gap, heave_velocity, pitch, pitch_rate, speed, sway_velocity, yaw_rate, heading, "
+                     "north, east (default 0)")
+        ->required();
     command->add_option("--for", a->duration, "how long (default 60 s)");
+    command
+        ->add_option("--motion", a->motion,
+                     "heave; heave-pitch; surface (u, v, r, psi flat on the ground); body (all eleven states); auto: "
+                     "the least that has the states of --from")
+        ->check(CLI::IsMember({"auto", "heave", "heave-pitch", "surface", "body"}));
     command->add_option("--step", a->step, "time between outputs (default: the integrator's own steps)");
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, input_force=...");
     command->add_option("--inputs", a->inputs,
-                        "a table with time and inputs (input_force, jet_voltage, ...), linear between its rows");
+                        "a table with time and inputs (input_force, jet_voltage, ..., or thrusts by the jets' names), "
+                        "linear between its rows");
+    command->add_option("--thrust", a->thrust, "steady thrusts of jets: J1=0.05N,J2=0.05N (surface and body)");
+    command->add_option("--hold", a->hold,
+                        "hold with the jets: heading=20deg,speed=0.35m/s,gap=20mm,pitch=0; gains heading_gain, "
+                        "yaw_rate_gain, speed_gain, gap_gain, heave_gain, pitch_gain, pitch_rate_gain (SI); sampled every 20 ms");
+    command->add_option("--feedback", a->feedback, feedback_help());
+    command->add_option("--lqr", a->lqr, lqr_help());
+    command->add_option("--escape", a->escape, "stop above this gap");
     command->add_option("--out", a->out, "the motion as a table (CSV)");
     command->add_option("--plot", a->plot, "a picture of it (.png, .pdf)");
     command->add_option("--tolerance", a->tolerance, "relative error of a step (default 1e-9)");
@@ -138,8 +427,11 @@ void add_simulate_command(CLI::App& app, Shell& shell) {
         "  underbody simulate model.toml --from \"gap=20 mm,heave_velocity=-5 mm/s\" --conditions jet_voltage=8V "
         "--plot run.png\n"
         "  underbody simulate model.toml --from gap=0.1 --inputs run-01.csv --step 0.02 --out again.csv\n"
-        "The gap is the height of the base over the ground; heave velocity is positive up. CVODE integrates and stops "
-        "exactly at contact, lift-off and escape.");
+        "  underbody simulate model.toml --from gap=8mm,pitch=1deg --plot both.png        heave and pitch\n"
+        "  underbody simulate model.toml --motion surface --from speed=0.35m/s --hold heading=20deg,speed=0.35m/s\n"
+        "  underbody simulate model.toml --motion body --from gap=20mm,speed=0.35m/s --thrust J1=0.1N,J2=0.1N\n"
+        "The gap is the height of the base over the ground; heave velocity is positive up, pitch nose up, yaw and "
+        "heading to starboard. CVODE integrates and stops exactly at contact, lift-off and escape.");
     shell.on(command, [a, &shell] { return run(*a, shell); });
 }
 

@@ -39,6 +39,34 @@ HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_wei
     return {k.gain(0, 1), k.gain(0, 0), gap, 0};
 }
 
+PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const PitchWeights& weights) {
+    const LinearSystem system = plant.linearised(gap, pitch);
+    const Regulator regulator =
+        lqr(system, Dense::diagonal({weights.state.begin(), weights.state.end()}),
+            Dense::diagonal({weights.force, weights.moment}));
+    PitchFeedback feedback;
+    for (std::size_t i = 0; i < 4; ++i) {
+        feedback.force_gain[i] = regulator.gain(0, i);
+        feedback.moment_gain[i] = regulator.gain(1, i);
+    }
+    feedback.reference = {gap, 0, pitch, 0};
+    return feedback;
+}
+
+std::vector<std::complex<double>> closed_poles(const HeavePitch& plant, const PitchFeedback& feedback) {
+    const LinearSystem system = plant.linearised(feedback.reference[0], feedback.reference[2]);
+    Dense gain(2, 4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        gain(0, i) = feedback.force_gain[i];
+        gain(1, i) = feedback.moment_gain[i];
+    }
+    std::vector<std::complex<double>> poles;
+    for (const Eigen1& one : eigen(system.a - system.b * gain)) {
+        poles.push_back(one.value);
+    }
+    return poles;
+}
+
 EquilibriumSweep equilibrium_sweep(const Model& model, const Conditions& held, Channel channel, double lower,
                                    double upper, std::size_t count) {
     if (count < 2 || !(upper > lower)) {

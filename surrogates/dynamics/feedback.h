@@ -1,11 +1,14 @@
 // Feedback on heave, and equilibria against a condition: what closed-loop maps and design plots need.
 #pragma once
 
+#include <array>
+#include <complex>
 #include <string>
 #include <vector>
 
 #include "core/figure.h"
 #include "surrogates/dynamics/heave.h"
+#include "surrogates/dynamics/heave_pitch.h"
 #include "surrogates/dynamics/linear.h"
 
 namespace underbody::dynamics {
@@ -25,6 +28,17 @@ void close_loop(HeavePlant& plant, const HeaveFeedback& feedback);
 /// + u.
 HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,
                         double input_weight);
+
+/// Weights of the regulator of heave and pitch: of the square of each state (gap, heave_velocity, pitch, pitch_rate) in
+/// SI, and of the force and the moment.
+struct PitchWeights {
+    std::array<double, 4> state{100, 1, 10, 0.1};
+    double force = 1, moment = 100;
+};
+/// LQR about a gap and a pitch, both inputs. Throws core::Error (kind "control") when there is none.
+PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const PitchWeights& weights);
+/// Poles of the loop closed, about the reference.
+std::vector<std::complex<double>> closed_poles(const HeavePitch& plant, const PitchFeedback& feedback);
 
 /// Equilibria for a range of one condition (jet_voltage, speed, ...).
 struct EquilibriumSweep {

@@ -69,6 +69,19 @@ public:
     [[nodiscard]] double lift(double h, const Moment& moment = {}) const;
     /// Resistance of the water and everything else that follows the velocity, N, sign of w. Without history.
     [[nodiscard]] double resistance(double h, double w) const;
+    /// Its parts: the water's drag law at a velocity through the water, and what follows the velocity in the guide or
+    /// the film (friction, squeeze film, corrections over the velocity).
+    [[nodiscard]] double water_drag(double relative) const;
+    [[nodiscard]] double guided_resistance(double h, double w) const;
+    /// Everything up but lift, the water's drag and waves, N: weight, input, guide, film, springs, corrections, memory.
+    [[nodiscard]] double other_force(double h, double w, const Moment& moment, const double* memory = nullptr) const;
+    [[nodiscard]] double wave_force(double t) const;
+    /// Lift of tables as the roughness of the ground changes it.
+    [[nodiscard]] double roughened(double lift, double h) const;
+    /// Mass that the history force adds by its fastest part; 0 without one.
+    [[nodiscard]] double history_mass() const { return terms.history != 0 ? terms.history * history_kernel().mass : 0; }
+    /// Has runs supply every channel with every moment, for motions whose tables live outside this plant.
+    void keep_channels() { keeps_channels_ = needs_channels_ = true; }
     /// M(h) without the history's share, and its slope dM/dh.
     [[nodiscard]] double inertia(double h, double& slope) const;
     /// dw/dt. `memory`: history_states states y_i with y_i' = -rate_i (y_i + w), or nullptr.
@@ -92,7 +105,7 @@ private:
     std::vector<std::size_t> varying_;            ///< indices of sources that vary
     std::vector<std::size_t> table_corrections_;  ///< indices of corrections over other variables
     std::vector<Channel> varying_channels_;
-    bool needs_channels_ = false;
+    bool needs_channels_ = false, keeps_channels_ = false;
     Conditions held_;
     [[nodiscard]] double varying_lift(double h, const Moment& moment) const;
     [[nodiscard]] double table_corrections(double h, double w, const Moment& moment) const;
@@ -172,9 +185,11 @@ struct Trajectory {
 };
 
 /// The motion from (gap, heave_velocity). `inputs` may be empty (no signals, no times): everything held.
+/// `feedback` (surrogates/dynamics/feedback.h) closes the loop; nullptr: open.
 /// Throws core::InputError for a start inside the ground; core::Error (kind "integration") when CVODE gives up.
 Trajectory simulate(const Model& model, double gap, double heave_velocity, const InputSignals& inputs,
-                    const TrajectoryOptions& options, core::Progress& progress = core::Progress::none());
+                    const TrajectoryOptions& options, core::Progress& progress = core::Progress::none(),
+                    const struct HeaveFeedback* feedback = nullptr);
 
 /// A plant for a run with these inputs: what varies in them is not folded.
 HeavePlant plant_for(const Model& model, const InputSignals& inputs);

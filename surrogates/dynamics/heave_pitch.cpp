@@ -18,126 +18,124 @@ double needed(double value, const char* name, const Model& model) {
     return value;
 }
 
-double scale_factor(const ForceScale& scale, double value) {
-    if (std::isnan(value)) {
-        return 1;
-    }
-    const double above = std::max(0.0, std::abs(value) - scale.dead_band) / (scale.reference - scale.dead_band);
-    return above > 0 ? std::pow(above, scale.exponent) : (scale.exponent == 0 ? 1.0 : 0.0);
-}
-
 }  // namespace
 
-double HeavePitch::Source::value(double gap, double pitch) const {
-    std::array<double, tables::max_axes> point = held;
-    if (gap_axis >= 0) {
-        point[static_cast<std::size_t>(gap_axis)] = gap;
-    }
-    if (pitch_axis >= 0) {
-        point[static_cast<std::size_t>(pitch_axis)] = pitch;
-    }
-    return factor * table.value(point.data());
-}
-
-HeavePitch::HeavePitch(const Model& declared, const Conditions& given) {
+HeavePitch::HeavePitch(const Model& declared, const Conditions& given, const std::vector<Channel>& varying)
+    : held_(given.over(declared.conditions)), vertical_(vertical_channel(declared.resolved(), held_, varying)) {
     const Model model = declared.resolved();
-    const Conditions held = given.over(model.conditions);
     const Vehicle& v = model.vehicle;
-    mass_ = v.mass + v.added_mass_heave;
     inertia_ = needed(v.pitch_inertia, "pitch_inertia", model) + v.added_inertia_pitch;
     depth_ = needed(v.base_depth, "base_depth", model);
+    forward_ = v.base_centre()[0];
     half_length_ = needed(v.base_half_length, "base_half_length", model);
-    weight_ = v.net_weight;
     buoyancy_ = v.mass * model.environment.gravity - v.net_weight;
-    buoyancy_height_ = v.buoyancy_height;
+    buoyancy_centre_ = v.buoyancy_centre();
     friction_ = model.contact.friction;
     restitution_ = model.contact.restitution;
-    speed_ = held.get(Channel::speed, 0.0);
-    input_ = held.get(Channel::input_force, 0.0);
-    drag_heave_ = model.drag_heave;
+    speed_ = held_.get(Channel::speed, 0.0);
+    input_ = held_.get(Channel::input_force, 0.0);
     drag_pitch_ = model.drag_pitch;
     water_ = model.environment;
     drag_moment_ = v.drag_height * drag(model.drag_surge, water_, speed_);
-    for (const ForceSource& source : model.forces) {
-        if (source.quantity != "lift_force" && source.quantity != "pitch_moment") {
-            continue;
-        }
-        Source compiled{source.table, source.factor, -1, -1, {}};
-        bool jet = false;
-        for (const ForceScale& scale : source.scales) {
-            compiled.factor *= scale_factor(scale, held[scale.channel]);
-            jet = jet || scale.channel == Channel::jet_voltage || scale.channel == Channel::jet_flow;
-        }
-        for (std::size_t i = 0; i < source.axes.size(); ++i) {
-            const tables::TableAxis& axis = source.table.axes()[i];
-            const Channel channel = source.axes[i];
-            jet = jet || channel == Channel::jet_voltage || channel == Channel::jet_flow;
-            if (channel == Channel::gap) {
-                compiled.gap_axis = static_cast<int>(i);
-                table_lower_ = std::max(table_lower_, axis.lower);
-                table_upper_ = std::min(table_upper_, axis.upper);
-            } else if (channel == Channel::pitch) {
-                compiled.pitch_axis = static_cast<int>(i);
-                pitch_lower_ = std::max(pitch_lower_, axis.lower);
-                pitch_upper_ = std::min(pitch_upper_, axis.upper);
-            } else if (held.has(channel)) {
-                compiled.held[i] = held[channel];
-            } else {
-                throw core::InputError(
-                    "missing",
-                    std::string("nothing says the ") + channel_name(channel) + ", an axis of " + source.table_file,
-                    {model.name, {}, {}, {}}, "give it as a condition, or under [conditions] in the model");
-            }
-        }
-        if (jet && model.coupling.kind == Coupling::Kind::sheltered && speed_ != 0) {
-            const double ratio = speed_ / model.coupling.limit_speed;
-            compiled.factor /= 1 + ratio * ratio;
-        }
-        (source.quantity == "lift_force" ? lift_ : moment_).push_back(std::move(compiled));
+    std::vector<Channel> all = varying;
+    for (const Channel state : {Channel::gap, Channel::heave_velocity, Channel::pitch, Channel::pitch_rate}) {
+        all.push_back(state);
     }
-    contact_gap_ = std::isnan(model.contact.gap) ? 0.0 : model.contact.gap;
+    lift_ = ForceSources(model, "lift_force", held_, all);
+    moment_ = ForceSources(model, "pitch_moment", held_, all);
+    if (speed_ != 0) {
+        drag_ = ForceSources(model, "drag_force", held_, all);
+    }
+    table_lower_ = std::max({-1e300, lift_.lower(Channel::gap), moment_.lower(Channel::gap)});
+    table_upper_ = std::min({1e300, lift_.upper(Channel::gap), moment_.upper(Channel::gap)});
+    pitch_lower_ = std::max({-1e300, lift_.lower(Channel::pitch), moment_.lower(Channel::pitch)});
+    pitch_upper_ = std::min({1e300, lift_.upper(Channel::pitch), moment_.upper(Channel::pitch)});
+    contact_gap_ = vertical_.terms.contact_gap;
 }
 
-double HeavePitch::lift(double gap, double pitch) const {
-    double sum = 0;
-    for (const Source& source : lift_) {
-        sum += source.value(gap, pitch);
+Conditions HeavePitch::seen(const PitchState& y, const Surroundings& around) const {
+    Conditions conditions = held_;
+    if (around.channels) {
+        std::copy(around.channels, around.channels + channel_count, conditions.value.begin());
     }
-    return sum;
+    conditions[Channel::gap] = y[0];
+    conditions[Channel::heave_velocity] = y[1];
+    conditions[Channel::pitch] = y[2];
+    conditions[Channel::pitch_rate] = y[3];
+    return conditions;
+}
+
+void HeavePitch::table_loads(const PitchState& y, const Surroundings& around, double& lift, double& moment) const {
+    const Conditions conditions = seen(y, around);
+    lift = vertical_.roughened(lift_(conditions), y[0]);
+    moment = moment_(conditions);
+}
+
+void HeavePitch::forces(const PitchState& y, const Surroundings& around, bool waves, Loads& loads) const {
+    const Conditions conditions = seen(y, around);
+    const HeaveMoment moment{around.t, std::isnan(around.input) ? input_ : around.input, nullptr,
+                             conditions.value.data()};
+    const double st = std::sin(y[2]), ct = std::cos(y[2]), reach = depth_ * st + forward_ * ct, w = y[1];
+    const double up = vertical_.roughened(lift_(conditions), y[0]);
+    loads.force = up + vertical_.other_force(y[0], w, moment, around.memory) -
+                  vertical_.water_drag(w - vertical_.terms.current);
+    loads.moment = moment_(conditions) + reach * up +
+                   buoyancy_ * (buoyancy_centre_[2] * st + buoyancy_centre_[0] * ct) + drag_moment_ -
+                   drag(drag_pitch_, water_, y[3]);
+    if (!drag_.empty()) {
+        // Tables give moments about the centre of the base: their drag, which something else balances, turns the body.
+        loads.moment -= (depth_ * ct - forward_ * st) * std::copysign(drag_(conditions), speed_);
+    }
+    if (waves) {
+        loads.force += vertical_.wave_force(around.t);
+    }
+    double slope = 0;
+    loads.mass = vertical_.inertia(y[0], slope) + (around.memory ? vertical_.history_mass() : 0);
+    if (slope != 0) {
+        loads.force += slope * w * (0.5 * w - (w + reach * y[3]));
+        loads.moment += 0.5 * slope * w * w * reach;
+    }
+    if (feedback_) {
+        double force = 0, turn = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            force -= feedback_->force_gain[i] * (y[i] - feedback_->reference[i]);
+            turn -= feedback_->moment_gain[i] * (y[i] - feedback_->reference[i]);
+        }
+        const auto limited = [](double value, double limit) {
+            return limit > 0 ? std::clamp(value, -limit, limit) : value;
+        };
+        loads.force += limited(force, feedback_->force_limit);
+        loads.moment += limited(turn, feedback_->moment_limit);
+    }
 }
 
 void HeavePitch::statics(double gap, double pitch, double& force, double& moment) const {
-    const double up = lift(gap, pitch), st = std::sin(pitch);
-    force = up - weight_ + input_;
-    moment = depth_ * up * st - buoyancy_ * buoyancy_height_ * st + drag_moment_;
-    for (const Source& source : moment_) {
-        moment += source.value(gap, pitch);
-    }
-}
-
-void HeavePitch::forces(const PitchState& y, Loads& loads) const {
-    statics(y[0], y[2], loads.force, loads.moment);
-    loads.force -= drag(drag_heave_, water_, y[1]);
-    loads.moment -= drag(drag_pitch_, water_, y[3]);
-}
-
-void HeavePitch::accelerations(const PitchState& y, const std::array<double, 2>& normal, double& up,
-                               double& turn) const {
     Loads loads;
-    forces(y, loads);
+    forces({gap, 0, pitch, 0}, {}, false, loads);
+    force = loads.force;
+    moment = loads.moment;
+}
+
+double HeavePitch::kinetic_energy(const PitchState& y) const {
+    return 0.5 * (virtual_mass(y[0]) * y[1] * y[1] + inertia_ * y[3] * y[3]);
+}
+
+void HeavePitch::accelerations(const PitchState& y, const Loads& loads, const std::array<double, 2>& normal,
+                               double& up, double& turn) const {
     const double st = std::sin(y[2]), ct = std::cos(y[2]);
+    double force = loads.force, moment = loads.moment;
     for (std::size_t edge = 0; edge < 2; ++edge) {
-        const double n = normal[edge], rx = edge == 0 ? half_length_ : -half_length_;
+        const double n = normal[edge], rx = forward_ + (edge == 0 ? half_length_ : -half_length_);
         if (n == 0) {
             continue;
         }
         // Sliding friction of the run over the ground, against the speed: it turns the nose down.
         const double friction = speed_ == 0 ? 0.0 : -std::copysign(friction_ * n, speed_);
-        loads.force += n;
-        loads.moment += n * (rx * ct + depth_ * st) + friction * (depth_ * ct - rx * st);
+        force += n;
+        moment += n * (rx * ct + depth_ * st) + friction * (depth_ * ct - rx * st);
     }
-    up = loads.force / mass_;
-    turn = loads.moment / inertia_;
+    up = force / loads.mass;
+    turn = moment / inertia_;
 }
 
 std::array<double, 2> HeavePitch::edge_gaps(const PitchState& y) const {
@@ -146,16 +144,17 @@ std::array<double, 2> HeavePitch::edge_gaps(const PitchState& y) const {
 }
 
 std::array<double, 2> HeavePitch::edge_speeds(const PitchState& y) const {
-    const double up = y[1] + depth_ * std::sin(y[2]) * y[3], turn = half_length_ * std::cos(y[2]) * y[3];
+    const double up = y[1] + arm(y[2]) * y[3], turn = half_length_ * std::cos(y[2]) * y[3];
     return {up + turn, up - turn};
 }
 
-ContactProblem HeavePitch::problem(const PitchState& y) const {
+ContactProblem HeavePitch::problem(const PitchState& y, const Loads& loads) const {
     const double st = std::sin(y[2]), ct = std::cos(y[2]), q = y[3];
     const auto gaps = [&](const std::array<double, 2>& normal) {
         double up = 0, turn = 0;
-        accelerations(y, normal, up, turn);
-        const double common = up + depth_ * (st * turn + ct * q * q), side = half_length_ * (ct * turn - st * q * q);
+        accelerations(y, loads, normal, up, turn);
+        const double common = up + arm(y[2]) * turn + (depth_ * ct - forward_ * st) * q * q,
+                     side = half_length_ * (ct * turn - st * q * q);
         return std::array<double, 2>{common + side, common - side};
     };
     ContactProblem p;
@@ -169,49 +168,58 @@ ContactProblem HeavePitch::problem(const PitchState& y) const {
     return p;
 }
 
-std::array<double, 2> HeavePitch::normal_forces(const PitchState& y, ContactState bearing) const {
-    return bearing == ContactState::free ? std::array<double, 2>{0, 0} : holding_forces(problem(y), bearing);
+std::array<double, 2> HeavePitch::normal_forces(const PitchState& y, ContactState bearing,
+                                                const Surroundings& around) const {
+    if (bearing == ContactState::free) {
+        return {0, 0};
+    }
+    Loads loads;
+    forces(y, around, true, loads);
+    return holding_forces(problem(y, loads), bearing);
 }
 
-void HeavePitch::rate(const PitchState& y, ContactState bearing, PitchState& d) const {
+void HeavePitch::rate(const PitchState& y, ContactState bearing, PitchState& d, const Surroundings& around) const {
+    Loads loads;
+    forces(y, around, true, loads);
     std::array<double, 2> normal{0, 0};
     if (bearing != ContactState::free) {
-        ContactProblem p = problem(y);
+        ContactProblem p = problem(y, loads);
         const std::array<double, 2> gaps = edge_gaps(y), speeds = edge_speeds(y);
         for (std::size_t i = 0; i < 2; ++i) {
             p.rest[i] += 40 * speeds[i] + 400 * gaps[i];  // draws a held edge back onto the ground
         }
         normal = holding_forces(p, bearing);
     }
-    d[0] = y[1] + depth_ * std::sin(y[2]) * y[3];
+    d[0] = y[1] + arm(y[2]) * y[3];
     d[2] = y[3];
-    accelerations(y, normal, d[1], d[3]);
+    accelerations(y, loads, normal, d[1], d[3]);
 }
 
-ContactState HeavePitch::settle(const PitchState& y, ContactState touching) const {
+ContactState HeavePitch::settle(const PitchState& y, ContactState touching, const Surroundings& around) const {
     if (touching == ContactState::free) {
         return touching;
     }
-    const std::optional<ContactState> state = contact_state(problem(y), touching);
+    Loads loads;
+    forces(y, around, true, loads);
+    const std::optional<ContactState> state = contact_state(problem(y, loads), touching);
     if (!state) {
-        throw core::Error("contact", "no contact forces fit this motion (friction and tipping contradict each other)");
+        throw core::Error("contact", "no contact forces fit this motion (friction and tipping contradict each other)",
+                          {}, "less friction, a lower centre of gravity, or a longer base");
     }
     return *state;
 }
 
 PitchState HeavePitch::impact(const PitchState& y, ContactState touching) const {
-    const double st = std::sin(y[2]), ct = std::cos(y[2]);
+    const double st = std::sin(y[2]), ct = std::cos(y[2]), mass = virtual_mass(y[0]);
     ContactProblem p;
     p.rest = edge_speeds(y);
-    std::array<double, 2> arm{}, lever{};
+    std::array<double, 2> lever{};  // moment of a unit impulse, and how the edge moves with q
     for (std::size_t e = 0; e < 2; ++e) {
-        const double rx = e == 0 ? half_length_ : -half_length_;
-        arm[e] = rx * ct + depth_ * st;  // moment of a unit impulse, and how the edge moves with q
-        lever[e] = arm[e];
+        lever[e] = (forward_ + (e == 0 ? half_length_ : -half_length_)) * ct + depth_ * st;
     }
     for (std::size_t i = 0; i < 2; ++i) {
         for (std::size_t j = 0; j < 2; ++j) {
-            p.matrix[i][j] = 1 / mass_ + arm[i] * lever[j] / inertia_;
+            p.matrix[i][j] = 1 / mass + lever[i] * lever[j] / inertia_;
         }
     }
     const auto impulses = impact_impulses(p, touching, restitution_);
@@ -219,8 +227,8 @@ PitchState HeavePitch::impact(const PitchState& y, ContactState touching) const 
         throw core::Error("contact", "no impulse fits this impact");
     }
     PitchState after = y;
-    after[1] += ((*impulses)[0] + (*impulses)[1]) / mass_;
-    after[3] += ((*impulses)[0] * arm[0] + (*impulses)[1] * arm[1]) / inertia_;
+    after[1] += ((*impulses)[0] + (*impulses)[1]) / mass;
+    after[3] += ((*impulses)[0] * lever[0] + (*impulses)[1] * lever[1]) / inertia_;
     return after;
 }
 
@@ -230,7 +238,7 @@ LinearSystem HeavePitch::linearised(double gap, double pitch) const {
         PitchState d{};
         rate(y, ContactState::free, d);
         std::copy(d.begin(), d.end(), out);
-        out[1] += u[0] / mass_;
+        out[1] += u[0] / virtual_mass(x[0]);
         out[3] += u[1] / inertia_;
     };
     return linearise(rate_of, {gap, 0, pitch, 0}, {0, 0}, {"gap", "heave_velocity", "pitch", "pitch_rate"},
@@ -299,7 +307,7 @@ std::vector<HeaveEquilibrium> HeavePitch::equilibria() const {
             }
         }
         e.stable = worst < 1e-6;  // quadratic drag alone leaves the linear motion undamped, yet it settles
-        e.stiffness = -system.a(1, 0) * mass_;
+        e.stiffness = -system.a(1, 0) * virtual_mass(e.gap);
         e.frequency = e.stable && slowest < 1e299 ? slowest : 0;
         e.damping_ratio = e.stable ? damping : 0;
         e.growth = e.stable ? 0 : worst;

@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "surrogates/dynamics/contact_gap.h"
 #include "surrogates/dynamics/drag.h"
+#include "surrogates/dynamics/force_sources.h"
 #include "surrogates/dynamics/heave.h"
 
 namespace underbody::dynamics {
@@ -13,10 +15,6 @@ bool contains(const std::vector<Channel>& list, Channel channel) {
     return std::find(list.begin(), list.end(), channel) != list.end();
 }
 
-double factor_of(const HeaveSource::Scale& scale, double value) {
-    const double above = std::max(0.0, std::abs(value) - scale.dead_band) / (scale.reference - scale.dead_band);
-    return above > 0 ? std::pow(above, scale.exponent) : (scale.exponent == 0 ? 1.0 : 0.0);
-}
 
 /// The value of an axis that is not the gap, when nothing varies it.
 double held_value(const ForceSource& source, std::size_t axis, const Conditions& held, const Model& model) {
@@ -36,18 +34,13 @@ HeaveSource compile(const ForceSource& source, const Model& model, const Conditi
                     const std::vector<Channel>& varying) {
     HeaveSource compiled;
     compiled.factor = source.factor;
-    bool jet = false;
     for (const ForceScale& scale : source.scales) {
         compiled.scales.push_back({scale.channel, scale.reference, scale.exponent, scale.dead_band,
                                    held.get(scale.channel, scale.reference)});
-        jet = jet || scale.channel == Channel::jet_voltage || scale.channel == Channel::jet_flow;
     }
-    if (model.coupling.kind == Coupling::Kind::sheltered && held.has(Channel::speed)) {
-        for (const Channel axis : source.axes) {
-            jet = jet || axis == Channel::jet_voltage || axis == Channel::jet_flow;
-        }
-        const double ratio = held[Channel::speed] / model.coupling.limit_speed;
-        compiled.factor *= jet ? 1 / (1 + ratio * ratio) : 1;
+    if (model.coupling.kind == Coupling::Kind::sheltered && driven_by_jet(source)) {
+        compiled.scales.push_back(
+            {Channel::speed, model.coupling.limit_speed, 2, 0, held.get(Channel::speed, 0.0), true});
     }
     std::size_t gap_axis = source.axes.size();
     bool others_held = true;
@@ -73,23 +66,29 @@ HeaveSource compile(const ForceSource& source, const Model& model, const Conditi
     return compiled;
 }
 
-void set_ranges(const Model& model, HeaveTerms& terms) {
-    double lower = -1e300, upper = 1e300;
+}  // namespace
+
+GapRange lift_gap_range(const Model& model) {
+    GapRange range;
     for (const ForceSource& source : model.forces) {
         for (std::size_t i = 0; i < source.axes.size(); ++i) {
             if (source.quantity == "lift_force" && source.axes[i] == Channel::gap) {
-                lower = std::max(lower, source.table.axes()[i].lower);
-                upper = std::min(upper, source.table.axes()[i].upper);
+                range.lower = std::max(range.lower, source.table.axes()[i].lower);
+                range.upper = std::min(range.upper, source.table.axes()[i].upper);
             }
         }
     }
-    terms.table_lower = lower;
-    terms.table_upper = upper;
-    terms.contact_gap =
-        !std::isnan(model.contact.gap) ? model.contact.gap : (lower < 0 && lower > -1e299 ? lower : 0.0);
+    return range;
 }
 
-}  // namespace
+double contact_gap(const Model& model) {
+    const double lower = lift_gap_range(model).lower;
+    return !std::isnan(model.contact.gap) ? model.contact.gap : (lower < 0 && lower > -1e299 ? lower : 0.0);
+}
+
+double HeaveSource::Scale::factor(double value) const {
+    return shelter ? shelter_factor(value, reference) : scale_factor(reference, exponent, dead_band, value);
+}
 
 HeavePlant::HeavePlant(const Model& declared, const Conditions& held, const std::vector<Channel>& varying)
     : varying_channels_(varying), held_(held.over(declared.conditions)) {
@@ -108,7 +107,10 @@ HeavePlant::HeavePlant(const Model& declared, const Conditions& held, const std:
             MixedDrag(terms.linear, terms.quadratic, model.drag_heave.length, model.environment.kinematic_viscosity);
     }
     terms.restitution = model.contact.restitution;
-    set_ranges(model, terms);
+    const GapRange range = lift_gap_range(model);
+    terms.table_lower = range.lower;
+    terms.table_upper = range.upper;
+    terms.contact_gap = dynamics::contact_gap(model);
     for (const ForceSource& source : model.forces) {
         if (source.quantity == "lift_force") {
             terms.sources.push_back(compile(source, model, held_, varying));
@@ -130,7 +132,7 @@ void HeavePlant::refresh() {
     gap_correction_ = velocity_correction_ = {};
     varying_.clear();
     table_corrections_.clear();
-    needs_channels_ = false;
+    needs_channels_ = keeps_channels_;
     for (std::size_t s = 0; s < terms.sources.size(); ++s) {
         const HeaveSource& source = terms.sources[s];
         bool varies = !source.table.empty();
@@ -138,7 +140,7 @@ void HeavePlant::refresh() {
         double factor = source.factor;
         for (const HeaveSource::Scale& scale : source.scales) {
             varies = varies || contains(varying_channels_, scale.channel);
-            factor *= factor_of(scale, scale.held);
+            factor *= scale.factor(scale.held);
         }
         if (varies) {
             varying_.push_back(s);
@@ -170,7 +172,7 @@ double HeavePlant::varying_lift(double h, const Moment& moment) const {
         } else {
             factor = source.factor;
             for (const HeaveSource::Scale& scale : source.scales) {
-                factor *= factor_of(scale, scale.held);
+                factor *= scale.factor(scale.held);
             }
         }
         if (source.table.empty()) {
@@ -194,11 +196,7 @@ double HeavePlant::lift(double h, const Moment& moment) const {
     if (!varying_.empty()) {
         sum += varying_lift(h, moment);
     }
-    if (terms.rough_near != 0 || terms.rough_far != 0) {
-        const double x = h / terms.rough_length;
-        sum *= 1 + (terms.rough_near - terms.rough_far * x * x) / (1 + x * x);
-    }
-    return sum;
+    return roughened(sum, h);
 }
 
 double HeavePlant::table_corrections(double h, double w, const Moment& moment) const {
@@ -221,6 +219,14 @@ double HeavePlant::table_corrections(double h, double w, const Moment& moment) c
     return sum;
 }
 
+double HeavePlant::roughened(double sum, double h) const {
+    if (terms.rough_near != 0 || terms.rough_far != 0) {
+        const double x = h / terms.rough_length;
+        sum *= 1 + (terms.rough_near - terms.rough_far * x * x) / (1 + x * x);
+    }
+    return sum;
+}
+
 double HeavePlant::static_force(double h, const Moment& moment) const {
     double force = terms.constant + moment.input + lift(h, moment) - terms.stiffness * (h - terms.stiffness_gap) -
                    resistance(h, 0.0);
@@ -236,11 +242,14 @@ double HeavePlant::static_force(double h, const Moment& moment) const {
     return force;
 }
 
-double HeavePlant::resistance(double h, double w) const {
-    const double relative = w - terms.current;
+double HeavePlant::water_drag(double relative) const {
     const double size = std::abs(relative);
-    double force = terms.mixed ? terms.mixed_law(relative) : (terms.linear + terms.quadratic * size) * relative;
-    force += (terms.extra_linear + terms.extra_quadratic * size) * relative;
+    const double force = terms.mixed ? terms.mixed_law(relative) : (terms.linear + terms.quadratic * size) * relative;
+    return force + (terms.extra_linear + terms.extra_quadratic * size) * relative;
+}
+
+double HeavePlant::guided_resistance(double h, double w) const {
+    double force = 0;
     if (terms.friction != 0) {
         force += terms.friction * w / std::sqrt(w * w + terms.friction_width * terms.friction_width);
     }
@@ -250,6 +259,40 @@ double HeavePlant::resistance(double h, double w) const {
     }
     if (!velocity_correction_.empty()) {
         force -= velocity_correction_(w);
+    }
+    return force;
+}
+
+double HeavePlant::resistance(double h, double w) const {
+    return water_drag(w - terms.current) + guided_resistance(h, w);
+}
+
+double HeavePlant::wave_force(double t) const {
+    double force = 0;
+    for (const HeaveTerms::Wave& wave : terms.waves) {
+        force += wave.amplitude * std::sin(6.283185307179586 * wave.frequency * t + wave.phase);
+    }
+    return force;
+}
+
+double HeavePlant::other_force(double h, double w, const Moment& moment, const double* memory) const {
+    double force = terms.constant + moment.input - terms.stiffness * (h - terms.stiffness_gap) - guided_resistance(h, w);
+    if (!gap_correction_.empty()) {
+        force += gap_correction_(h);
+    }
+    if (!table_corrections_.empty()) {
+        force += table_corrections(h, w, moment);
+    }
+    for (const HeaveTerms::ExtraTerm& extra : terms.extras) {
+        force += extra.force(extra.parameters, moment.t, h, w);
+    }
+    if (terms.history != 0 && memory) {
+        const HistoryKernel& kernel = history_kernel();
+        double sum = 0;
+        for (std::size_t i = 0; i < history_states; ++i) {
+            sum += kernel.weight[i] * (w + memory[i]);
+        }
+        force -= terms.history * sum;
     }
     return force;
 }
@@ -271,34 +314,16 @@ double HeavePlant::inertia(double h, double& slope) const {
 }
 
 double HeavePlant::acceleration(double h, double w, const Moment& moment, const double* memory) const {
-    double force = terms.constant + moment.input + lift(h, moment) - terms.stiffness * (h - terms.stiffness_gap) -
-                   resistance(h, w);
-    for (const HeaveTerms::Wave& wave : terms.waves) {
-        force += wave.amplitude * std::sin(6.283185307179586 * wave.frequency * moment.t + wave.phase);
-    }
-    if (!gap_correction_.empty()) {
-        force += gap_correction_(h);
-    }
-    if (!table_corrections_.empty()) {
-        force += table_corrections(h, w, moment);
-    }
-    for (const HeaveTerms::ExtraTerm& extra : terms.extras) {
-        force += extra.force(extra.parameters, moment.t, h, w);
-    }
+    double force =
+        other_force(h, w, moment, memory) + wave_force(moment.t) + lift(h, moment) - water_drag(w - terms.current);
     double mass = terms.mass;
     if (!terms.growth.empty() || !terms.added_mass.empty()) {
         double slope = 0;
         mass = inertia(h, slope);
         force -= 0.5 * slope * w * w;
     }
-    if (terms.history != 0 && memory) {
-        const HistoryKernel& kernel = history_kernel();
-        double sum = 0;
-        for (std::size_t i = 0; i < history_states; ++i) {
-            sum += kernel.weight[i] * (w + memory[i]);
-        }
-        force -= terms.history * sum;
-        mass += terms.history * kernel.mass;
+    if (memory) {
+        mass += history_mass();
     }
     return force / mass;
 }
@@ -334,9 +359,13 @@ const HistoryKernel& history_kernel() {
 
 std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
     const Curve& curve = plant.lift_curve();
-    const double lower =
-        std::max(plant.terms.contact_gap, plant.terms.table_lower > -1e299 ? plant.terms.table_lower : 0.0);
-    const double upper = plant.terms.table_upper < 1e299 ? plant.terms.table_upper : lower + 10;
+    double lower = std::max(plant.terms.contact_gap, plant.terms.table_lower > -1e299 ? plant.terms.table_lower : 0.0);
+    double upper = plant.terms.table_upper < 1e299 ? plant.terms.table_upper : lower + 10;
+    // Tables that end at different gaps: one that has ended holds its value, and the body may well rest there.
+    if (plant.terms.table_upper < 1e299 && !curve.empty() && curve.lower() > -1e5 && curve.upper() < 1e5) {
+        lower = std::max(plant.terms.contact_gap, std::min(lower, curve.lower()));
+        upper = std::max(upper, curve.upper());
+    }
     // Knots and points between them bracket every sign change of the static force that a table can make.
     std::vector<double> grid;
     if (!curve.empty()) {

@@ -44,11 +44,6 @@ std::vector<double> without_gaps(const std::vector<double>& time, std::vector<do
     return values;
 }
 
-double power_law(const HeaveSource::Scale& scale, double value) {
-    const double above = std::max(0.0, std::abs(value) - scale.dead_band) / (scale.reference - scale.dead_band);
-    return above > 0 ? std::pow(above, scale.exponent) : (scale.exponent == 0 ? 1.0 : 0.0);
-}
-
 void apply_lag(const std::vector<double>& time, std::vector<double>& signal, double time_constant) {
     double y = signal.front();
     double before = signal.front();
@@ -130,8 +125,8 @@ HeaveRun::HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double m
         for (std::size_t i = 0; i < count; ++i) {
             double factor = source.factor;
             for (const HeaveSource::Scale& scale : source.scales) {
-                factor *= power_law(scale,
-                                    value_of(scale.channel, half_time_[i], inputs.held.get(scale.channel, scale.held)));
+                factor *=
+                    scale.factor(value_of(scale.channel, half_time_[i], inputs.held.get(scale.channel, scale.held)));
             }
             factors_[i * factor_count_ + k] = factor;
         }

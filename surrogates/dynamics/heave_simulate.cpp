@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "surrogates/dynamics/feedback.h"
 #include "surrogates/dynamics/heave.h"
 #include "surrogates/dynamics/ode.h"
+#include "surrogates/dynamics/surroundings.h"
 
 namespace underbody::dynamics {
 
@@ -224,19 +226,18 @@ void Flight::fly(double gap, double velocity, double t0, core::Progress& progres
 }  // namespace
 
 HeavePlant plant_for(const Model& model, const InputSignals& inputs) {
-    std::vector<Channel> varying;
-    for (const InputSignals::Signal& signal : inputs.signals) {
-        varying.push_back(signal.channel);
-    }
-    return HeavePlant(model, inputs.held, varying);
+    return HeavePlant(model, inputs.held, varying_channels(inputs));
 }
 
 Trajectory simulate(const Model& model, double gap, double heave_velocity, const InputSignals& inputs,
-                    const TrajectoryOptions& options, core::Progress& progress) {
+                    const TrajectoryOptions& options, core::Progress& progress, const HeaveFeedback* feedback) {
     if (!std::isfinite(gap) || !std::isfinite(heave_velocity) || !(options.duration > 0)) {
         throw core::InputError("range", "the start or the duration of the motion is not a number that makes sense");
     }
     HeavePlant plant = plant_for(model, inputs);
+    if (feedback) {
+        close_loop(plant, *feedback);
+    }
     if (gap < plant.terms.contact_gap) {
         throw core::InputError("range",
                                "the start lies in the ground: gap " + core::format_number(gap) +
@@ -246,6 +247,9 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
     const std::unique_ptr<HeaveRun> run = inputs.signals.empty() ? nullptr : std::make_unique<HeaveRun>(plant, inputs);
     Trajectory out;
     out.remarks = model.remarks;
+    for (core::Problem& remark : effects_without_motion(model)) {
+        out.remarks.push_back(std::move(remark));
+    }
     const double t0 = inputs.time.empty() ? 0.0 : inputs.time.front();
     Flight(plant, run.get(), options, out).fly(gap, heave_velocity, t0, progress);
     const auto beyond = std::count(out.outside.begin(), out.outside.end(), true);

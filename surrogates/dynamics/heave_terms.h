@@ -78,7 +78,9 @@ struct HeaveSource {
         double reference = 1;
         double exponent = 1;
         double dead_band = 0;
-        double held = 0;  ///< value of the channel when nobody supplies it
+        double held = 0;       ///< value of the channel when nobody supplies it
+        bool shelter = false;  ///< the coupling law instead of a power: 1/(1 + (value/reference)^2)
+        [[nodiscard]] double factor(double value) const;
     };
     std::vector<Scale> scales;
     double factor = 1;

@@ -2,6 +2,7 @@
 // Body frame: x forward, y starboard, z down, origin at the centre of gravity. Thrust is that ON the vehicle.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,8 +54,12 @@ struct TurnAllocation {
 };
 TurnAllocation allocate_turning(const EvieJets& layout, double force_x, double force_y, double moment_z);
 
-/// Thrusts within the jets' limits whose wrench is nearest to the wanted one (weights per component), by projected
-/// least squares; among equals the smallest thrusts.
+/// The turning jets (J1, J2, J5, J6) of a list as angles and arms, from the one aft on starboard; nothing when the list
+/// has no pair aft or fore that pushes forward and to the side.
+std::optional<EvieJets> turning_layout(std::span<const Jet> jets);
+
+/// Thrusts within the jets' limits whose wrench is nearest to the wanted one (weights per component), by bounded least
+/// squares; among equals the smallest thrusts.
 struct Allocation {
     std::vector<double> thrust;
     Wrench reached;

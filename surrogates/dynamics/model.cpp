@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "surrogates/dynamics/force_sources.h"
 #include "surrogates/dynamics/model_items.h"
 
 namespace underbody::dynamics {
@@ -144,32 +145,6 @@ std::vector<std::string> Model::quantities() const {
     return names;
 }
 
-namespace {
-
-double scale_factor(const ForceScale& scale, double value) {
-    if (std::isnan(value)) {
-        return 1;
-    }
-    const double above = std::max(0.0, std::abs(value) - scale.dead_band) / (scale.reference - scale.dead_band);
-    return above > 0 ? std::pow(above, scale.exponent) : (scale.exponent == 0 ? 1.0 : 0.0);
-}
-
-/// How much of a jet's force is left in the cross-flow of the motion.
-double shelter(const Model& model, const ForceSource& source, const Conditions& seen) {
-    if (model.coupling.kind != Coupling::Kind::sheltered || !seen.has(Channel::speed)) {
-        return 1;
-    }
-    const auto is_jet = [](Channel channel) { return channel == Channel::jet_voltage || channel == Channel::jet_flow; };
-    bool jet = std::any_of(source.axes.begin(), source.axes.end(), is_jet);
-    for (const ForceScale& scale : source.scales) {
-        jet = jet || is_jet(scale.channel);
-    }
-    const double ratio = seen[Channel::speed] / model.coupling.limit_speed;
-    return jet ? 1 / (1 + ratio * ratio) : 1;
-}
-
-}  // namespace
-
 double sum_of_sources(const Model& model, const std::string& quantity, const Conditions& seen, bool* outside) {
     double sum = 0;
     for (const ForceSource& source : model.forces) {
@@ -196,7 +171,10 @@ double sum_of_sources(const Model& model, const std::string& quantity, const Con
                 *outside = true;
             }
         }
-        double factor = source.factor * shelter(model, source, seen);
+        double factor = source.factor;
+        if (model.coupling.kind == Coupling::Kind::sheltered && driven_by_jet(source)) {
+            factor *= shelter_factor(seen[Channel::speed], model.coupling.limit_speed);
+        }
         for (const ForceScale& scale : source.scales) {
             factor *= scale_factor(scale, seen[scale.channel]);
         }

@@ -25,12 +25,19 @@ struct Vehicle {
     std::string added_mass_heave_file;
     double roll_inertia, pitch_inertia, yaw_inertia;
     double added_inertia_roll = 0, added_inertia_pitch = 0, added_inertia_yaw = 0;
+    double inertia_product_xy = 0, inertia_product_xz = 0, inertia_product_yz = 0;  ///< integral of x y dm, ...
     double net_weight = 0;  ///< N, weight less buoyancy, positive sinks
     double length, width, height;
-    double buoyancy_height = 0;  ///< centre of buoyancy above the centre of gravity, m (L_b)
+    double buoyancy_height = 0;  ///< centre of buoyancy above the centre of gravity, m (L_b), unless both centres stand
+    /// Forward, starboard, down of the centre of the hull, m.
+    std::optional<Vector3> centre_of_gravity, centre_of_buoyancy;
     double base_depth;           ///< base below the centre of gravity, m (L_nw)
     double base_half_length, base_half_width;
     double drag_height = 0;  ///< centre of surge drag above the centre of gravity, m (L_cgw): nose-up moment
+    /// From the centre of gravity, body frame: the centre of buoyancy (a hull without declared centre: its middle), and
+    /// the centre of the base, under the middle of the hull.
+    [[nodiscard]] Vector3 buoyancy_centre() const;
+    [[nodiscard]] Vector3 base_centre() const;
     Vehicle();
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "surrogates/dynamics/dense.h"
 
 namespace underbody::dynamics {
 
@@ -30,6 +31,9 @@ void add_vehicle(std::vector<ModelItem>& items) {
     ITEM(added_inertia_roll, "kg m^2", 0, 1e6, false, "added inertia about x", "kg m^2");
     ITEM(added_inertia_pitch, "kg m^2", 0, 1e6, false, "added inertia about y", "kg m^2");
     ITEM(added_inertia_yaw, "kg m^2", 0, 1e6, false, "added inertia about z", "kg m^2");
+    ITEM(inertia_product_xy, "kg m^2", -1e6, 1e6, false, "integral of x y dm about the centre of gravity", "kg m^2");
+    ITEM(inertia_product_xz, "kg m^2", -1e6, 1e6, false, "integral of x z dm about the centre of gravity", "kg m^2");
+    ITEM(inertia_product_yz, "kg m^2", -1e6, 1e6, false, "integral of y z dm about the centre of gravity", "kg m^2");
     ITEM(net_weight, "N", -5e4, 5e4, false, "weight less buoyancy, positive sinks", force_hint);
     ITEM(length, "m", 1e-3, 50, false, "length of the hull", length_hint);
     ITEM(width, "m", 1e-3, 50, false, "width of the hull", length_hint);
@@ -116,19 +120,64 @@ void check_item(const ModelItem& item, double value, const core::Place& place) {
     }
 }
 
+namespace {
+
+/// The tensor must be that of a body: positive definite, each principal moment at most the sum of the other two.
+void check_inertia(const Vehicle& v, const core::TomlTable& vehicle) {
+    const bool products = v.inertia_product_xy != 0 || v.inertia_product_xz != 0 || v.inertia_product_yz != 0;
+    if (std::isnan(v.roll_inertia) || std::isnan(v.pitch_inertia) || std::isnan(v.yaw_inertia)) {
+        if (products) {
+            throw core::InputError("missing", "products of inertia need roll_inertia, pitch_inertia and yaw_inertia",
+                                   vehicle.place("mass"));
+        }
+        return;
+    }
+    const Dense tensor{{v.roll_inertia, -v.inertia_product_xy, -v.inertia_product_xz},
+                       {-v.inertia_product_xy, v.pitch_inertia, -v.inertia_product_yz},
+                       {-v.inertia_product_xz, -v.inertia_product_yz, v.yaw_inertia}};
+    std::vector<double> principal;
+    for (const Eigen1& one : eigen(tensor)) {
+        principal.push_back(one.value.real());
+    }
+    std::sort(principal.begin(), principal.end());
+    const std::string text =
+        "(" + number(principal[0]) + ", " + number(principal[1]) + ", " + number(principal[2]) + ") kg m^2";
+    if (!(principal[0] > 0)) {
+        throw core::InputError("range", "the inertia is not positive definite: its principal moments are " + text,
+                               vehicle.place(products ? "inertia_product_xz" : "yaw_inertia"),
+                               "a product of inertia is smaller than the root of the two moments beside it");
+    }
+    if (principal[0] + principal[1] < principal[2] * (1 - 1e-9)) {
+        throw core::InputError("range",
+                               "no body has the inertia " + text + ": each may be at most the sum of the other two",
+                               vehicle.place("yaw_inertia"),
+                               "added inertia is declared apart: added_inertia_roll, ...");
+    }
+}
+
+void check_centres(const Vehicle& v, const core::TomlTable& vehicle) {
+    if (v.buoyancy_height != 0 && (v.centre_of_gravity || v.centre_of_buoyancy)) {
+        throw core::InputError("range", "buoyancy_height and the two centres say the same thing",
+                               vehicle.place("buoyancy_height"),
+                               "leave out buoyancy_height, or centre_of_gravity and centre_of_buoyancy");
+    }
+    const double size = std::isnan(v.length) ? 50 : v.length;
+    for (const auto& [name, centre] : {std::pair{"centre_of_gravity", v.centre_of_gravity},
+                                       std::pair{"centre_of_buoyancy", v.centre_of_buoyancy}}) {
+        if (centre && std::hypot((*centre)[0], (*centre)[1], (*centre)[2]) > size) {
+            throw core::InputError("range", std::string("vehicle.") + name + " lies outside the hull",
+                                   vehicle.place(name), length_hint);
+        }
+    }
+}
+
+}  // namespace
+
 void check_model(Model& model, const core::TomlTable& root) {
     const Vehicle& v = model.vehicle;
     const core::TomlTable vehicle = root.table("vehicle");
-    const double ixx = v.roll_inertia, iyy = v.pitch_inertia, izz = v.yaw_inertia;
-    if (!std::isnan(ixx) && !std::isnan(iyy) && !std::isnan(izz)) {
-        if (ixx + iyy < izz * (1 - 1e-9) || iyy + izz < ixx * (1 - 1e-9) || izz + ixx < iyy * (1 - 1e-9)) {
-            throw core::InputError("range",
-                                   "no body has the inertia (" + number(ixx) + ", " + number(iyy) + ", " + number(izz) +
-                                       ") kg m^2: each may be at most the sum of the other two",
-                                   vehicle.place("yaw_inertia"),
-                                   "added inertia is declared apart: added_inertia_roll, ...");
-        }
-    }
+    check_inertia(v, vehicle);
+    check_centres(v, vehicle);
     if (!std::isnan(v.length) && !std::isnan(v.width)) {
         const double height = std::isnan(v.height) ? std::min(v.length, v.width) : v.height;
         const double displaced = model.environment.density * 3.14159265358979 / 6 * v.length * v.width * height;

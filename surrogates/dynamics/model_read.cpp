@@ -64,6 +64,19 @@ void read_drag_laws(Model& model, const core::TomlTable& root) {
     }
 }
 
+Vector3 read_vector(const core::TomlTable& table, const char* key, const char* unit) {
+    const std::vector<double> numbers = table.quantities(key, unit);
+    if (numbers.size() != 3) {
+        throw core::InputError("type", table.path_of(key) + " needs three numbers (forward, starboard, down)",
+                               table.place(key));
+    }
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+std::optional<Vector3> read_centre(const core::TomlTable& vehicle, const char* key) {
+    return vehicle.has(key) ? std::optional<Vector3>(read_vector(vehicle, key, "m")) : std::nullopt;
+}
+
 ForceScale read_scale(const core::TomlTable& scales, const std::string& name) {
     ForceScale scale;
     if (!find_channel(name, scale.channel)) {
@@ -139,15 +152,6 @@ ForceSource read_force(const core::TomlTable& table) {
         }
     }
     return source;
-}
-
-Vector3 read_vector(const core::TomlTable& table, const char* key, const char* unit) {
-    const std::vector<double> numbers = table.quantities(key, unit);
-    if (numbers.size() != 3) {
-        throw core::InputError("type", table.path_of(key) + " needs three numbers (forward, starboard, down)",
-                               table.place(key));
-    }
-    return {numbers[0], numbers[1], numbers[2]};
 }
 
 Jet read_jet(const core::TomlTable& table) {
@@ -258,6 +262,8 @@ std::string without_written_parts(std::string_view text) {
 Model read(const core::TomlTable& root, std::string_view text) {
     Model model;
     read_items(model, root);
+    model.vehicle.centre_of_gravity = read_centre(root.table("vehicle"), "centre_of_gravity");
+    model.vehicle.centre_of_buoyancy = read_centre(root.table("vehicle"), "centre_of_buoyancy");
     read_drag_laws(model, root);
     const core::TomlTable coupling = root.table_or_empty("coupling");
     model.coupling.kind = coupling.choice("law", {"sum", "sheltered"}, "sum") == "sheltered" ? Coupling::Kind::sheltered
@@ -303,6 +309,19 @@ Vehicle::Vehicle()
       base_depth(not_given),
       base_half_length(not_given),
       base_half_width(not_given) {}
+
+Vector3 Vehicle::buoyancy_centre() const {
+    if (!centre_of_gravity && !centre_of_buoyancy) {
+        return {0, 0, -buoyancy_height};
+    }
+    const Vector3 g = centre_of_gravity.value_or(Vector3{}), b = centre_of_buoyancy.value_or(Vector3{});
+    return {b[0] - g[0], b[1] - g[1], b[2] - g[2]};
+}
+
+Vector3 Vehicle::base_centre() const {
+    const Vector3 g = centre_of_gravity.value_or(Vector3{});
+    return {-g[0], -g[1], base_depth};
+}
 
 ContactLaw::ContactLaw() : gap(not_given) {}
 

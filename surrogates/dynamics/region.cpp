@@ -10,6 +10,7 @@
 #include "surrogates/dynamics/dormand_prince.h"
 #include "surrogates/dynamics/feedback.h"
 #include "surrogates/dynamics/region_parts.h"
+#include "surrogates/dynamics/surroundings.h"
 
 namespace underbody::dynamics {
 
@@ -103,9 +104,6 @@ RegionBoundary backward(const HeaveRegionSetup& setup, const RegionOptions& o, b
 }
 
 void add_boundaries(const HeaveRegionSetup& setup, const RegionOptions& o, bool gap_first, StabilityRegion& region) {
-    if (setup.ends->rule() == "settled") {
-        return;
-    }
     const HeavePlant& plant = setup.plant;
     const core::NamedRange& ga = gap_first ? o.axes[0] : o.axes[1];
     const double nudge = 1e-6 * (ga.upper - ga.lower);
@@ -172,14 +170,10 @@ std::string rule_text(const std::string& rule) {
 
 void add_remarks(StabilityRegion& region, const Model& model) {
     region.remarks = model.remarks;
-    if (region.outside_fraction > 0) {
-        region.remarks.push_back({core::Problem::Severity::warning,
-                                  core::format_number(100 * region.outside_fraction, 3) +
-                                      " % of the starts lie outside the range of a force table (" +
-                                      core::format_number(region.table_lower, 6) + " to " +
-                                      core::format_number(region.table_upper, 6) + " m), where it holds its end value",
-                                  {}});
+    for (core::Problem& remark : effects_without_motion(model)) {
+        region.remarks.push_back(std::move(remark));
     }
+    add_outside_remark(region);
     if (region.rule.starts_with("nothing takes")) {
         region.remarks.push_back(
             {core::Problem::Severity::warning, "the model has no resistance in heave: it never settles", {}});
@@ -190,8 +184,12 @@ void add_remarks(StabilityRegion& region, const Model& model) {
 
 StabilityRegion stability_region(const Model& model, const RegionOptions& options, core::Progress& progress) {
     check_region_options(options);
-    if (!axis_of(options, "gap") || !axis_of(options, "heave_velocity")) {
+    if (in_heave_and_pitch(options)) {
         return pitch_region(model, options, progress);
+    }
+    if (!axis_of(options, "gap") || !axis_of(options, "heave_velocity")) {
+        throw core::InputError("range", "heave alone has the states gap and heave_velocity: a region in heave needs both",
+                               {}, "leave out --motion heave, or use --axes gap=0:0.5,heave_velocity=-0.1:0.1");
     }
     const HeaveRegionSetup setup(model, options);
     const bool gap_first = options.axes[0].name == "gap";
@@ -219,18 +217,21 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
         region.time.push_back(static_cast<float>(end.time));
     }
     keep_seen_classes(region, setup.ends->classes(), sums);
-    const core::NamedRange& gaps = gap_first ? options.axes[0] : options.axes[1];
-    const double inside =
-        std::max(0.0, std::min(gaps.upper, region.table_upper) - std::max(gaps.lower, region.table_lower));
-    region.outside_fraction = region.table_upper < 1e299 ? std::max(0.0, 1 - inside / (gaps.upper - gaps.lower)) : 0.0;
-    add_boundaries(setup, options, gap_first, region);
+    region.outside_fraction = outside_share(region);
+    if (setup.ends->rule() == "settled") {
+        add_traced_boundaries(region, options, batch, ends);
+    } else {
+        add_boundaries(setup, options, gap_first, region);
+    }
     add_flow(setup, options, gap_first, region);
     add_remarks(region, model);
     return region;
 }
 
-core::Table ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
-                           std::vector<EndClass>& classes, core::Progress& progress) {
+namespace {
+
+std::vector<End> heave_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                                      std::vector<EndClass>& classes, core::Progress& progress) {
     const std::vector<double>& gap = starts.numbers("gap");
     const std::vector<double> velocity =
         starts.find("heave_velocity")
@@ -251,6 +252,16 @@ core::Table ends_of_starts(const Model& model, const core::Table& starts, const 
     std::vector<End> ends(gap.size());
     setup.ends->of(gap, velocity, ends, progress);
     classes = setup.ends->classes();
+    return ends;
+}
+
+}  // namespace
+
+core::Table ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                           std::vector<EndClass>& classes, core::Progress& progress) {
+    const std::vector<End> ends = in_heave_and_pitch(options, &starts)
+                                      ? pitch_ends_of_starts(model, starts, options, classes, progress)
+                                      : heave_ends_of_starts(model, starts, options, classes, progress);
     std::vector<std::string> names, kinds;
     std::vector<double> times;
     for (const End& end : ends) {
@@ -265,6 +276,35 @@ core::Table ends_of_starts(const Model& model, const core::Table& starts, const 
     table.add_text("kind", kinds);
     table.add_numbers("time", "s", times);
     return table;
+}
+
+RegionSweep swept_regions(const Model& model, const RegionOptions& options, const core::NamedRange& range,
+                          std::size_t count, core::Progress& progress) {
+    Channel channel{};
+    if (!find_channel(range.name, channel)) {
+        throw core::InputError("name", "'" + range.name + "' cannot be swept", {},
+                               core::did_you_mean(range.name, channel_names()));
+    }
+    if (axis_of(options, range.name)) {
+        throw core::InputError("range", "'" + range.name + "' is an axis of the region: it cannot be swept too");
+    }
+    if (count < 2 || count > 1000) {
+        throw core::InputError("range", "a sweep has between 2 and 1000 values");
+    }
+    RegionSweep sweep;
+    sweep.name = range.name;
+    RegionOptions each = options;
+    if (channel == Channel::pitch || channel == Channel::pitch_rate) {
+        each.motion = RegionOptions::Motion::heave_pitch;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        progress.check();
+        sweep.value.push_back(range.lower +
+                              (range.upper - range.lower) * static_cast<double>(i) / static_cast<double>(count - 1));
+        each.held[channel] = sweep.value.back();
+        sweep.regions.push_back(stability_region(model, each, progress));
+    }
+    return sweep;
 }
 
 core::Table region_table(const StabilityRegion& region) {

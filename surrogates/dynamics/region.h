@@ -1,6 +1,7 @@
 // Stability regions: for each start, where the motion ends.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -35,6 +36,7 @@ struct End {
 };
 
 struct HeaveFeedback;  // surrogates/dynamics/feedback.h
+struct PitchFeedback;  // surrogates/dynamics/heave_pitch.h
 
 struct RegionOptions {
     std::vector<core::NamedRange> axes;  ///< two of: gap, heave_velocity, pitch, pitch_rate (SI)
@@ -46,6 +48,10 @@ struct RegionOptions {
         std::numeric_limits<double>::quiet_NaN();  ///< NaN: upper end of the tables or of the axes, whichever is higher
     bool refine = true;  ///< areas refined below the grid
     std::shared_ptr<const HeaveFeedback> feedback;  ///< heave: the loop closed by it; none: open loop
+    std::shared_ptr<const PitchFeedback> pitch_feedback;  ///< heave and pitch: likewise
+    /// Which equations: automatic takes heave and pitch where an axis (or a column of starts) is pitch or pitch_rate.
+    enum class Motion { automatic, heave, heave_pitch };
+    Motion motion = Motion::automatic;
     bool through_contact = false;  ///< heave and pitch: go on after a touch; contact is then to come to rest on the ground
 };
 
@@ -65,7 +71,8 @@ struct StabilityRegion {
     double duration = 0;
     double contact_gap = 0, escape_gap = 0;
     double outside_fraction = 0;  ///< share of starts outside the range of a force table
-    double table_lower = 0, table_upper = 0;
+    double table_lower = 0, table_upper = 0;  ///< m, gaps that every force table covers
+    double pitch_lower = -1e300, pitch_upper = 1e300;  ///< rad, likewise
     std::string model;
     std::string rule;  ///< how the end of an attractor's starts was decided
     Conditions held;
@@ -108,6 +115,17 @@ private:
 StabilityRegion stability_region(const Model& model, const RegionOptions& options,
                                  core::Progress& progress = core::Progress::none());
 
+/// Regions for a range of one condition or held state (jet_voltage, speed, pitch, heave_velocity, ...).
+struct RegionSweep {
+    std::string name;
+    std::vector<double> value;
+    std::vector<StabilityRegion> regions;
+};
+RegionSweep swept_regions(const Model& model, const RegionOptions& options, const core::NamedRange& range,
+                          std::size_t count, core::Progress& progress = core::Progress::none());
+/// Area of each kind of end against what was swept.
+core::Figure sweep_figure(const RegionSweep& sweep);
+
 /// Where given starts end: columns of `starts` that are states (others kept), plus `class`, `kind` and `time`.
 core::Table ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
                            std::vector<EndClass>& classes, core::Progress& progress = core::Progress::none());
@@ -136,13 +154,12 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
 core::Figure probability_figure(const ProbabilityMap& map);
 void to_json(nlohmann::json& json, const ProbabilityMap& map);
 
-/// The largest axis-parallel ellipse (in the plane of the two axes, scaled by their lengths) about an equilibrium in
-/// which every start ends there, and the largest box likewise.
+/// The largest axis-parallel ellipse about an equilibrium in which every start of the map ends there, and the largest
+/// box; centred on the equilibrium, SI, along the first and second axis of the map.
 struct SafeSet {
     std::string equilibrium;
-    double gap = 0;
-    double ellipse_gap = 0, ellipse_velocity = 0;  ///< half axes, SI, along the first and second axis
-    double box_gap_lower = 0, box_gap_upper = 0, box_velocity = 0;
+    std::array<std::string, 2> axes;
+    std::array<double, 2> centre{}, ellipse{}, box{};  ///< half lengths of ellipse and box
 };
 SafeSet largest_safe_set(const StabilityRegion& region, const std::string& equilibrium);
 void to_json(nlohmann::json& json, const SafeSet& set);

@@ -22,6 +22,10 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
         }
     }
     std::sort(knots.begin(), knots.end());
+    // Knots a hair apart keep two tables apart where one ends; here each stretch takes its slopes from its own inside.
+    const double hair = 1e-8 * (upper - lower);
+    knots.erase(std::unique(knots.begin(), knots.end(), [hair](double l, double r) { return r - l <= hair; }),
+                knots.end());
     const double size = [&] {
         double largest = 1e-300;
         for (const double h : knots) {
@@ -58,7 +62,7 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
             slope.pop_back();
             x.push_back(l);
         } else if (!x.empty()) {
-            x.push_back(l + 1e-10 * width);
+            x.push_back(l + std::max(1e-10 * width, 1e-15 * std::abs(l)));
         } else {
             x.push_back(l);
         }

@@ -79,7 +79,11 @@ void add_equilibria(core::Figure& figure, const StabilityRegion& region) {
     core::FigurePoints unstable{
         "unstable equilibrium", {}, {}, {}, {0, 0, 0, 255}, core::FigurePoints::Shape::circle, 9};
     for (const HeaveEquilibrium& e : region.equilibria) {
-        const double px = region.axes[0].name == "gap" ? e.gap : 0.0, py = region.axes[1].name == "gap" ? e.gap : 0.0;
+        const auto part = [&](std::size_t axis) {
+            const std::string& name = region.axes[axis].name;
+            return name == "gap" ? e.gap : name == "pitch" ? e.pitch : 0.0;
+        };
+        const double px = part(0), py = part(1);
         if (px < region.axes[0].lower || px > region.axes[0].upper || py < region.axes[1].lower ||
             py > region.axes[1].upper) {
             continue;
@@ -94,6 +98,15 @@ void add_equilibria(core::Figure& figure, const StabilityRegion& region) {
             figure.points.push_back(*points);
         }
     }
+}
+
+}  // namespace
+
+namespace {
+
+bool over_gap_and_pitch(const StabilityRegion& region) {
+    const std::string &x = region.axes[0].name, &y = region.axes[1].name;
+    return (x == "gap" && y == "pitch") || (x == "pitch" && y == "gap");
 }
 
 }  // namespace
@@ -138,10 +151,13 @@ core::Figure region_figure(const StabilityRegion& region) {
             figure.curves.push_back(std::move(curve));
         }
     }
-    for (const double edge : {region.table_lower, region.table_upper}) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            if (region.axes[axis].name == "gap" && edge > region.axes[axis].lower && edge < region.axes[axis].upper) {
-                figure.lines.push_back({axis == 0, edge * 1e3, "end of the force table"});
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const core::NamedRange& range = region.axes[axis];
+        const bool gap = range.name == "gap";
+        for (const double edge : {gap ? region.table_lower : region.pitch_lower,
+                                  gap ? region.table_upper : region.pitch_upper}) {
+            if ((gap || range.name == "pitch") && edge > range.lower && edge < range.upper) {
+                figure.lines.push_back({axis == 0, edge * shown(range.name).scale, "end of the force table"});
             }
         }
     }
@@ -151,6 +167,7 @@ core::Figure region_figure(const StabilityRegion& region) {
         core::format_number(region.duration, 4) + " s of motion each; " + region.rule + ". Contact at " +
         core::format_number(1e3 * region.contact_gap, 4) + " mm, escape above " +
         core::format_number(1e3 * region.escape_gap, 5) + " mm." +
+        (over_gap_and_pitch(region) ? " Arrows: where a start at rest sets off." : "") +
         (region.outside_fraction > 0 ? " Beyond the dashed line the force table holds its end value." : "");
     return figure;
 }
@@ -185,6 +202,37 @@ core::Figure region_overlay_figure(const std::vector<StabilityRegion>& regions, 
         }
     }
     figure.caption = "Each line parts the starts that end at an attractor from those that do not.";
+    return figure;
+}
+
+core::Figure sweep_figure(const RegionSweep& sweep) {
+    core::Figure figure;
+    figure.title = "Where the starts end";
+    const Shown x = shown(sweep.name);
+    Channel channel{};
+    find_channel(sweep.name, channel);
+    figure.x = {x.label, x.unit.empty() ? channel_unit(channel) : x.unit};
+    figure.y = {"share of the starts", "%", 0, 100};
+    std::vector<std::string> names;
+    for (const StabilityRegion& region : sweep.regions) {
+        for (const EndClass& end : region.classes) {
+            if (std::find(names.begin(), names.end(), end.name) == names.end()) {
+                names.push_back(end.name);
+            }
+        }
+    }
+    for (const std::string& name : names) {
+        core::FigureCurve curve{name, {}, {}, core::palette(figure.curves.size())};
+        for (std::size_t i = 0; i < sweep.value.size(); ++i) {
+            curve.x.push_back(sweep.value[i] * x.scale);
+            curve.y.push_back(100 * sweep.regions[i].fraction(name));
+        }
+        figure.curves.push_back(std::move(curve));
+    }
+    if (!sweep.regions.empty()) {
+        figure.caption = "Share of the area of starts over " + sweep.regions[0].axes[0].name + " and " +
+                         sweep.regions[0].axes[1].name + " that ends in each way.";
+    }
     return figure;
 }
 

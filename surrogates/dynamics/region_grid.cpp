@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
+#include "core/text.h"
 #include "surrogates/dynamics/region_parts.h"
 
 namespace underbody::dynamics {
@@ -108,35 +111,154 @@ void keep_seen_classes(StabilityRegion& region, const std::vector<EndClass>& all
     }
 }
 
-void add_cell_boundaries(StabilityRegion& region) {
-    const double dx = (region.axes[0].upper - region.axes[0].lower) / static_cast<double>(region.columns);
-    const double dy = (region.axes[1].upper - region.axes[1].lower) / static_cast<double>(region.rows);
-    RegionBoundary line;
-    line.name = "between cells";
-    const auto segment = [&](double x0, double y0, double x1, double y1) {
-        for (const double x : {x0, x1, std::nan("")}) {
-            line.x.push_back(x);
+namespace {
+
+/// A pair of neighbouring starts of different classes, and the point between them where the class changes.
+struct Crossing {
+    std::size_t low, high;  ///< of the grid
+    double from = 0, to = 1;
+};
+
+void bisect(std::vector<Crossing>& crossings, const RegionOptions& o, const RegionBatch& batch,
+            const std::vector<End>& ends, const std::function<double(std::size_t)>& x_of,
+            const std::function<double(std::size_t)>& y_of) {
+    if (!o.refine || crossings.empty()) {
+        return;
+    }
+    std::vector<double> x(crossings.size()), y(crossings.size());
+    std::vector<End> middle(crossings.size());
+    for (int round = 0; round < 7; ++round) {
+        for (std::size_t k = 0; k < crossings.size(); ++k) {
+            const Crossing& c = crossings[k];
+            const double part = (c.from + c.to) / 2;
+            x[k] = x_of(c.low) + part * (x_of(c.high) - x_of(c.low));
+            y[k] = y_of(c.low) + part * (y_of(c.high) - y_of(c.low));
         }
-        for (const double y : {y0, y1, std::nan("")}) {
-            line.y.push_back(y);
+        batch(x, y, middle);
+        for (std::size_t k = 0; k < crossings.size(); ++k) {
+            Crossing& c = crossings[k];
+            (middle[k].index == ends[c.low].index ? c.from : c.to) = (c.from + c.to) / 2;
         }
+    }
+}
+
+}  // namespace
+
+void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, const RegionBatch& batch,
+                           const std::vector<End>& ends) {
+    const std::size_t columns = o.columns, rows = o.rows;
+    const auto x_of = [&](std::size_t k) {
+        return o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) *
+                                     (static_cast<double>(k % columns) + 0.5) / static_cast<double>(columns);
     };
-    for (std::size_t j = 0; j < region.rows; ++j) {
-        for (std::size_t i = 0; i < region.columns; ++i) {
-            const int own = region.index[j * region.columns + i];
-            const double x = region.axes[0].lower + dx * static_cast<double>(i),
-                         y = region.axes[1].lower + dy * static_cast<double>(j);
-            if (i + 1 < region.columns && region.index[j * region.columns + i + 1] != own) {
-                segment(x + dx, y, x + dx, y + dy);
+    const auto y_of = [&](std::size_t k) {
+        return o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) *
+                                     (static_cast<double>(k / columns) + 0.5) / static_cast<double>(rows);
+    };
+    // Crossing k of start s: 2 s toward the next column, 2 s + 1 toward the next row.
+    std::vector<Crossing> crossings;
+    std::vector<std::ptrdiff_t> of(2 * columns * rows, -1);
+    for (std::size_t s = 0; s < columns * rows; ++s) {
+        for (const std::size_t way : {0, 1}) {
+            const bool inside = way == 0 ? s % columns + 1 < columns : s / columns + 1 < rows;
+            const std::size_t next = s + (way == 0 ? 1 : columns);
+            if (inside && ends[s].index != ends[next].index) {
+                of[2 * s + way] = static_cast<std::ptrdiff_t>(crossings.size());
+                crossings.push_back({s, next});
             }
-            if (j + 1 < region.rows && region.index[(j + 1) * region.columns + i] != own) {
-                segment(x, y + dy, x + dx, y + dy);
+        }
+    }
+    bisect(crossings, o, batch, ends, x_of, y_of);
+    RegionBoundary line;
+    line.name = "between classes";
+    for (std::size_t j = 0; j + 1 < rows; ++j) {
+        for (std::size_t i = 0; i + 1 < columns; ++i) {
+            const std::size_t s = j * columns + i;
+            std::vector<std::array<double, 2>> points;
+            for (const std::size_t edge : {2 * s, 2 * s + 1, 2 * (s + 1) + 1, 2 * (s + columns)}) {
+                if (of[edge] >= 0) {
+                    const Crossing& c = crossings[static_cast<std::size_t>(of[edge])];
+                    const double part = (c.from + c.to) / 2;
+                    points.push_back({x_of(c.low) + part * (x_of(c.high) - x_of(c.low)),
+                                      y_of(c.low) + part * (y_of(c.high) - y_of(c.low))});
+                }
+            }
+            if (points.size() < 2) {
+                continue;
+            }
+            std::array<double, 2> middle{};
+            for (const std::array<double, 2>& p : points) {
+                middle[0] += p[0] / static_cast<double>(points.size());
+                middle[1] += p[1] / static_cast<double>(points.size());
+            }
+            const auto segment = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+                for (const double v : {a[0], b[0], std::nan("")}) {
+                    line.x.push_back(v);
+                }
+                for (const double v : {a[1], b[1], std::nan("")}) {
+                    line.y.push_back(v);
+                }
+            };
+            if (points.size() == 2) {
+                segment(points[0], points[1]);
+            } else {
+                for (const std::array<double, 2>& p : points) {
+                    segment(p, middle);
+                }
             }
         }
     }
     if (!line.x.empty()) {
         region.boundaries.push_back(std::move(line));
     }
+}
+
+double outside_share(const StabilityRegion& region) {
+    double inside = 1;
+    for (const core::NamedRange& axis : region.axes) {
+        const bool gap = axis.name == "gap";
+        if (!gap && axis.name != "pitch") {
+            continue;
+        }
+        const double lower = gap ? region.table_lower : region.pitch_lower,
+                     upper = gap ? region.table_upper : region.pitch_upper;
+        const double covered = std::min(axis.upper, upper) - std::max(axis.lower, lower);
+        inside *= std::clamp(covered / (axis.upper - axis.lower), 0.0, 1.0);
+    }
+    return inside > 1 - 1e-12 ? 0 : 1 - inside;
+}
+
+void add_outside_remark(StabilityRegion& region) {
+    if (region.outside_fraction == 0) {
+        return;
+    }
+    std::string range;
+    for (const core::NamedRange& axis : region.axes) {
+        const bool gap = axis.name == "gap";
+        const double lower = gap ? region.table_lower : region.pitch_lower,
+                     upper = gap ? region.table_upper : region.pitch_upper;
+        if ((gap || axis.name == "pitch") && (axis.lower < lower || axis.upper > upper)) {
+            const double scale = gap ? 1 : 57.29577951308232;
+            range += (range.empty() ? "" : "; ") + axis.name + " " + core::format_number(scale * lower, 6) + " to " +
+                     core::format_number(scale * upper, 6) + (gap ? " m" : " deg");
+        }
+    }
+    region.remarks.push_back({core::Problem::Severity::warning,
+                              core::format_number(100 * region.outside_fraction, 3) +
+                                  " % of the starts lie outside the range of a force table (" + range +
+                                  "), where it holds its end value",
+                              {}});
+}
+
+bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts) {
+    if (options.motion != RegionOptions::Motion::automatic) {
+        return options.motion == RegionOptions::Motion::heave_pitch;
+    }
+    const auto turns = [](const core::NamedRange& axis) { return axis.name == "pitch" || axis.name == "pitch_rate"; };
+    if (starts) {
+        return starts->find("pitch") || starts->find("pitch_rate") || options.pitch_feedback;
+    }
+    return options.pitch_feedback || std::any_of(options.axes.begin(), options.axes.end(), turns);
 }
 
 }  // namespace underbody::dynamics

@@ -27,10 +27,19 @@ std::vector<double> region_fractions(const RegionOptions& options, const RegionB
                                      const std::vector<End>& ends, std::size_t classes);
 /// Keeps attractors and the classes that occur; renumbers the cells.
 void keep_seen_classes(StabilityRegion& region, const std::vector<EndClass>& all, const std::vector<double>& sums);
-/// Lines between cells of different class, for motions whose boundary is not traced otherwise.
-void add_cell_boundaries(StabilityRegion& region);
+/// Lines that part the classes of neighbouring starts, found by bisection between them (with options.refine) and
+/// joined within each square of four starts. `ends`: classes of the grid before they are renumbered.
+void add_traced_boundaries(StabilityRegion& region, const RegionOptions& options, const RegionBatch& batch,
+                           const std::vector<End>& ends);
+/// Share of the map's area where a force table is asked beyond its range, and the warning that says so.
+double outside_share(const StabilityRegion& region);
+void add_outside_remark(StabilityRegion& region);
 
+/// True when the motion asked for is that of heave and pitch together.
+bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts = nullptr);
 /// Regions of heave and pitch together: axes two of gap, heave_velocity, pitch, pitch_rate.
 StabilityRegion pitch_region(const Model& model, const RegionOptions& options, core::Progress& progress);
+std::vector<End> pitch_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                                      std::vector<EndClass>& classes, core::Progress& progress);
 
 }  // namespace underbody::dynamics

@@ -86,7 +86,6 @@ SafeSet largest_safe_set(const StabilityRegion& region, const std::string& equil
     for (std::size_t i = 0; i < region.classes.size(); ++i) {
         if (region.classes[i].name == equilibrium && region.classes[i].kind == EndKind::attractor) {
             wanted = static_cast<int>(i);
-            set.gap = region.classes[i].gap;
         }
     }
     if (wanted < 0) {
@@ -99,57 +98,62 @@ SafeSet largest_safe_set(const StabilityRegion& region, const std::string& equil
         throw core::InputError("name", "no attractor is called '" + equilibrium + "'", {},
                                core::did_you_mean(equilibrium, known));
     }
-    const bool gap_first = region.axes[0].name == "gap";
-    const core::NamedRange& gaps = gap_first ? region.axes[0] : region.axes[1];
-    const core::NamedRange& speeds = gap_first ? region.axes[1] : region.axes[0];
-    const std::size_t columns = gap_first ? region.columns : region.rows,
-                      rows = gap_first ? region.rows : region.columns;
-    const double dh = (gaps.upper - gaps.lower) / static_cast<double>(columns),
-                 dw = (speeds.upper - speeds.lower) / static_cast<double>(rows);
-    // Cells that do not end there, relative to the equilibrium; the border of the map counts as not known to be safe.
-    std::vector<std::pair<double, double>> bad;
-    for (std::size_t j = 0; j < rows; ++j) {
-        for (std::size_t i = 0; i < columns; ++i) {
-            const int found = region.index[gap_first ? j * columns + i : i * rows + j];
-            if (found != wanted) {
-                bad.emplace_back(std::abs(gaps.lower + dh * (static_cast<double>(i) + 0.5) - set.gap) - dh / 2,
-                                 std::abs(speeds.lower + dw * (static_cast<double>(j) + 0.5)) - dw / 2);
+    for (const HeaveEquilibrium& e : region.equilibria) {
+        if (e.name == equilibrium) {
+            for (const std::size_t axis : {0, 1}) {
+                const std::string& name = region.axes[axis].name;
+                set.axes[axis] = name;
+                set.centre[axis] = name == "gap" ? e.gap : name == "pitch" ? e.pitch : 0.0;
             }
         }
     }
-    const double most_gap = std::min(set.gap - gaps.lower, gaps.upper - set.gap),
-                 most_speed = std::min(-speeds.lower, speeds.upper);
-    // For each half axis in gap the largest in velocity; keep the largest area.
+    const core::NamedRange &ax = region.axes[0], &ay = region.axes[1];
+    const double dx = (ax.upper - ax.lower) / static_cast<double>(region.columns),
+                 dy = (ay.upper - ay.lower) / static_cast<double>(region.rows);
+    // Cells that do not end there, relative to the equilibrium; the border of the map counts as not known to be safe.
+    std::vector<std::pair<double, double>> bad;
+    for (std::size_t k = 0; k < region.index.size(); ++k) {
+        if (region.index[k] != wanted) {
+            const double x = ax.lower + dx * (static_cast<double>(k % region.columns) + 0.5),
+                         y = ay.lower + dy * (static_cast<double>(k / region.columns) + 0.5);
+            bad.emplace_back(std::max(0.0, std::abs(x - set.centre[0]) - dx / 2),
+                             std::max(0.0, std::abs(y - set.centre[1]) - dy / 2));
+        }
+    }
+    const double most_x = std::min(set.centre[0] - ax.lower, ax.upper - set.centre[0]),
+                 most_y = std::min(set.centre[1] - ay.lower, ay.upper - set.centre[1]);
+    // For each half length along the first axis the largest along the second; keep the largest area.
     for (int k = 1; k <= 400; ++k) {
-        const double a = most_gap * k / 400;
-        double b = most_speed, box = most_speed;
+        const double a = most_x * k / 400;
+        double b = most_y, box = most_y;
         for (const auto& [x, y] : bad) {
-            const double px = std::max(x, 0.0), py = std::max(y, 0.0);
-            if (px < a) {
-                b = std::min(b, py / std::sqrt(1 - px / a * (px / a)));
-                box = std::min(box, py);
+            if (x < a) {
+                b = std::min(b, y / std::sqrt(1 - x / a * (x / a)));
+                box = std::min(box, y);
             }
         }
-        if (b > 0 && a * b > set.ellipse_gap * set.ellipse_velocity) {
-            set.ellipse_gap = a;
-            set.ellipse_velocity = b;
+        if (a > 0 && b > 0 && a * b > set.ellipse[0] * set.ellipse[1]) {
+            set.ellipse = {a, b};
         }
-        if (box > 0 && a * box > (set.box_gap_upper - set.box_gap_lower) / 2 * set.box_velocity) {
-            set.box_gap_lower = set.gap - a;
-            set.box_gap_upper = set.gap + a;
-            set.box_velocity = box;
+        if (a > 0 && box > 0 && a * box > set.box[0] * set.box[1]) {
+            set.box = {a, box};
         }
     }
     return set;
 }
 
 void to_json(nlohmann::json& json, const SafeSet& set) {
-    json = {
-        {"equilibrium", set.equilibrium},
-        {"gap", set.gap},
-        {"ellipse", {{"gap", set.ellipse_gap}, {"heave_velocity", set.ellipse_velocity}}},
-        {"box",
-         {{"gap_lower", set.box_gap_lower}, {"gap_upper", set.box_gap_upper}, {"heave_velocity", set.box_velocity}}}};
+    json = {{"equilibrium", set.equilibrium},
+            {"ellipse", nlohmann::json::object()},
+            {"box", nlohmann::json::object()},
+            {"centre", nlohmann::json::object()}};
+    for (const std::size_t axis : {0, 1}) {
+        const std::string& name = set.axes[axis];
+        json["centre"][name] = set.centre[axis];
+        json["ellipse"][name] = set.ellipse[axis];
+        json["box"][name + "_lower"] = set.centre[axis] - set.box[axis];
+        json["box"][name + "_upper"] = set.centre[axis] + set.box[axis];
+    }
 }
 
 }  // namespace underbody::dynamics

@@ -25,34 +25,66 @@ const std::vector<std::string>& body_state_names() {
     return names;
 }
 
-RigidBody::RigidBody(const Model& declared, const Conditions& held)
-    : model_(declared.resolved()), held_(held.over(declared.conditions)) {
+RigidBody::RigidBody(const Model& declared, const Conditions& held, const std::vector<Channel>& varying)
+    : model_(declared.resolved()),
+      held_(held.over(declared.conditions)),
+      vertical_(vertical_channel(model_, held_, varying)) {
     const Vehicle& v = model_.vehicle;
-    ax_ = v.added_mass_surge;
-    ay_ = v.added_mass_sway;
-    az_ = v.added_mass_heave;
-    sx_ = v.mass + ax_;
-    sy_ = v.mass + ay_;
-    sz_ = v.mass + az_;
-    sp_ = needed(v.roll_inertia, "roll_inertia", model_) + v.added_inertia_roll;
-    sq_ = needed(v.pitch_inertia, "pitch_inertia", model_) + v.added_inertia_pitch;
-    sr_ = needed(v.yaw_inertia, "yaw_inertia", model_) + v.added_inertia_yaw;
-    depth_ = needed(v.base_depth, "base_depth", model_);
+    mass_x_ = v.mass + v.added_mass_surge;
+    mass_y_ = v.mass + v.added_mass_sway;
+    inertia_[0][0] = needed(v.roll_inertia, "roll_inertia", model_) + v.added_inertia_roll;
+    inertia_[1][1] = needed(v.pitch_inertia, "pitch_inertia", model_) + v.added_inertia_pitch;
+    inertia_[2][2] = needed(v.yaw_inertia, "yaw_inertia", model_) + v.added_inertia_yaw;
+    inertia_[0][1] = inertia_[1][0] = -v.inertia_product_xy;
+    inertia_[0][2] = inertia_[2][0] = -v.inertia_product_xz;
+    inertia_[1][2] = inertia_[2][1] = -v.inertia_product_yz;
+    needed(v.base_depth, "base_depth", model_);
+    base_ = v.base_centre();
     half_length_ = needed(v.base_half_length, "base_half_length", model_);
     buoyancy_ = v.mass * model_.environment.gravity - v.net_weight;
-    for (const ForceSource& source : model_.forces) {
-        has_lift_ = has_lift_ || source.quantity == "lift_force";
-        has_moment_ = has_moment_ || source.quantity == "pitch_moment";
-        has_drag_ = has_drag_ || source.quantity == "drag_force";
+    buoyancy_centre_ = v.buoyancy_centre();
+    contact_gap_ = vertical_.terms.contact_gap;
+    std::vector<Channel> all = varying;
+    for (const Channel state :
+         {Channel::gap, Channel::heave_velocity, Channel::pitch, Channel::pitch_rate, Channel::speed}) {
+        all.push_back(state);
     }
+    lift_ = ForceSources(model_, "lift_force", held_, all);
+    drag_ = ForceSources(model_, "drag_force", held_, all);
+    side_ = ForceSources(model_, "side_force", held_, all);
+    roll_moment_ = ForceSources(model_, "roll_moment", held_, all);
+    pitch_moment_ = ForceSources(model_, "pitch_moment", held_, all);
+    yaw_moment_ = ForceSources(model_, "yaw_moment", held_, all);
 }
+
+/// Everything but contact, and the virtual mass in heave at this gap.
+struct RigidBody::Loads {
+    Vector3 force{}, moment{};
+    double mass_z = 1;
+    /// A force at a place, both in body axes.
+    void add(const Vector3& at, const Vector3& f) {
+        const Vector3 turn = cross(at, f);
+        for (std::size_t k = 0; k < 3; ++k) {
+            force[k] += f[k];
+            moment[k] += turn[k];
+        }
+    }
+};
 
 double RigidBody::roll_rate(const BodyState& y) const { return -y[state_r] * std::tan(y[state_theta]); }
 
 double RigidBody::kinetic_energy(const BodyState& y) const {
-    const double p = roll_rate(y);
-    return 0.5 * (sx_ * y[state_u] * y[state_u] + sy_ * y[state_v] * y[state_v] + sz_ * y[state_w] * y[state_w] +
-                  sp_ * p * p + sq_ * y[state_q] * y[state_q] + sr_ * y[state_r] * y[state_r]);
+    const double turn[3] = {roll_rate(y), y[state_q], y[state_r]};
+    double slope = 0;
+    const double mass_z = vertical_.inertia(gap_at_base_centre(y), slope);
+    double sum = mass_x_ * y[state_u] * y[state_u] + mass_y_ * y[state_v] * y[state_v] +
+                 mass_z * y[state_w] * y[state_w];
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            sum += turn[i] * inertia_[i][j] * turn[j];
+        }
+    }
+    return 0.5 * sum;
 }
 
 Vector3 RigidBody::world_velocity(const BodyState& y) {
@@ -62,97 +94,174 @@ Vector3 RigidBody::world_velocity(const BodyState& y) {
     return {u * cp * ct - v * sp + w * cp * st, u * sp * ct + v * cp + w * sp * st, -u * st + w * ct};
 }
 
-double RigidBody::height_for_gap(double gap, double theta) const { return -gap - depth_ * std::cos(theta); }
+double RigidBody::height_for_gap(double gap, double theta) const {
+    return -gap + base_[0] * std::sin(theta) - base_[2] * std::cos(theta);
+}
 double RigidBody::gap_at_base_centre(const BodyState& y) const {
-    return -y[state_z] - depth_ * std::cos(y[state_theta]);
+    return -y[state_z] + base_[0] * std::sin(y[state_theta]) - base_[2] * std::cos(y[state_theta]);
 }
 
 std::array<double, 2> RigidBody::edge_gaps(const BodyState& y) const {
-    const double h = gap_at_base_centre(y), rise = half_length_ * std::sin(y[state_theta]);
+    const double h = gap_at_base_centre(y) - contact_gap_, rise = half_length_ * std::sin(y[state_theta]);
     return {h + rise, h - rise};
 }
 
 std::array<double, 2> RigidBody::edge_speeds(const BodyState& y) const {
-    const double up = -world_velocity(y)[2] + depth_ * std::sin(y[state_theta]) * y[state_q];
-    const double turn = half_length_ * std::cos(y[state_theta]) * y[state_q];
+    const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
+    const double up = -world_velocity(y)[2] + (base_[2] * st + base_[0] * ct) * y[state_q];
+    const double turn = half_length_ * ct * y[state_q];
     return {up + turn, up - turn};
 }
 
-/// du, dv, dw, dq, dr under given normal forces.
-void RigidBody::accelerations(const BodyState& y, std::span<const double> thrust, const std::array<double, 2>& normal,
-                              double* out) const {
-    const double u = y[state_u], v = y[state_v], w = y[state_w], q = y[state_q], r = y[state_r], theta = y[state_theta];
-    const double st = std::sin(theta), ct = std::cos(theta), tt = st / ct;
-    const double p = -r * tt;
-    const Wrench jets = jet_wrench(model_.jets, thrust);
-    Conditions seen = held_;
-    seen[Channel::gap] = gap_at_base_centre(y);
-    seen[Channel::pitch] = theta;
-    seen[Channel::heave_velocity] = -world_velocity(y)[2];
-    seen[Channel::pitch_rate] = q;
-    const double forward = u * ct + w * st;
-    if (!held_.has(Channel::speed)) {
-        seen[Channel::speed] = std::abs(forward);
+Conditions RigidBody::seen(const BodyState& y, const Surroundings& around) const {
+    Conditions conditions = held_;
+    if (around.channels) {
+        std::copy(around.channels, around.channels + channel_count, conditions.value.begin());
     }
-    const double lift = has_lift_ ? sum_of_sources(model_, "lift_force", seen) : 0.0;
-    const double trimming = has_moment_ ? sum_of_sources(model_, "pitch_moment", seen) : 0.0;
-    const double ground_drag = has_drag_ ? std::copysign(sum_of_sources(model_, "drag_force", seen), forward) : 0.0;
+    conditions[Channel::gap] = gap_at_base_centre(y);
+    conditions[Channel::pitch] = y[state_theta];
+    conditions[Channel::heave_velocity] = -world_velocity(y)[2];
+    conditions[Channel::pitch_rate] = y[state_q];
+    conditions[Channel::speed] = y[state_u] * std::cos(y[state_theta]) + y[state_w] * std::sin(y[state_theta]);
+    return conditions;
+}
+
+RigidBody::TableLoads RigidBody::table_loads(const BodyState& y, const Surroundings& around) const {
+    Conditions conditions = seen(y, around);
+    const double forward = conditions[Channel::speed];
+    conditions[Channel::speed] = std::abs(forward);
+    // Drag turns with the motion, smoothly through rest.
+    const double sense = forward / std::sqrt(forward * forward + 1e-6);
+    return {vertical_.roughened(lift_(conditions), conditions[Channel::gap]),
+            drag_.empty() ? 0.0 : sense * drag_(conditions), pitch_moment_(conditions)};
+}
+
+bool RigidBody::outside_tables(const BodyState& y) const {
+    const Conditions conditions = seen(y, {});
+    for (const ForceSources* sources : {&lift_, &drag_, &side_, &roll_moment_, &pitch_moment_, &yaw_moment_}) {
+        for (const Channel channel : {Channel::gap, Channel::pitch, Channel::speed}) {
+            const double value = channel == Channel::speed ? std::abs(conditions[channel]) : conditions[channel];
+            if (!sources->empty() && (value < sources->lower(channel) || value > sources->upper(channel))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, const Surroundings& around,
+                           Loads& loads) const {
+    const double u = y[state_u], v = y[state_v], w = y[state_w], q = y[state_q], r = y[state_r];
+    const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
+    // Forces along the ground in the heading, and up, in body axes.
+    const auto along = [&](double f) { return Vector3{f * ct, 0, f * st}; };
+    const auto up = [&](double f) { return Vector3{f * st, 0, -f * ct}; };
+    const Wrench jets = jet_wrench(model_.jets, thrust);
+    loads.force = jets.force;
+    loads.moment = jets.moment;
+    Conditions conditions = seen(y, around);
+    conditions[Channel::speed] = std::abs(conditions[Channel::speed]);
+    const TableLoads tables = table_loads(y, around);
+    loads.add(base_, up(tables.lift));
+    loads.add(base_, along(-tables.drag));
+    loads.add(base_, {0, side_(conditions), 0});
+    loads.moment[0] += roll_moment_(conditions);
+    loads.moment[1] += tables.moment;
+    loads.moment[2] += yaw_moment_(conditions);
+    // Weight less buoyancy and the effects act at the centre of gravity; buoyancy off it turns the body.
+    const double gap = conditions[Channel::gap], rise = conditions[Channel::heave_velocity];
+    const HeaveMoment moment{around.t,
+                             std::isnan(around.input) ? held_.get(Channel::input_force, 0.0) : around.input, nullptr,
+                             conditions.value.data()};
+    loads.add({}, up(vertical_.other_force(gap, rise, moment, around.memory) + vertical_.wave_force(around.t)));
+    const Vector3 upright = cross(buoyancy_centre_, up(buoyancy_));
+    for (std::size_t k = 0; k < 3; ++k) {
+        loads.moment[k] += upright[k];
+    }
+    // Water that rises with its current moves past the body along both of its axes.
     const Environment& water = model_.environment;
-    const double drag_u = drag(model_.drag_surge, water, u);
-    const double vertical = model_.vehicle.net_weight - lift;  // down
-    double fx = jets.force[0] - vertical * st - drag_u - ground_drag * ct;
-    double fy = jets.force[1] - drag(model_.drag_sway, water, v);
-    double fz = jets.force[2] + vertical * ct - drag(model_.drag_heave, water, w) - ground_drag * st;
-    double mx = jets.moment[0];
-    // Lift and ground drag act at the centre of the base, depth_ below the centre of gravity.
-    double my = jets.moment[1] - buoyancy_ * model_.vehicle.buoyancy_height * st - drag(model_.drag_pitch, water, q) +
-                model_.vehicle.drag_height * drag_u + trimming + depth_ * (lift * st - ground_drag * ct);
-    double mz = jets.moment[2] - drag(model_.drag_yaw, water, r);
-    for (int edge = 0; edge < 2; ++edge) {
-        const double n = normal[static_cast<std::size_t>(edge)];
+    const double current = vertical_.terms.current;
+    const double drag_u = drag(model_.drag_surge, water, u - current * st);
+    loads.add({}, {-drag_u, -drag(model_.drag_sway, water, v), -vertical_.water_drag(w + current * ct)});
+    loads.moment[1] += model_.vehicle.drag_height * drag_u - drag(model_.drag_pitch, water, q);
+    loads.moment[2] -= drag(model_.drag_yaw, water, r);
+    // Added mass over the gap: its momentum changes with the gap, and the body is pushed where it is larger.
+    double slope = 0;
+    loads.mass_z = vertical_.inertia(gap, slope) + (around.memory ? vertical_.history_mass() : 0);
+    if (slope != 0) {
+        const double opening = rise + (base_[2] * st + base_[0] * ct) * q;
+        loads.force[2] -= slope * opening * w;
+        loads.add(base_, up(0.5 * slope * w * w));
+    }
+}
+
+void RigidBody::add_contact(const BodyState& y, const std::array<double, 2>& normal, double friction,
+                            Loads& loads) const {
+    const double u = y[state_u], v = y[state_v], w = y[state_w], q = y[state_q], r = y[state_r], p = roll_rate(y);
+    const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
+    for (std::size_t edge = 0; edge < 2; ++edge) {
+        const double n = normal[edge];
         if (n == 0) {
             continue;
         }
-        const double rx = edge == 0 ? half_length_ : -half_length_, rz = depth_;
+        const Vector3 at{base_[0] + (edge == 0 ? half_length_ : -half_length_), base_[1], base_[2]};
         // Slip of the contact point along the ground, in the vehicle's heading.
-        const double vx = u + q * rz, vy = v + r * rx - p * rz, vz = w - q * rx;
-        const double sx = vx * ct + vz * st, sy = vy;
+        const double vx = u + q * at[2] - r * at[1], sy = v + r * at[0] - p * at[2], vz = w + p * at[1] - q * at[0];
+        const double sx = vx * ct + vz * st;
         const double size = std::sqrt(sx * sx + sy * sy + model_.contact.slip_speed * model_.contact.slip_speed);
-        const double ft = -model_.contact.friction * n * sx / size, fs = -model_.contact.friction * n * sy / size;
-        const double cx = n * st + ft * ct, cz = -n * ct + ft * st;
-        fx += cx;
-        fy += fs;
-        fz += cz;
-        mx += -rz * fs;
-        my += rz * cx - rx * cz;
-        mz += rx * fs;
+        const double ft = -friction * n * sx / size, fs = -friction * n * sy / size;
+        loads.add(at, {n * st + ft * ct, fs, -n * ct + ft * st});
     }
-    out[0] = (fx + sy_ * r * v - sz_ * q * w) / sx_;
-    out[1] = (fy - sx_ * r * u + sz_ * p * w) / sy_;
-    out[2] = (fz + sx_ * q * u - sy_ * p * v) / sz_;
-    out[3] = (my + (az_ - ax_) * u * w + (sr_ - sp_) * p * r) / sq_;
-    // The moment K (1, 0, tan theta) that holds roll at zero does no work.
-    const double k0 = mx + (ay_ - az_) * v * w + (sq_ - sr_) * q * r;
-    const double n0 = mz + (ax_ - ay_) * u * v + (sp_ - sq_) * p * q;
-    out[4] = (n0 - tt * (k0 + sp_ * r * q / (ct * ct))) / (sr_ + sp_ * tt * tt);
+}
+
+/// du, dv, dw, dq, dr.
+void RigidBody::accelerations(const BodyState& y, const Loads& loads, double* out) const {
+    const double u = y[state_u], v = y[state_v], w = y[state_w], theta = y[state_theta];
+    const double tt = std::tan(theta), ct = std::cos(theta);
+    const Vector3 turn{-y[state_r] * tt, y[state_q], y[state_r]};
+    const Vector3 momentum{mass_x_ * u, mass_y_ * v, loads.mass_z * w};
+    const Vector3 swept = cross(turn, momentum);
+    out[0] = (loads.force[0] - swept[0]) / mass_x_;
+    out[1] = (loads.force[1] - swept[1]) / mass_y_;
+    out[2] = (loads.force[2] - swept[2]) / loads.mass_z;
+    Vector3 spin{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        spin[i] = inertia_[i][0] * turn[0] + inertia_[i][1] * turn[1] + inertia_[i][2] * turn[2];
+    }
+    const Vector3 gyration = cross(turn, spin), munk = cross({u, v, w}, momentum);
+    // p' = -r' tan(theta) - r q/cos^2(theta): what roll held at zero adds of itself.
+    const double own = -turn[2] * turn[1] / (ct * ct);
+    Vector3 rest{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        rest[i] = loads.moment[i] - gyration[i] - munk[i] - inertia_[i][0] * own;
+    }
+    // Along the motions (0, 1, 0) and (-tan(theta), 0, 1) the moment K (1, 0, tan(theta)) that holds roll does no work.
+    const double a11 = inertia_[1][1], a12 = inertia_[1][2] - tt * inertia_[0][1],
+                 a22 = inertia_[2][2] - 2 * tt * inertia_[0][2] + tt * tt * inertia_[0][0];
+    const double b1 = rest[1], b2 = rest[2] - tt * rest[0], determinant = a11 * a22 - a12 * a12;
+    out[3] = (b1 * a22 - a12 * b2) / determinant;
+    out[4] = (a11 * b2 - a12 * b1) / determinant;
 }
 
 std::array<double, 2> RigidBody::gap_accelerations(const BodyState& y, const double* a) const {
     const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]), q = y[state_q];
     const double down = -a[0] * st - y[state_u] * ct * q + a[2] * ct - y[state_w] * st * q;
-    const double common = -down + depth_ * (st * a[3] + ct * q * q);
+    const double common =
+        -down + (base_[2] * st + base_[0] * ct) * a[3] + (base_[2] * ct - base_[0] * st) * q * q;
     const double turn = half_length_ * (ct * a[3] - st * q * q);
     return {common + turn, common - turn};
 }
 
-ContactProblem RigidBody::problem(const BodyState& y, std::span<const double> thrust) const {
-    double free[5], pushed[5];
+ContactProblem RigidBody::problem(const BodyState& y, const Loads& loads, double friction) const {
+    double a[5];
     ContactProblem p;
-    accelerations(y, thrust, {0, 0}, free);
-    p.rest = gap_accelerations(y, free);
+    accelerations(y, loads, a);
+    p.rest = gap_accelerations(y, a);
     for (std::size_t edge = 0; edge < 2; ++edge) {
-        accelerations(y, thrust, edge == 0 ? std::array<double, 2>{1, 0} : std::array<double, 2>{0, 1}, pushed);
-        const std::array<double, 2> with = gap_accelerations(y, pushed);
+        Loads pushed = loads;
+        add_contact(y, edge == 0 ? std::array<double, 2>{1, 0} : std::array<double, 2>{0, 1}, friction, pushed);
+        accelerations(y, pushed, a);
+        const std::array<double, 2> with = gap_accelerations(y, a);
         for (std::size_t i = 0; i < 2; ++i) {
             p.matrix[i][edge] = with[i] - p.rest[i];
         }
@@ -161,23 +270,30 @@ ContactProblem RigidBody::problem(const BodyState& y, std::span<const double> th
 }
 
 std::array<double, 2> RigidBody::normal_forces(const BodyState& y, std::span<const double> thrust,
-                                               ContactState bearing) const {
-    return bearing == ContactState::free ? std::array<double, 2>{0, 0} : holding_forces(problem(y, thrust), bearing);
+                                               ContactState bearing, const Surroundings& around) const {
+    if (bearing == ContactState::free) {
+        return {0, 0};
+    }
+    Loads loads;
+    free_loads(y, thrust, around, loads);
+    return holding_forces(problem(y, loads, model_.contact.friction), bearing);
 }
 
-void RigidBody::rate(const BodyState& y, std::span<const double> thrust, ContactState bearing, BodyState& d) const {
+void RigidBody::rate(const BodyState& y, std::span<const double> thrust, ContactState bearing, BodyState& d,
+                     const Surroundings& around) const {
     double a[5];
-    std::array<double, 2> normal{0, 0};
+    Loads loads;
+    free_loads(y, thrust, around, loads);
     if (bearing != ContactState::free) {
-        ContactProblem p = problem(y, thrust);
+        ContactProblem p = problem(y, loads, model_.contact.friction);
         // Rounding would let a held edge drift off or into the ground: drawn back within a twentieth of a second.
         const std::array<double, 2> gaps = edge_gaps(y), speeds = edge_speeds(y);
         for (std::size_t i = 0; i < 2; ++i) {
             p.rest[i] += 40 * speeds[i] + 400 * gaps[i];
         }
-        normal = holding_forces(p, bearing);
+        add_contact(y, holding_forces(p, bearing), model_.contact.friction, loads);
     }
-    accelerations(y, thrust, normal, a);
+    accelerations(y, loads, a);
     d[state_u] = a[0];
     d[state_v] = a[1];
     d[state_w] = a[2];
@@ -191,11 +307,14 @@ void RigidBody::rate(const BodyState& y, std::span<const double> thrust, Contact
     d[state_z] = velocity[2];
 }
 
-ContactState RigidBody::settle(const BodyState& y, std::span<const double> thrust, ContactState touching) const {
+ContactState RigidBody::settle(const BodyState& y, std::span<const double> thrust, ContactState touching,
+                               const Surroundings& around) const {
     if (touching == ContactState::free) {
         return touching;
     }
-    const std::optional<ContactState> state = contact_state(problem(y, thrust), touching);
+    Loads loads;
+    free_loads(y, thrust, around, loads);
+    const std::optional<ContactState> state = contact_state(problem(y, loads, model_.contact.friction), touching);
     if (!state) {
         throw core::Error("contact", "no contact forces fit this motion (friction and tipping contradict each other)",
                           {}, "less friction, a lower centre of gravity, or a longer base");
@@ -209,25 +328,24 @@ BodyState RigidBody::impact(const BodyState& y, ContactState touching) const {
     for (const BodyStateIndex i : {state_u, state_v, state_w, state_q, state_r}) {
         still[i] = 0;
     }
-    Model smooth = model_;
-    smooth.contact.friction = 0;
-    RigidBody frictionless(smooth, held_);
-    const std::vector<double> none(model_.jets.size(), 0.0);
-    ContactProblem p = frictionless.problem(still, none);
-    double free[5], pushed[5];
-    frictionless.accelerations(still, none, {0, 0}, free);
+    Loads none;
+    double slope = 0;
+    none.mass_z = vertical_.inertia(gap_at_base_centre(y), slope) + vertical_.history_mass();
+    ContactProblem p = problem(still, none, 0);
     p.rest = edge_speeds(y);
     const auto impulses = impact_impulses(p, touching, model_.contact.restitution);
     if (!impulses) {
         throw core::Error("contact", "no impulse fits this impact");
     }
-    frictionless.accelerations(still, none, *impulses, pushed);
+    double jump[5];
+    add_contact(still, *impulses, 0, none);
+    accelerations(still, none, jump);
     BodyState after = y;
-    after[state_u] += pushed[0] - free[0];
-    after[state_v] += pushed[1] - free[1];
-    after[state_w] += pushed[2] - free[2];
-    after[state_q] += pushed[3] - free[3];
-    after[state_r] += pushed[4] - free[4];
+    after[state_u] += jump[0];
+    after[state_v] += jump[1];
+    after[state_w] += jump[2];
+    after[state_q] += jump[3];
+    after[state_r] += jump[4];
     return after;
 }
 

@@ -198,7 +198,9 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
         region.time.push_back(static_cast<float>(end.time));
     }
     dynamics::keep_seen_classes(region, classes, sums);
-    dynamics::add_cell_boundaries(region);
+    // Loops are dear: lines midway between starts, without further runs.
+    grid.refine = false;
+    dynamics::add_traced_boundaries(region, grid, {}, ends);
     return region;
 }
 

@@ -91,6 +91,109 @@ TEST_F(DynamicsCommands, LinearNamesItsModes) {
     EXPECT_EQ(found["heave"][0]["controllability"]["rank"], 2);
 }
 
+TEST_F(DynamicsCommands, SimulateFollowsEvieInEveryMotion) {
+    const std::string evie = (source_folder() / "cases/evie/model.toml").string();
+    const nlohmann::json both = json({"simulate", evie, "--from", "gap=20mm,pitch=1deg", "--for", "2", "--step", "0.1", "--plot", "both.png"});
+    EXPECT_EQ(both["pitch"].size(), 21U);
+    EXPECT_NEAR(both["pitch"][0].get<double>(), .0174533, 1e-6);
+    const nlohmann::json whole = json({"simulate", evie, "--motion", "body", "--from", "gap=20mm,speed=0.35m/s", "--thrust", "J1=0.2N,J2=0.2N", "--for", "1",
+                                       "--step", "0.1", "--out", "body.csv", "--plot", "body.png"});
+    EXPECT_EQ(whole["p"].size(), 11U);
+    EXPECT_NEAR(core::read_csv(folder_.path() / "body.csv").numbers("J1").back(), .2, 1e-9);
+    const nlohmann::json ground = json({"simulate", evie, "--motion", "surface", "--from", "speed=0.1m/s", "--hold", "heading=10deg,speed=0.1m/s", "--for", "20",
+                                        "--step", "0.5", "--plot", "surface.png"});
+    EXPECT_EQ(ground["end"], "time");
+    EXPECT_NEAR(ground["psi"].back().get<double>(), .1745, .02);
+    // Thrusts from a file, by the jets' names.
+    core::write_file(folder_.path() / "thrusts.csv", "time [s], J1 [N], J2 [N]\n0, 0, 0\n1, 0.2, 0.1\n2, 0.2, 0.1\n");
+    const nlohmann::json driven = json({"simulate", evie, "--from", "gap=30mm", "--inputs", "thrusts.csv", "--for", "2", "--step", "0.5"});
+    EXPECT_LT(driven["r"].back().get<double>(), 0);  // the stronger starboard jet turns the bow to port
+    const auto mixed = run_underbody({"simulate", evie, "--motion", "heave", "--from", "gap=20mm", "--thrust", "J1=0.1N"}, folder_.path());
+    EXPECT_EQ(mixed.exit_code, 2);
+    const auto typo = run_underbody({"simulate", evie, "--motion", "body", "--from", "gap=20mm", "--thrust", "J11=0.1N"}, folder_.path());
+    EXPECT_NE(typo.exit_code, 0);
+    EXPECT_NE(typo.errors.find("J1"), std::string::npos);
+}
+
+TEST_F(DynamicsCommands, LqrHoldsHeaveWhereTheFreeMotionLeaves) {
+    const std::vector<std::string> free{"simulate", "model.toml", "--from", "gap=15mm", "--for", "60", "--step", "1"};
+    std::vector<std::string> held = free;
+    held.insert(held.end(), {"--lqr", "reference=15mm,gap=400"});
+    EXPECT_NEAR(json(held)["gap"].back().get<double>(), .015, 3e-3);
+    EXPECT_GT(std::abs(json(free)["gap"].back().get<double>() - .015), .005);
+    std::vector<std::string> two = held;
+    two.insert(two.end(), {"--feedback", "gap_gain=1"});
+    EXPECT_EQ(run_underbody(two, folder_.path()).exit_code, 2);
+    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=15mm", "--lqr", "gap=4"}, folder_.path()).exit_code, 2);
+}
+
+TEST_F(DynamicsCommands, RegionsOfHeaveAndPitchSweepsAndStartsWithPitch) {
+    const std::string evie = (source_folder() / "cases/evie/model.toml").string();
+    const nlohmann::json map = json({"region", evie, "--axes", "gap=1mm:30mm,pitch=-3deg:3deg", "--grid", "16x12", "--for", "20", "--safe", "--out", "pitch.png"});
+    double sum = 0;
+    for (const auto& end : map["classes"]) {
+        sum += end["fraction"].get<double>();
+    }
+    EXPECT_NEAR(sum, 1, 1e-9);
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "pitch.png"));
+    core::write_file(folder_.path() / "starts.csv", "gap [mm], pitch [deg]\n1, 3\n20, 0\n");
+    EXPECT_EQ(run_underbody({"region", evie, "--starts", "starts.csv"}, folder_.path()).exit_code, 3);  // in the ground
+    core::write_file(folder_.path() / "starts.csv", "gap [mm], pitch [deg]\n5, 3\n20, 0\n");
+    EXPECT_EQ(json({"region", evie, "--starts", "starts.csv", "--for", "20"})["starts"].size(), 2U);
+    const nlohmann::json sweep = json({"region", "model.toml", "--axes", "gap=1mm:100mm,heave_velocity=-0.05:0.05", "--grid", "20x20", "--sweep",
+                                       "input_force=-0.01:0.01", "--steps", "3", "--out", "sweep.png", "--shares", "shares.png"});
+    ASSERT_EQ(sweep["regions"].size(), 3U);
+    EXPECT_NEAR(sweep["regions"][1]["value"].get<double>(), 0, 1e-12);
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "shares.png"));
+}
+
+TEST_F(DynamicsCommands, LinearSpeaksOfTheRunOnTheGroundAndOfTheJets) {
+    const std::string evie = (source_folder() / "cases/evie/model.toml").string();
+    const nlohmann::json found = json({"linear", evie, "--conditions", "speed=0.1m/s", "--at", "gap=5mm", "--gamma-chart", "gamma.png"});
+    EXPECT_EQ(found["heave"].size(), 1U);
+    EXPECT_NEAR(found["heave"][0]["gap"].get<double>(), .005, 1e-12);
+    EXPECT_EQ(found["heave_pitch"][0]["lqr"]["poles"].size(), 4U);
+    const auto& jets = found["surface"]["turning_jets"];
+    EXPECT_NEAR(jets["gamma"].get<double>(), .6108652, 1e-5);
+    EXPECT_NEAR(jets["beta_without_pitch"].get<double>(), jets["beta"].get<double>(), 1e-5);
+    EXPECT_LT(jets["yaw_per_difference"]["zero"].get<double>(), 0);  // inward jets: minimum phase
+    EXPECT_EQ(found["surface"]["controllability_by_jets"]["rank"], 4);
+    EXPECT_EQ(found["body"]["states"].size(), 10U);
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "gamma.png"));
+}
+
+TEST_F(DynamicsCommands, WrongModelsAreRefusedWithWhatToDo) {
+    const auto errors = [&](const std::string& vehicle, const std::string& rest, const std::vector<std::string>& more = {}) {
+        core::write_file(folder_.path() / "wrong.toml", "[vehicle]\n" + vehicle + rest);
+        std::vector<std::string> arguments{"simulate", "wrong.toml", "--from", "gap=10mm", "--for", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const auto run = run_underbody(arguments, folder_.path());
+        EXPECT_EQ(run.exit_code, 3) << vehicle << rest;
+        return run.errors;
+    };
+    EXPECT_NE(errors("mass = -2.2\n", "").find("accepted is"), std::string::npos);
+    EXPECT_NE(errors("mass = \"2.2 N\"\n", "").find("kg"), std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\nlength = 203.2\nwidth = 152\n", "").find("mm"), std::string::npos);
+    EXPECT_NE(errors("mass = 2200\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\n", "").find("displaces"), std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\nroll_inertia = 0.001\npitch_inertia = 0.002\nyaw_inertia = 0.002\ninertia_product_xz = 0.01\n", "").find("positive definite"),
+              std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\nmas = 2.2\n", "").find("mass"), std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\n", "[environment]\nkinematic_viscosity = 0.1\n").find("1.0e-6"), std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\n", "[contact]\nrestitution = 2\n").find("between 0"), std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\n", "[contact]\ngap = \"20 mm\"\n").find("ground"), std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\n", "", {"--motion", "body"}).find("inertia"), std::string::npos);
+    // A film of ten micrometres is stiff, not fatal; a model without drag says that it never settles.
+    core::write_file(folder_.path() / "film.toml",
+                     "[vehicle]\nmass = 2.2\nnet_weight = 0.1\n[[effect]]\nname = \"squeeze_film_damping\"\ncoefficient = 1e-7\n");
+    const nlohmann::json film = json({"simulate", "film.toml", "--from", "gap=10e-6", "--for", "5"});
+    EXPECT_LE(film["gap"].back().get<double>(), 1e-5);
+    core::write_file(folder_.path() / "free.toml", "[vehicle]\nmass = 2.2\n[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+    const auto free = run_underbody({"region", "free.toml", "--axes", "gap=1mm:400mm,heave_velocity=-0.05:0.05", "--grid", "20x20"}, folder_.path());
+    EXPECT_NE(free.errors.find("never settles"), std::string::npos) << free.errors;
+    EXPECT_NE(free.errors.find("outside the range"), std::string::npos) << free.errors;
+    EXPECT_NE(free.output.find("cycle"), std::string::npos) << free.output;
+}
+
 TEST_F(DynamicsCommands, PredictGivesErrorsInUnitsOfNoise) {
     UNDERBODY_NEEDS_SHARED("examples/loop/example-02/model.toml");
     const std::string example = (shared_folder() / "examples/loop/example-02").string();

@@ -77,6 +77,31 @@ TEST(Region, TheBasinOfALinearSpringOverTheGroundIsAHalfSpiral) {
     EXPECT_EQ(region.count(EndKind::undecided), 0U);
 }
 
+TEST(Region, ASecondTableThatEndsElsewhereAndIsSwitchedOffChangesNothing) {
+    const Model alone = test::ref_a_model(.3, 15, .002);
+    core::Table other;
+    other.source = "other.csv";
+    other.add_numbers("gap", "m", {.0006, .002, .01, .1});
+    other.add_numbers("lift_force", "N", {.3, -.02, .01, 0});
+    Model both = alone;
+    tables::FitOptions fit;
+    fit.kind = tables::FitOptions::Kind::interpolation;
+    both.forces.push_back({"lift_force", "other.csv", "other.csv", tables::ForceTable::fit(other, "lift_force", fit), {Channel::gap},
+                           {{Channel::jet_voltage, 12, 2, 0}}, 1.0});
+    both.contact.gap = -.05;
+    RegionOptions options;
+    options.axes = {{"gap", -.04, 1}, {"heave_velocity", -.1, .1}};
+    options.columns = options.rows = 30;
+    options.escape_gap = 1.8;
+    const StabilityRegion a = stability_region(alone, options);
+    for (const double volts : {0.0, 1e-3}) {
+        options.held[Channel::jet_voltage] = volts;
+        const StabilityRegion b = stability_region(both, options);
+        EXPECT_EQ(a.count(EndKind::attractor), b.count(EndKind::attractor)) << volts;
+        EXPECT_EQ(b.count(EndKind::undecided), a.count(EndKind::undecided)) << volts;
+    }
+}
+
 TEST(Region, FractionsOfAllClassesSumToOne) {
     const StabilityRegion region = stability_region(test::ref_a_model(0.02, 6.0, 0.002), map_of(-0.04, 1.0, 0.1, 80));
     double sum = 0;
@@ -87,8 +112,8 @@ TEST(Region, FractionsOfAllClassesSumToOne) {
     EXPECT_EQ(region.index.size(), 6400U);
     EXPECT_EQ(region_table(region).rows(), 6400U);
     const SafeSet safe = largest_safe_set(region, "A");
-    EXPECT_GT(safe.ellipse_gap, 0);
-    EXPECT_GT(safe.box_velocity, 0);
+    EXPECT_GT(safe.ellipse[0] * safe.ellipse[1], 0);
+    EXPECT_GT(safe.box[0] * safe.box[1], 0);
 }
 
 TEST(Region, TheChanceToBeSafeSpreadsAboutTheBoundary) {

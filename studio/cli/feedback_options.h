@@ -1,0 +1,27 @@
+// Feedback on the command line, shared by simulate and region.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "surrogates/dynamics/feedback.h"
+#include "surrogates/dynamics/hold.h"
+
+namespace underbody::studio {
+
+const char* feedback_help();
+const char* lqr_help();
+
+/// From --feedback or --lqr; nullptr when neither was given. `held` as for the plant.
+std::shared_ptr<dynamics::HeaveFeedback> heave_feedback_of(const std::string& feedback, const std::string& lqr,
+                                                           const dynamics::Model& model,
+                                                           const dynamics::Conditions& held);
+std::optional<dynamics::PitchFeedback> pitch_feedback_of(const std::string& feedback, const std::string& lqr,
+                                                         const dynamics::HeavePitch& plant);
+dynamics::VehicleHold hold_of(const std::string& text);
+
+/// Remarks on a model that its motion should come with.
+void add_remarks(core::Problems& remarks, const dynamics::Model& model);
+
+}  // namespace underbody::studio
