@@ -161,6 +161,9 @@ int run(const Arguments& a, Shell& shell) {
     }
     for (const auto& r : result.runs) {
         text += r.name + ": " + std::to_string(r.samples) + " samples";
+        for (const auto& [count, what] : {std::pair(r.missing, " gaps missing"), std::pair(r.outliers, " outliers"), std::pair(r.gaps_in_time, " holes in time")}) {
+            text += count > 0 ? ", " + std::to_string(count) + what : "";
+        }
         if (std::isfinite(r.mean_squared_innovation)) {
             text += ", innovations " + core::format_number(std::sqrt(r.mean_squared_innovation), 3) + " of what the filter states";
         }

@@ -219,6 +219,7 @@ TrainingSet samples_for(const Arguments& a, const dynamics::Model& declared, con
 
 void learn_from_samples(const Arguments& a, const SeparatedPlant& plant, const TrainingOptions& training, const Layout& layout,
                         LearnOptions options, Learned& out) {
+    options.virtual_mass = plant.virtual_mass;
     if (options.offset == OffsetMode::equilibrium) {
         options.point = equilibrium_point(plant, layout, training.gap_lower, training.gap_upper);
     }

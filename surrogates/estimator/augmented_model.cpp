@@ -263,7 +263,7 @@ AugmentedModel frame(const Moments& m, const Layout& layout, const Normalised& d
                                      "channel '" + names[i] + "' is constant in the samples and was left out", {}});
         }
     }
-    for (auto& p : check_consistency(m, layout)) {
+    for (auto& p : check_consistency(m, layout, options.virtual_mass)) {
         model.remarks.push_back(std::move(p));
     }
     return model;
@@ -469,44 +469,6 @@ DerivativeError derivative_error(const AugmentedModel& model, const Moments& tes
         error.relative.push_back(deviation > 0 ? error.rms.back() / deviation : 0);
     }
     return error;
-}
-
-core::Problems check_consistency(const Moments& m, const Layout& layout) {
-    core::Problems problems;
-    if (m.mean.size() != layout.channels()) {
-        return problems;
-    }
-    const auto& s = layout.states;
-    const std::size_t nu = layout.inputs.size(), nx = s.size();
-    const auto at = [&](const std::string& name) {
-        return static_cast<std::size_t>(std::find(s.begin(), s.end(), name) - s.begin());
-    };
-    const std::size_t w = at("heave_velocity"), h = at("gap");
-    if (w >= nx || h >= nx) {
-        return problems;
-    }
-    const std::size_t v = nu + w, dh = nu + nx + h;
-    const double spread = m.covariance(v, v) + m.covariance(dh, dh) - 2 * m.covariance(v, dh);
-    const double shift = m.mean[dh] - m.mean[v];
-    const double size = std::sqrt(std::max(m.covariance(v, v) + m.mean[v] * m.mean[v], 0.0));
-    const double off = std::sqrt(std::max(spread, 0.0) + shift * shift);
-    if (size > 0 && off > 1e-6 * size) {
-        // A forward difference has d_gap = w + dt/2 dw/dt: its trace is a slope on the acceleration.
-        const std::size_t dw = nu + nx + w;
-        const double slope = m.covariance(dw, dw) > 0 ? (m.covariance(dh, dw) - m.covariance(v, dw)) / m.covariance(dw, dw) : 0;
-        const double left = std::sqrt(std::max(spread - slope * slope * m.covariance(dw, dw), 0.0));
-        char text[240];
-        if (slope > 0 && left < 0.2 * off) {
-            std::snprintf(text, sizeof text,
-                          "the derivative of the gap contradicts the velocity by %.3g of its size, in proportion to the acceleration: "
-                          "forward differences with a step of %.3g s",
-                          off / size, 2 * slope);
-        } else {
-            std::snprintf(text, sizeof text, "the derivative of the gap contradicts the velocity by %.3g of its size", off / size);
-        }
-        problems.push_back({core::Problem::Severity::warning, text, {}});
-    }
-    return problems;
 }
 
 }  // namespace underbody::estimator

@@ -50,6 +50,7 @@ struct LearnOptions {
     double constant_tolerance = 1e-12;
     /// Eigenvalues of C above this count for the rank.
     double rank_tolerance = 1e-10;
+    double virtual_mass = 0;  ///< kg, to check the accelerations against; 0: unknown
 };
 
 struct AugmentedModel {
@@ -122,9 +123,11 @@ struct DerivativeError {
 };
 DerivativeError derivative_error(const AugmentedModel& model, const Moments& test);
 
-/// Relations that samples must obey whatever the model: dh = w; dw linear in forces and input with one mass.
-/// Returns remarks: "derivatives contradict the states" with size and the likely cause (forward differences leave dt/2 in the gap row).
-core::Problems check_consistency(const Moments& moments, const Layout& layout);
+/// Relations that samples must obey whatever the model: dh = w; dw linear in the forces and the input, by 1/virtual mass.
+/// Returns remarks: "derivatives contradict the states" with size and the likely cause (forward differences leave dt/2 in the gap
+/// row), the mass that the accelerations belong to when it is not `virtual_mass` (kg, 0: unknown), and channels with a value so far
+/// from their mean that it spoils the covariance.
+core::Problems check_consistency(const Moments& moments, const Layout& layout, double virtual_mass = 0);
 
 void to_json(nlohmann::json& json, const AugmentedModel& model);
 nlohmann::json matrix_json(const Matrix& matrix);

@@ -166,7 +166,7 @@ Vector stretched(const Poles& poles, std::size_t count) {
 }
 
 ObserverDesign design_linear(const AugmentedModel& model, const std::vector<Prepared>& runs, const EstimateOptions& o,
-                             const FilterNoise& noise, double step) {
+                             const FilterNoise& noise, double step, double density) {
     const bool velocity = noise.velocity > 0;
     if ((o.observer == "reduced" || o.observer == "disturbance") && !velocity) {
         throw core::InputError("missing", "the " + o.observer + " observer needs measured heave_velocity, and the data have none", {},
@@ -189,18 +189,104 @@ ObserverDesign design_linear(const AugmentedModel& model, const std::vector<Prep
         const Vector scale(model.sigma.begin() + 1, model.sigma.begin() + 5), centre(model.mean.begin() + 1, model.mean.begin() + 5);
         return latent_observer(model, usual_rotation(), scale, centre, sensors, gain, step);
     }
-    // What the linear law misses of the rates acts as noise of about a second's memory.
-    Vector process(4, 0.0);
-    for (std::size_t i = 2; i < 4; ++i) {
-        const double rate = model.sigma[5 + i];
-        process[i] = std::max(rate * rate, noise.force_density);
-    }
-    return kalman_observer(model, sensors, process, sigma, step);
+    return kalman_observer(model, sensors, {0, 0, density, density}, sigma, step);
 }
 
 int find(const std::vector<std::string>& names, const char* name) {
     const auto at = std::find(names.begin(), names.end(), name);
     return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+}
+
+// Runs the filter over a run; `each` receives sample, its measurements and the estimates.
+template <typename Each>
+void follow(const LinearFilter& f, const UniformRun& run, Each&& each) {
+    FilterRunner runner(f);
+    double e[FilterRunner::most_states] = {}, y[FilterRunner::most_signals] = {};
+    for (std::size_t k = 0; k < run.time.size(); ++k) {
+        for (std::size_t i = 0; i < f.measured.size(); ++i) {
+            y[i] = f.measured[i] == "gap" ? run.gap[k] : run.velocity[k];
+        }
+        if (run.restart[k]) {
+            runner.start(y, e);
+        } else {
+            const double input = run.input.empty() ? 0 : run.input[k - 1];
+            runner.step(y, &input, e);
+        }
+        each(k, y, e);
+    }
+}
+
+struct Innovations {
+    double log_likelihood = 0, squares = 0, count = 0;
+    [[nodiscard]] double mean_square() const { return count > 0 ? squares / count : NAN; }
+};
+
+// Innovations of a steady-state Kalman filter out of what is left after the measurement: r = (I - C K) nu, and (I - C K) S = R.
+Innovations innovations_of(const ObserverDesign& design, const UniformRun& run, const Vector& sigma) {
+    const LinearFilter& f = design.filter;
+    const std::size_t p = f.measured.size();
+    std::vector<std::size_t> place;
+    for (const auto& name : f.measured) {
+        place.push_back(static_cast<std::size_t>(find(f.estimates, name.c_str())));
+    }
+    Matrix left = Matrix::identity(p), r(p, p);
+    for (std::size_t i = 0; i < p; ++i) {
+        for (std::size_t j = 0; j < p; ++j) {
+            left(i, j) -= design.gain(place[i], j);
+        }
+        r(i, i) = sigma[i] * sigma[i];
+    }
+    const Matrix back = inverse(left), spread = back * r, weight = inverse(spread);
+    double size = spread(0, 0);
+    if (p == 2) {
+        size = spread(0, 0) * spread(1, 1) - spread(0, 1) * spread(1, 0);
+    }
+    Innovations sum;
+    std::size_t since = 0;
+    follow(f, run, [&](std::size_t k, const double* y, const double* e) {
+        since = run.restart[k] ? 0 : since + 1;
+        if (since < 50) {  // the start values came from the same data
+            return;
+        }
+        Vector residual(p);
+        for (std::size_t i = 0; i < p; ++i) {
+            residual[i] = y[i] - e[place[i]];
+        }
+        const Vector nu = back * residual, weighted = weight * nu;
+        double square = 0;
+        for (std::size_t i = 0; i < p; ++i) {
+            square += nu[i] * weighted[i];
+        }
+        sum.log_likelihood -= 0.5 * (square + std::log(std::max(size, 1e-300)));
+        sum.squares += square;
+        sum.count += static_cast<double>(p);
+    });
+    return sum;
+}
+
+// The force density at which the linear law's own filter is likeliest: what the law misses is noise to it.
+double likely_linear_density(const AugmentedModel& model, const std::vector<Prepared>& runs, const std::vector<UniformRun>& signals,
+                             EstimateOptions o, const FilterNoise& noise, double step) {
+    o.observer = "kalman";
+    const Vector sigma = noise.velocity > 0 ? Vector{noise.velocity, noise.gap} : Vector{noise.gap};
+    double best = 1e-6, highest = -INFINITY;
+    for (double exponent = -11; exponent <= 0; exponent += 0.5) {
+        const double density = std::pow(10.0, exponent);
+        double sum = 0;
+        try {
+            const ObserverDesign design = design_linear(model, runs, o, noise, step, density);
+            for (const auto& run : signals) {
+                sum += innovations_of(design, run, sigma).log_likelihood;
+            }
+        } catch (const core::InputError&) {
+            continue;  // no steady state at so little noise
+        }
+        if (sum > highest) {
+            highest = sum;
+            best = density;
+        }
+    }
+    return best;
 }
 
 void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o, Estimation& out, Columns& columns,
@@ -211,8 +297,31 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
     }
     std::sort(steps.begin(), steps.end());
     const double step = steps[steps.size() / 2];
+    const auto differs = [&](const Prepared& r) {
+        double unused = 0;
+        const SeparatedPlant &a = runs.front().plant, &b = r.plant;
+        const double h = 0.5 * (std::max(a.lower, a.contact_gap) + a.upper), force = a.ground_force(h, unused);
+        return std::abs(b.ground_force(h, unused) - force) > 0.01 * std::abs(force) || std::abs(b.bias - a.bias) > 1e-6;
+    };
+    if (std::any_of(runs.begin(), runs.end(), differs)) {
+        note(out.remarks, "the runs have different conditions; a linear observer has one model, that of run '" + runs.front().run->name +
+                              "': take the extended filter, or the runs apart");
+    }
     const AugmentedModel model = linear_model(runs, o);
-    out.design.push_back(design_linear(model, runs, o, out.noise, step));
+    std::vector<UniformRun> signals;
+    std::size_t bridged = 0;
+    for (const auto& r : runs) {
+        signals.push_back(uniform(r.signals, step));
+        bridged += signals.back().bridged;
+    }
+    if (bridged > 0 && o.observer != "extended") {
+        note(out.remarks, std::to_string(bridged) + " missing heave velocities were bridged by the slope of the gap over 0.5 s");
+    }
+    double density = out.noise.force_density;
+    if (o.observer == "kalman" && out.density_chosen) {
+        density = out.noise.force_density = likely_linear_density(model, runs, signals, o, out.noise, step);
+    }
+    out.design.push_back(design_linear(model, runs, o, out.noise, step, density));
     const ObserverDesign& design = out.design.front();
     out.separability = design.separability;
     const LinearFilter& f = design.filter;
@@ -231,11 +340,10 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
     }
     const int at[] = {find(f.estimates, "gap"), find(f.estimates, "heave_velocity"), find(f.estimates, "ground_force"),
                       find(f.estimates, "drag_force"), find(f.estimates, "total_force")};
-    for (const auto& r : runs) {
+    for (std::size_t run = 0; run < runs.size(); ++run) {
         progress.check();
-        const UniformRun u = uniform(r.signals, step);
-        FilterRunner runner(f);
-        double e[FilterRunner::most_states] = {}, y[FilterRunner::most_signals] = {};
+        const Prepared& r = runs[run];
+        const UniformRun& u = signals[run];
         RunEstimate summary;
         summary.name = r.run->name;
         summary.samples = u.time.size();
@@ -244,16 +352,11 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
         summary.missing = u.missing;
         summary.gaps_in_time = u.gaps;
         summary.mean_squared_innovation = NAN;
-        for (std::size_t k = 0; k < u.time.size(); ++k) {
-            for (std::size_t i = 0; i < f.measured.size(); ++i) {
-                y[i] = f.measured[i] == "gap" ? u.gap[k] : u.velocity[k];
-            }
-            if (u.restart[k]) {
-                runner.start(y, e);
-            } else {
-                const double input = u.input.empty() ? 0 : u.input[k - 1];
-                runner.step(y, &input, e);
-            }
+        if (o.observer == "kalman") {
+            const Vector own = out.noise.velocity > 0 ? Vector{out.noise.velocity, out.noise.gap} : Vector{out.noise.gap};
+            summary.mean_squared_innovation = innovations_of(design, u, own).mean_square();
+        }
+        follow(f, u, [&](std::size_t k, const double*, const double* e) {
             FilterEstimate row;
             const auto pick = [&](int i, double other) { return i >= 0 ? e[i] : other; };
             const auto pick_sigma = [&](int i, double other) { return i >= 0 ? sigma[static_cast<std::size_t>(i)] : other; };
@@ -271,7 +374,7 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
             row.outside = row.gap < r.plant.lower || row.gap > r.plant.upper;
             add(columns, summary.name, u.time[k], row);
             columns.note.back() = u.restart[k] && k > 0 ? "started anew" : row.outside ? "outside the table" : "";
-        }
+        });
         out.runs.push_back(summary);
     }
 }

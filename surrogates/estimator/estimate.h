@@ -68,6 +68,7 @@ struct UniformRun {
     std::vector<double> time, gap, velocity, input;
     std::vector<bool> restart;
     std::size_t outliers = 0, missing = 0, gaps = 0;
+    std::size_t bridged = 0;  ///< missing velocities, taken from the slope of the gap over 0.5 s
 };
 UniformRun uniform(const RunSignals& run, double step);
 double usual_step(const RunSignals& run);

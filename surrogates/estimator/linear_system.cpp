@@ -69,7 +69,7 @@ Observability observability(const Matrix& a, const Matrix& c, const Vector& scal
             cs(i, j) /= size;
         }
     }
-    as = (1 / std::max(internal::norm_f(as), 1e-300)) * as;
+    as = (1 / std::max(internal::norm_f(as), 1e-6)) * as;  // rates below 1e-6 1/s (eleven days) count as none
     Matrix o(p * n, n);
     o.set_block(0, 0, cs);
     for (std::size_t k = 1; k < n; ++k) {

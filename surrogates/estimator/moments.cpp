@@ -65,9 +65,10 @@ UNDERBODY_WIDE_VECTORS void add_products(const double* x, std::size_t channels, 
     }
 }
 
-// Copies a tile of samples, less the shift, into columns; adds the sums. The rest of the columns is zero.
+// Copies a tile of samples, less the shift, into columns; adds the sums, widens the ranges. The rest of the columns is zero, which
+// lies within the range of what is shifted by a mean.
 UNDERBODY_WIDE_VECTORS void load_tile(const SampleView& samples, std::size_t first, std::size_t count, const double* shift,
-                                      double* columns, double* sums) {
+                                      double* columns, double* sums, double* lowest, double* highest) {
     if (samples.sample_stride == 1) {
         for (std::size_t c = 0; c < samples.channels; ++c) {
             const double* from = samples.data + c * samples.channel_stride + first;
@@ -86,30 +87,36 @@ UNDERBODY_WIDE_VECTORS void load_tile(const SampleView& samples, std::size_t fir
     for (std::size_t c = 0; c < samples.channels; ++c) {
         std::fill(columns + c * tile + count, columns + (c + 1) * tile, 0.0);
         const auto* x = reinterpret_cast<const Lane*>(columns + c * tile);
-        Lane s{}, t{};
+        Lane s{}, t{}, low{}, high{};
         for (std::size_t k = 0; k < tile / 4; k += 2) {
             s += x[k];
             t += x[k + 1];
+            low = x[k] < low ? x[k] : low;
+            low = x[k + 1] < low ? x[k + 1] : low;
+            high = x[k] > high ? x[k] : high;
+            high = x[k + 1] > high ? x[k + 1] : high;
         }
         s += t;
         sums[c] += (s[0] + s[1]) + (s[2] + s[3]);
+        lowest[c] = std::min({lowest[c], low[0], low[1], low[2], low[3]});
+        highest[c] = std::max({highest[c], high[0], high[1], high[2], high[3]});
     }
 }
 
 Moments moments_of_chunk(const SampleView& samples, std::size_t begin, std::size_t end) {
     const std::size_t n = samples.channels;
     alignas(32) static thread_local std::array<double, most_channels * tile> columns;
-    std::array<double, most_channels> shift{}, sums{};
+    std::array<double, most_channels> shift{}, sums{}, lowest{}, highest{};
     std::vector<double> products(n * n, 0.0);
     // The mean of the first tile is near enough to the chunk's to leave no cancellation.
     const std::size_t head = std::min(tile, end - begin);
-    load_tile(samples, begin, head, shift.data(), columns.data(), sums.data());
+    load_tile(samples, begin, head, shift.data(), columns.data(), sums.data(), lowest.data(), highest.data());
     for (std::size_t c = 0; c < n; ++c) {
         shift[c] = sums[c] / static_cast<double>(head);
-        sums[c] = 0;
+        sums[c] = lowest[c] = highest[c] = 0;
     }
     for (std::size_t first = begin; first < end; first += tile) {
-        load_tile(samples, first, std::min(tile, end - first), shift.data(), columns.data(), sums.data());
+        load_tile(samples, first, std::min(tile, end - first), shift.data(), columns.data(), sums.data(), lowest.data(), highest.data());
         add_products(columns.data(), n, products.data());
     }
     Moments m;
@@ -118,6 +125,8 @@ Moments moments_of_chunk(const SampleView& samples, std::size_t begin, std::size
     m.mean.resize(n);
     m.covariance = Matrix(n, n);
     for (std::size_t i = 0; i < n; ++i) {
+        m.lowest.push_back(shift[i] + lowest[i]);
+        m.highest.push_back(shift[i] + highest[i]);
         m.mean[i] = shift[i] + sums[i] / count;
         for (std::size_t j = 0; j <= i; ++j) {
             const double c = (products[i * n + j] - sums[i] * sums[j] / count) / count;
@@ -186,6 +195,10 @@ void Moments::merge(const Moments& other) {
                 (a * covariance(i, j) + b * other.covariance(i, j) + a * b / total * delta[i] * delta[j]) / total;
         }
         mean[i] += b / total * delta[i];
+    }
+    for (std::size_t i = 0; i < lowest.size() && i < other.lowest.size(); ++i) {
+        lowest[i] = std::min(lowest[i], other.lowest[i]);
+        highest[i] = std::max(highest[i], other.highest[i]);
     }
     count += other.count;
 }

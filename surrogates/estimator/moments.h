@@ -32,6 +32,7 @@ struct Moments {
     std::size_t count = 0;
     Vector mean;
     Matrix covariance;
+    Vector lowest, highest;  ///< of each channel, or further in towards the mean by round-off of the shift
 
     /// Exact joint moments of two sets (Chan, Golub and LeVeque 1983).
     void merge(const Moments& other);

@@ -284,6 +284,7 @@ ObserverDesign disturbance_observer(double virtual_mass, double bias, double rat
     design.discrete_poles = eigenvalues(f.phi);
     refuse_unstable(design.poles, design.discrete_poles, step);
     design.labels = {"observed"};
+    design.separability.b_eff = NAN;
     design.separability.labels = {"observed"};
     design.separability.explanation = "the total force F_g - F_d is seen through the acceleration; nothing is assumed on its parts";
     return design;

@@ -76,6 +76,9 @@ std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Meas
     std::vector<Prepared> all;
     for (const auto& run : data.runs) {
         all.push_back({&run, plant_of(model, run, remarks), signals_of_run(run, remarks)});
+        if (!(range_of(all.back().signals.gap) > 0)) {
+            note(remarks, "run '" + run.name + "': the gap does not vary; a dead sensor looks like that");
+        }
     }
     if (all.empty()) {
         throw core::InputError("empty", "the data set has no runs", {data.folder.string(), {}, {}, {}});
@@ -125,12 +128,24 @@ NoiseChoice noise_for(const dynamics::Measurements& data, const EstimateOptions&
 
 using internal::note;
 
+double internal::range_of(const std::vector<double>& values) {
+    double lowest = INFINITY, highest = -INFINITY;
+    for (const double v : values) {
+        lowest = std::isfinite(v) ? std::min(lowest, v) : lowest;
+        highest = std::isfinite(v) ? std::max(highest, v) : highest;
+    }
+    return highest - lowest;
+}
+
 RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks) {
     RunSignals s;
     s.time = run.table.numbers("time");
     s.gap = run.values("gap");
     s.velocity = run.has("heave_velocity") ? run.values("heave_velocity") : std::vector<double>{};
     if (run.table.find("input_force") == nullptr) {
+        if (run.conditions.find("input_force") == run.conditions.end()) {
+            note(remarks, "run '" + run.name + "': no input_force is recorded; none is taken to act");
+        }
         return s;
     }
     s.input = run.values("input_force");
@@ -209,6 +224,33 @@ double between(const std::vector<double>& time, const std::vector<double>& value
 
 }  // namespace
 
+namespace {
+
+// Slope of the least-squares line through the good gaps within 0.25 s of sample `at`, five at least, of the stretch [first, last].
+double slope_about(const RunSignals& run, const std::vector<std::size_t>& good, std::size_t at, std::size_t first, std::size_t last) {
+    std::size_t low = at, high = at;
+    const auto near = [&](std::size_t k) { return std::abs(run.time[good[k]] - run.time[good[at]]) <= 0.25; };
+    while (low > first && (near(low - 1) || at - low < 2)) {
+        --low;
+    }
+    while (high < last && (near(high + 1) || high - at < 2)) {
+        ++high;
+    }
+    double n = 0, st = 0, sh = 0, stt = 0, sth = 0;
+    for (std::size_t k = low; k <= high; ++k) {
+        const double t = run.time[good[k]] - run.time[good[at]], h = run.gap[good[k]];
+        n += 1;
+        st += t;
+        sh += h;
+        stt += t * t;
+        sth += t * h;
+    }
+    const double determinant = n * stt - st * st;
+    return determinant > 0 ? (n * sth - st * sh) / determinant : 0;
+}
+
+}  // namespace
+
 UniformRun uniform(const RunSignals& run, double step) {
     UniformRun out;
     const std::vector<std::size_t> good = good_samples(run.time, run.gap, out);
@@ -234,8 +276,8 @@ UniformRun uniform(const RunSignals& run, double step) {
             out.gap.push_back(between(run.time, run.gap, i, j, t));
             if (!run.velocity.empty()) {
                 const bool both = std::isfinite(run.velocity[i]) && std::isfinite(run.velocity[j]);
-                const double slope = (run.gap[j] - run.gap[i]) / std::max(run.time[j] - run.time[i], 1e-12);
-                out.velocity.push_back(both ? between(run.time, run.velocity, i, j, t) : slope);
+                out.bridged += both ? 0U : 1U;
+                out.velocity.push_back(both ? between(run.time, run.velocity, i, j, t) : slope_about(run, good, std::min(a, end), g, end));
             }
             if (!run.input.empty()) {
                 out.input.push_back(between(run.time, run.input, i, j, t));

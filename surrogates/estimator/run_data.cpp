@@ -108,6 +108,9 @@ TrainingSet training_from_runs(const dynamics::Model& model, const dynamics::Mea
     set.layout = {{"input_force"}, {"heave_velocity", "gap"}, 2};
     set.layout.states.insert(set.layout.states.end(), auxiliaries.begin(), auxiliaries.end());
     const auto runs = smooth_runs(model, data, options, set.remarks, progress);
+    if (std::none_of(runs.begin(), runs.end(), [](const Smoothed& s) { return internal::range_of(s.prepared.signals.gap) > 0; })) {
+        throw core::InputError("constant", "the gap does not vary in any run: there is nothing to learn", {data.folder.string(), {}, {}, {}});
+    }
     std::vector<double> row(set.layout.channels());
     std::size_t outside = 0;
     for (const Smoothed& s : runs) {

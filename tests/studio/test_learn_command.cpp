@@ -110,6 +110,24 @@ TEST_F(LearnAndEstimate, HoldsAGapAndDrawsWhereTheSensorsAreBlind) {
     ASSERT_EQ(limited.exit_code, 0) << limited.errors;
     EXPECT_GT(core::read_csv(folder() / "loop.csv").rows(), 100U);
     EXPECT_EQ(test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "ful"}, folder()).exit_code, 2);
+    const auto all = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--for", "40 s", "--compare", "--json"}, folder());
+    ASSERT_EQ(all.exit_code, 0) << all.errors;
+    const auto estimators = nlohmann::json::parse(all.output).at("estimators");
+    EXPECT_EQ(estimators.size(), 8U);
+    for (const auto& e : estimators) {
+        EXPECT_NEAR(e.at("final_gap").get<double>(), 0.6, e.at("estimator") == "none" ? 5e-3 : 2e-4) << e.at("estimator");
+    }
+    const auto region = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "extended", "--no-velocity",
+                                             "--limit", "20 mN", "--gap-noise", "0.1 mm", "--step", "0.1 s", "--columns", "8", "--rows", "6",
+                                             "--axes", "gap=0.3:0.9,heave_velocity=-0.02:0.02", "--region", "loop.png", "--json"},
+                                            folder());
+    ASSERT_EQ(region.exit_code, 0) << region.errors;
+    double sum = 0;
+    for (const auto& c : nlohmann::json::parse(region.output).at("region").at("classes")) {
+        sum += c.at("fraction").get<double>();
+    }
+    EXPECT_NEAR(sum, 1, 1e-9);
+    EXPECT_TRUE(std::filesystem::exists(folder() / "loop.png"));
     const auto blind = test::run_underbody({"estimate", "model.toml", "--data", "runs", "--blind-zones", "blind.png", "--json"}, folder());
     ASSERT_EQ(blind.exit_code, 0) << blind.errors;
     EXPECT_TRUE(std::filesystem::exists(folder() / "blind.png"));

@@ -11,6 +11,9 @@ namespace underbody::estimator::internal {
 
 void note(core::Problems& problems, const std::string& text);
 
+/// Largest less smallest finite value; negative when there is none.
+double range_of(const std::vector<double>& values);
+
 /// A run, the plant at its conditions, and its signals.
 struct Prepared {
     const dynamics::MeasuredRun* run;

@@ -290,6 +290,30 @@ TEST(Learning, SaysWhereAForwardDifferenceContradictsTheStates) {
     EXPECT_TRUE(check_consistency(moments(oracle_mesh(reference_plant()).view()), Layout::heave()).empty());
 }
 
+TEST(Learning, SaysWhereSamplesContradictTheEquationOfMotionOrHoldAnOutlier) {
+    const auto said = [](const TrainingSet& set, const char* words) {
+        const auto problems = check_consistency(moments(set.view()), set.layout, thesis_virtual_mass());
+        return std::any_of(problems.begin(), problems.end(), [&](const core::Problem& p) { return p.message.find(words) != std::string::npos; });
+    };
+    TrainingOptions o;
+    o.samples = 5000;
+    const TrainingSet good = training_set(reference_plant(), o);
+    EXPECT_TRUE(check_consistency(moments(good.view()), good.layout, thesis_virtual_mass()).empty());
+    TrainingSet heavy = good, noisy = good, spike = good;
+    core::Random random(2);
+    for (std::size_t i = 0; i < good.count; ++i) {
+        heavy.values[i * 9 + 5] /= 1.1;
+        noisy.values[i * 9 + 3] += 1e-3 * random.normal();
+    }
+    spike.values[9 * 77 + 3] = 5;
+    EXPECT_TRUE(said(heavy, "virtual mass of 4.3495 kg"));
+    EXPECT_TRUE(said(noisy, "the acceleration contradicts the forces"));
+    EXPECT_TRUE(said(spike, "channel 'ground_force' holds 5, 7"));
+    o.auxiliaries = {"total_force", "gap_squared"};
+    const TrainingSet total = training_set(reference_plant(), o);
+    EXPECT_TRUE(check_consistency(moments(total.view()), total.layout, thesis_virtual_mass()).empty());
+}
+
 TEST(Learning, RefusesWhatCannotBeLearned) {
     const Layout layout = Layout::heave();
     std::vector<double> few(8 * 9, 1.0);
@@ -380,6 +404,13 @@ TEST(Moments, AgreeWithTheTwoPassFormulaInBothLayoutsAndFromAFile) {
             mean += rows[k * c + i];
         }
         mean /= n;
+        double lowest = rows[i], highest = rows[i];
+        for (std::size_t k = 0; k < n; ++k) {
+            lowest = std::min(lowest, rows[k * c + i]);
+            highest = std::max(highest, rows[k * c + i]);
+        }
+        EXPECT_NEAR(a.lowest[i], lowest, 1e-9 * (1 + std::abs(lowest)));
+        EXPECT_NEAR(a.highest[i], highest, 1e-9 * (1 + std::abs(highest)));
         EXPECT_NEAR(a.mean[i], static_cast<double>(mean), 1e-12 * (1 + std::abs(a.mean[i])));
         for (std::size_t j = 0; j <= i; ++j) {
             long double sum = 0;

@@ -122,6 +122,9 @@ TEST(Separability, SeesOnlyTheTotalForceOfTheFrozenModel) {
         EXPECT_EQ(e.kind(), "unobservable");
         EXPECT_NE(std::string(e.what()).find("0.707 ground_force + 0.707 drag_force"), std::string::npos) << e.what();
     }
+    // Rows that are zero but for round-off hide as much: noise is no observability.
+    const Matrix nothing{{3e-17, -1e-16}, {2e-16, 4e-17}};
+    EXPECT_EQ(observability(nothing, Matrix{{.2529, -.2529}}).rank, 1U);
     // A common error stays whatever the gain.
     const double f = .377;
     const Matrix j{{0, 0}, {f, -f}}, a{{.2529, -.2529}};
