@@ -62,15 +62,39 @@ TEST(BodyCommand, RefusesAShapeThatCannotBe) {
 
 TEST(BodyCommand, DrawsSectionUndersideAndGap) {
     const core::TemporaryFolder folder;
-    const auto run =
-        run_underbody({"body", shape("ellipse_front_bump2"), "--gap", "5mm", "--pitch", "1deg", "--triangles", "6000",
-                       "--panels", "0", "--section", "s.png", "--underbody", "u.png", "--gap-picture", "g.png"},
-                      folder.path());
+    const auto run = run_underbody({"body",          shape("ellipse_front_bump2"),
+                                    "--gap",         "5mm",
+                                    "--pitch",       "1deg",
+                                    "--triangles",   "6000",
+                                    "--panels",      "0",
+                                    "--section",     "s.png",
+                                    "--underbody",   "u.png",
+                                    "--gap-picture", "g.png",
+                                    "--area-curve",  "a.csv",
+                                    "--area-up-to",  "20mm"},
+                                   folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     for (const char* name : {"s.png", "u.png", "g.png"}) {
         EXPECT_GT(std::filesystem::file_size(folder.path() / name), 5000u) << name;
     }
     EXPECT_THAT(run.output, testing::HasSubstr("clearance"));
+    EXPECT_THAT(run.output, testing::HasSubstr("nose down"));
+    const core::Table curve = core::read_csv(folder.path() / "a.csv");
+    EXPECT_DOUBLE_EQ(curve.numbers("height").back(), 0.02);
+    EXPECT_GT(curve.numbers("area").back(), 0.007) << "more than the flat base";
+    EXPECT_EQ(run_underbody({"body", shape("ellipse"), "--area-curve", "a.png"}, folder.path()).exit_code, 2)
+        << "over what ground?";
+}
+
+TEST(BodyCommand, TabulatesTheAddedMassOfASurfaceFile) {
+    const core::TemporaryFolder folder;
+    ASSERT_EQ(run_underbody({"body", shape("ellipse"), "--out", "a.stl", "--panels", "0"}, folder.path()).exit_code, 0);
+    const auto run = run_underbody(
+        {"body", "added-mass", "a.stl", "--unit", "m", "--gap", "5mm", "--panels", "600", "--json"}, folder.path());
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const auto at_gap = nlohmann::json::parse(run.output).at("gaps")[0];
+    EXPECT_NEAR(at_gap.at("added_mass")[2][2].get<double>(), 3.503, 0.035);
+    EXPECT_GT(at_gap.at("panel_fit").at("distance_largest").get<double>(), 0);
 }
 
 TEST(BodyCommand, ComparesTablesAndSweeps) {
