@@ -119,7 +119,7 @@ struct EquilibriaCommand {
 
 std::string described(const ForceTable& table, const tables::Equilibria& found, const tables::Equilibrium& e) {
     std::string text = tables::to_string(e.stability) + " at " + shown(table, found.axis, found.axis_unit, e.gap, 6);
-    if (e.sigma > 0 && std::isfinite(e.sigma)) {
+    if (e.sigma > 1e-9 * (found.upper - found.lower) && std::isfinite(e.sigma)) {
         text += " +- " + shown(table, found.axis, found.axis_unit, e.sigma, 2);
     }
     text += "   stiffness " + core::format_number(e.stiffness, 5) + " N/m";

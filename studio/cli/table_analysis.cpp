@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
+#include <complex>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +24,10 @@ namespace underbody::studio {
 namespace {
 
 std::string number(double value, int digits = 5) { return core::format_number(value, digits); }
+
+std::string eigenvalue(const std::complex<double>& value) {
+    return number(value.real(), 4) + (value.imag() == 0 ? "" : (value.imag() < 0 ? " - " : " + ") + number(std::abs(value.imag()), 4) + " i");
+}
 
 struct ContinueCommand {
     TableOptions table;
@@ -104,7 +110,8 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
         options.net_weight = core::parse_in(command.weight, "N");
         document["equilibria"] = nlohmann::json::array();
         for (const auto& e : tables::coupled_equilibria(table.fit(shell), moment, options)) {
-            shell.print(e.kind + " balance of heave and pitch at gap " + number(e.gap) + " m, pitch " + number(core::convert(e.pitch, "rad", "deg"), 4) + " deg");
+            shell.print(e.kind + " balance of heave and pitch at gap " + number(e.gap) + " m, pitch " + number(core::convert(std::abs(e.pitch) < 1e-12 ? 0 : e.pitch, "rad", "deg"), 4) + " deg; eigenvalues of the stiffness " + eigenvalue(e.eigenvalues[0]) + " and " +
+                        eigenvalue(e.eigenvalues[1]));
             document["equilibria"].push_back(e);
         }
         if (document["equilibria"].empty()) {
