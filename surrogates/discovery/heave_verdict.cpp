@@ -135,7 +135,9 @@ void HeaveLoop::decide() {
         for (const double own : fitted_[chosen].held_out) {
             named += own;
         }
-        if (smooth > named - 10) {
+        // or so much better on all runs, at Schwarz's price, that runs which alone visit a corner of its variables cannot spoil it
+        const bool far_better = smooth_score(best_smooth(whole_list_)) < fitted_[chosen].cost + fitted_[chosen].occam - 100;
+        if (smooth > named - 10 && !far_better) {
             rest.p = 1;
         }
     }
