@@ -94,7 +94,8 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
         for (const auto& w : tables::pitch_windows(moment, held)) {
             const auto degrees = [](double v) { return number(core::convert(v, "rad", "deg"), 4); };
             shell.print(w.side + ": restores from " + degrees(w.lower) + " to " + degrees(w.upper) + " deg, stiffest at " + degrees(w.best_pitch) + " deg (" + number(w.stiffness, 4) +
-                        " N m/rad); trim torque there " + number(w.trim_torque, 4) + " N m nose up");
+                        " N m/rad); trim torque there " + number(w.trim_torque, 4) + " N m nose up, " + number(w.trim_lower, 4) + " to " + number(w.trim_upper, 4) +
+                        " N m over the window");
             document["windows"].push_back(w);
         }
         if (document["windows"].empty()) {
