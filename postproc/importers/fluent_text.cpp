@@ -140,17 +140,19 @@ double FluentText::real() {
 std::vector<std::string_view> FluentText::pieces(bool& bracket) {
     in_.ensure(ByteStream::largest_window);
     const char* const first = in_.here();
-    const auto* const found = static_cast<const char*>(
-        std::memchr(first, ')', static_cast<std::size_t>(in_.end() - first)));
+    const auto left = static_cast<std::size_t>(in_.end() - first);
+    const bool all = left < ByteStream::largest_window;  // the file ends there
+    // A part of the window at a time: the numbers of all of it would take more memory than the mesh of a small case.
+    const std::size_t length = std::min(left, ByteStream::largest_window);
+    const auto* const found = static_cast<const char*>(std::memchr(first, ')', length));
     bracket = found != nullptr;
-    const char* last = bracket ? found : in_.end();
-    const bool all = static_cast<std::size_t>(in_.end() - first) < ByteStream::largest_window;  // the file ends there
+    const char* last = bracket ? found : first + length;
     while (!bracket && !all && last != first && !is_space(last[-1])) {
         --last;
     }
     std::vector<std::string_view> result;
     for (const char* p = first; p != last;) {
-        constexpr std::ptrdiff_t piece = 128 * 1024;
+        constexpr std::ptrdiff_t piece = 64 * 1024;
         const char* q = last - p > piece + piece / 2 ? p + piece : last;
         while (q != last && !is_space(*q)) {
             ++q;
