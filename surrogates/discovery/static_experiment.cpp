@@ -282,45 +282,63 @@ void StaticExperiment::estimate_noise() {
         const std::set<std::size_t> distinct(set_point.begin(), set_point.end());
         const bool repeats = n >= distinct.size() + 20;
         // what may change between repeats: time, temperature, direction, each alone and in proportion to the force
-        std::vector<std::vector<double>> variables;
-        for (const Channel channel : varying_) {
-            if (!repeats || !sets_the_point(channel)) {
-                variables.emplace_back();
+        const auto design_of = [&](std::size_t time_columns) {
+            DesignMatrix design;
+            design.rows = n;
+            for (const Channel channel : varying_) {
+                if (repeats && sets_the_point(channel)) {
+                    continue;
+                }
+                std::vector<double> variable;
                 for (const Observation* one : own) {
-                    variables.back().push_back(one->at[channel]);
+                    variable.push_back(one->at[channel]);
+                }
+                const SplineBasis splines(variable, channel == Channel::time ? time_columns : repeats ? 4 : 6);
+                std::vector<double> out(splines.columns());
+                const std::size_t first = design.columns;
+                design.columns += 2 * splines.columns();
+                design.values.resize(design.columns * n);
+                for (std::size_t i = 0; i < n; ++i) {
+                    splines.evaluate(variable[i], out.data());
+                    for (std::size_t k = 0; k < out.size(); ++k) {
+                        design.at(i, first + k) = out[k];
+                        design.at(i, first + out.size() + k) = out[k] * force[i];
+                    }
                 }
             }
-        }
-        DesignMatrix design;
-        design.rows = n;
-        for (const std::vector<double>& variable : variables) {
-            const SplineBasis splines(variable, repeats ? 4 : 6);
-            std::vector<double> out(splines.columns());
-            const std::size_t first = design.columns;
-            design.columns += 2 * splines.columns();
-            design.values.resize(design.columns * n);
-            for (std::size_t i = 0; i < n; ++i) {
-                splines.evaluate(variable[i], out.data());
-                for (std::size_t k = 0; k < out.size(); ++k) {
-                    design.at(i, first + k) = out[k];
-                    design.at(i, first + out.size() + k) = out[k] * force[i];
-                }
-            }
-        }
+            return design;
+        };
+        const std::vector<double> raw = y;
+        DesignMatrix basis;
         std::size_t lost = 1;
-        if (repeats) {
-            lost = take_means_off(set_point, design, y);
+        double rest = 0;
+        double degrees = 0;
+        const auto fit_out = [&](std::size_t time_columns) {
+            DesignMatrix design = design_of(time_columns);
+            y = raw;
+            lost = repeats ? take_means_off(set_point, design, y) : 1;
+            basis = orthonormal(design);
+            rest = -explained_square(basis, y);
+            for (const double value : y) {
+                rest += value * value;
+            }
+            degrees = static_cast<double>(n) - static_cast<double>(lost + basis.columns);
+        };
+        fit_out(repeats ? 4 : 6);
+        if (repeats && n >= 120) {
+            // several waves in a day of measuring are no noise; colour alone does not make the difference that is asked for here
+            const double few_rest = rest;
+            const double few_degrees = degrees;
+            fit_out(14);
+            const double columns = few_degrees - degrees;
+            const bool waves = columns > 0 && degrees > 20 && f_tail((few_rest - rest) / columns / std::max(rest / degrees, 1e-300), columns, degrees) < 1e-6;
+            if (!waves) {
+                fit_out(4);
+            }
         }
         NoiseFigure figure;
         figure.unit = core::find_quantity(quantities_[q])->unit;
         figure.declared = std::sqrt(declared_square / static_cast<double>(n));
-        const DesignMatrix basis = orthonormal(design);
-        double rest = 0;
-        for (const double value : y) {
-            rest += value * value;
-        }
-        rest -= explained_square(basis, y);
-        const double degrees = static_cast<double>(n) - static_cast<double>(lost + basis.columns);
         if (degrees >= 6) {
             figure.estimated = std::sqrt(std::max(rest, 0.0) / degrees);
         }

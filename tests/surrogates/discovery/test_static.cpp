@@ -94,6 +94,38 @@ TEST(StaticDiscovery, WritesEverythingAndItsModelIsReadBack) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "found" / "next-experiment.csv"));
 }
 
+TEST(StaticDiscovery, WritesSetPointsForTheNextExperimentWithinTheMeasuredRange) {
+    const Discovery found = found_on([](double h, double v) { return declared(h, v) + 0.004; }, 3);
+    ASSERT_GT(found.next_set_points.rows(), 0U);
+    for (const double gap : found.next_set_points.numbers("gap")) {
+        EXPECT_GE(gap, 0.002 - 1e-12);
+        EXPECT_LE(gap, 0.4 + 1e-12);
+    }
+    EXPECT_GT(found.next_power, 0);
+    EXPECT_LE(found.next_power, 1);
+}
+
+TEST(StaticDiscovery, SaysWhetherAnEffectBelongsToTheRigOrGoesWithTheVehicle) {
+    const Discovery rig = found_on([](double h, double v) { return declared(h, v) + 0.004; }, 3);
+    EXPECT_NE(rig.consequence.text.find("belongs to the rig"), std::string::npos) << rig.consequence.text;
+    EXPECT_TRUE(rig.consequence.region_after.empty());
+    ASSERT_FALSE(rig.consequence.equilibria.empty());
+    const Discovery body = found_on([](double h, double v) { return declared(h, std::max(0.0, v - 2) * 10 / 8); }, 5);
+    EXPECT_NE(body.consequence.text.find("goes with the vehicle"), std::string::npos) << body.consequence.text;
+}
+
+TEST(StaticDiscovery, RunsItsPlaceboOnTwinsWithNothingMissing) {
+    core::TemporaryFolder folder("static");
+    test::write_bench(folder.path(), [](double h, double v) { return declared(h, v) + 0.004; }, 3);
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    options.placebo_twins = 4;
+    const Discovery found = discover(dynamics::read_model(folder.path() / "model.toml"), dynamics::read_measurements(folder.path()), options);
+    EXPECT_EQ(found.verdict, "effect");
+    EXPECT_EQ(found.placebo.twins, 4U);
+    EXPECT_LE(found.placebo.alarms, 1U);
+}
+
 TEST(StaticDiscovery, GivesTheSameBytesTwice) {
     const auto truth = [](double h, double v) { return declared(h, v) * 1.15; };
     const auto bytes = [&] {

@@ -142,4 +142,4 @@ INSTANTIATE_TEST_SUITE_P(OfTheCatalogue, EveryStaticEffect,
                                          Wanted{"glide", "pitch_misalignment", {{"angle", 0.012, 0}}},
                                          Wanted{"glide", "surface_roughness", {{"near", 0.12, 0}, {"far", 0.12, 0}, {"length", 0.012, 0}}},
                                          Wanted{"two", "declared_parameter", {{"value", 1.25, 0}}, "force.2.factor"}),
-                         [](const testing::TestParamInfo<Wanted>& info) { return std::string(info.param.kind) + "_" + info.param.name; });
+                         [](const testing::TestParamInfo<Wanted>& one) { return std::string(one.param.kind) + "_" + one.param.name; });
