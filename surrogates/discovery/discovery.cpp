@@ -40,6 +40,9 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
     const dynamics::Measurements data = reduced(measured);
     Discovery result = data.kind == dynamics::MeasurementKind::steady ? discover_static(model, data, options, progress)
                                                                       : discover_time_series(model, data, options, progress);
+    if (result.verdict == "none") {
+        result.depends_on.clear();   // noise depends on nothing
+    }
     result.model.lineage.made_from.push_back("made by underbody discover from " + model.name + " and the measurements '" + data.title +
                                              "'");
     if (!model.file.empty() && std::filesystem::exists(model.file)) {
