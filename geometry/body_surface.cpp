@@ -29,7 +29,7 @@ std::vector<Vec3> half_ring(const ExactBody& body, double height, double edge) {
 
 SurfaceMesh half_of(const ExactBody& body, double base_edge, double refinement, core::Progress& progress) {
     const EdgeLength edge(body, base_edge, refinement);
-    SurfaceBuilder builder(body, edge);
+    SurfaceBuilder builder(body, edge, progress);
     builder.half.patch_names = {"base", "hull", "protrusion", "nozzle", "nozzle_bore"};
     if (body.shape().base == BaseKind::ellipse) {
         const Chain outline = builder.add(half_ring(body, 0, edge.at_height(0)));
@@ -84,6 +84,7 @@ void add_rings(SurfaceBuilder& builder, double from, Chain below) {
     const int rings = std::max(2, static_cast<int>(std::lround(steps.back())));
     std::size_t j = 0;
     for (int ring = 1; ring <= rings; ++ring) {
+        builder.progress.check();
         const double target = steps.back() * ring / rings;
         while (j + 2 < steps.size() && steps[j + 1] < target) {
             ++j;

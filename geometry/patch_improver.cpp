@@ -119,6 +119,7 @@ private:
 
     void flip_all() {
         for (int sweep = 0; sweep < 6; ++sweep) {
+            problem_.progress->check();
             bool any = false;
             for (std::size_t t = 0; t < patch_.triangles.size(); ++t) {
                 for (std::size_t k = 0; k < 3; ++k) {

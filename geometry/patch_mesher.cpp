@@ -210,6 +210,9 @@ private:
         bool any = false;
         Face hint;
         for (const std::ptrdiff_t i : order) {
+            if ((i & 1023) == 0) {
+                problem_.progress->check();
+            }
             const Candidate& c = wanted[static_cast<std::size_t>(i)];
             if (insert(c.at, c.edge, hint) || (c.too_large && insert(c.inside, c.edge, hint))) {
                 any = true;

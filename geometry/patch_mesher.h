@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/progress.h"
 #include "geometry/surface_mesh.h"
 
 namespace underbody::geometry {
@@ -32,6 +33,8 @@ struct PatchProblem {
     std::function<double(const PlanePoint&)> edge;
     /// The point of space that a point of the plane stands for.
     std::function<Vec3(const PlanePoint&)> surface;
+    /// Asked whether to stop while it works.
+    core::Progress* progress = &core::Progress::none();
 };
 
 struct PatchTriangles {

@@ -169,6 +169,7 @@ Chain SurfaceBuilder::chain(std::int32_t from, std::int32_t to, const std::funct
 
 SurfaceBuilder::Filled SurfaceBuilder::fill(const Face& face) {
     PatchProblem problem;
+    problem.progress = &progress;
     std::vector<std::int32_t> global;
     std::vector<std::int32_t> local(straight.size(), -1);
     for (const Chain& chain : face.chains) {

@@ -39,10 +39,12 @@ private:
 
 class SurfaceBuilder {
 public:
-    SurfaceBuilder(const ExactBody& exact_body, const EdgeLength& edge_length) : body(exact_body), edge(edge_length) {}
+    SurfaceBuilder(const ExactBody& exact_body, const EdgeLength& edge_length, core::Progress& asked)
+        : body(exact_body), edge(edge_length), progress(asked) {}
 
     const ExactBody& body;
     const EdgeLength& edge;
+    core::Progress& progress;
     /// The port half; points bent.
     SurfaceMesh half;
     /// The same points unbent.

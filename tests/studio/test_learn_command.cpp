@@ -123,7 +123,8 @@ TEST_F(LearnAndEstimate, HoldsAGapAndDrawsWhereTheSensorsAreBlind) {
                                             folder());
     ASSERT_EQ(region.exit_code, 0) << region.errors;
     double sum = 0;
-    for (const auto& c : nlohmann::json::parse(region.output).at("region").at("classes")) {
+    const auto classes = nlohmann::json::parse(region.output).at("region").at("classes");
+    for (const auto& c : classes) {
         sum += c.at("fraction").get<double>();
     }
     EXPECT_NEAR(sum, 1, 1e-9);
