@@ -115,11 +115,15 @@ nlohmann::json to_json(const Consequence& consequence) {
                               {"gap_before", number(pair.gap_before)},
                               {"gap_after", number(pair.gap_after)}});
     }
-    return {{"equilibria", equilibria},
-            {"region_before", consequence.region_before},
-            {"region_after", consequence.region_after},
-            {"estimator", {{"quantity", "heave_velocity"}, {"unit", "m/s"}, {"rmse_before", consequence.estimator_before}, {"rmse_after", consequence.estimator_after}}},
-            {"text", consequence.text}};
+    nlohmann::json json{{"equilibria", equilibria},
+                        {"region_before", consequence.region_before},
+                        {"region_after", consequence.region_after},
+                        {"estimator", nullptr},
+                        {"text", consequence.text}};
+    if (consequence.estimator_before > 0) {
+        json["estimator"] = {{"quantity", "heave_velocity"}, {"unit", "m/s"}, {"rmse_before", consequence.estimator_before}, {"rmse_after", consequence.estimator_after}};
+    }
+    return json;
 }
 
 }  // namespace

@@ -129,6 +129,13 @@ void add_consequence(core::HtmlPage& page, const Consequence& consequence) {
     if (!regions.empty()) {
         page.table({"where a start ends", "share before [%]", "share after [%]"}, regions);
     }
+    if (consequence.estimator_before > 0) {
+        page.table({"state estimator", "before", "after"},
+                   {{"error of heave_velocity [mm/s]", core::format_number(1000 * consequence.estimator_before, 3),
+                     core::format_number(1000 * consequence.estimator_after, 3)}},
+                   "Root mean square of the velocity that a Kalman filter gives with the declared model and with the new one, less the velocity smoothed over "
+                   "whole runs with the new one (there is no truer reference in the data), after the first 2 s.");
+    }
 }
 
 void add_noise_and_limits(core::HtmlPage& page, const Discovery& d) {

@@ -1,4 +1,4 @@
-// The example data sets that came with the task; their truth is read here and nowhere in the program.
+// The example data sets in the shared folder; their truth is read here and nowhere in the program.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

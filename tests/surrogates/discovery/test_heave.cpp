@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 #include "make_data.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/heave_experiment.h"
@@ -35,12 +37,17 @@ TEST(HeaveDiscovery, SaysNoneOnCleanRuns) {
 }
 
 TEST(HeaveDiscovery, NamesFrictionInsideTheClosedLoop) {
-    const Discovery found = found_on([](double, double, double w) { return -0.004 * std::tanh(w / 5e-4); }, 2);
+    const auto friction = [](double, double, double w) { return -0.004 * std::tanh(w / 5e-4); };
+    const Discovery found = found_on(friction, 2);
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
     EXPECT_EQ(found.effects.at(0).name, "coulomb_friction");
     EXPECT_NEAR(found.effects.at(0).parameters.at(0).value, 0.004, 3e-4);
     EXPECT_LT(found.error.front().after.rmse, 0.5 * found.error.front().before.rmse);
     EXPECT_EQ(found.depends_on, std::vector<std::string>{"heave_velocity"});
+    EXPECT_GT(found.consequence.estimator_after, 0);
+    EXPECT_LT(found.consequence.estimator_after, 0.7 * found.consequence.estimator_before);
+    EXPECT_EQ(to_json(found)["consequence"]["estimator"]["rmse_after"], found.consequence.estimator_after);
+    EXPECT_NE(report_html(found, found.model, test::heave_runs(friction, 4, 50, 2), {}).find("state estimator"), std::string::npos);
 }
 
 TEST(HeaveDiscovery, GivesTheSameVerdictAtFiveHundredHertz) {

@@ -92,6 +92,7 @@ TEST(StaticDiscovery, WritesEverythingAndItsModelIsReadBack) {
     EXPECT_EQ(again.effects.front().name, "force_bias");
     EXPECT_NE(core::read_file(folder.path() / "found" / "report.html").find("force_bias"), std::string::npos);
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "found" / "next-experiment.csv"));
+    EXPECT_TRUE(json["consequence"]["estimator"].is_null()) << "set points have no motion to estimate";
 }
 
 TEST(StaticDiscovery, WritesSetPointsForTheNextExperimentWithinTheMeasuredRange) {
