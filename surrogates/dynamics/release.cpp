@@ -116,6 +116,7 @@ core::Figure release_figure(const std::vector<Release>& releases, const std::vec
     figure.title = "Release over the bottom jet";
     figure.x = {"time", "s"};
     figure.y = {"gap", "mm"};
+    figure.y.logarithmic = true;  // some settle within a millimetre, some leave
     for (std::size_t i = 0; i < releases.size(); ++i) {
         core::FigureCurve curve{
             (i < names.size() ? names[i] + ": " : std::string()) + release_outcome_name(releases[i].outcome),

@@ -259,7 +259,7 @@ void headings(ThesisDynamics& study) {
     core::Figure figure;
     figure.title = "A turn of 10 degrees by PD";
     figure.x = {"time", "s"};
-    figure.y = {"heading", "deg", -20, 60};
+    figure.y = {"heading", "deg"};
     std::string text;
     for (const double part : {0.8, 1.5, 4.0}) {
         VehicleHold hold;
@@ -300,7 +300,7 @@ void regulator(ThesisDynamics& study) {
     core::Figure figure;
     figure.title = "Heave held at 20 mm by LQR";
     figure.x = {"time", "s"};
-    figure.y = {"gap", "mm"};
+    figure.y = {"gap", "mm", 0, 60};
     TrajectoryOptions options;
     options.duration = 20;
     options.output_step = 0.05;

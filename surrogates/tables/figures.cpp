@@ -42,12 +42,18 @@ std::vector<double> base_point(const ForceTable& table, const Held& held) {
     return held_point(table, {}, all);
 }
 
+/// Small gaps are where the forces change: on a linear axis they would be one column of pixels.
+bool is_logarithmic(const ForceTable& table, std::size_t axis, const FigureOptions& options) {
+    const auto& a = table.axes()[axis];
+    return a.lower > 0 && options.logarithmic.value_or(a.name == "gap" && a.upper >= 20 * a.lower);
+}
+
 /// Samples that hold the grid lines, so that no corner is cut.
 std::vector<double> samples_of(const ForceTable& table, std::size_t axis, const FigureOptions& options) {
     std::vector<double> x = table.knots(axis).size() <= 200 ? table.knots(axis) : std::vector<double>{};
     const double low = table.axes()[axis].lower;
     const double high = table.axes()[axis].upper;
-    const bool log = options.logarithmic && low > 0;
+    const bool log = is_logarithmic(table, axis, options);
     for (int i = 0; i <= options.samples; ++i) {
         const double t = static_cast<double>(i) / options.samples;
         x.push_back(i == options.samples ? high : log ? low * std::pow(high / low, t) : low + (high - low) * t);
@@ -190,7 +196,7 @@ core::Figure curve_figure(const ForceTable& table, const FigureOptions& options)
     const auto at = base_point(table, options.held);
     core::Figure figure;
     figure.x = axis_of(table, table.axes()[axis].name);
-    figure.x.logarithmic = options.logarithmic && table.axes()[axis].lower > 0;
+    figure.x.logarithmic = is_logarithmic(table, axis, options);
     figure.y = axis_of(table, table.quantity());
     figure.title = options.title.empty() ? table.quantity() + " against " + table.axes()[axis].name : options.title;
     const std::string held = described(table, axis, at);
@@ -213,7 +219,7 @@ core::Figure family_figure(const ForceTable& table, const std::string& axis_name
     auto at = base_point(table, options.held);
     core::Figure figure;
     figure.x = axis_of(table, axis_name);
-    figure.x.logarithmic = options.logarithmic && table.axes()[axis].lower > 0;
+    figure.x.logarithmic = is_logarithmic(table, axis, options);
     figure.y = axis_of(table, table.quantity());
     figure.title = options.title.empty() ? table.quantity() + " against " + axis_name : options.title;
     figure.caption = caption_of(table);
@@ -251,6 +257,11 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
     figure.caption = caption_of(table);
     core::FigureMap map;
     map.columns = map.rows = static_cast<std::size_t>(std::clamp(options.samples / 2, 20, 400));
+    // Cells are of one width: a logarithmic axis needs narrow ones for its small end.
+    figure.x.logarithmic = is_logarithmic(table, kx, options);
+    figure.y.logarithmic = is_logarithmic(table, ky, options);
+    map.columns *= figure.x.logarithmic ? 6 : 1;
+    map.rows *= figure.y.logarithmic ? 6 : 1;
     map.x_lower = x_shown(ax.lower);
     map.x_upper = x_shown(ax.upper);
     map.y_lower = y_shown(ay.lower);
@@ -305,7 +316,9 @@ core::Figure comparison_figure(const std::vector<std::pair<std::string, ForceTab
         const auto at = base_point(table, options.held);
         if (colour == 0) {
             figure.x = axis_of(table, table.axes()[axis].name);
-            figure.x.logarithmic = options.logarithmic && table.axes()[axis].lower > 0;
+            figure.x.logarithmic = std::all_of(tables.begin(), tables.end(), [&](const auto& each) {
+                return each.second.axes()[chosen_axis(each.second, options.axis)].lower > 0;
+            }) && is_logarithmic(table, axis, options);
             figure.y = axis_of(table, table.quantity());
             figure.title = options.title.empty() ? table.quantity() + " of " + std::to_string(tables.size()) + " tables" : options.title;
             figure.caption = "Bands: two standard deviations.";

@@ -17,7 +17,8 @@ struct FigureOptions {
     Held held;                        ///< the other axes, SI; those that are missing take 0 (pitch) or the middle of their range
     std::optional<EquilibriumOptions> equilibria;  ///< draws the net weight and the equilibria
     std::string title;
-    bool logarithmic = false;         ///< the axis (positive values only)
+    /// Of the axis, where its values are positive. Not given: for a gap that spans a factor of twenty and more.
+    std::optional<bool> logarithmic;
     int samples = 400;
 };
 
