@@ -200,6 +200,10 @@ Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const
     }
     const std::uint64_t first = ids[0];
     const std::uint64_t last = ids[ids.size() - 1];
+    // The blocks of a zone may come in any order, so its two ends do not tell.
+    const bool gapless = std::adjacent_find(ids.begin(), ids.end(), [](std::uint64_t a, std::uint64_t b) {
+                             return b != a + 1;
+                         }) == ids.end();
     for (const auto& block : values_) {
         const bool ours = block.on_cells == on_cells && block.variable == key.variable && block.phase == key.phase &&
                           (block.zone == 0 || block.zone == zone) && block.count > 0 && block.first <= last &&
@@ -208,12 +212,22 @@ Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const
             continue;
         }
         const auto n = static_cast<std::size_t>(block.components);
+        const std::uint64_t from = std::max(first, block.first);
+        const std::uint64_t to = std::min(last + 1, block.first + block.count);
         if (result.values.empty()) {
             result.components = block.components;
             result.values.grow_to(ids.size() * n);
-            result.values.fill(missing);
+            if (!gapless || to - from < ids.size()) {
+                result.values.fill(missing);
+            }
         }
         if (block.components != result.components) {
+            continue;
+        }
+        if (gapless) {
+            std::copy_n(block.values.data() + (from - block.first) * n, (to - from) * n,
+                        result.values.data() + (from - first) * n);
+            result.found += to - from;
             continue;
         }
         for (std::size_t i = 0; i < ids.size(); ++i) {

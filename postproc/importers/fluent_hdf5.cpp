@@ -326,15 +326,15 @@ void Reader::cut_faces(const Part& part) {
     std::uint64_t at = 0;
     std::uint64_t id = part.first;
     std::vector<std::uint32_t> sizes;
-    const auto corners_of = [&](std::uint64_t count) {
+    // The corners of the faces from `from` on, with what came before them in `sum`.
+    const auto corners_of = [&](std::uint64_t from, std::uint64_t count, std::uint64_t sum) {
         sizes.resize(count);
-        file_.numbers(part.path + "/nnodes", id - part.first, count, sizes.data());
-        std::uint64_t sum = 0;
+        file_.numbers(part.path + "/nnodes", from - part.first, count, sizes.data());
         for (const std::uint32_t size : sizes) {
             sum += size;
         }
         if (sum > nodes[0] - std::min(at, nodes[0])) {
-            refuse(part.path, "faces up to " + number(id + count - 1) + " want more nodes than there are");
+            refuse(part.path, "faces up to " + number(from + count - 1) + " want more nodes than there are");
         }
         return sum;
     };
@@ -346,7 +346,7 @@ void Reader::cut_faces(const Part& part) {
         }
         while (id < block.first) {
             const std::uint64_t some = std::min(at_once, block.first - id);
-            at += corners_of(some);
+            at += corners_of(id, some, 0);
             id += some;
         }
         if (block.offsets.empty()) {
@@ -355,18 +355,24 @@ void Reader::cut_faces(const Part& part) {
         if (block.offsets.size() != id - block.first + 1) {
             refuse(part.path, "the faces of zone " + std::to_string(block.zone) + " are not in order");
         }
-        const std::uint64_t corners = corners_of(end - id);
         const std::size_t before = block.nodes.size();
-        if (before + corners > 0xffffffffULL) {
-            refuse(part.path, "too many corners");
+        std::uint64_t corners = 0;
+        std::size_t next = block.offsets.size();
+        block.offsets.grow_to(next + (end - id));
+        for (std::uint64_t from = id; from < end; from += at_once) {
+            const std::uint64_t sum = corners_of(from, std::min(at_once, end - from), corners);
+            if (before + sum > 0xffffffffULL) {
+                refuse(part.path, "too many corners");
+            }
+            std::uint64_t place = before + corners;
+            for (const std::uint32_t size : sizes) {
+                place += size;
+                block.offsets[next++] = static_cast<std::uint32_t>(place);
+            }
+            corners = sum;
         }
         block.nodes.grow_to(before + corners);
         file_.numbers(part.path + "/nodes", at, corners, block.nodes.data() + before);
-        std::uint64_t place = before;
-        for (const std::uint32_t size : sizes) {
-            place += size;
-            block.offsets.push(static_cast<std::uint32_t>(place));
-        }
         at += corners;
         id = end;
     }
