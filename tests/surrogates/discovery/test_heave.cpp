@@ -50,6 +50,12 @@ TEST(HeaveDiscovery, NamesFrictionInsideTheClosedLoop) {
     EXPECT_NE(report_html(found, found.model, test::heave_runs(friction, 4, 50, 2), {}).find("state estimator"), std::string::npos);
 }
 
+TEST(HeaveDiscovery, NamesADampingWhosePowerIsNearlyTwo) {
+    const Discovery found = found_on([](double, double, double w) { return -12 * std::copysign(std::pow(std::abs(w), 1.9), w); }, 6);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects.at(0).name, "quadratic_damping");
+}
+
 TEST(HeaveDiscovery, GivesTheSameVerdictAtFiveHundredHertz) {
     const auto tether = [](double, double h, double) { return -0.06 * (h - 0.12); };
     const Discovery slow = found_on(tether, 3, 50);
