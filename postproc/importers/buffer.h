@@ -1,11 +1,8 @@
 // An array that is not filled before it is read into, and that VTK can take over without a copy.
 #pragma once
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -60,20 +57,8 @@ public:
     [[nodiscard]] const T* end() const { return data_.get() + size_; }
 
 private:
-    /// Of an array of megabytes nearly all the time of the first touch goes into page faults. Only a hint: its failing
-    /// changes nothing.
-    static void ask_for_large_pages(T* data, std::size_t bytes) {
-        constexpr std::uintptr_t large = std::uintptr_t{1} << 21;
-        const auto begin = (reinterpret_cast<std::uintptr_t>(data) + large - 1) / large * large;
-        const auto end = (reinterpret_cast<std::uintptr_t>(data) + bytes) / large * large;
-        if (begin < end) {
-            ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-        }
-    }
-
     void move_to(std::size_t room) {
         std::unique_ptr<T[]> larger(new T[room]);  // on purpose without (): no zeros are written
-        ask_for_large_pages(larger.get(), room * sizeof(T));
         std::copy_n(data_.get(), size_, larger.get());
         data_ = std::move(larger);
         room_ = room;
