@@ -18,8 +18,7 @@ std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std
     return best;
 }
 
-Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& whole, const SmoothFit& rest,
-                      const Calibration& calibration) {
+Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest, const Calibration& calibration) {
     Attribution result;
     result.chosen = best_hypothesis(hypotheses, 2);
     if (result.chosen >= hypotheses.size()) {
@@ -49,14 +48,12 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     }
     const double structure = std::max(best.explained, 0.0) + std::max(rest.gain - rest.degrees, 0.0);
     const double left = structure > 0 ? std::max(rest.gain - rest.degrees, 0.0) / structure : 0;
-    const double whole_share = whole.gain > 0 ? 1 - std::max(best.explained, 0.0) / std::max(whole.gain, best.explained) : 0;
     const bool unexplained = rest.p < calibration.unknown_p && left > calibration.unknown_share;
     // a smooth step between the two verdicts: at the limits above the odds are even
     double unknown = 1 / (1 + std::exp(-12 * (left / calibration.unknown_share - 1)));
     if (rest.p > calibration.unknown_p) {
         unknown = std::min(unknown, 0.5 * calibration.unknown_p / rest.p);
     }
-    (void)whole_share;
     result.none_probability = gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
     result.unknown_probability = (1 - result.none_probability) * unknown;
     for (auto& [names, share] : by_names) {

@@ -40,10 +40,9 @@ struct Attribution {
     double none_probability = 0;
 };
 
-/// `singles` and `pairs` fitted to the same data; `null_cost` of the model as declared; `gate_p` from simulation;
-/// `rest` is the best smooth correction on top of the best named hypothesis, `whole` on the model as declared.
-Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& whole, const SmoothFit& rest,
-                      const Calibration& calibration);
+/// `hypotheses` fitted to the same data; `gate_p` from simulating the model as declared; `rest` is the best smooth
+/// correction on top of the best named hypothesis.
+Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest, const Calibration& calibration);
 
 /// The hypothesis of least score among those with at most `effects` names.
 std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects);

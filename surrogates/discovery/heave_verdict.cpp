@@ -143,7 +143,7 @@ void HeaveLoop::decide() {
             rest.p = 1;
         }
     }
-    attribution_ = attribute(fitted_, gate_, whole_, rest, calibration_);
+    attribution_ = attribute(fitted_, gate_, rest, calibration_);
     result_.verdict = attribution_.verdict;
     result_.gate = gate_;
     result_.none_probability = attribution_.none_probability;

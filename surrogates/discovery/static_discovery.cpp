@@ -337,7 +337,7 @@ private:
     }
 
     void decide() {
-        attribution_ = attribute(fitted_, gate_, whole_, rest_, calibration_);
+        attribution_ = attribute(fitted_, gate_, rest_, calibration_);
         result_.verdict = attribution_.verdict;
         result_.gate = gate_;
         result_.none_probability = attribution_.none_probability;
