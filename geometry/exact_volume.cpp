@@ -149,7 +149,7 @@ double ExactBody::volume() const {
         };
         for (int i = 0; i < parts; ++i) {
             sum += integral(
-                [&](double w) {
+                [&, low = low, high = high](double w) {
                     const double u = height(w);
                     return bend.of(section(*this, u), u) * (high - low) * 0.5 * pi * std::sin(pi * w);
                 },
