@@ -137,6 +137,10 @@ public:
 
     Field read() {
         const std::vector<Block> blocks = find_blocks();
+        if (blocks.empty()) {
+            throw InputError("format", "the file holds no block of data", {field_.files[0], {}, {}, {}},
+                             "an export of CFD-Post has [Name] and [Data] sections");
+        }
         std::size_t done = 0;
         for (const auto& block : blocks) {
             progress_.report(static_cast<double>(done++) / static_cast<double>(blocks.size()), "reading " + block.name);
