@@ -18,6 +18,11 @@ std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std
     return best;
 }
 
+double structure_left(const SmoothFit& rest, double explained) {
+    const double left = std::max(0.0, rest.gain - rest.degrees);
+    return left / std::max(left + std::max(explained, 0.0), 1e-12);
+}
+
 Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest, const Calibration& calibration) {
     Attribution result;
     result.chosen = best_hypothesis(hypotheses, 2);
@@ -46,8 +51,7 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     for (const auto& [names, share] : by_names) {
         total += share.probability;
     }
-    const double structure = std::max(best.explained, 0.0) + std::max(rest.gain - rest.degrees, 0.0);
-    const double left = structure > 0 ? std::max(rest.gain - rest.degrees, 0.0) / structure : 0;
+    const double left = structure_left(rest, best.explained);
     const bool unexplained = rest.p < calibration.unknown_p && left > calibration.unknown_share;
     // a smooth step between the two verdicts: at the limits above the odds are even
     double unknown = 1 / (1 + std::exp(-12 * (left / calibration.unknown_share - 1)));

@@ -44,6 +44,9 @@ struct Attribution {
 /// correction on top of the best named hypothesis.
 Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest, const Calibration& calibration);
 
+/// Share of all structure that a smooth function still finds (`rest`) beside what explains `explained`.
+double structure_left(const SmoothFit& rest, double explained);
+
 /// The hypothesis of least score among those with at most `effects` names.
 std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects);
 

@@ -10,6 +10,7 @@
 #include "surrogates/discovery/heave_loop.h"
 #include "surrogates/discovery/heave_next.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/discovery/telling.h"
 #include "surrogates/discovery/wording.h"
 
 namespace underbody::discovery {
@@ -45,15 +46,11 @@ void HeaveLoop::measure_error() {
                                                         : estimator_error(test, uses_, after_noise_, uses_, after_noise_);
 }
 
-FoundEffect HeaveLoop::found(std::size_t index, double probability) const {
-    const FittedHypothesis& one = fitted_[index];
-    FoundEffect effect = found_effect(one, probability);
+std::string HeaveLoop::evidence(const FittedHypothesis& one) {
     const auto helped = std::count_if(one.explained_by_group.begin(), one.explained_by_group.end(), [](double x) { return x > 0; });
-    effect.evidence = "-2 log likelihood falls by " + core::format_number(one.explained, 4) + " for " +
-                      std::to_string(one.hypothesis.parameters.size()) + " free number(s), in " + std::to_string(helped) + " of " +
-                      std::to_string(one.explained_by_group.size()) + " runs" +
-                      (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
-    return effect;
+    return "-2 log likelihood falls by " + core::format_number(one.explained, 4) + " for " + std::to_string(one.hypothesis.parameters.size()) +
+           " free number(s), in " + std::to_string(helped) + " of " + std::to_string(one.explained_by_group.size()) + " runs" +
+           (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
 }
 
 void HeaveLoop::describe() {
@@ -65,46 +62,9 @@ void HeaveLoop::describe() {
         result_.noise["heave_velocity"] = {null_noise_.velocity, "m/s", experiment_->velocity_noise_from(), records_.velocity_noise};
     }
     result_.stability = stability();
-    if (result_.verdict == "effect") {
-        const FittedHypothesis& best = fitted_[attribution_.chosen];
-        for (FoundEffect& effect : split_by_name(found(attribution_.chosen, attribution_.shares.front().probability), best)) {
-            result_.effects.push_back(std::move(effect));
-        }
-    } else if (result_.verdict == "unknown") {
-        FoundEffect unknown;
-        unknown.name = "unknown";
-        unknown.probability = attribution_.unknown_probability;
-        unknown.depends_on = whole_.variables;
-        unknown.uses = uses_;
-        unknown.explained = whole_.gain;
-        unknown.evidence = "the best named effect (" + fitted_[attribution_.chosen].hypothesis.label() + ") leaves " +
-                           core::format_number(100 * rest_.share, 3) +
-                           " % of the structure; a smooth force over " + list_of(whole_.variables) + " takes its place";
-        result_.effects.push_back(std::move(unknown));
-    }
-    for (const Attribution::Share& share : attribution_.shares) {
-        const bool is_verdict = result_.verdict == "effect" && share.hypothesis == attribution_.chosen;
-        if (!is_verdict && result_.alternatives.size() < 6 && (share.probability > 1e-3 || result_.alternatives.size() < 3)) {
-            FoundEffect rival = found(share.hypothesis, share.probability);
-            rival.name = fitted_[share.hypothesis].hypothesis.label();
-            if (result_.verdict == "effect") {
-                rival.told_apart_by = heave_told_apart(*experiment_, fitted_[attribution_.chosen], fitted_[share.hypothesis]);
-            }
-            result_.alternatives.push_back(std::move(rival));
-        }
-    }
-    if (result_.verdict == "effect" && attribution_.unknown_probability > 1e-3) {
-        FoundEffect unknown;
-        unknown.name = "unknown";
-        unknown.probability = attribution_.unknown_probability;
-        unknown.depends_on = rest_.fit.variables;
-        result_.alternatives.push_back(std::move(unknown));
-    }
-    for (std::size_t i = 0; i < singles_; ++i) {
-        const FittedHypothesis& one = fitted_[i];
-        result_.limits.push_back({one.hypothesis.names.front(), one.hypothesis.parameters.front().name, 5 * one.fit.sigma.front(),
-                                  one.hypothesis.parameters.front().unit});
-    }
+    tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth force", evidence,
+          [&](const FittedHypothesis& chosen, const FittedHypothesis& rival) { return heave_told_apart(*experiment_, chosen, rival); }},
+         result_);
     next_heave_experiment(*experiment_, fitted_, attribution_, result_);
     for (const core::Problems* list : std::initializer_list<const core::Problems*>{&data_.problems, &records_.problems, &experiment_->problems()}) {
         result_.problems.insert(result_.problems.end(), list->begin(), list->end());

@@ -5,8 +5,8 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/discovery/consequence.h"
 #include "surrogates/discovery/statistics.h"
-#include "surrogates/dynamics/region.h"
 
 namespace underbody::discovery {
 
@@ -115,25 +115,15 @@ Consequence heave_consequence(const dynamics::Model& before, const dynamics::Mod
                               core::Progress& progress) {
     Consequence result;
     const dynamics::Conditions held = records.records.front().plant->held();
-    try {
-        const dynamics::HeavePlant old_plant(before, held);
-        const dynamics::HeavePlant new_plant(after, held);
-        const std::vector<dynamics::HeaveEquilibrium> old_list = dynamics::heave_equilibria(old_plant);
-        std::vector<dynamics::HeaveEquilibrium> new_list = dynamics::heave_equilibria(new_plant);
-        for (const dynamics::HeaveEquilibrium& one : old_list) {
-            EquilibriumPair pair{one.name, one.stable, one.gap, std::nan("")};
-            const auto nearest = std::min_element(new_list.begin(), new_list.end(), [&](const auto& a, const auto& b) {
-                return std::abs(a.gap - one.gap) + (a.stable != one.stable) * 1e3 < std::abs(b.gap - one.gap) + (b.stable != one.stable) * 1e3;
-            });
-            if (nearest != new_list.end() && nearest->stable == one.stable) {
-                pair.gap_after = nearest->gap;
-                new_list.erase(nearest);
+    map_if_possible(result, [&] {
+        const auto balances = [&](const dynamics::Model& model) {
+            std::vector<Balance> list;
+            for (const dynamics::HeaveEquilibrium& one : dynamics::heave_equilibria(dynamics::HeavePlant(model, held))) {
+                list.push_back({one.name, one.stable, one.gap});
             }
-            result.equilibria.push_back(pair);
-        }
-        for (const dynamics::HeaveEquilibrium& one : new_list) {
-            result.equilibria.push_back({one.name, one.stable, std::nan(""), one.gap});
-        }
+            return list;
+        };
+        result.equilibria = paired(balances(before), balances(after));
         double low = 1e300, high = -1e300;
         for (const HeaveRecord& record : records.records) {
             for (const double gap : record.gap) {
@@ -143,27 +133,12 @@ Consequence heave_consequence(const dynamics::Model& before, const dynamics::Mod
                 }
             }
         }
-        dynamics::RegionOptions options;
-        options.axes = {{"gap", std::max(low, 1e-3), std::max(high, 2e-3)}, {"heave_velocity", -0.1, 0.1}};
-        options.columns = options.rows = 40;
-        options.refine = false;
-        options.held = held;
-        const auto shares = [&](const dynamics::Model& model) {
-            std::map<std::string, double> fractions;
-            for (const dynamics::EndClass& one : dynamics::stability_region(model, options, progress).classes) {
-                fractions[one.name] = one.fraction;
-            }
-            return fractions;
-        };
-        result.region_before = shares(before);
-        result.region_after = after.effects.size() == before.effects.size() && after.changed == before.changed ? result.region_before : shares(after);
-        result.text = "Free motion (no input force) from starts with gaps of " + core::format_number(1000 * options.axes[0].lower, 3) + " to " +
-                      core::format_number(1000 * options.axes[0].upper, 3) + " mm and velocities of -0.1 to 0.1 m/s.";
-    } catch (const core::Cancelled&) {
-        throw;
-    } catch (const core::Error& error) {
-        result.text = "The free motion could not be mapped: " + error.message();
-    }
+        low = std::max(low, 1e-3);
+        high = std::max(high, 2e-3);
+        compare_regions(before, after, low, high, held, 40, progress, result);
+        result.text = "Free motion (no input force) from starts with gaps of " + core::format_number(1000 * low, 3) + " to " +
+                      core::format_number(1000 * high, 3) + " mm and velocities of -0.1 to 0.1 m/s.";
+    });
     return result;
 }
 

@@ -60,11 +60,6 @@ std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
 
 }  // namespace
 
-double structure_left(const SmoothFit& rest, double explained) {
-    const double left = std::max(0.0, rest.gain - rest.degrees);
-    return left / std::max(left + std::max(explained, 0.0), 1e-12);
-}
-
 std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                                                 const HeaveNoise& noise, const DesignMatrix& own, bool named) const {
     std::vector<double> innovations;

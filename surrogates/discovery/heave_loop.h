@@ -75,7 +75,7 @@ private:
     // heave_describe.cpp
     void measure_error();
     void describe();
-    [[nodiscard]] FoundEffect found(std::size_t index, double probability) const;
+    [[nodiscard]] static std::string evidence(const FittedHypothesis& one);
     void check_excitation();
     void check_runs_agree();
     void warn(const std::string& text);
@@ -105,8 +105,5 @@ private:
     std::vector<dynamics::EffectUse> uses_;
     Discovery result_;
 };
-
-/// Share of all structure that a smooth force of `rest` still finds beside what explains `explained`.
-double structure_left(const SmoothFit& rest, double explained);
 
 }  // namespace underbody::discovery

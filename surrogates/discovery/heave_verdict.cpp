@@ -8,6 +8,7 @@
 #include "surrogates/discovery/heave_error.h"
 #include "surrogates/discovery/heave_loop.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/discovery/telling.h"
 
 namespace underbody::discovery {
 
@@ -150,12 +151,7 @@ void HeaveLoop::decide() {
     result_.model = model_;
     after_noise_ = null_noise_;
     if (result_.verdict == "effect") {
-        const FittedHypothesis& best = fitted_[attribution_.chosen];
-        uses_ = best.hypothesis.with(best.fit.parameters);
-        for (std::size_t j = 0; j < best.hypothesis.slots.size(); ++j) {
-            const Hypothesis::Slot& slot = best.hypothesis.slots[j];
-            uses_[slot.use].sigmas[slot.value] = std::isfinite(best.fit.sigma[j]) ? best.fit.sigma[j] : 0;
-        }
+        uses_ = found_effect(fitted_[attribution_.chosen], 1).uses;
         after_noise_ = noises_[attribution_.chosen];
     } else if (result_.verdict == "unknown" && !whole_list_.empty()) {
         const HeaveExperiment::Smooth smooth = refined(best_smooth(whole_list_));
@@ -178,31 +174,9 @@ double HeaveLoop::stability() const {
     if (result_.verdict == "unknown") {
         return attribution_.unknown_probability;
     }
-    core::Random random(options_.seed + 1);
-    const std::size_t groups = null_by_record_.size();
-    int same = 0;
-    constexpr int resamples = 200;
-    for (int d = 0; d < resamples; ++d) {
-        std::vector<double> weight(groups, 0);
-        for (std::size_t g = 0; g < groups; ++g) {
-            weight[random.below(groups)] += 1;
-        }
-        double best = 1e300;
-        std::size_t chosen = 0;
-        for (const Attribution::Share& share : attribution_.shares) {
-            const FittedHypothesis& one = fitted_[share.hypothesis];
-            double score = one.occam;
-            for (std::size_t g = 0; g < groups; ++g) {
-                score -= weight[g] * one.explained_by_group[g];
-            }
-            if (score < best) {
-                best = score;
-                chosen = share.hypothesis;
-            }
-        }
-        same += chosen == attribution_.chosen ? 1 : 0;
-    }
-    return static_cast<double>(same) / resamples;
+    return share_of_draws(null_by_record_.size(), options_.seed + 1, [&](const std::vector<double>& weight) {
+        return best_in_draw(attribution_, fitted_, weight) == attribution_.chosen;
+    });
 }
 
 }  // namespace underbody::discovery

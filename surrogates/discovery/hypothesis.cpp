@@ -237,6 +237,14 @@ std::vector<dynamics::EffectUse> Hypothesis::with(std::span<const double> p) con
     return result;
 }
 
+std::vector<double> Hypothesis::start() const {
+    std::vector<double> p;
+    for (const FitParameter& parameter : parameters) {
+        p.push_back(parameter.start);
+    }
+    return p;
+}
+
 std::string Hypothesis::label() const {
     std::string text;
     for (const std::string& name : names) {
@@ -353,31 +361,13 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
     }
     if (sources == 1) {
         // the scale of the force table and its exponents are the declared numbers that have no name of their own in the catalogue
-        const auto add = [&](const std::string& parameter, double declared, double size, double lower, double upper,
-                             const std::string& depends) {
-            Hypothesis hypothesis;
-            hypothesis.names = {"declared_parameter"};
-            dynamics::EffectUse use = dynamics::neutral_use("declared_parameter");
-            use.parameter = parameter;
-            use.values[0] = declared;
-            hypothesis.form = parameter;
-            hypothesis.uses = {use};
-            hypothesis.parameters = {{"value", "1", lower, upper, declared, size}};
-            hypothesis.slots = {{0, 0}};
-            hypothesis.starts = {{declared + 0.2 * size}};
-            hypothesis.depends_on = {"gap"};
-            if (!depends.empty()) {
-                hypothesis.depends_on.push_back(depends);
-            }
-            list.push_back(std::move(hypothesis));
-        };
         const dynamics::ForceSource& source = model.forces[which];
         const std::string prefix = "force." + std::to_string(which + 1) + ".";
-        add(prefix + "factor", source.factor, 0.1 * source.factor, 0.05 * source.factor, 20 * source.factor, "");
+        list.push_back(of_declared(prefix + "factor", source.factor, 0.05 * source.factor, 20 * source.factor, 0.1 * source.factor, {"gap"}));
         for (const dynamics::ForceScale& scale : source.scales) {
             if (std::find(varying.begin(), varying.end(), scale.channel) != varying.end()) {
                 const std::string channel = dynamics::channel_name(scale.channel);
-                add(prefix + "scale." + channel + ".exponent", scale.exponent, 0.2, -6, 10, channel);
+                list.push_back(of_declared(prefix + "scale." + channel + ".exponent", scale.exponent, -6, 10, 0.2, {"gap", channel}));
             }
         }
     }

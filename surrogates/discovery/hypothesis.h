@@ -34,6 +34,8 @@ struct Hypothesis {
 
     /// The uses with these numbers.
     [[nodiscard]] std::vector<dynamics::EffectUse> with(std::span<const double> p) const;
+    /// The free numbers as they stand.
+    [[nodiscard]] std::vector<double> start() const;
     [[nodiscard]] std::string label() const;  ///< "coulomb_friction + input_delay"
 };
 

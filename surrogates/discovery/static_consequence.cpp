@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "surrogates/discovery/consequence.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
-#include "surrogates/dynamics/region.h"
 
 namespace underbody::discovery {
 
@@ -29,11 +29,6 @@ dynamics::Conditions middle_of(const StaticExperiment& experiment) {
     return middle;
 }
 
-struct Balance {
-    double gap = 0;
-    bool stable = false;
-};
-
 /// Zeros of lift less net weight over the measured gaps.
 std::vector<Balance> balances(const dynamics::Model& model, const dynamics::Conditions& held, double low, double high) {
     const dynamics::StaticModel lift(model, "lift_force");
@@ -54,33 +49,11 @@ std::vector<Balance> balances(const dynamics::Model& model, const dynamics::Cond
                 const double c = 0.5 * (a + b);
                 (excess(c) * left > 0 ? a : b) = c;
             }
-            list.push_back({0.5 * (a + b), left > 0});
+            list.push_back({left > 0 ? "rest" : "watershed", left > 0, 0.5 * (a + b)});
         }
         left = right;
     }
     return list;
-}
-
-std::vector<EquilibriumPair> paired(const std::vector<Balance>& before, std::vector<Balance> after) {
-    std::vector<EquilibriumPair> pairs;
-    for (const Balance& one : before) {
-        EquilibriumPair pair{one.stable ? "rest" : "watershed", one.stable, one.gap, std::nan("")};
-        auto nearest = after.end();
-        for (auto other = after.begin(); other != after.end(); ++other) {
-            if (other->stable == one.stable && (nearest == after.end() || std::abs(std::log(other->gap / one.gap)) < std::abs(std::log(nearest->gap / one.gap)))) {
-                nearest = other;
-            }
-        }
-        if (nearest != after.end()) {
-            pair.gap_after = nearest->gap;
-            after.erase(nearest);
-        }
-        pairs.push_back(pair);
-    }
-    for (const Balance& one : after) {
-        pairs.push_back({one.stable ? "rest" : "watershed", one.stable, std::nan(""), one.gap});
-    }
-    return pairs;
 }
 
 }  // namespace
@@ -139,27 +112,10 @@ Consequence static_consequence(const dynamics::Model& before, const std::vector<
     if (body.empty() && !uses.empty()) {
         return result;
     }
-    try {
-        dynamics::RegionOptions options;
-        options.axes = {{"gap", low, high}, {"heave_velocity", -0.1, 0.1}};
-        options.columns = options.rows = 30;
-        options.refine = false;
-        options.held = held;
-        const auto shares = [&](const dynamics::Model& model) {
-            std::map<std::string, double> fractions;
-            for (const dynamics::EndClass& one : dynamics::stability_region(model, options, progress).classes) {
-                fractions[one.name] = one.fraction;
-            }
-            return fractions;
-        };
-        result.region_before = shares(before);
-        result.region_after = uses.empty() ? result.region_before : shares(after);
+    map_if_possible(result, [&] {
+        compare_regions(before, after, low, high, held, 30, progress, result);
         result.text += " Shares of starts with those gaps and velocities of -0.1 to 0.1 m/s, without input.";
-    } catch (const core::Cancelled&) {
-        throw;
-    } catch (const core::Error& error) {
-        result.text += " The free motion could not be mapped: " + error.message();
-    }
+    });
     return result;
 }
 

@@ -1,17 +1,9 @@
 #include "surrogates/discovery/static_experiment.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
-
-#include "core/random.h"
-#include "core/text.h"
-#include "core/units.h"
-#include "surrogates/discovery/flexible.h"
-#include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
 
@@ -19,12 +11,6 @@ using dynamics::Channel;
 using dynamics::channel_count;
 
 namespace {
-
-/// The channels that make a set point; the others (time, temperature, direction) come along with it.
-bool sets_the_point(Channel channel) {
-    return channel == Channel::gap || channel == Channel::speed || channel == Channel::jet_voltage || channel == Channel::pitch ||
-           channel == Channel::depth || channel == Channel::jet_flow;
-}
 
 dynamics::Conditions conditions_of(const dynamics::MeasuredRun& run, std::size_t row) {
     dynamics::Conditions at;
@@ -44,6 +30,11 @@ dynamics::Conditions conditions_of(const dynamics::MeasuredRun& run, std::size_t
 }
 
 }  // namespace
+
+bool sets_the_point(Channel channel) {
+    return channel == Channel::gap || channel == Channel::speed || channel == Channel::jet_voltage || channel == Channel::pitch ||
+           channel == Channel::depth || channel == Channel::jet_flow;
+}
 
 StaticExperiment::StaticExperiment(const dynamics::Model& model, const dynamics::Measurements& data) : model_(model.resolved()) {
     const std::vector<std::string> known = model_.quantities();
@@ -214,159 +205,6 @@ double StaticExperiment::sigma(const Observation& observation) const {
     return observation.sigma > 0 && figure.declared > 0 ? figure.value * observation.sigma / figure.declared : figure.value;
 }
 
-namespace {
-
-/// Takes the mean of each set point off every column and off y; degrees lost are the number of set points seen.
-std::size_t take_means_off(const std::vector<std::size_t>& set_point, DesignMatrix& columns, std::vector<double>& y) {
-    const std::size_t points = set_point.empty() ? 0 : *std::max_element(set_point.begin(), set_point.end()) + 1;
-    std::vector<double> count(points, 0);
-    for (const std::size_t g : set_point) {
-        count[g] += 1;
-    }
-    const auto centre = [&](double* values) {
-        std::vector<double> sum(points, 0);
-        for (std::size_t i = 0; i < set_point.size(); ++i) {
-            sum[set_point[i]] += values[i];
-        }
-        for (std::size_t i = 0; i < set_point.size(); ++i) {
-            values[i] -= sum[set_point[i]] / count[set_point[i]];
-        }
-    };
-    for (std::size_t k = 0; k < columns.columns; ++k) {
-        centre(columns.values.data() + k * columns.rows);
-    }
-    centre(y.data());
-    return static_cast<std::size_t>(std::count_if(count.begin(), count.end(), [](double c) { return c > 0; }));
-}
-
-}  // namespace
-
-void StaticExperiment::mark_accidents(const std::vector<std::size_t>& observations) {
-    for (const std::size_t i : observations) {
-        observations_[i].accident = true;
-    }
-}
-
-void StaticExperiment::estimate_noise() {
-    std::erase_if(problems_, [](const core::Problem& problem) { return problem.message.rfind("the declared noise of ", 0) == 0; });
-    for (std::size_t q = 0; q < quantities_.size(); ++q) {
-        std::vector<const Observation*> own;
-        for (const Observation& one : observations_) {
-            if (one.quantity == q && !one.accident) {
-                own.push_back(&one);
-            }
-        }
-        std::vector<double> y;
-        std::vector<double> force;
-        std::vector<std::size_t> set_point;
-        std::vector<std::pair<std::size_t, std::size_t>> cells;
-        double declared_square = 0;
-        for (const Observation* one : own) {
-            force.push_back(predict(*one, {}));
-            y.push_back(one->value - force.back());
-            set_point.push_back(one->set_point);
-            cells.emplace_back(one->set_point, one->run);
-            declared_square += one->sigma * one->sigma;
-        }
-        const std::size_t n = own.size();
-        // repeats within one run where there are enough of them: runs may contradict each other
-        std::map<std::pair<std::size_t, std::size_t>, std::size_t> cell_index;
-        for (const auto& cell : cells) {
-            cell_index.emplace(cell, cell_index.size());
-        }
-        if (n >= cell_index.size() + 20) {
-            for (std::size_t i = 0; i < n; ++i) {
-                set_point[i] = cell_index.at(cells[i]);
-            }
-        }
-        const std::set<std::size_t> distinct(set_point.begin(), set_point.end());
-        const bool repeats = n >= distinct.size() + 20;
-        // what may change between repeats: time, temperature, direction, each alone and in proportion to the force
-        const auto design_of = [&](std::size_t time_columns) {
-            DesignMatrix design;
-            design.rows = n;
-            for (const Channel channel : varying_) {
-                if (repeats && sets_the_point(channel)) {
-                    continue;
-                }
-                std::vector<double> variable;
-                for (const Observation* one : own) {
-                    variable.push_back(one->at[channel]);
-                }
-                const SplineBasis splines(variable, channel == Channel::time ? time_columns : repeats ? 4 : 6);
-                std::vector<double> out(splines.columns());
-                const std::size_t first = design.columns;
-                design.columns += 2 * splines.columns();
-                design.values.resize(design.columns * n);
-                for (std::size_t i = 0; i < n; ++i) {
-                    splines.evaluate(variable[i], out.data());
-                    for (std::size_t k = 0; k < out.size(); ++k) {
-                        design.at(i, first + k) = out[k];
-                        design.at(i, first + out.size() + k) = out[k] * force[i];
-                    }
-                }
-            }
-            return design;
-        };
-        const std::vector<double> raw = y;
-        DesignMatrix basis;
-        std::size_t lost = 1;
-        double rest = 0;
-        double degrees = 0;
-        const auto fit_out = [&](std::size_t time_columns) {
-            DesignMatrix design = design_of(time_columns);
-            y = raw;
-            lost = repeats ? take_means_off(set_point, design, y) : 1;
-            basis = orthonormal(design);
-            rest = -explained_square(basis, y);
-            for (const double value : y) {
-                rest += value * value;
-            }
-            degrees = static_cast<double>(n) - static_cast<double>(lost + basis.columns);
-        };
-        fit_out(repeats ? 4 : 6);
-        if (repeats && n >= 120) {
-            // several waves in a day of measuring are no noise; colour alone does not make the difference that is asked for here
-            const double few_rest = rest;
-            const double few_degrees = degrees;
-            fit_out(14);
-            const double columns = few_degrees - degrees;
-            const bool waves = columns > 0 && degrees > 20 && f_tail((few_rest - rest) / columns / std::max(rest / degrees, 1e-300), columns, degrees) < 1e-6;
-            if (!waves) {
-                fit_out(4);
-            }
-        }
-        NoiseFigure figure;
-        figure.unit = core::find_quantity(quantities_[q])->unit;
-        figure.declared = std::sqrt(declared_square / static_cast<double>(n));
-        if (degrees >= 6) {
-            figure.estimated = std::sqrt(std::max(rest, 0.0) / degrees);
-        }
-        const double ratio = figure.declared > 0 && figure.estimated > 0 ? figure.estimated / figure.declared : 1;
-        const double spread = degrees > 0 ? 1 / std::sqrt(2 * degrees) : 1;
-        const bool wrong = std::abs(std::log(ratio)) > std::max(0.15, 3.5 * spread);
-        if (figure.declared > 0 && !wrong) {
-            figure.value = figure.declared;
-            figure.from = "declared";
-        } else if (figure.estimated > 0) {
-            figure.value = figure.estimated;
-            figure.from = figure.declared > 0 ? "estimated: the declared figure is wrong by a factor of " + core::format_number(ratio, 3)
-                                              : "estimated";
-            if (figure.declared > 0) {
-                problems_.push_back({core::Problem::Severity::warning,
-                                     "the declared noise of " + quantities_[q] + " (" + core::format_number(figure.declared, 3) + " " +
-                                         figure.unit + ") disagrees with the scatter of the data (" +
-                                         core::format_number(figure.estimated, 3) + " " + figure.unit + "): the scatter is used",
-                                     {}});
-            }
-        } else {
-            figure.value = std::max(root_mean_square(y), 1e-12);
-            figure.from = "estimated";
-        }
-        noise_[quantities_[q]] = figure;
-    }
-}
-
 void StaticExperiment::residuals(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
                                  std::vector<double>& out) const {
     out.resize(chosen.size());
@@ -383,90 +221,6 @@ void StaticExperiment::residuals(const std::vector<std::size_t>& chosen, const s
     whiten(chosen, out.data());
 }
 
-bool StaticExperiment::find_colour(const std::vector<std::size_t>& chosen, const std::vector<double>& residuals) {
-    constexpr std::size_t order = 4;
-    colour_.assign(quantities_.size(), {});
-    bool found = false;
-    for (std::size_t q = 0; q < quantities_.size(); ++q) {
-        std::vector<double> own;
-        for (std::size_t i = 0; i < chosen.size(); ++i) {
-            if (observations_[chosen[i]].quantity == q) {
-                own.push_back(residuals[i]);
-            }
-        }
-        if (own.size() < 40) {
-            continue;
-        }
-        const double n = static_cast<double>(own.size());
-        double portmanteau = 0;
-        Eigen::VectorXd r(order);
-        for (std::size_t k = 1; k <= 6; ++k) {
-            const double rho = autocorrelation(own, k);
-            portmanteau += n * (n + 2) * rho * rho / (n - static_cast<double>(k));
-            if (k <= order) {
-                r(static_cast<Eigen::Index>(k) - 1) = rho;
-            }
-        }
-        if (chi_squared_tail(portmanteau, 6) > 0.003) {
-            continue;
-        }
-        Eigen::MatrixXd toeplitz(order, order);
-        for (Eigen::Index i = 0; i < toeplitz.rows(); ++i) {
-            for (Eigen::Index j = 0; j < toeplitz.cols(); ++j) {
-                toeplitz(i, j) = i == j ? 1.0 : r(std::abs(i - j) - 1);
-            }
-        }
-        const Eigen::VectorXd a = toeplitz.ldlt().solve(r);
-        const double share = 1 - a.dot(r);
-        if (share > 0.02 && share < 1) {
-            colour_[q].assign(a.data(), a.data() + order);
-            colour_[q].push_back(std::sqrt(share));
-            found = true;
-        }
-    }
-    return found;
-}
-
-std::vector<double> StaticExperiment::drawn_noise(std::uint64_t seed) const {
-    core::Random random(seed);
-    std::vector<double> noise(observations_.size());
-    std::vector<std::vector<double>> past(quantities_.size());
-    for (std::size_t i = 0; i < observations_.size(); ++i) {
-        const std::size_t q = observations_[i].quantity;
-        const std::vector<double>* colour = colour_.empty() || colour_[q].empty() ? nullptr : &colour_[q];
-        double value = random.normal() * (colour != nullptr ? colour->back() : 1);
-        for (std::size_t k = 1; colour != nullptr && k < colour->size() && k <= past[q].size(); ++k) {
-            value += (*colour)[k - 1] * past[q][past[q].size() - k];
-        }
-        past[q].push_back(value);
-        noise[i] = value * sigma(observations_[i]);
-    }
-    return noise;
-}
-
-void StaticExperiment::whiten(const std::vector<std::size_t>& chosen, double* values) const {
-    if (colour_.empty()) {
-        return;
-    }
-    for (std::size_t i = chosen.size(); i-- > 0;) {
-        const Observation& one = observations_[chosen[i]];
-        const std::vector<double>& colour = colour_[one.quantity];
-        if (colour.empty() || i + 1 < colour.size()) {
-            continue;
-        }
-        double value = values[i];
-        bool same = true;
-        for (std::size_t k = 1; k < colour.size(); ++k) {
-            const Observation& before = observations_[chosen[i - k]];
-            same = same && before.quantity == one.quantity && before.run == one.run;
-            value -= colour[k - 1] * values[i - k];
-        }
-        if (same) {
-            values[i] = value / colour.back();
-        }
-    }
-}
-
 FittedHypothesis StaticExperiment::fit(const Hypothesis& hypothesis, const std::vector<std::size_t>& chosen) const {
     FittedHypothesis best;
     best.hypothesis = hypothesis;
@@ -476,10 +230,7 @@ FittedHypothesis StaticExperiment::fit(const Hypothesis& hypothesis, const std::
     };
     std::vector<std::vector<double>> starts = hypothesis.starts;
     if (starts.empty()) {
-        starts.emplace_back();
-        for (const FitParameter& parameter : hypothesis.parameters) {
-            starts.back().push_back(parameter.start);
-        }
+        starts.push_back(hypothesis.start());
     }
     bool first = true;
     for (const std::vector<double>& start : starts) {

@@ -35,6 +35,9 @@ struct NoiseFigure {
     double estimated = 0;          ///< from the scatter between repeats and smooth neighbours; 0: could not be had
 };
 
+/// The channels that make a set point; the others (time, temperature, direction) come along with it.
+bool sets_the_point(dynamics::Channel channel);
+
 /// The measurements as a list of observations, and the model that shall explain them. Immutable once made.
 class StaticExperiment {
 public:

@@ -18,65 +18,6 @@ std::string list_of(const std::vector<std::string>& names) {
     return text;
 }
 
-FoundEffect found_effect(const FittedHypothesis& fitted, double probability) {
-    FoundEffect effect;
-    effect.name = fitted.hypothesis.names.empty() ? "none" : fitted.hypothesis.names.front();
-    effect.depends_on = fitted.hypothesis.depends_on;
-    effect.probability = probability;
-    effect.explained = fitted.explained;
-    effect.uses = fitted.hypothesis.with(fitted.fit.parameters);
-    for (std::size_t j = 0; j < fitted.hypothesis.parameters.size(); ++j) {
-        const Hypothesis::Slot& slot = fitted.hypothesis.slots[j];
-        const dynamics::EffectUse& use = fitted.hypothesis.uses[slot.use];
-        const bool several = std::count_if(fitted.hypothesis.uses.begin(), fitted.hypothesis.uses.end(),
-                                           [&](const auto& other) { return other.name == use.name; }) > 1;
-        const double sigma = std::isfinite(fitted.fit.sigma[j]) ? fitted.fit.sigma[j] : 0;
-        const bool helper = fitted.hypothesis.names.size() == 1 && use.name != effect.name;
-        effect.parameters.push_back({several && !use.quantity.empty() ? use.quantity + "." + fitted.hypothesis.parameters[j].name
-                                     : helper ? use.name + "." + fitted.hypothesis.parameters[j].name
-                                              : fitted.hypothesis.parameters[j].name,
-                                     fitted.fit.parameters[j], sigma, fitted.hypothesis.parameters[j].unit});
-        effect.uses[slot.use].sigmas[slot.value] = sigma;
-    }
-    for (const Hypothesis::Copy& copy : fitted.hypothesis.copies) {
-        const dynamics::EffectParameter& parameter = dynamics::effect(fitted.hypothesis.uses[copy.to.use].name).info().parameters[copy.to.value];
-        const double sigma = std::isfinite(fitted.fit.sigma[copy.parameter]) ? fitted.fit.sigma[copy.parameter] : 0;
-        effect.uses[copy.to.use].sigmas[copy.to.value] = sigma;
-        effect.parameters.push_back({parameter.name, fitted.fit.parameters[copy.parameter], sigma, parameter.unit});
-    }
-    return effect;
-}
-
-std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHypothesis& fitted) {
-    std::vector<FoundEffect> parts;
-    for (const std::string& name : fitted.hypothesis.names) {
-        FoundEffect part = whole;
-        part.name = name;
-        if (fitted.hypothesis.names.size() > 1) {
-            part.parameters.clear();
-            part.uses.clear();
-            for (std::size_t j = 0; j < fitted.hypothesis.slots.size(); ++j) {
-                if (fitted.hypothesis.uses[fitted.hypothesis.slots[j].use].name == name) {
-                    part.parameters.push_back(whole.parameters[j]);
-                }
-            }
-            for (std::size_t c = 0; c < fitted.hypothesis.copies.size(); ++c) {
-                if (fitted.hypothesis.uses[fitted.hypothesis.copies[c].to.use].name == name) {
-                    part.parameters.push_back(whole.parameters[fitted.hypothesis.slots.size() + c]);
-                }
-            }
-            for (const dynamics::EffectUse& use : whole.uses) {
-                if (use.name == name) {
-                    part.uses.push_back(use);
-                }
-            }
-            part.depends_on = dynamics::effect(name).info().depends_on;
-        }
-        parts.push_back(std::move(part));
-    }
-    return parts;
-}
-
 std::string value_text(const FoundParameter& parameter) {
     // thousandths and millionths of the units that people read them in
     double scale = 1;
