@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "postproc/importers/importer.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
@@ -114,7 +115,7 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
         throw core::InputError("format", "no importer knows this content", place, "known formats: " + known_formats());
     }
     progress.report(0, "reading " + path.filename().string());
-    Field field = importer->read(path, options, progress);
+    Field field = telling([&] { return importer->read(path, options, progress); }, [&] { return "the format, " + importer->format + ", nothing else yet"; });
     progress.report(1, "read " + path.filename().string());
     return field;
 }

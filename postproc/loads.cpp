@@ -15,6 +15,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "postproc/body_zones.h"
 #include "postproc/face_integral.h"
 #include "postproc/facing.h"
 
@@ -240,9 +241,14 @@ private:
             part.zone = zone;
             part.polygons = has_polygons(*zone) ? zone->surface : extruded(*zone);
             part.surface = std::make_unique<SurfaceArrays>(*part.polygons);
+            parts_.push_back(std::move(part));
+        }
+        if (options_.zones.empty() && parts_.size() > 1) {
+            leave_out_other_walls();
+        }
+        for (auto& part : parts_) {
             take_pressure(part);
             take_shear(part);
-            parts_.push_back(std::move(part));
         }
         std::vector<std::string> from;
         for (const auto& part : parts_) {
@@ -258,6 +264,55 @@ private:
         for (const auto& word : from) {
             result_.values_from += (result_.values_from.empty() ? "" : ", ") + word;
         }
+    }
+
+    /// A ground or a tunnel is a wall too. `audit` refuses when the rest does not close either.
+    void leave_out_other_walls() {
+        std::vector<WallShape> walls;
+        for (const auto& part : parts_) {
+            walls.push_back(shape_of(part.zone->name, *part.surface, part.zone->normals_into_fluid));
+        }
+        const auto is_other = [&](const std::string& name) {
+            return std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& zone) { return zone.name == name; });
+        };
+        for (auto& other : walls_beside_body(walls)) {
+            result_.left_out.push_back({std::move(other.name), std::move(other.why)});
+        }
+        std::erase_if(parts_, [&](const Part& part) { return is_other(part.zone->name); });
+        std::erase_if(walls, [&](const WallShape& wall) { return is_other(wall.name); });
+        const auto bodies = separate_bodies(walls);
+        if (!bodies.empty()) {
+            warn("zones " + quoted(bodies) + " are bodies of their own that lie apart: the loads are the sum over all; name those that are meant with --zones");
+        }
+    }
+
+    static std::string quoted(const std::vector<std::string>& names) {
+        std::string text;
+        for (const auto& name : names) {
+            text += (text.empty() ? "'" : ", '") + name + "'";
+        }
+        return text;
+    }
+
+    void tell_what_was_left_out() {
+        std::vector<std::string> body;
+        std::string list;
+        for (const auto& part : parts_) {
+            body.push_back(part.zone->name);
+            list += (list.empty() ? "" : ",") + part.zone->name;
+        }
+        std::string others;
+        for (const auto& zone : result_.left_out) {
+            others += (others.empty() ? "zone '" : "; zone '") + zone.name + "': " + zone.why;
+        }
+        constexpr double closed = 1e-3;
+        if (result_.closure > closed) {
+            const std::string half = half_model_hint();
+            throw InputError("zone", "which walls are the body? " + others + ". The others (" + quoted(body) + ") are not closed either (closure " +
+                                         core::format_number(result_.closure, 3) + ")", place(),
+                             (half.empty() ? "" : half + "; ") + "name the body's zones: --zones '" + list + "', or sum over every wall: --zones '*'");
+        }
+        warn("left out of the sum: " + others + ". The loads are those on " + quoted(body) + ", which close; --zones '*' sums over every wall");
     }
 
     static vtkDataArray* array_of(const Part& part, const char* name, bool& on_nodes) {
@@ -597,6 +652,9 @@ private:
     }
 
     void audit() {
+        if (!result_.left_out.empty()) {
+            tell_what_was_left_out();
+        }
         const double by_kilopascal = 1000 * norm(result_.force_per_reference_pascal);
         const double force = norm(result_.total.force);
         if (by_kilopascal > 0.01 * force && result_.closure > 1e-9) {

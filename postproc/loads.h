@@ -34,7 +34,9 @@ enum class FluidSide {
 };
 
 struct LoadsOptions {
-    std::vector<std::string> zones;         ///< patterns with * and ?; empty: all walls, or all surfaces with pressure where the file knows no walls
+    /// Patterns with * and ?. Empty: the walls of the body, that is all walls (or all surfaces with pressure where the file
+    /// knows no walls) but those that cannot be part of it, such as a ground: see `LoadsResult::left_out`.
+    std::vector<std::string> zones;
     std::optional<Vector> reference;        ///< m, file axes: where moments are taken; default: the centre of the base
     std::string base = "*base*";            ///< pattern of the zone whose centre is the default reference
     Vector forward = {1, 0, 0};             ///< file axes
@@ -89,6 +91,12 @@ struct LoadsCoefficients {
     std::string lengths_from;  ///< "given" or "bounding box"
 };
 
+/// A wall that was not summed because it is none of the body's.
+struct LeftOutZone {
+    std::string name;
+    std::string why;
+};
+
 struct LoadsResult {
     std::string file;
     Wrench total;
@@ -102,6 +110,7 @@ struct LoadsResult {
     NamedLoads named_pressure;
     NamedLoads named_viscous;
     std::vector<ZoneLoads> zones;
+    std::vector<LeftOutZone> left_out;   ///< a ground, a tunnel; only when no zones were named
     double area = 0;                     ///< m^2
     double closure = 0;                  ///< size of the summed area vector over the area: 0 for a closed surface
     Vector force_per_reference_pascal{}; ///< N/Pa: what 1 Pa added to every pressure would add to the force
@@ -115,8 +124,9 @@ struct LoadsResult {
 
 /// Integrates pressure and wall shear. Node values are taken bilinear over quads and linear over triangles and the
 /// fans of larger polygons, and integrated exactly (force and moment); face values are constant over their face.
-/// Deterministic whatever the number of threads. Throws core::InputError: no zone fits, a zone without faces or
-/// pressure, a value that is missing, an importer's error (unless accepted), a half model on both sides of its plane.
+/// Deterministic whatever the number of threads. Where no zones are named and some wall cannot be part of a body with
+/// the others (a ground), it is left out if the others close without it; if they do not, nobody can tell what the body
+/// is, and that is an error. Throws core::InputError: no zone fits, a zone without faces or pressure, a value that is missing, an importer's error (unless accepted), a half model on both sides of its plane.
 LoadsResult loads(const Field& field, const LoadsOptions& options = {}, core::Progress& progress = core::Progress::none());
 
 /// Keys of interfaces.md section 7.

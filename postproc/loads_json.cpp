@@ -56,6 +56,10 @@ void to_json(nlohmann::json& json, const LoadsResult& result) {
     for (const auto& zone : result.zones) {
         json["zones"].push_back(json_of(zone));
     }
+    json["left_out"] = nlohmann::json::array();
+    for (const auto& zone : result.left_out) {
+        json["left_out"].push_back({{"name", zone.name}, {"why", zone.why}});
+    }
     json["centre_of_pressure"] = nullptr;
     if (result.centre_of_pressure) {
         json["centre_of_pressure"] = *result.centre_of_pressure;

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "postproc/importers/cfx_output.h"
 #include "postproc/importers/openfoam_forces.h"
 #include "postproc/importers/reports.h"
 
@@ -218,14 +219,18 @@ StatedLoad from_history(const ForceHistory& history, const NamedAxis& axis, Load
 /// A text beside a CFD file that holds a force report.
 bool holds_report(const fs::path& path) {
     std::error_code ignored;
-    constexpr std::uintmax_t most = 1 << 24;
+    constexpr std::uintmax_t most = 1 << 28;
     const auto size = fs::file_size(path, ignored);
     if (ignored || size == 0 || size > most) {
         return false;
     }
-    const std::string text = core::read_file(path);
-    if (text.find('\0') != std::string::npos) {
+    const core::MappedFile mapped(path);
+    const std::string_view text = mapped.bytes();
+    if (text.find('\0') != std::string_view::npos) {
         return false;
+    }
+    if (has_cfx_forces(text)) {
+        return true;
     }
     for (const auto line : core::split(text, '\n')) {
         const auto bare = core::trimmed(line);

@@ -18,6 +18,7 @@
 #include "core/units.h"
 #include "postproc/importers/csv_rows.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/understood.h"
 #include "postproc/surface_check.h"
 
 namespace underbody::postproc {
@@ -141,6 +142,9 @@ public:
             throw InputError("format", "the file holds no block of data", {field_.files[0], {}, {}, {}},
                              "an export of CFD-Post has [Name] and [Data] sections");
         }
+        for (const auto& block : blocks) {
+            names_.push_back(block.name);
+        }
         std::size_t done = 0;
         for (const auto& block : blocks) {
             progress_.report(static_cast<double>(done++) / static_cast<double>(blocks.size()), "reading " + block.name);
@@ -150,15 +154,23 @@ public:
             }
         }
         if (field_.zones.empty()) {
-            std::vector<std::string> names;
-            for (const auto& block : blocks) {
-                names.push_back(block.name);
-            }
             throw InputError("zone", "no zone of the file fits the pattern", {field_.files[0], {}, {}, {}},
-                             core::did_you_mean(options_.zones.front(), names));
+                             core::did_you_mean(options_.zones.front(), names_));
         }
         note_surfaces_without_faces();
         return std::move(field_);
+    }
+
+    [[nodiscard]] std::string understood() const {
+        if (names_.empty()) {
+            return "sections of CFD-Post, no list of zones yet";
+        }
+        std::string text = std::to_string(names_.size()) + " zones (" + listed(names_) + ")";
+        for (const auto& zone : field_.zones) {
+            text += (&zone == &field_.zones.front() ? "; read " : ", ") + zone.name + " with " + std::to_string(zone.surface->GetNumberOfPoints()) + " nodes, " +
+                    std::to_string(zone.surface->GetNumberOfPolys()) + " faces";
+        }
+        return text;
     }
 
 private:
@@ -738,6 +750,7 @@ private:
     core::Progress& progress_;
     std::string_view text_;
     Field field_;
+    std::vector<std::string> names_;  ///< of all blocks
 };
 
 bool recognises(std::string_view head, const std::filesystem::path&) {
@@ -752,7 +765,8 @@ bool recognises(std::string_view head, const std::filesystem::path&) {
 }
 
 Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
-    return Reader(path, options, progress).read();
+    Reader reader(path, options, progress);
+    return telling([&] { return reader.read(); }, [&] { return reader.understood(); });
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "postproc/importers/element_zone.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
@@ -34,22 +35,19 @@ bool recognises(std::string_view head, const std::filesystem::path& /*path*/) {
     return words.size() > 2 && (words[0] == "nodenumber" || words[0] == "cellnumber");
 }
 
-Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
-    const core::MappedFile file(path);
-    const auto lines = core::split(file.bytes(), '\n');
-    const auto names = words_of(lines[0]);
-    const bool cells = names[0] == "cellnumber";
-    std::vector<std::vector<double>> columns(names.size());
+using Columns = std::vector<std::vector<double>>;
+
+void read_rows(const std::string& file, const std::vector<std::string_view>& lines, std::size_t names, Columns& columns, core::Progress& progress) {
     for (std::size_t i = 1; i < lines.size(); ++i) {
         if (core::trimmed(lines[i]).empty()) {
             continue;
         }
         const auto words = words_of(lines[i]);
-        const core::Place place{file.name(), static_cast<std::int64_t>(i + 1), {}, {}};
-        if (words.size() != names.size()) {
+        const core::Place place{file, static_cast<std::int64_t>(i + 1), {}, {}};
+        if (words.size() != names) {
             throw core::InputError(
                 "format",
-                std::to_string(words.size()) + " values where there are " + std::to_string(names.size()) + " columns",
+                std::to_string(words.size()) + " values where there are " + std::to_string(names) + " columns",
                 place, "is the file cut short?");
         }
         for (std::size_t c = 0; c < words.size(); ++c) {
@@ -63,6 +61,18 @@ Field read(const std::filesystem::path& path, const ReadOptions& options, core::
             progress.check();
         }
     }
+}
+
+Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
+    const core::MappedFile file(path);
+    const auto lines = core::split(file.bytes(), '\n');
+    const auto names = words_of(lines[0]);
+    const bool cells = names[0] == "cellnumber";
+    Columns columns(names.size());
+    telling([&] { read_rows(file.name(), lines, names.size(), columns, progress); },
+            [&] {
+                return "columns " + listed(std::vector<std::string>(names.begin(), names.end())) + "; " + std::to_string(columns.back().size()) + " whole rows";
+            });
     Field field;
     field.format = "Fluent ASCII";
     field.files = {file.name()};

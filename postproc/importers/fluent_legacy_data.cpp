@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "postproc/importers/fluent_legacy.h"
 #include "postproc/importers/fluent_variables.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
@@ -75,17 +76,17 @@ public:
     }
 
     std::vector<ValueBlock> read() {
-        try {
-            text_.skip_byte_order_mark();
-            while (text_.next() >= 0) {
-                section();
-            }
-            if (!sized_ && sections_ == 0) {
-                throw core::InputError("format", "there are no solution data in this file", {in_.name(), {}, {}, {}});
-            }
-        } catch (const core::InputError& error) {
-            throw core::InputError(error.kind(), error.message() + understood(), error.place(), error.hint());
-        }
+        telling(
+            [&] {
+                text_.skip_byte_order_mark();
+                while (text_.next() >= 0) {
+                    section();
+                }
+                if (!sized_ && sections_ == 0) {
+                    throw core::InputError("format", "there are no solution data in this file", {in_.name(), {}, {}, {}});
+                }
+            },
+            [&] { return understood(); });
         if (odd_values_ > 0) {
             problems_.push_back({core::Problem::Severity::warning,
                                  std::to_string(odd_values_) + " values are not finite: the solution has diverged",
@@ -112,7 +113,7 @@ private:
                                in_.place(), "give the case they were written with");
     }
     [[nodiscard]] std::string understood() const {
-        std::string text = "; understood so far: " + std::to_string(sections_) + " solution sections";
+        std::string text = std::to_string(sections_) + " solution sections";
         if (!last_variable_.empty()) {
             text += ", the last of " + last_variable_;
         }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "postproc/importers/fluent_legacy.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
@@ -24,15 +25,15 @@ public:
     }
 
     LegacyMesh read() {
-        try {
-            text_.skip_byte_order_mark();
-            while (text_.next() >= 0) {
-                section();
-            }
-            finish();
-        } catch (const core::InputError& error) {
-            throw core::InputError(error.kind(), error.message() + understood(), error.place(), error.hint());
-        }
+        telling(
+            [&] {
+                text_.skip_byte_order_mark();
+                while (text_.next() >= 0) {
+                    section();
+                }
+                finish();
+            },
+            [&] { return understood(); });
         return std::move(result_);
     }
 
@@ -84,7 +85,7 @@ private:
 
 std::string MeshReader::understood() const {
     const FaceMesh& mesh = result_.mesh;
-    std::string text = "; understood so far: " + std::to_string(sections_) + " sections";
+    std::string text = std::to_string(sections_) + " sections";
     const auto add = [&](const char* what, std::uint64_t read, std::uint64_t all) {
         text += std::string(", ") + what + " " + std::to_string(read) + (all > 0 ? " of " + std::to_string(all) : "");
     };
@@ -92,11 +93,11 @@ std::string MeshReader::understood() const {
     add("faces", faces_read_, mesh.faces);
     add("cells", cells_read_, mesh.cells);
     if (!mesh.labels.empty()) {
-        text += ", zones";
-        for (std::size_t i = 0; i < std::min<std::size_t>(mesh.labels.size(), 12); ++i) {
-            text += (i > 0 ? ", " : " ") + mesh.labels[i].name;
+        std::vector<std::string> names;
+        for (const auto& label : mesh.labels) {
+            names.push_back(label.name);
         }
-        text += mesh.labels.size() > 12 ? " ..." : "";
+        text += ", zones " + listed(names);
     }
     return text;
 }

@@ -7,14 +7,11 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "postproc/importers/cfx_output.h"
+#include "postproc/importers/report_words.h"
 
 namespace underbody::postproc {
 
-namespace {
-
-constexpr std::size_t most_columns = 4096;
-
-/// The words of a line: quoted ones whole; blanks, tabs, commas and brackets between.
 std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words;
     std::string word;
@@ -43,7 +40,6 @@ std::vector<std::string> words_of(std::string_view line) {
     return words;
 }
 
-/// A number as solvers write it, with "nan(ind)" and "1.#INF" among them.
 std::optional<double> number_of(const std::string& word) {
     if (const auto value = core::parse_number(word)) {
         return value;
@@ -70,6 +66,10 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& wo
     }
     return numbers;
 }
+
+namespace {
+
+constexpr std::size_t most_columns = 4096;
 
 std::string_view without_mark(std::string_view text) { return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text; }
 
@@ -109,10 +109,6 @@ private:
     std::map<double, std::vector<double>> rows_;
     std::size_t repeated_ = 0;
 };
-
-[[noreturn]] void fail(const std::string& file, std::int64_t line, const std::string& what) {
-    throw core::InputError("format", what, {file, line, {}, {}});
-}
 
 /// "  iter  continuity  x-velocity ...  time/iter": the names between.
 bool is_residual_header(const std::vector<std::string>& words) {
@@ -168,7 +164,7 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
         }
         auto words = words_of(line);
         if (words.size() > most_columns) {
-            fail(file, number, "a line with more than " + std::to_string(most_columns) + " columns");
+            fail_in_line(file, number, "a line with more than " + std::to_string(most_columns) + " columns");
         }
         auto row = numbers_of(words);
         if (!row || row->empty()) {
@@ -176,11 +172,11 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
             if (rows.empty() || line.front() == '"' || line.front() == '(') {
                 heads.push_back(std::move(words));
                 if (heads.size() > 16) {
-                    fail(file, number, "no table begins within the first lines");
+                    fail_in_line(file, number, "no table begins within the first lines");
                 }
                 continue;
             }
-            fail(file, number, "expected numbers, found '" + std::string(line.substr(0, 40)) + "'");
+            fail_in_line(file, number, "expected numbers, found '" + std::string(line.substr(0, 40)) + "'");
         }
         if (rows.empty()) {
             for (const auto& head : heads) {
@@ -194,16 +190,16 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
                 monitor.columns = {"Iteration", heads.empty() ? "value" : heads.back().back()};
             }
             if (monitor.columns.empty()) {
-                fail(file, number, "a row of " + std::to_string(row->size()) + " numbers without their names");
+                fail_in_line(file, number, "a row of " + std::to_string(row->size()) + " numbers without their names");
             }
         }
         if (row->size() != monitor.columns.size()) {
-            fail(file, number,
+            fail_in_line(file, number,
                  "a row of " + std::to_string(row->size()) + " numbers where there are " +
                      std::to_string(monitor.columns.size()) + " columns");
         }
         if (std::isnan((*row)[0])) {
-            fail(file, number, "a row without its iteration");
+            fail_in_line(file, number, "a row without its iteration");
         }
         rows.add(std::move(*row));
     }
@@ -322,6 +318,9 @@ const ReportedForce* ForceReport::net() const {
 Monitor read_monitor(const std::filesystem::path& path) {
     const core::MappedFile file(path);
     const std::string_view bytes = without_mark(file.bytes());
+    if (has_cfx_iterations(bytes)) {
+        return read_cfx_iterations(file.name(), bytes);
+    }
     // A transcript has the header of its residuals on a line of its own, further down.
     std::size_t lines = 0;
     for (const auto line : core::split(bytes.substr(0, std::size_t{4} << 20), '\n')) {
@@ -354,7 +353,7 @@ Plot read_plot(const std::filesystem::path& path) {
             plot.y_label = words.size() > 2 ? words[2] : "";
         } else if (line.starts_with("((xy/key/label")) {
             if (open) {
-                fail(file.name(), number, "a curve begins within another");
+                fail_in_line(file.name(), number, "a curve begins within another");
             }
             plot.curves.push_back({words.size() > 1 ? words[1] : "", {}, {}});
             open = true;
@@ -363,7 +362,7 @@ Plot read_plot(const std::filesystem::path& path) {
         } else {
             const auto numbers = numbers_of(words);
             if (!open || !numbers || numbers->size() != 2) {
-                fail(file.name(), number,
+                fail_in_line(file.name(), number,
                      "expected two numbers of a curve, found '" + std::string(line.substr(0, 40)) + "'");
             }
             plot.curves.back().x.push_back((*numbers)[0]);
@@ -371,7 +370,7 @@ Plot read_plot(const std::filesystem::path& path) {
         }
     }
     if (open) {
-        fail(file.name(), number, "the file ends within a curve");
+        fail_in_line(file.name(), number, "the file ends within a curve");
     }
     if (plot.curves.empty()) {
         throw core::InputError("format", "there are no curves in this file", {file.name(), {}, {}, {}});
@@ -381,6 +380,9 @@ Plot read_plot(const std::filesystem::path& path) {
 
 std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
     const core::MappedFile file(path);
+    if (has_cfx_forces(file.bytes())) {
+        return read_cfx_forces(file.name(), without_mark(file.bytes()));
+    }
     std::vector<ForceReport> reports;
     std::size_t first = 0;
     std::int64_t number = 0;
@@ -404,7 +406,7 @@ std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
         }
     }
     if (reading && !reports.empty() && !reports.back().rows.empty()) {
-        fail(file.name(), number, "the text ends within the report that begins in line " + std::to_string(begins) +
+        fail_in_line(file.name(), number, "the text ends within the report that begins in line " + std::to_string(begins) +
                                       ": its net row is missing");
     }
     std::erase_if(reports, [](const ForceReport& report) { return report.rows.empty(); });

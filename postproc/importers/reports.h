@@ -26,8 +26,8 @@ struct Monitor {
 };
 
 /// Fluent report files (.out, `*-rfile.out`), monitors of Fluent 12 and older (two columns without header), tables with
-/// one line of names (.csv), and the residuals in a transcript (.trn). Found by content. After a restart the first
-/// column repeats or jumps back: the last value counts. Throws InputError with line.
+/// one line of names (.csv), the residuals in a transcript (.trn) and in the output of CFX's solver (.out). Found by
+/// content. After a restart the first column repeats or jumps back: the last value counts. Throws InputError with line.
 Monitor read_monitor(const std::filesystem::path& path);
 
 /// One curve of a Fluent .xy plot. Points come in the order of the file, which need not be that of the curve.
@@ -65,6 +65,7 @@ struct ForceReport {
 
     [[nodiscard]] const ReportedForce* net() const;
 };
+/// The wall forces in the output of CFX's solver (see cfx_output.h) are six reports: forces and moments along x, y, z.
 /// All reports of a text (a transcript may hold many, with other lines between); those with a vector for each entry
 /// ("(0.1 0.2 0.3)") become three reports along x, y, z. Throws InputError with line when there is none, or when the
 /// text ends within one.

@@ -123,6 +123,9 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
         shell.print("zone '" + zone.name + "': " + std::to_string(zone.faces) + " faces, " + core::format_number(zone.area, 5) + " m^2, force " +
                     vector({p[0] + v[0], p[1] + v[1], p[2] + v[2]}) + " N");
     }
+    for (const auto& zone : result.left_out) {
+        shell.print("not summed: zone '" + zone.name + "', " + zone.why);
+    }
     if (result.coefficients) {
         const auto& c = *result.coefficients;
         shell.print("C_L " + core::format_number(c.lift, 5) + ", C_D " + core::format_number(c.drag, 5) + ", C_M " + core::format_number(c.pitch_moment, 5) + " on " +
@@ -305,13 +308,15 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("--width", o->width, "for coefficients");
     command->add_option("--height", o->height, "for coefficients");
     command->add_option("--mesh-study", o->mesh_study, "condition with the number of cells, or faces: cases that differ in it alone become one, with NAME_sigma")->type_name("COLUMN");
-    command->add_option("--report", o->reports, "the solver's force report, or the OpenFOAM case, to compare with ({stem}: the file's name without ending); found by itself when it lies beside the file");
+    command->add_option("--report", o->reports, "the solver's force report (Fluent's text, CFX's .out), or the OpenFOAM case, to compare with ({stem}: the file's name without ending); found by itself when it lies beside the file");
     command->add_option("--monitor", o->monitors, "history of a load, QUANTITY=FILE:COLUMN or \"QUANTITY [UNIT]=FILE\": its last value is compared, its scatter becomes NAME_sigma");
     command->add_option("--check", o->check, "exit code 4 when the loads are further from those stated (report, monitor, manifest) than this share of the force (0.01, \"1 %\")");
     command->add_option("--stations", o->stations, "running integral along the body in so many steps")->check(CLI::Range(0, 10000));
     command->add_flag("--accept-problems", o->accept_problems, "go on although the file has errors such as faces without area");
     o->field.add_to(*command);
     command->footer(
+        "Without --zones the walls of the body are summed. A wall that cannot be part of it (a ground, a tunnel) is left out, and said to be,\n"
+        "if the others close without it; if they do not, the zones have to be named. --zones '*' sums over every wall.\n\n"
         "Examples:\n"
         "  underbody loads body.csv --symmetry y\n"
         "  underbody loads body.csv --zones 'hull*,base' --reference \"0,0,5 mm\" --json\n"

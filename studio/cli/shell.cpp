@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "postproc/import_error.h"
 #include "studio/cli/usage.h"
 
 namespace underbody::studio {
@@ -127,6 +128,9 @@ void Shell::report(const core::Error& error, const char* what) {
     }
     if (place.byte) {
         detail["byte"] = *place.byte;
+    }
+    if (const auto* import = dynamic_cast<const postproc::ImportError*>(&error)) {
+        detail["understood"] = import->understood();
     }
     print_json({{"error", detail}});
 }

@@ -200,10 +200,42 @@ TEST(Loads, SettleTheSidesOfEachZone) {
     }
 }
 
-TEST(Loads, NameTheZoneThatOpensTheSurface) {
-    Field with_ground = box(false, false);
-    with_ground.zones.push_back(make_zone("ground", {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}}, {{0, 1, 2, 3}}, [](const Vector&) { return 1.0; }));
-    const auto result = loads(with_ground);
+Field box_over_ground(bool open) {
+    Field field = box(false, false, open);
+    field.zones.push_back(make_zone("ground", {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}}, {{0, 1, 2, 3}}, [](const Vector&) { return 1.0; }));
+    return field;
+}
+
+TEST(Loads, AreThoseOfTheBodyAloneWhereAGroundIsAmongTheWalls) {
+    const auto alone = loads(box(false, false));
+    const auto result = loads(box_over_ground(false));
+    EXPECT_EQ(result.total.force, alone.total.force);
+    EXPECT_EQ(result.total.moment, alone.total.moment);
+    EXPECT_NEAR(result.closure, 0, 1e-12);
+    ASSERT_EQ(result.left_out.size(), 1U);
+    EXPECT_EQ(result.left_out[0].name, "ground");
+    ASSERT_FALSE(result.problems.empty());
+    EXPECT_THAT(result.problems.back().message, HasSubstr("left out of the sum: zone 'ground': a plane of 324 m^2"));
+    EXPECT_EQ(nlohmann::json(result)["left_out"][0]["name"], "ground");
+}
+
+TEST(Loads, AreRefusedWhereNobodyCanTellWhatTheBodyIs) {
+    try {
+        loads(box_over_ground(true));
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(error.kind(), "zone");
+        EXPECT_THAT(error.message(), HasSubstr("which walls are the body? zone 'ground'"));
+        EXPECT_THAT(error.hint(), HasSubstr("--zones '*'"));
+    }
+}
+
+TEST(Loads, TakeEveryWallThatIsNamed) {
+    LoadsOptions all;
+    all.zones = {"*"};
+    const auto result = loads(box_over_ground(false), all);
+    EXPECT_TRUE(result.left_out.empty());
+    EXPECT_EQ(result.zones.size(), 4U);
     ASSERT_FALSE(result.problems.empty());
     EXPECT_THAT(result.problems.back().message, HasSubstr("closes without zone 'ground'"));
 }

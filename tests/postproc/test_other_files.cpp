@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "import_support.h"
+#include "postproc/import_error.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -43,6 +44,30 @@ TEST(OtherFiles, ATecplotFileOfFluentHasItsCells) {
     const auto field = read_field(test::shared_folder() / "samples/tecplot/tecplot_ascii.dat");
     EXPECT_EQ(test::cells_of(field), 120);
     EXPECT_NE(field.zones.at(0).find("velocity"), nullptr);
+}
+
+namespace {
+
+std::string understood_of(const std::filesystem::path& path) {
+    try {
+        read_field(path);
+    } catch (const postproc::ImportError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("; understood so far: " + error.understood()));
+        return error.understood();
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST(OtherFiles, ThatAreDamagedSayWhatWasUnderstoodOfThem) {
+    const core::TemporaryFolder folder;
+    const std::string table = "nodenumber x-coordinate y-coordinate pressure\n1 0 0 5\n2 1 0 6\n";
+    EXPECT_EQ(understood_of(written(folder, "a.txt", table + "3 1 1\n")), "columns nodenumber, x-coordinate, y-coordinate, pressure; 2 whole rows");
+    const std::string block = "[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m ]\n0,0,0\n1,0,0\n0,1,0\n\n[Faces]\n0,1,2\n\n[Name]\nbase\n\n[Data]\nX [ m ], Y [ m ], Z [ m ]\n0,0,x\n";
+    EXPECT_EQ(understood_of(written(folder, "b.csv", block)), "2 zones (hull, base); read hull with 3 nodes, 1 faces");
+    EXPECT_EQ(understood_of(written(folder, "c.vtk", std::string(triangle).substr(0, 120))), "the format, VTK legacy, nothing else yet");
+    EXPECT_EQ(understood_of(written(folder, "d.cas", "(0 \"x\")\n(2 3)\n(10 (0 1 8 0))\n(45 (7 wall hull)())\n(10 (1 1 8")), "5 sections, nodes 0 of 8, faces 0, cells 0, zones hull");
 }
 
 TEST(OtherFiles, FluentsAsciiTableIsPointsAndSaysSo) {

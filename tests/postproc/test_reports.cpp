@@ -144,6 +144,83 @@ TEST(ForceReports, ATextThatEndsWithinAReportIsRefused) {
     }
 }
 
+namespace {
+
+std::string cfx_output() { return core::read_file(test::data_folder() / "reports" / "cfx_001.out"); }
+
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+std::string reason_against(const std::filesystem::path& path) {
+    try {
+        read_force_reports(path);
+    } catch (const core::InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST(OutputOfCfx, GivesTheResidualsOfEveryIterationThroughNoticesBetween) {
+    const core::TemporaryFolder folder;
+    const auto residuals = read_monitor(written(folder, cfx_output()));
+    EXPECT_THAT(residuals.columns, ElementsAre("Iteration", "U-Mom", "U-Mom max", "P-Mass", "P-Mass max", "K-TurbKE", "K-TurbKE max"));
+    EXPECT_THAT(residuals.values[0], ElementsAre(1, 2));
+    EXPECT_THAT(*residuals.find("K-TurbKE"), ElementsAre(0.11, 0.033));
+    EXPECT_THAT(*residuals.find("U-Mom max"), ElementsAre(0.3, 0.14));
+    EXPECT_TRUE(residuals.problems.empty());
+}
+
+TEST(OutputOfCfx, CountsTimeStepsByTheirLastLoopAndTellsDivergence) {
+    const core::TemporaryFolder folder;
+    const auto table = [](const std::string& rms) {
+        return " |       Equation       | Rate | RMS Res | Max Res |  Linear Solution |\n +------+------+\n | U-Mom                | 0.00 | " + rms +
+               " | 3.0E-01 |       8.2E-03  OK|\n +------+------+\n";
+    };
+    const std::string loop = " COEFFICIENT LOOP ITERATION =  1             CPU SECONDS = 1.0E+00\n";
+    const auto residuals = read_monitor(written(folder, " TIME STEP =  1 SIMULATION TIME = 1.0E-02 CPU SECONDS = 1\n" + loop + table("2.0E-02") + loop + table("1.0E-03") +
+                                                            " TIME STEP =  2 SIMULATION TIME = 2.0E-02 CPU SECONDS = 2\n" + loop + table("NaN")));
+    EXPECT_THAT(residuals.values[0], ElementsAre(1, 2));
+    EXPECT_EQ(residuals.columns[0], "Time Step");
+    EXPECT_EQ(residuals.find("U-Mom")->at(0), 1e-3);
+    ASSERT_EQ(residuals.problems.size(), 1U);
+    EXPECT_THAT(residuals.problems[0].message, HasSubstr("diverged"));
+}
+
+TEST(OutputOfCfx, GivesTheForcesAndMomentsOnEachWall) {
+    const core::TemporaryFolder folder;
+    const auto reports = read_force_reports(written(folder, cfx_output()));
+    ASSERT_EQ(reports.size(), 6U);
+    const auto& lift = reports[2];
+    EXPECT_EQ(lift.direction[2], 1);
+    ASSERT_EQ(lift.rows.size(), 3U);
+    EXPECT_EQ(lift.rows[0].zone, "hull");
+    EXPECT_NEAR(lift.net()->pressure, 0.27, 1e-12);
+    EXPECT_NEAR(lift.net()->total, 0.2712, 1e-12);
+    const auto& pitch = reports[4];
+    EXPECT_TRUE(pitch.moments);
+    EXPECT_EQ(pitch.direction[1], 1);
+    EXPECT_NEAR(pitch.net()->total, 0.0102, 1e-12);
+    // In the units of the run.
+    const auto in_feet = read_force_reports(written(folder, changed(changed(cfx_output(), "Length Units = [m]", "Length Units = [ft]"), "Mass Units = [kg]", "Mass Units = [lb]")));
+    EXPECT_NEAR(in_feet[2].net()->pressure, 0.27 * 0.45359237 * 0.3048, 1e-12);
+    EXPECT_NEAR(in_feet[4].net()->pressure, 0.009 * 0.45359237 * 0.3048 * 0.3048, 1e-14);
+}
+
+TEST(OutputOfCfx, ThatLostLinesIsRefused) {
+    const core::TemporaryFolder folder;
+    const std::string base = " base                          2.0000E-03    0.0000E+00   -8.6000E-01\n";
+    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), base, ""))), HasSubstr("lines are missing or damaged"));
+    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), "-8.6000E-01", " 8.6000E-01"))), HasSubstr("add up to"));
+    EXPECT_THAT(reason_against(written(folder, cfx_output().substr(0, cfx_output().find("Viscous Force")))), HasSubstr("incomplete: 2 walls with a pressure part, 0 with a viscous one"));
+    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), " hull                         -3.0000E-02", " keel                         -3.0000E-02"))),
+                HasSubstr("wall 'hull' has no viscous part"));
+}
+
 TEST(Monitors, EveryHeadOfFluentIsUnderstood) {
     const core::TemporaryFolder folder;
     const auto transient = read_monitor(written(

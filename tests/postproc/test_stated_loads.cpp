@@ -145,6 +145,31 @@ TEST_F(StatedLoads, LieBesideAFileUnderItsName) {
     EXPECT_EQ(stated_beside(folder_.path() / "box.csv", result).size(), 27U);
 }
 
+/// The same of CFX's solver: a summary of the walls at the end of its output.
+std::string cfx_summary() {
+    const auto table = [](const char* title, const char* base, const char* hull, const char* total) {
+        return std::string(" +----------+\n |  ") + title + " On Walls  |\n +----------+\n        X-Comp.  Y-Comp.  Z-Comp.\n\n Domain Group: water\n\n base  " + base + "\n hull  " +
+               hull + "\n       -----  -----  -----\n Domain Group Totals :  " + total + "\n\n";
+    };
+    return " OUTER LOOP ITERATION =    1    CPU SECONDS = 1.2E+00\n" + table("Pressure Force", "0 0 2.0E+00", "0 0 -3.0E+00", "0 0 -1.0E+00") +
+           table("Viscous Force", "2.0E-01 0 0", "0 0 0", "2.0E-01 0 0") + table("Pressure Moment", "1.0E+00 -2.0E+00 0", "-1.5E+00 3.0E+00 0", "-5.0E-01 1.0E+00 0") +
+           table("Viscous Moment", "0 0 -1.0E-01", "0 0 0", "0 0 -1.0E-01");
+}
+
+TEST_F(StatedLoads, OfCfxAreFoundBesideItsExportAndAgree) {
+    const LoadsResult result = loads_of();
+    written("box_001.out", cfx_summary());
+    const auto stated = stated_beside(folder_.path() / "box.csv", result);
+    ASSERT_EQ(stated.size(), 54U);  // three axes of forces and moments, two walls and their sum, three parts
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(result, stated, notes);
+    EXPECT_TRUE(notes.empty());
+    ASSERT_EQ(comparisons.size(), 54U);
+    for (const auto& one : comparisons) {
+        EXPECT_NEAR(one.value, one.stated, 1e-12) << one.quantity;
+    }
+}
+
 // ---- monitors ----
 
 std::string monitor(double mean, double scatter, std::uint64_t seed = 3) {

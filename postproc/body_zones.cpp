@@ -1,0 +1,214 @@
+#include "postproc/body_zones.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/text.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double norm(const Vector& a) { return std::sqrt(dot(a, a)); }
+double diagonal(const WallShape& wall) {
+    return std::hypot(wall.upper[0] - wall.lower[0], wall.upper[1] - wall.lower[1], wall.upper[2] - wall.lower[2]);
+}
+
+void widen(WallShape& box, const WallShape& more) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        box.lower[k] = std::min(box.lower[k], more.lower[k]);
+        box.upper[k] = std::max(box.upper[k], more.upper[k]);
+    }
+}
+
+/// The most that a closed surface within the box can turn toward `direction`: the shadow of the box.
+double shadow(const WallShape& box, const Vector& direction) {
+    double area = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3;
+        const std::size_t j = (k + 2) % 3;
+        area += std::abs(direction[k]) * (box.upper[i] - box.lower[i]) * (box.upper[j] - box.lower[j]);
+    }
+    return area / norm(direction);
+}
+
+bool is_flat(const WallShape& wall) { return norm(wall.area_vector) > 0.999 * wall.area; }
+
+/// Do two flat walls lie in one plane?
+bool coplanar(const WallShape& a, const WallShape& b) {
+    const double along = dot(a.area_vector, b.area_vector) / (norm(a.area_vector) * norm(b.area_vector));
+    Vector between{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        between[k] = 0.5 * (b.lower[k] + b.upper[k] - a.lower[k] - a.upper[k]);
+    }
+    const double off = std::abs(dot(between, a.area_vector)) / norm(a.area_vector);
+    return std::abs(along) > 0.9999 && off < 1e-3 * std::max(diagonal(a), diagonal(b));
+}
+
+/// Walls that are judged together: flat ones in one plane, or one alone.
+struct Group {
+    std::vector<std::size_t> members;
+    WallShape shape;  ///< box, area and area vector of all
+};
+
+std::vector<Group> groups_of(const std::vector<WallShape>& walls) {
+    std::vector<Group> groups;
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+        const auto with = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
+            return is_flat(walls[i]) && is_flat(group.shape) && coplanar(group.shape, walls[i]);
+        });
+        if (with == groups.end()) {
+            groups.push_back({{i}, walls[i]});
+            continue;
+        }
+        const double same_way = dot(with->shape.area_vector, walls[i].area_vector) < 0 ? -1 : 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            with->shape.area_vector[k] += same_way * walls[i].area_vector[k];
+        }
+        with->shape.area += walls[i].area;
+        widen(with->shape, walls[i]);
+        with->members.push_back(i);
+    }
+    return groups;
+}
+
+/// Larger by so much cannot be a matter of rounding or of a rim.
+constexpr double clearly = 1.05;
+
+bool too_large_to_be_balanced(const Group& group, const std::vector<Group>& groups) {
+    const double own = norm(group.shape.area_vector);
+    constexpr double one_sided = 0.95;  // a ground may be uneven; the open half of a hull is rounder
+    if (own < one_sided * group.shape.area) {
+        return false;
+    }
+    WallShape rest;
+    bool any = false;
+    for (const auto& other : groups) {
+        // What is as large (the ceiling over a floor) might balance it in a closed box, but not around a body.
+        const bool as_large = norm(other.shape.area_vector) > own / clearly;
+        if (&other == &group || as_large) {
+            continue;
+        }
+        if (any) {
+            widen(rest, other.shape);
+        } else {
+            rest = other.shape;
+            any = true;
+        }
+    }
+    return any && own > clearly * shadow(rest, group.shape.area_vector);
+}
+
+bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
+    if (!wall.normals_into_fluid || !(wall.volume < 0)) {
+        return false;
+    }
+    WallShape rest;
+    bool any = false;
+    for (const auto& other : walls) {
+        if (&other != &wall) {
+            if (any) {
+                widen(rest, other);
+            } else {
+                rest = other;
+                any = true;
+            }
+        }
+    }
+    int axes = 0;
+    for (std::size_t k = 0; any && k < 3; ++k) {
+        const double room = 0.02 * (wall.upper[k] - wall.lower[k]);
+        axes += wall.lower[k] < rest.lower[k] - room && wall.upper[k] > rest.upper[k] + room ? 1 : 0;
+    }
+    return axes >= 2;
+}
+
+}  // namespace
+
+WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool normals_into_fluid) {
+    WallShape wall;
+    wall.name = name;
+    wall.normals_into_fluid = normals_into_fluid;
+    wall.lower.fill(std::numeric_limits<double>::infinity());
+    wall.upper.fill(-std::numeric_limits<double>::infinity());
+    const auto points = surface.points();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        wall.lower[i % 3] = std::min(wall.lower[i % 3], points[i]);
+        wall.upper[i % 3] = std::max(wall.upper[i % 3], points[i]);
+    }
+    Vector centre{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        centre[k] = 0.5 * (wall.lower[k] + wall.upper[k]);
+    }
+    const auto offsets = surface.offsets();
+    const auto nodes = surface.connectivity();
+    for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
+        const auto at = [&](Index i) { return points.data() + 3 * nodes[static_cast<std::size_t>(i)]; };
+        const double* a = at(offsets[f]);
+        Vector face{};
+        for (Index i = offsets[f] + 1; i + 1 < offsets[f + 1]; ++i) {
+            const double* b = at(i);
+            const double* c = at(i + 1);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t m = (k + 1) % 3;
+                const std::size_t n = (k + 2) % 3;
+                face[k] += 0.5 * ((b[m] - a[m]) * (c[n] - a[n]) - (b[n] - a[n]) * (c[m] - a[m]));
+            }
+        }
+        wall.area += norm(face);
+        for (std::size_t k = 0; k < 3; ++k) {
+            wall.area_vector[k] += face[k];
+            wall.volume += face[k] * (a[k] - centre[k]) / 3;
+        }
+    }
+    return wall;
+}
+
+std::vector<OtherWall> walls_beside_body(const std::vector<WallShape>& walls) {
+    std::vector<OtherWall> others;
+    const auto groups = groups_of(walls);
+    for (const auto& group : groups) {
+        if (too_large_to_be_balanced(group, groups)) {
+            for (const std::size_t i : group.members) {
+                others.push_back({walls[i].name, std::string(is_flat(walls[i]) ? "a plane" : "a one-sided wall") + " of " + core::format_number(walls[i].area, 3) +
+                                                     " m^2, too large to be part of a body with the others"});
+            }
+        }
+    }
+    for (const auto& wall : walls) {
+        const bool named = std::any_of(others.begin(), others.end(), [&](const OtherWall& other) { return other.name == wall.name; });
+        if (!named && surrounds_the_others(wall, walls)) {
+            others.push_back({wall.name, "it surrounds the others, with the fluid inside"});
+        }
+    }
+    return others.size() < walls.size() ? others : std::vector<OtherWall>{};
+}
+
+std::vector<std::string> separate_bodies(const std::vector<WallShape>& walls) {
+    std::vector<const WallShape*> closed;
+    for (const auto& wall : walls) {
+        if (norm(wall.area_vector) < 1e-3 * wall.area) {
+            closed.push_back(&wall);
+        }
+    }
+    std::vector<std::string> names;
+    for (const WallShape* wall : closed) {
+        const bool apart = std::all_of(closed.begin(), closed.end(), [&](const WallShape* other) {
+            bool disjoint = wall == other;
+            for (std::size_t k = 0; k < 3; ++k) {
+                disjoint = disjoint || wall->lower[k] > other->upper[k] || wall->upper[k] < other->lower[k];
+            }
+            return disjoint;
+        });
+        if (apart) {
+            names.push_back(wall->name);
+        }
+    }
+    return names.size() > 1 ? names : std::vector<std::string>{};
+}
+
+}  // namespace underbody::postproc

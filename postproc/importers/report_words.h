@@ -1,0 +1,26 @@
+// What the readers of solvers' text reports share: words, numbers, and how they refuse a line.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace underbody::postproc {
+
+/// The words of a line: quoted ones whole; blanks, tabs, commas and brackets between.
+std::vector<std::string> words_of(std::string_view line);
+
+/// A number as solvers write it, with "nan(ind)" and "1.#INF" among them.
+std::optional<double> number_of(const std::string& word);
+
+/// All words as numbers; nothing when one is none.
+std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& words);
+
+[[noreturn]] inline void fail_in_line(const std::string& file, std::int64_t line, const std::string& what) {
+    throw core::InputError("format", what, {file, line, {}, {}});
+}
+
+}  // namespace underbody::postproc

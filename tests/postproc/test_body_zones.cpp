@@ -1,0 +1,169 @@
+// Which walls are the body when nobody says: a ground, a tunnel, a ceiling, a room, several bodies.
+#include "postproc/body_zones.h"
+
+#include <gmock/gmock.h>
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+
+#include <cmath>
+
+#include "core/random.h"
+
+namespace underbody::postproc {
+namespace {
+
+using Point = std::array<double, 3>;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// Quads over a grid of places.
+WallShape sheet(const std::string& name, int columns, int rows, const std::function<Point(double, double)>& place, bool known = true) {
+    vtkNew<vtkPolyData> surface;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkCellArray> cells;
+    for (int j = 0; j <= rows; ++j) {
+        for (int i = 0; i <= columns; ++i) {
+            points->InsertNextPoint(place(double(i) / columns, double(j) / rows).data());
+        }
+    }
+    for (vtkIdType j = 0; j < rows; ++j) {
+        for (vtkIdType i = 0; i < columns; ++i) {
+            const vtkIdType a = i + (columns + 1) * j;
+            cells->InsertNextCell({a, a + 1, a + columns + 2, a + columns + 1});
+        }
+    }
+    surface->SetPoints(points);
+    surface->SetPolys(cells);
+    return shape_of(name, SurfaceArrays(*surface), known);
+}
+
+WallShape flat(const std::string& name, double x0, double x1, double y0, double y1, double z) {
+    return sheet(name, 4, 4, [=](double s, double t) { return Point{x0 + s * (x1 - x0), y0 + t * (y1 - y0), z}; });
+}
+
+/// The part of an ellipsoid (semi-axes 1, 0.7, 0.5) above z = -0.35, normals outward; with y > 0 alone when `half`.
+WallShape hull(bool half, double at = 0) {
+    const double lowest = std::acos(-0.7);
+    return sheet("hull", 60, 30, [=](double s, double t) {
+        const double phi = (half ? M_PI : 2 * M_PI) * (1 - s);
+        const double theta = 1e-6 + t * (lowest - 1e-6);
+        return Point{at + std::sin(theta) * std::cos(phi), 0.7 * std::sin(theta) * std::sin(phi), 0.5 * std::cos(theta)};
+    });
+}
+
+WallShape base(bool half) {
+    const double radius = std::sin(std::acos(-0.7));
+    return sheet("base", 60, 5, [=](double s, double t) {
+        const double phi = (half ? M_PI : 2 * M_PI) * s;
+        return Point{(1e-6 + radius * (1 - t)) * std::cos(phi), 0.7 * (1e-6 + radius * (1 - t)) * std::sin(phi), -0.35};
+    });
+}
+
+/// A box of six walls as one zone, or its walls as six.
+std::vector<WallShape> box(double size, bool inward) {
+    std::vector<WallShape> walls;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double side : {-1.0, 1.0}) {
+            const auto place = [=](double s, double t) {
+                Point p{};
+                const double u = (side > 0) != inward ? 2 * s - 1 : 1 - 2 * s;
+                p[std::size_t(axis)] = size * side;
+                p[std::size_t(axis + 1) % 3] = size * u;
+                p[std::size_t(axis + 2) % 3] = size * (2 * t - 1);
+                return p;
+            };
+            walls.push_back(sheet("wall-" + std::to_string(walls.size()), 3, 3, place));
+        }
+    }
+    return walls;
+}
+
+std::vector<std::string> names_of(const std::vector<OtherWall>& walls) {
+    std::vector<std::string> names;
+    for (const auto& wall : walls) {
+        names.push_back(wall.name);
+    }
+    return names;
+}
+
+TEST(BodyZones, ABodyAloneKeepsAllItsWalls) {
+    ASSERT_GT(hull(false).volume, 0);
+    for (const bool half : {false, true}) {
+        EXPECT_THAT(walls_beside_body({hull(half), base(half)}), IsEmpty()) << half;
+    }
+    EXPECT_THAT(walls_beside_body(box(1, false)), IsEmpty());
+    EXPECT_THAT(walls_beside_body({hull(false)}), IsEmpty());
+}
+
+TEST(BodyZones, AGroundIsNoneOfThem) {
+    for (const bool half : {false, true}) {
+        const double from = half ? 0 : -3;
+        EXPECT_THAT(names_of(walls_beside_body({hull(half), flat("ground", -3, 3, from, 3, -0.4), base(half)})), ElementsAre("ground")) << half;
+        // In two parts, one of them just under the body, and uneven.
+        const std::vector<WallShape> parts = {flat("near", -1, 1, half ? 0 : -0.7, 0.7, -0.4), flat("far", 1, 9, from, 3, -0.4), hull(half), base(half)};
+        EXPECT_THAT(names_of(walls_beside_body(parts)), ElementsAre("near", "far")) << half;
+        const auto bed = sheet("bed", 40, 40, [=](double s, double t) { return Point{6 * s - 3, from + t * (3 - from), -0.6 + 0.05 * std::sin(20 * s) * std::cos(17 * t)}; });
+        EXPECT_THAT(names_of(walls_beside_body({bed, hull(half), base(half)})), ElementsAre("bed")) << half;
+    }
+}
+
+TEST(BodyZones, FloorAndCeilingOfAChannelAreNoneEither) {
+    const std::vector<WallShape> walls = {flat("floor", -5, 5, -2, 2, -1), flat("ceiling", -5, 5, -2, 2, 1), hull(false), base(false)};
+    EXPECT_THAT(names_of(walls_beside_body(walls)), ElementsAre("floor", "ceiling"));
+}
+
+TEST(BodyZones, ATunnelAroundTheBodyIsNoneWhenItsFluidIsInside) {
+    const auto tunnel = [](bool known) {  // a tube along x, normals inward
+        return sheet("tunnel", 4, 40, [](double s, double t) { return Point{10 * s - 5, 3 * std::cos(2 * M_PI * t), 3 * std::sin(2 * M_PI * t)}; }, known);
+    };
+    ASSERT_LT(tunnel(true).volume, 0);
+    EXPECT_THAT(names_of(walls_beside_body({tunnel(true), hull(false), base(false)})), ElementsAre("tunnel"));
+    EXPECT_THAT(walls_beside_body({tunnel(false), hull(false), base(false)}), IsEmpty());  // nobody knows where its fluid is
+}
+
+TEST(BodyZones, ARoomOrAChannelWithoutABodyKeepsItsWalls) {
+    EXPECT_THAT(walls_beside_body(box(2, true)), IsEmpty());
+    EXPECT_THAT(walls_beside_body({flat("floor", -5, 5, -2, 2, -1), flat("ceiling", -5, 5, -2, 2, 1)}), IsEmpty());
+}
+
+TEST(BodyZones, DoNotDependOnPlaceSizeOrDirection) {
+    core::Random random(20261122);
+    for (int trial = 0; trial < 20; ++trial) {
+        const double scale = std::pow(10.0, 6 * random.uniform() - 3);
+        const Point shift{1e3 * scale * random.uniform(), -1e3 * scale * random.uniform(), 5e2 * scale};
+        const double angle = 2 * M_PI * random.uniform();
+        const auto moved = [&](Point p) {
+            return Point{shift[0] + scale * (std::cos(angle) * p[0] - std::sin(angle) * p[2]), shift[1] + scale * p[1],
+                         shift[2] + scale * (std::sin(angle) * p[0] + std::cos(angle) * p[2])};
+        };
+        const double lowest = std::acos(-0.7);
+        const std::vector<WallShape> walls = {
+            sheet("hull", 60, 30, [&](double s, double t) {
+                const double theta = t * lowest;
+                return moved({std::sin(theta) * std::cos(2 * M_PI * s), -0.7 * std::sin(theta) * std::sin(2 * M_PI * s), 0.5 * std::cos(theta)});
+            }),
+            sheet("base", 60, 5, [&](double s, double t) {
+                const double r = std::sin(lowest) * (1 - t);
+                return moved({r * std::cos(2 * M_PI * s), 0.7 * r * std::sin(2 * M_PI * s), -0.35});
+            }),
+            sheet("ground", 3, 3, [&](double s, double t) { return moved({6 * s - 3, 6 * t - 3, -0.4}); })};
+        EXPECT_THAT(names_of(walls_beside_body(walls)), ElementsAre("ground")) << trial;
+    }
+}
+
+TEST(BodyZones, ClosedBodiesThatLieApartAreNamed) {
+    const auto ball = [](const std::string& name, double at) {
+        return sheet(name, 40, 20, [=](double s, double t) {
+            return Point{at + std::sin(M_PI * t) * std::cos(2 * M_PI * s), std::sin(M_PI * t) * std::sin(2 * M_PI * s), std::cos(M_PI * t)};
+        });
+    };
+    EXPECT_THAT(separate_bodies({ball("first", 0), ball("second", 3)}), ElementsAre("first", "second"));
+    EXPECT_THAT(separate_bodies({ball("first", 0), hull(false, 3)}), IsEmpty());
+    EXPECT_THAT(separate_bodies({ball("first", 0), ball("inner", 0.5)}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace underbody::postproc
