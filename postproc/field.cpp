@@ -103,14 +103,14 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
         throw core::InputError("file", "there is no such file", place, near.empty() ? "" : "did you mean '" + near + "'?");
     }
     if (fs::is_regular_file(status)) {
-        if (fs::file_size(path, error) == 0) {
-            throw core::InputError("format", "the file is empty", place);
-        }
         if (!std::ifstream(path, std::ios::binary)) {
             throw core::InputError("file", "the file cannot be read", place, "check its permissions");
         }
     }
     const Importer* importer = importer_for(path);
+    if (importer == nullptr && fs::is_regular_file(status) && fs::file_size(path, error) == 0) {
+        throw core::InputError("format", "the file is empty", place);  // an empty NAME.foam stands for the case around it
+    }
     if (importer == nullptr) {
         throw core::InputError("format", "no importer knows this content", place, "known formats: " + known_formats());
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -98,6 +99,28 @@ struct Section {
     }
 };
 
+/// What makes SI of the file's units of mass and length (CGNS knows no time but the second).
+struct Scales {
+    double mass = 1;
+    double length = 1;
+};
+
+/// Powers of mass and length in the units that the canonical quantities have.
+struct Powers {
+    std::string_view unit;
+    int mass;
+    int length;
+};
+constexpr std::array powers = {Powers{"Pa", 1, -1},     Powers{"m/s", 0, 1},     Powers{"kg/m^3", 1, -3}, Powers{"m^2/s^2", 0, 2},
+                               Powers{"m^2/s^3", 0, 2}, Powers{"m^2/s", 0, 2},   Powers{"Pa s", 1, -1},   Powers{"J/kg", 0, 2},
+                               Powers{"W/m^2", 1, 0},   Powers{"m", 0, 1},       Powers{"m^2", 0, 2},     Powers{"m^3", 0, 3},
+                               Powers{"N", 1, 1},       Powers{"kg/s", 1, 0}};
+
+double to_si(const Scales& scales, std::string_view unit) {
+    const auto found = std::find_if(powers.begin(), powers.end(), [&](const Powers& p) { return p.unit == unit; });
+    return found == powers.end() ? 1 : std::pow(scales.mass, found->mass) * std::pow(scales.length, found->length);
+}
+
 class Reader {
 public:
     Reader(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress)
@@ -138,6 +161,9 @@ private:
                  " bytes");
         }
     }
+    void read_units(Field& field);
+    template <typename... Node>
+    [[nodiscard]] Scales scales_at(const Scales& above, Node... node);
     void read_zone(int zone, Field& field);
     Buffer<double> coordinates(int zone);
     std::vector<Section> sections(int zone);
@@ -150,7 +176,7 @@ private:
     void add_structured(int zone, const std::string& zone_name, Buffer<double>&& points,
                         std::vector<PartValues>&& values, Field& field);
     void add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
-                     ElementPart&& surface, const BoundaryFaces* volume);
+                     ElementPart&& surface, const BoundaryFaces& volume);
     ElementPart volume_of(const std::vector<Section>& sections, std::int64_t nodes);
     void add_polyhedra(ElementPart& volume, const Section& cells,
                        const std::map<std::int64_t, std::pair<const Section*, std::size_t>>& faces);
@@ -167,7 +193,9 @@ private:
     std::string understood_;
     CGNS_ENUMT(ZoneType_t) type_ = CGNS_ENUMV(Unstructured);
     std::array<cgsize_t, 9> size_{};
-    double scale_ = 1;
+    Scales of_base_;
+    bool units_stated_ = false;
+    std::map<std::string, std::string> converted_;  ///< variable -> what one of the file's units is
 };
 
 Field Reader::read() {
@@ -189,23 +217,7 @@ Field Reader::read() {
     int physical = 3;
     ok(cg_base_read(file_, base_, base_name.data(), &cell_dimension_, &physical), "base");
     field.dimension = cell_dimension_ == 2 && physical == 2 ? 2 : 3;
-    CGNS_ENUMT(MassUnits_t) mass{};
-    CGNS_ENUMT(LengthUnits_t) length{};
-    CGNS_ENUMT(TimeUnits_t) time{};
-    CGNS_ENUMT(TemperatureUnits_t) temperature{};
-    CGNS_ENUMT(AngleUnits_t) angle{};
-    const bool stated = cg_goto(file_, base_, "end") == CG_OK &&
-                        cg_units_read(&mass, &length, &time, &temperature, &angle) == CG_OK &&
-                        length > CGNS_ENUMV(LengthUnitsUserDefined);
-    if (stated) {
-        const std::string unit = core::lower_case(LengthUnitsName[length]);
-        scale_ = unit == "centimeter"   ? 0.01
-                 : unit == "millimeter" ? 0.001
-                 : unit == "foot"       ? 0.3048
-                 : unit == "inch"       ? 0.0254
-                                        : 1;
-        field.metadata.emplace_back("length unit", unit);
-    }
+    read_units(field);
     int zones = 0;
     ok(cg_nzones(file_, base_, &zones), "zones");
     for (int zone = 1; zone <= zones; ++zone) {
@@ -213,11 +225,60 @@ Field Reader::read() {
         progress_.report(static_cast<double>(zone - 1) / zones, "reading zone " + std::to_string(zone));
         read_zone(zone, field);
     }
-    if (!stated) {
+    for (const auto& [variable, unit] : converted_) {
+        field.problems.push_back({core::Problem::Severity::note,
+                                  variable + " stands in the units that the file states: 1 there is " + unit,
+                                  {name_, {}, {}, {}}});
+    }
+    if (!units_stated_) {
         field.problems.push_back(
             {core::Problem::Severity::note, "the file states no units; SI is taken", {name_, {}, {}, {}}});
     }
     return field;
+}
+
+/// The units stated at a node of the file, else those above it.
+template <typename... Node>
+Scales Reader::scales_at(const Scales& above, Node... node) {
+    CGNS_ENUMT(MassUnits_t) mass{};
+    CGNS_ENUMT(LengthUnits_t) length{};
+    CGNS_ENUMT(TimeUnits_t) time{};
+    CGNS_ENUMT(TemperatureUnits_t) temperature{};
+    CGNS_ENUMT(AngleUnits_t) angle{};
+    if (cg_goto(file_, base_, node..., "end") != CG_OK ||
+        cg_units_read(&mass, &length, &time, &temperature, &angle) != CG_OK) {
+        return above;
+    }
+    Scales result = above;
+    if (length > CGNS_ENUMV(LengthUnitsUserDefined)) {
+        units_stated_ = true;
+        const std::string unit = core::lower_case(LengthUnitsName[length]);
+        result.length = unit == "centimeter"   ? 0.01
+                        : unit == "millimeter" ? 0.001
+                        : unit == "foot"       ? 0.3048
+                        : unit == "inch"       ? 0.0254
+                                               : 1;
+    }
+    if (mass > CGNS_ENUMV(MassUnitsUserDefined)) {
+        const std::string unit = core::lower_case(MassUnitsName[mass]);
+        result.mass = unit == "gram" ? 1e-3 : unit == "slug" ? 14.59390294 : unit == "poundmass" ? 0.45359237 : 1;
+    }
+    return result;
+}
+
+void Reader::read_units(Field& field) {
+    of_base_ = scales_at({});
+    if (units_stated_) {
+        field.metadata.emplace_back("length unit", core::format_number(of_base_.length) + " m");
+    }
+    auto data = CGNS_ENUMV(DataClassNull);
+    if (cg_goto(file_, base_, "end") == CG_OK && cg_dataclass_read(&data) == CG_OK &&
+        data != CGNS_ENUMV(DataClassNull) && data != CGNS_ENUMV(DataClassUserDefined) && data != CGNS_ENUMV(Dimensional)) {
+        field.problems.push_back({core::Problem::Severity::warning,
+                                  std::string("the file says that its values have no dimensions (") + DataClassName[data] +
+                                      "): they are taken as they stand, so that lengths and forces are not SI",
+                                  {name_, {}, {}, {}}});
+    }
 }
 
 void Reader::read_zone(int zone, Field& field) {
@@ -275,11 +336,14 @@ Buffer<double> Reader::coordinates(int zone) {
         ok(cg_coord_read(file_, base_, zone, coordinate.data(), CGNS_ENUMV(RealDouble), low.data(), high.data(),
                          column.data()),
            "coordinates");
+        const double scale = scales_at(scales_at(scales_at(of_base_, "Zone_t", zone), "Zone_t", zone, "GridCoordinates_t", 1),
+                                       "Zone_t", zone, "GridCoordinates_t", 1, "DataArray_t", c)
+                                 .length;
         for (std::size_t i = 0; i < nodes; ++i) {
             if (!std::isfinite(column[i])) {
                 fail("a coordinate that is not a number");
             }
-            points[3 * i + static_cast<std::size_t>(axis)] = scale_ * column[i];
+            points[3 * i + static_cast<std::size_t>(axis)] = scale * column[i];
         }
     }
     return points;
@@ -493,6 +557,12 @@ std::vector<PartValues> Reader::solutions(int zone, std::size_t cells) {
             ok(cg_field_read(file_, base_, zone, s, name.data(), CGNS_ENUMV(RealDouble), low.data(), high.data(),
                              values.values.data()),
                "field");
+            const Scales scales = scales_at(scales_at(scales_at(of_base_, "Zone_t", zone), "Zone_t", zone, "FlowSolution_t", s),
+                                            "Zone_t", zone, "FlowSolution_t", s, "DataArray_t", f);
+            if (const double scale = to_si(scales, canonical.unit); scale != 1) {
+                converted_[name.data()] = core::format_number(scale) + " " + canonical.unit;
+                std::for_each(values.values.begin(), values.values.end(), [&](double& value) { value *= scale; });
+            }
             result.push_back(std::move(values));
         }
     }
@@ -551,13 +621,40 @@ ElementPart Reader::volume_of(const std::vector<Section>& all, std::int64_t /*no
     return volume;
 }
 
+/// Where the solution lies in the cells, a surface takes the pressure of those behind its faces.
+std::vector<PartValues> pressure_beside(const ElementPart& surface, const std::vector<PartValues>& values,
+                                        const BoundaryFaces& volume) {
+    std::vector<PartValues> own;
+    for (const auto& entry : values) {
+        const std::string name = canonical_name(entry.variable).name;
+        if (entry.on_nodes || (name != "pressure" && name != "pressure_absolute")) {
+            continue;
+        }
+        PartValues part{entry.variable, false, 1, Buffer<double>(surface.elements())};
+        bool any = false;
+        for (std::size_t i = 0; i < surface.elements(); ++i) {
+            const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
+            const std::int64_t cell = volume.cell_behind(surface.nodes.data() + surface.offsets[i], count);
+            const bool found = cell >= 0 && static_cast<std::size_t>(cell) < entry.values.size();
+            part.values[i] = found ? entry.values[static_cast<std::size_t>(cell)] : std::numeric_limits<double>::quiet_NaN();
+            any = any || found;
+        }
+        if (any) {
+            own.push_back(std::move(part));
+        }
+    }
+    return own;
+}
+
 /// A surface gets the points it uses, and their values.
 void Reader::add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
-                         ElementPart&& surface, const BoundaryFaces* volume) {
+                         ElementPart&& surface, const BoundaryFaces& volume) {
     if (surface.elements() == 0 || !matches_any(options_.zones, surface.name)) {
         return;
     }
-    const bool settled = volume != nullptr && volume->turn_into_volume(surface, points);
+    const bool settled = volume.turn_into_volume(surface, points);
+    std::vector<PartValues> own = pressure_beside(surface, values, volume);
+    const bool of_cells = !own.empty();
     std::unordered_map<std::int64_t, std::int64_t> places;
     std::vector<std::int64_t> used(surface.nodes);
     std::sort(used.begin(), used.end());
@@ -571,7 +668,6 @@ void Reader::add_surface(Field& field, const Buffer<double>& points, const std::
     for (auto& node : surface.nodes) {
         node = places[node];
     }
-    std::vector<PartValues> own;
     for (const auto& entry : values) {
         if (entry.on_nodes) {
             PartValues part{entry.variable, true, 1, Buffer<double>(used.size())};
@@ -583,6 +679,9 @@ void Reader::add_surface(Field& field, const Buffer<double>& points, const std::
     }
     Zone zone = zone_from(std::move(surface), std::move(own), cell_dimension_, options_, name_, field.problems);
     zone.normals_into_fluid = settled;
+    for (auto& info : zone.arrays) {
+        info.on = of_cells && info.on == Location::faces ? Location::cells : info.on;
+    }
     field.zones.push_back(std::move(zone));
 }
 
@@ -640,7 +739,7 @@ void Reader::add_unstructured(int zone, const std::string& zone_name, Buffer<dou
     }
     const BoundaryFaces faces(surfaces, volume);
     for (auto& surface : surfaces) {
-        add_surface(field, points, values, std::move(surface), cell_dimension_ == 3 ? &faces : nullptr);
+        add_surface(field, points, values, std::move(surface), faces);
     }
     if (volume.elements() > 0 && !options_.surfaces_only && matches_any(options_.zones, zone_name)) {
         volume.name = zone_name;
@@ -728,7 +827,7 @@ void Reader::add_structured(int zone, const std::string& zone_name, Buffer<doubl
     const BoundaryFaces faces(surfaces, volume);
     for (auto& surface : surfaces) {
         surface.name = zone_name + "/" + surface.name;
-        add_surface(field, points, values, std::move(surface), &faces);
+        add_surface(field, points, values, std::move(surface), faces);
     }
     if (volume.elements() > 0 && !options_.surfaces_only && matches_any(options_.zones, zone_name)) {
         volume.name = zone_name;

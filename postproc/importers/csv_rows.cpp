@@ -19,8 +19,9 @@ constexpr std::size_t chunk_size = std::size_t{2} << 20;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-const char* skip_blanks(const char* p, const char* end) {
-    while (p < end && is_blank(*p)) {
+/// A tab between columns is no blank.
+const char* skip_blanks(const char* p, const char* end, char separator) {
+    while (p < end && is_blank(*p) && *p != separator) {
         ++p;
     }
     return p;
@@ -102,7 +103,7 @@ public:
 
     NumberRows run() {
         while (p_ < end_) {
-            p_ = skip_blanks(p_, end_);
+            p_ = skip_blanks(p_, end_, separator_);
             if (p_ < end_ && *p_ != '\n') {
                 if (*p_ == '#' || (*p_ == separator_ && only_separators())) {
                     p_ = line_end(p_, end_);
@@ -133,13 +134,13 @@ private:
         const std::size_t columns = targets_.size();
         for (std::size_t c = 0; c < columns; ++c) {
             const ColumnTarget& target = targets_[c];
-            p_ = skip_blanks(p_, end_);
+            p_ = skip_blanks(p_, end_, separator_);
             double value = 0;
             const char* next = p_ < end_ ? parse_number(p_, end_, value) : nullptr;
             if (next == nullptr || !(std::abs(value) <= std::numeric_limits<double>::max())) {
                 next = odd_token(c, value);
             }
-            p_ = skip_blanks(next, end_);
+            p_ = skip_blanks(next, end_, separator_);
             if (target.base != nullptr) {
                 target.base[row_ * target.stride] = value * target.scale + target.offset;
             }
@@ -212,7 +213,7 @@ IndexRows index_chunk(std::string_view text, char separator, std::size_t least, 
     const char* p = text.data();
     const char* end = p + text.size();
     while (p < end) {
-        p = skip_blanks(p, end);
+        p = skip_blanks(p, end, separator);
         if (p == end || *p == '\n') {
             ++p;
             continue;
@@ -245,12 +246,12 @@ IndexRows index_chunk(std::string_view text, char separator, std::size_t least, 
                 result.largest_at = start;
             }
             const char* after = p;
-            p = skip_blanks(p, end);
+            p = skip_blanks(p, end, separator);
             // Spreadsheets fill short rows with separators.
             bool separated = false;
             while (p < end && *p == separator) {
                 separated = true;
-                p = skip_blanks(p + 1, end);
+                p = skip_blanks(p + 1, end, separator);
             }
             if (p == end || *p == '\n') {
                 break;

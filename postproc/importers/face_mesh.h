@@ -104,6 +104,9 @@ void hide_generated_faces(FaceMesh& mesh);
 /// Checks that ranges, node ids and cell ids are consistent; throws InputError that names zone and face.
 void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress);
 
+/// Is there a wall without a pressure on its own faces? It then takes that of the cells beside it, if these have one.
+bool walls_lack_pressure(const FaceMesh& mesh, const std::vector<ValueBlock>& values);
+
 /// One unstructured block of VTK arrays that cells are built from.
 struct CellArrays {
     Buffer<unsigned char> types;

@@ -17,6 +17,8 @@ const Faces& faces_of(unsigned char type) {
     static const Faces wedge = {{0, 1, 2}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
     static const Faces hexahedron = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                      {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    static const Faces triangle = {{0, 1}, {1, 2}, {2, 0}};
+    static const Faces quadrangle = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
     static const Faces none;
     switch (type) {
         case VTK_TETRA:
@@ -27,6 +29,10 @@ const Faces& faces_of(unsigned char type) {
             return wedge;
         case VTK_HEXAHEDRON:
             return hexahedron;
+        case VTK_TRIANGLE:
+            return triangle;
+        case VTK_QUAD:
+            return quadrangle;
         default:
             return none;
     }
@@ -115,17 +121,22 @@ BoundaryFaces::BoundaryFaces(const std::vector<ElementPart>& surfaces, const Ele
     }
 }
 
+std::int64_t BoundaryFaces::cell_behind(const std::int64_t* nodes, std::size_t count) const {
+    const auto found = cells_.find(key_of(nodes, count));
+    return found == cells_.end() ? -1 : found->second;
+}
+
 bool BoundaryFaces::turn_into_volume(ElementPart& surface, const Buffer<double>& points) const {
     bool all = true;
     for (std::size_t i = 0; i < surface.elements(); ++i) {
         std::int64_t* nodes = surface.nodes.data() + surface.offsets[i];
         const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
-        const auto found = cells_.find(key_of(nodes, count));
-        if (found == cells_.end() || found->second < 0 || count < 3) {
+        const std::int64_t behind = cell_behind(nodes, count);
+        if (behind < 0 || count < 3) {
             all = false;
             continue;
         }
-        const auto cell = static_cast<std::size_t>(found->second);
+        const auto cell = static_cast<std::size_t>(behind);
         const Vector inside =
             mean_of(volume_.nodes.data() + volume_.offsets[cell],
                     static_cast<std::size_t>(volume_.offsets[cell + 1] - volume_.offsets[cell]), points);

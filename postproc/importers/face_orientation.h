@@ -18,6 +18,9 @@ public:
     /// True if a cell was found behind every face.
     bool turn_into_volume(ElementPart& surface, const Buffer<double>& points) const;
 
+    /// The place of the cell behind a face among the volume's elements; -1 when there is none.
+    [[nodiscard]] std::int64_t cell_behind(const std::int64_t* nodes, std::size_t count) const;
+
 private:
     /// Corners of a face, sorted (the four lowest), tell it from others.
     struct Key {

@@ -19,6 +19,7 @@ namespace underbody::postproc {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+const std::string pressure_variable = "SV_P";
 
 /// The faces or cells of a zone: which ids they have, in order.
 using Ids = Buffer<std::uint64_t>;
@@ -63,6 +64,7 @@ private:
                     core::Problems& problems);
     void add_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) const;
     void add_surface(Field& field, int id, const std::vector<std::size_t>& blocks);
+    void take_pressure_of_cells(Zone& zone, const std::vector<Element>& elements, core::Problems& problems) const;
     [[nodiscard]] std::uint64_t hidden_within(const CellBlock& block) const;
 
     FaceMesh& mesh_;
@@ -447,7 +449,42 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
         zone.surface->SetPolys(array);
     }
     add_values(zone, ids, *zone.surface->GetCellData(), false, areas, field.problems);
+    if (zone.kind == ZoneKind::wall && zone.find("pressure") == nullptr) {
+        take_pressure_of_cells(zone, elements, field.problems);
+    }
     field.zones.push_back(std::move(zone));
+}
+
+/// The last resort for a wall whose faces have no pressure of their own.
+void Assembly::take_pressure_of_cells(Zone& zone, const std::vector<Element>& elements, core::Problems& problems) const {
+    Buffer<double> values(elements.size());
+    values.fill(missing);
+    std::size_t found = 0;
+    for (const auto& block : values_) {
+        if (!block.on_cells || block.variable != pressure_variable || block.phase != 1 || block.components != 1) {
+            continue;
+        }
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+            const FaceBlock& faces = mesh_.face_blocks[elements[i].block];
+            const std::size_t face = elements[i].face;
+            const std::uint32_t cell = elements[i].flipped ? faces.c1[face] : faces.c0[face];
+            if (cell >= block.first && cell < block.first + block.count) {
+                values[i] = block.values[cell - block.first];
+                ++found;
+            }
+        }
+    }
+    if (found == 0) {
+        return;
+    }
+    problems.push_back({core::Problem::Severity::warning,
+                        "zone " + zone.name + " has no pressure on its faces: that of the cells beside it is taken" +
+                            (found < elements.size() ? ", for " + std::to_string(found) + " of its " +
+                                                           std::to_string(elements.size()) + " faces"
+                                                     : ""),
+                        {mesh_.file, {}, {}, {}}});
+    add_array(zone, *zone.surface->GetCellData(), {"pressure", "Pa", pressure_variable, "", Location::cells, 1},
+              std::move(values));
 }
 
 void Assembly::add_surfaces(Field& field) {
@@ -481,6 +518,18 @@ std::uint64_t Assembly::hidden_within(const CellBlock& block) const {
 }
 
 }  // namespace
+
+bool walls_lack_pressure(const FaceMesh& mesh, const std::vector<ValueBlock>& values) {
+    return std::any_of(mesh.face_blocks.begin(), mesh.face_blocks.end(), [&](const FaceBlock& faces) {
+        const ZoneLabel* label = mesh.label(faces.zone);
+        const std::string type = label != nullptr && !label->type.empty() ? label->type : type_of_code(faces.kind);
+        return faces.count > 0 && kind_of_type(type) == ZoneKind::wall &&
+               std::none_of(values.begin(), values.end(), [&](const ValueBlock& block) {
+                   return !block.on_cells && block.variable == pressure_variable && block.phase == 1 &&
+                          block.first < faces.first + faces.count && faces.first < block.first + block.count;
+               });
+    });
+}
 
 Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const ReadOptions& options,
                  core::Progress& progress) {

@@ -1,6 +1,7 @@
 // Fluent's common fluids format: .msh.h5, .cas.h5, .dat.h5.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/text.h"
 #include "postproc/importers/face_mesh.h"
@@ -448,10 +449,13 @@ public:
         : file_(path), mesh_(mesh), options_(options), progress_(progress) {}
 
     std::vector<ValueBlock> read(FluentSettings& settings, core::Problems& problems);
+    /// Of the first phase, the variables asked for.
+    void add_cells(std::vector<ValueBlock>& values);
 
 private:
     void read_variable(const std::string& group, const std::string& variable, bool on_cells, int phase);
     void keep(const std::string& path, ValueBlock&& whole);
+    [[nodiscard]] std::uint64_t last_fluid_cell() const;
     [[noreturn]] void other_case(const std::string& what) const {
         throw core::InputError("mismatch", "these data belong to another case than " + mesh_.file + ": " + what,
                                {file_.name(), {}, {}, {}}, "give the case they were written with");
@@ -487,7 +491,7 @@ std::vector<ValueBlock> DataReader::read(FluentSettings& settings, core::Problem
     if (!any_) {
         throw core::InputError("format", "there are no solution data in this file", place);
     }
-    if (most_cell_ > 0 && most_cell_ < mesh_.cells && mesh_.hidden_cells.empty()) {
+    if (most_cell_ > 0 && most_cell_ < last_fluid_cell() && mesh_.hidden_cells.empty()) {
         other_case("its cells end at " + number(most_cell_) + ", the case has " + number(mesh_.cells));
     }
     settings.variables += file_.text("/settings/Data Variables");
@@ -499,6 +503,28 @@ std::vector<ValueBlock> DataReader::read(FluentSettings& settings, core::Problem
              "the data say they were written with '" + named + "'; counts and ids agree with '" + ours + "'", place});
     }
     return std::move(values_);
+}
+
+void DataReader::add_cells(std::vector<ValueBlock>& values) {
+    const std::string group = "/results/1/phase-1/cells";
+    for (const auto& variable : file_.children(group)) {
+        if (variable != "fields" && wants_variable(options_, variable)) {
+            read_variable(group + "/" + variable, variable, true, 1);
+        }
+    }
+    std::move(values_.begin(), values_.end(), std::back_inserter(values));
+}
+
+/// A solid without an energy equation has no values at all.
+std::uint64_t DataReader::last_fluid_cell() const {
+    std::uint64_t last = 0;
+    for (const auto& block : mesh_.cell_blocks) {
+        const ZoneLabel* label = mesh_.label(block.zone);
+        if (label == nullptr || label->type != "solid") {
+            last = std::max(last, block.first + block.count - 1);
+        }
+    }
+    return last;
 }
 
 void DataReader::read_variable(const std::string& group, const std::string& variable, bool on_cells, int phase) {
@@ -613,6 +639,10 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         progress.report(0.4, "reading " + data_path.filename().string());
         try {
             values = DataReader(data_path, mesh, options, progress).read(settings, problems);
+            if (options.surfaces_only && wants_variable(options, "SV_P") && walls_lack_pressure(mesh, values)) {
+                const ReadOptions again = for_pressure_of_cells(options);
+                DataReader(data_path, mesh, again, progress).add_cells(values);
+            }
             with_data = true;
         } catch (const core::InputError& error) {
             if (asked_for) {

@@ -1,8 +1,10 @@
 // Importer of legacy Fluent cases, meshes and data: finds which file is which, and its partner.
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 
 #include "postproc/importers/fluent_legacy.h"
+#include "postproc/importers/fluent_variables.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/partner.h"
 
@@ -90,6 +92,15 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         try {
             ByteStream stream(files.data);
             values = read_legacy_data(stream, legacy.mesh, options, legacy.settings, problems, progress);
+            if (options.surfaces_only && wants_variable(options, "SV_P") && walls_lack_pressure(legacy.mesh, values)) {
+                FluentSettings known;
+                core::Problems told;
+                const ReadOptions again = for_pressure_of_cells(options);
+                ByteStream once_more(files.data);
+                auto cells = read_legacy_data(once_more, legacy.mesh, again, known, told, progress);
+                std::erase_if(cells, [](const ValueBlock& block) { return !block.on_cells; });
+                std::move(cells.begin(), cells.end(), std::back_inserter(values));
+            }
             with_data = true;
         } catch (const core::InputError& error) {
             if (files.data_asked_for) {

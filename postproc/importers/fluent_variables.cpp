@@ -72,4 +72,11 @@ bool wants_variable(const ReadOptions& options, const std::string& variable) {
            (canonical == "wall_shear_force" && matches_any(options.arrays, "wall_shear"));
 }
 
+ReadOptions for_pressure_of_cells(const ReadOptions& options) {
+    ReadOptions again = options;
+    again.surfaces_only = false;
+    again.arrays = {"SV_P"};
+    return again;
+}
+
 }  // namespace underbody::postproc

@@ -162,6 +162,16 @@ TEST(CfdPostCsv, TellsDecimalCommasAndTakesSemicolonsWithPoints) {
     EXPECT_THAT(failure(replaced(semicolons, "1.5", "1,5")), HasSubstr("line 5: '1,5' has a decimal comma"));
 }
 
+TEST(CfdPostCsv, TakesTabsBetweenColumns) {
+    std::string tabs = good;
+    std::replace(tabs.begin(), tabs.end(), ',', '\t');
+    const Field field = read_text(tabs);
+    EXPECT_EQ(value(field.zones[0], "pressure", 2), -35);
+    EXPECT_EQ(value(field.zones[0], "wall_shear", 2, 2), 2);
+    EXPECT_EQ(field.zones[1].surface->GetNumberOfPolys(), 1);
+    EXPECT_THAT(failure(replaced(tabs, "0\t1\t1\t4", "0\t1\t\t4")), HasSubstr("coordinate 'Z' has no value"));
+}
+
 TEST(CfdPostCsv, KeepsMissingValuesAsMissingAndSaysWhere) {
     const Field field = read_text(replaced(replaced(good, "1,1,0, -3.5e+01", "1,1,0, null"), "0,1,0, 4.5E+001", "0,1,0, "));
     EXPECT_TRUE(std::isnan(value(field.zones[0], "pressure", 2)));

@@ -129,6 +129,10 @@ public:
         ok(cg_goto(file_, base_, "Zone_t", zone_, "ZoneBC_t", 1, "BC_t", condition_index, "end"));
         ok(cg_famname_write(name.c_str()));
     }
+    void units(CGNS_ENUMT(MassUnits_t) mass, CGNS_ENUMT(LengthUnits_t) length) {
+        ok(cg_goto(file_, base_, "end"));
+        ok(cg_units_write(mass, length, CGNS_ENUMV(Second), CGNS_ENUMV(Kelvin), CGNS_ENUMV(Radian)));
+    }
     [[nodiscard]] cgsize_t next() const { return next_; }
 
 private:
@@ -336,6 +340,51 @@ TEST(Cgns, PolyhedraOfFacesAreWhole) {
     EXPECT_GT(test::smallest_volume(*domain->volume), 0.2);
     ASSERT_NE(field.find("end"), nullptr);
     EXPECT_NEAR(test::area_of(*field.find("end")->surface), 1.25, 1e-12);
+}
+
+TEST(Cgns, BoundariesTakeThePressureOfTheCellsBehindThem) {
+    const core::TemporaryFolder folder;
+    {
+        File file(folder.path() / "a.cgns", CG_FILE_HDF5, cells.size());
+        std::vector<std::pair<CGNS_ENUMT(ElementType_t), Nodes>> all;
+        for (const auto& cell : cells) {
+            all.emplace_back(cell.type, cell.nodes);
+        }
+        file.section("cells", CGNS_ENUMV(MIXED), all);
+        file.section("floor", CGNS_ENUMV(MIXED), faces_where(hull(cells), true));
+        file.section("rest", CGNS_ENUMV(MIXED), faces_where(hull(cells), false));
+        file.pressure(CGNS_ENUMV(CellCenter), {10, 20, 30, 40});
+    }
+    const auto field = read_field(folder.path() / "a.cgns");
+    const auto* floor = field.find("floor");
+    ASSERT_NE(floor->find("pressure"), nullptr);
+    EXPECT_EQ(floor->find("pressure")->on, postproc::Location::cells);
+    std::multiset<double> found;
+    for (vtkIdType i = 0; i < floor->surface->GetNumberOfCells(); ++i) {
+        const double value = floor->surface->GetCellData()->GetArray("pressure")->GetTuple1(i);
+        EXPECT_EQ(floor->surface->GetCell(i)->GetNumberOfPoints(), value == 10 ? 4 : 3);
+        found.insert(value);
+    }
+    EXPECT_EQ(found, (std::multiset<double>{10, 20}));  // the cube and the wedge stand on the floor
+    EXPECT_EQ(test::range_of(*field.find("rest")->surface, "pressure").high, 40);
+}
+
+TEST(Cgns, EveryValueIsInTheUnitsThatTheFileStates) {
+    const core::TemporaryFolder folder;
+    {
+        File file(folder.path() / "a.cgns", CG_FILE_HDF5, cells.size());
+        file.units(CGNS_ENUMV(Gram), CGNS_ENUMV(Centimeter));
+        std::vector<std::pair<CGNS_ENUMT(ElementType_t), Nodes>> all;
+        for (const auto& cell : cells) {
+            all.emplace_back(cell.type, cell.nodes);
+        }
+        file.section("cells", CGNS_ENUMV(MIXED), all);
+        file.pressure(CGNS_ENUMV(Vertex), linear());
+    }
+    const auto field = read_field(folder.path() / "a.cgns");
+    EXPECT_NEAR(test::volume_of(field), volume * 1e-6, 1e-15);
+    auto* pressure = field.find("Domain 1")->volume->GetPointData()->GetArray("pressure");
+    EXPECT_NEAR(pressure->GetTuple1(6), 0.1 * (1 + 2 + 3 + 4), 1e-7);  // 1 dyn/cm^2 is 0.1 Pa
 }
 
 TEST(Cgns, FilesCutAnywhereOrChangedAreReadOrRefused) {

@@ -265,6 +265,34 @@ TEST(FluentHdf5, SurfacesAloneAreTheSameSurfacesWithTheirOwnNodesOnly) {
     }
 }
 
+TEST(FluentHdf5, ASolidNeedsNoValuesAndAWallTakesThePressureOfItsCells) {
+    const core::TemporaryFolder folder;
+    {
+        Writer out(folder.path() / "tank.cas.h5");
+        write_mesh(out);
+        out.text("/settings/Rampant Variables", "((operating-pressure 101325))");
+        out.text("/settings/Thread Variables", "(39 (6 wall hull 1)(\n))(39 (2 fluid water 1)())(39 (3 solid more 1)())");
+        Writer data(folder.path() / "tank.dat.h5");
+        data.reals("/results/1/phase-1/cells/SV_P/1", {5});
+        data.ids("/results/1/phase-1/cells/SV_P/1", 1, 1);
+    }
+    for (const bool surfaces_only : {false, true}) {
+        ReadOptions options;
+        options.surfaces_only = surfaces_only;
+        const auto field = read_field(folder.path() / "tank.cas.h5", options);
+        const auto* hull = field.find("hull");
+        ASSERT_NE(hull->find("pressure"), nullptr);
+        EXPECT_EQ(hull->find("pressure")->on, postproc::Location::cells);
+        EXPECT_EQ(test::range_of(*hull->surface, "pressure").low, 5);
+        EXPECT_EQ(test::range_of(*hull->surface, "pressure").high, 5);
+    }
+    // The same values for a mesh of fluid alone are another case's.
+    write_case(folder.path() / "tank.cas.h5");
+    ReadOptions options;
+    options.companion = folder.path() / "tank.cas.h5";
+    EXPECT_THAT(test::refusal(folder.path() / "tank.dat.h5", options), HasSubstr("its cells end at 1"));
+}
+
 TEST(FluentHdf5, AMeshIsInTheUnitThatItStates) {
     const core::TemporaryFolder folder;
     {

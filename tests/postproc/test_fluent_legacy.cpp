@@ -1,7 +1,9 @@
 // Legacy Fluent files of our own making (tests/data/make_fluent_files.py), whole and damaged.
 #include <gmock/gmock.h>
+#include <vtkCellData.h>
 #include <vtkCellType.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -110,6 +112,36 @@ TEST(FluentLegacy, DataCutAnywhereAreRefusedOrSayWhatIsMissing) {
                 SUCCEED();
             }
         }
+    }
+}
+
+TEST(FluentLegacy, AWallWithoutPressureTakesThatOfTheCellsBesideIt) {
+    std::string text = core::read_file(data("ascii.dat"));
+    for (const int zone : {10, 12}) {  // the walls
+        const std::size_t begin = text.find("(300 (1 " + std::to_string(zone) + " ");
+        ASSERT_NE(begin, std::string::npos);
+        text.erase(begin, text.find("))", begin) + 2 - begin);
+    }
+    const core::TemporaryFolder folder;
+    ReadOptions options;
+    options.companion = data("ascii.cas");
+    for (const bool surfaces_only : {false, true}) {
+        options.surfaces_only = surfaces_only;
+        const auto field = read_field(alone(folder, text, "cells.dat"), options);
+        const auto* floor = field.find("floor");
+        ASSERT_NE(floor->find("pressure"), nullptr);
+        EXPECT_EQ(floor->find("pressure")->on, postproc::Location::cells);
+        EXPECT_EQ(field.find("inlet")->find("pressure")->on, postproc::Location::faces);
+        // The cells on the floor are the cube, the pentagonal prism and the wedge.
+        const auto whole = read_field(data("ascii.dat"));
+        auto* cells = whole.find("water")->volume->GetCellData()->GetArray("pressure");
+        const auto range = test::range_of(*floor->surface, "pressure");
+        EXPECT_EQ(range.low, std::min({cells->GetComponent(0, 0), cells->GetComponent(1, 0), cells->GetComponent(2, 0)}));
+        EXPECT_EQ(range.high, std::max({cells->GetComponent(0, 0), cells->GetComponent(1, 0), cells->GetComponent(2, 0)}));
+        const bool told = std::any_of(field.problems.begin(), field.problems.end(), [](const auto& problem) {
+            return problem.message.find("that of the cells beside it") != std::string::npos;
+        });
+        EXPECT_TRUE(told);
     }
 }
 
