@@ -106,6 +106,7 @@ void add_export_command(CLI::App& app, Shell& shell) {
     sub->footer(text +
                 "Examples:\n"
                 "  underbody export lift.csv --format c --out lift.h --max-error 0.5%\n"
+                "  underbody export found/model.toml --format c --out lift.h      the force of a model, with what discover added to it\n"
                 "  underbody export loads.csv --quantity pitch_moment --format json --out moment.json --frame ned");
     shell.on(sub, [&shell, command] { return run_export(shell, *command); });
 }

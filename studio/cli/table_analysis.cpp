@@ -131,7 +131,7 @@ struct CompareCommand {
 };
 
 int run_compare(Shell& shell, const CompareCommand& command) {
-    const auto points = tables::selected_rows(tables::read_points(command.table.file), command.table.where);
+    const auto points = command.table.points(shell);
     std::vector<std::string> names;
     for (const auto& name : points.text(command.by)) {
         if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -177,7 +177,7 @@ struct CollapseCommand {
 };
 
 int run_collapse(Shell& shell, const CollapseCommand& command) {
-    const auto points = tables::selected_rows(tables::read_points(command.table.file), command.table.where);
+    const auto points = command.table.points(shell);
     const auto forces = tables::force_columns(points);
     if (forces.empty() && command.table.quantity.empty()) {
         throw core::InputError("missing", "the table has no force column", {points.source, {}, {}, {}}, "name one by --quantity");

@@ -1,19 +1,21 @@
 #include "studio/cli/table_options.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/shell.h"
+#include "surrogates/dynamics/force_points.h"
 #include "surrogates/tables/select.h"
 
 namespace underbody::studio {
 
 void TableOptions::add_to(CLI::App& command) {
-    command.add_option("table", file, "points as CSV: gap [mm], pitch [deg], ..., lift_force [N], lift_force_sigma [N], ...; or a JSON that 'export' wrote")->required();
+    command.add_option("table", file, "points as CSV: gap [mm], pitch [deg], ..., lift_force [N], lift_force_sigma [N], ...; or a JSON that 'export' wrote; or a model.toml: its forces, with the effects that change them")->required();
     command.add_option("--quantity", quantity, "column to use (default: lift_force, or the first force of the table)");
-    command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either");
+    command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either; of a model: what is held, such as speed=0.5m/s");
     command.add_option("--axes", axes, "columns that are axes, such as gap,pitch (default: all known ones that vary)");
     command.add_option("--kind", kind, "auto | interpolation | gp | spline")->capture_default_str();
     command.add_option("--range", range, "outside the points: clamp | refuse | extrapolate")->capture_default_str();
@@ -71,15 +73,28 @@ std::vector<std::string> quantities_of(const core::Table& table, const std::stri
 
 }  // namespace
 
+core::Table TableOptions::points(Shell& shell) const {
+    if (std::filesystem::path(file).extension() != ".toml") {
+        return tables::selected_rows(tables::read_points(file), where);
+    }
+    dynamics::Conditions held;
+    for (const auto& [name, value] : read_assignments(where)) {
+        held.set(name, value);
+    }
+    auto found = dynamics::force_points(dynamics::read_model(file), held);
+    shell.show(found.remarks);
+    return std::move(found.points);
+}
+
 tables::ForceTable TableOptions::fit(Shell& shell) const {
-    const auto table = tables::selected_rows(tables::read_points(file), where);
+    const auto table = points(shell);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
     shell.show(fitted.remarks());
     return fitted;
 }
 
 std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell) const {
-    const auto table = tables::selected_rows(tables::read_points(file), where);
+    const auto table = points(shell);
     std::vector<tables::ForceTable> all;
     for (const auto& name : quantities_of(table, quantity)) {
         all.push_back(tables::ForceTable::fit(table, name, fit_options()));

@@ -26,6 +26,8 @@ struct TableOptions {
     /// Adds TABLE.csv, --quantity, --where, --axes, --kind, --range.
     void add_to(CLI::App& command);
     [[nodiscard]] tables::FitOptions fit_options() const;
+    /// The rows that were asked for; of a model (.toml) its forces as points. Remarks go to the shell.
+    [[nodiscard]] core::Table points(Shell& shell) const;
     /// Fits one quantity: the one asked for, or the first force of the table. Remarks go to the shell.
     [[nodiscard]] tables::ForceTable fit(Shell& shell) const;
     /// All quantities asked for ("a,b"), or all forces of the table.

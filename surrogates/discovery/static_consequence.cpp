@@ -1,13 +1,13 @@
 #include "surrogates/discovery/static_consequence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/text.h"
 #include "surrogates/discovery/consequence.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
+#include "surrogates/dynamics/force_points.h"
 
 namespace underbody::discovery {
 
@@ -58,19 +58,13 @@ std::vector<Balance> balances(const dynamics::Model& model, const dynamics::Cond
 
 }  // namespace
 
-bool belongs_to_the_rig(const std::string& effect) {
-    static constexpr std::array<const char*, 9> rig{"gap_offset",     "force_bias",     "sensor_gain",    "drift",             "current",
-                                                    "strut_buoyancy", "cable_buoyancy", "guide_friction", "pitch_misalignment"};
-    return std::find(rig.begin(), rig.end(), effect) != rig.end();
-}
-
 Consequence static_consequence(const dynamics::Model& before, const std::vector<dynamics::EffectUse>& uses, const StaticExperiment& experiment,
                                core::Progress& progress) {
     Consequence result;
     std::vector<std::string> rig, body;
     dynamics::Model after = before;
     for (const dynamics::EffectUse& use : uses) {
-        std::vector<std::string>& side = belongs_to_the_rig(use.name) ? rig : body;
+        std::vector<std::string>& side = dynamics::belongs_to_the_rig(use.name) ? rig : body;
         if (std::find(side.begin(), side.end(), use.name) == side.end()) {
             side.push_back(use.name);
         }

@@ -7,9 +7,6 @@
 
 namespace underbody::discovery {
 
-/// True for an effect of the rig (load cell, guide, cable, set-up, water of the tank), which goes with the vehicle nowhere.
-bool belongs_to_the_rig(const std::string& effect);
-
 /// Gaps at which lift and net weight balance, with the other channels at the middle of what was measured, and (when the model has a mass)
 /// the shares of the stability region. Effects of the rig move no equilibrium of the vehicle; for them `gap_after` is the one that
 /// somebody would read off the uncorrected measurements.

@@ -30,5 +30,22 @@ TEST(ExportCommand, WritesEveryFormatAndLeavesFilesOfOthersAlone) {
     EXPECT_EQ(run_underbody({"export", "lift.csv", "--format", "d", "--out", "x"}, folder.path()).exit_code, 2);
 }
 
+TEST(ExportCommand, TakesAModelWithWhatWasFoundInIt) {
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "lift.csv", "gap [mm], lift_force [N]\n1, .66\n2, .4\n3, .296\n5, .27\n10, .297\n");
+    core::write_file(folder.path() / "model.toml",
+                     "[vehicle]\nmass = \"2.2 kg\"\n[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n"
+                     "scale.speed = { reference = \"0.5 m/s\", exponent = 2 }\n"
+                     "[[effect]]\nname = \"sensor_gain\"\ngain = 1.1\n"
+                     "[[effect]]\nname = \"speed_exponent\"\nexponent = { value = 1.5, sigma = 0.1 }\n");
+    const auto run = run_underbody({"export", "model.toml", "--where", "speed=1m/s", "--format", "c", "--out", "lift.h"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_THAT(run.errors, HasSubstr("sensor_gain"));
+    const auto at = run_underbody({"table", "at", "model.toml", "gap=5mm", "--where", "speed=1m/s", "--json"}, folder.path());
+    ASSERT_EQ(at.exit_code, 0) << at.errors;
+    EXPECT_THAT(at.output, HasSubstr("0.7636"));   // .27 N * 2^1.5
+    EXPECT_EQ(run_underbody({"export", "model.toml", "--where", "sped=1", "--format", "c", "--out", "x.h"}, folder.path()).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace underbody

@@ -1,0 +1,154 @@
+#include "surrogates/dynamics/force_points.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/dynamics/effects/effect.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+void remark(ForcePoints& out, const Model& model, std::string text) {
+    out.remarks.push_back({core::Problem::Severity::warning, std::move(text), {model.name, {}, {}, {}}});
+}
+
+/// Keeps the static effects of the vehicle; the others are named in the remarks.
+Model of_the_vehicle(const Model& model, ForcePoints& out) {
+    Model kept = model.resolved();
+    std::string left;
+    std::erase_if(kept.effects, [&left](const EffectUse& use) {
+        const bool goes = belongs_to_the_rig(use.name) || effect(use.name).info().seen_in == SeenIn::time_series;
+        if (goes) {
+            left += (left.empty() ? "" : ", ") + use.name;
+        }
+        return goes;
+    });
+    if (!left.empty()) {
+        remark(out, model, "left out of the force, because it belongs to the rig or to the motion: " + left);
+    }
+    return kept;
+}
+
+using Axes = std::map<Channel, std::vector<double>>;
+
+void take(Axes& axes, const tables::ForceTable& table) {
+    for (const tables::TableAxis& axis : table.axes()) {
+        Channel channel{};
+        if (find_channel(axis.name, channel)) {
+            std::vector<double>& points = axes[channel];
+            points.insert(points.end(), axis.points.begin(), axis.points.end());
+        }
+    }
+}
+
+std::vector<double> quartered(const std::vector<double>& points) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        for (int part = 0; part < 4; ++part) {
+            out.push_back(points[i] + (points[i + 1] - points[i]) * part / 4);
+        }
+    }
+    out.push_back(points.back());
+    return out;
+}
+
+/// The axes of all tables, without those that are held.
+Axes axes_of(const Model& model, const Conditions& held) {
+    Axes axes;
+    for (const ForceSource& source : model.forces) {
+        take(axes, source.table);
+    }
+    for (const EffectUse& use : model.effects) {
+        if (use.table) {
+            take(axes, *use.table);
+        }
+    }
+    std::erase_if(axes, [&held](const auto& axis) { return held.has(axis.first); });
+    for (auto& [channel, points] : axes) {
+        std::sort(points.begin(), points.end());
+        points.erase(std::unique(points.begin(), points.end()), points.end());
+        if (!model.effects.empty()) {
+            points = quartered(points);
+        }
+    }
+    return axes;
+}
+
+/// What scales and is no axis: held somewhere, and said.
+void hold_scales(const Model& model, const Axes& axes, Conditions& held, ForcePoints& out) {
+    for (const ForceSource& source : model.forces) {
+        for (const ForceScale& scale : source.scales) {
+            if (axes.contains(scale.channel) || held.has(scale.channel)) {
+                continue;
+            }
+            held[scale.channel] = model.conditions.get(scale.channel, scale.reference);
+            remark(out, model,
+                   std::string(channel_name(scale.channel)) + " is held at " +
+                       core::format_number(held[scale.channel], 6) + " " + channel_unit(scale.channel) +
+                       (model.conditions.has(scale.channel) ? ", the model's condition" : ", the reference of its scale"));
+        }
+    }
+}
+
+}  // namespace
+
+bool belongs_to_the_rig(const std::string& effect) {
+    static constexpr std::array<const char*, 9> rig{
+        "gap_offset",     "force_bias",     "sensor_gain",    "drift",             "current",
+        "strut_buoyancy", "cable_buoyancy", "guide_friction", "pitch_misalignment"};
+    return std::find(rig.begin(), rig.end(), effect) != rig.end();
+}
+
+ForcePoints force_points(const Model& declared, const Conditions& given) {
+    ForcePoints out;
+    const std::vector<std::string> quantities = declared.quantities();
+    if (quantities.empty()) {
+        throw core::InputError("missing", "the model has no force source", {declared.name, {}, {}, {}},
+                               "declare it: [[force]] quantity = \"lift_force\", table = ...");
+    }
+    const Model model = of_the_vehicle(declared, out);
+    Conditions held = given;
+    const Axes axes = axes_of(model, held);
+    hold_scales(model, axes, held, out);
+    std::size_t count = 1;
+    for (const auto& [channel, points] : axes) {
+        count *= points.size();
+        if (count > 1000000) {
+            throw core::InputError("range", "the tables of the model have more than a million set points together",
+                                   {declared.name, {}, {}, {}}, "hold one of their axes, such as --where \"speed=0.5\"");
+        }
+    }
+    std::vector<std::vector<double>> columns(axes.size()), forces(quantities.size());
+    std::vector<StaticModel> models;
+    for (const std::string& quantity : quantities) {
+        models.emplace_back(model, quantity);
+    }
+    for (std::size_t row = 0; row < count; ++row) {
+        Conditions point = held;
+        std::size_t rest = row, k = axes.size();
+        for (auto axis = axes.rbegin(); axis != axes.rend(); ++axis) {
+            const double value = axis->second[rest % axis->second.size()];
+            rest /= axis->second.size();
+            point[axis->first] = value;
+            columns[--k].push_back(value);
+        }
+        for (std::size_t q = 0; q < quantities.size(); ++q) {
+            forces[q].push_back(models[q](point));
+        }
+    }
+    out.points.source = declared.name;
+    std::size_t k = 0;
+    for (const auto& [channel, points] : axes) {
+        out.points.add_numbers(channel_name(channel), channel_unit(channel), std::move(columns[k++]));
+    }
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+        out.points.add_numbers(quantities[q], core::find_quantity(quantities[q])->unit, std::move(forces[q]));
+    }
+    return out;
+}
+
+}  // namespace underbody::dynamics

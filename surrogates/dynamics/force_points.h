@@ -1,0 +1,26 @@
+// The forces of a model as points, for those who want a table: export, equilibria, plots.
+#pragma once
+
+#include "core/error.h"
+#include "core/table.h"
+#include "surrogates/dynamics/model.h"
+
+namespace underbody::dynamics {
+
+struct ForcePoints {
+    core::Table points;      ///< axes and forces on a full grid, SI
+    core::Problems remarks;  ///< what was held, what was left out
+};
+
+/// True for an effect of the rig (load cell, guide, cable, set-up, water of the tank), which goes with the vehicle
+/// nowhere.
+bool belongs_to_the_rig(const std::string& effect);
+
+/// Every quantity that the model has force sources for, with the effects that change the vehicle's own forces (roughness,
+/// exponents, pump curve, corrections), on the set points of its tables; four times as many between them when an effect
+/// bends the force there. Effects of the rig and those of the motion are left out, and named in the remarks.
+/// A channel that only scales is held at `held`, else at the model's condition, else at the scale's reference.
+/// Throws core::InputError: no force source; more than a million points.
+ForcePoints force_points(const Model& model, const Conditions& held = {});
+
+}  // namespace underbody::dynamics
