@@ -66,7 +66,10 @@ void read_rows(const std::string& file, const std::vector<std::string_view>& lin
 Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
     const core::MappedFile file(path);
     const auto lines = core::split(file.bytes(), '\n');
-    const auto names = words_of(lines[0]);
+    const auto names = words_of(lines.empty() ? std::string_view() : lines[0]);
+    if (names.empty()) {
+        throw core::InputError("format", "the first line names no columns", {file.name(), 1, {}, {}});
+    }
     const bool cells = names[0] == "cellnumber";
     Columns columns(names.size());
     telling([&] { read_rows(file.name(), lines, names.size(), columns, progress); },

@@ -187,7 +187,7 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
                 }
             }
             if (monitor.columns.empty() && row->size() == 2) {
-                monitor.columns = {"Iteration", heads.empty() ? "value" : heads.back().back()};
+                monitor.columns = {"Iteration", heads.empty() || heads.back().empty() ? "value" : heads.back().back()};
             }
             if (monitor.columns.empty()) {
                 fail_in_line(file, number, "a row of " + std::to_string(row->size()) + " numbers without their names");

@@ -60,6 +60,13 @@ TEST(Monitors, ARaggedTableIsRefusedWithItsLine) {
     }
 }
 
+TEST(Monitors, AHeadOfBracketsAloneLeavesTheColumnUnnamed) {
+    const core::TemporaryFolder folder;
+    const auto monitor = read_monitor(written(folder, ")\n1 0.5\n2 0.6\n"));
+    EXPECT_THAT(monitor.columns, ElementsAre("Iteration", "value"));
+    EXPECT_THAT(monitor.values[1], ElementsAre(0.5, 0.6));
+}
+
 TEST(Plots, CurvesHaveTheirNames) {
     const core::TemporaryFolder folder;
     const auto plot =
