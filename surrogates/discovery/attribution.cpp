@@ -35,20 +35,28 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     const FittedHypothesis& best = hypotheses[result.chosen];
     // laws of nature differ in form from the catalogue's: a share of what is explained counts as one unit of evidence
     const double temperature = 1 + calibration.form_share * std::max(0.0, best.explained);
+    // of the forms of a name the likeliest stands for it; as logarithms, so that the order holds where nothing else is left of a rival
     std::map<std::vector<std::string>, Attribution::Share> by_names;
-    double total = 0;
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
         const FittedHypothesis& one = hypotheses[i];
         if (one.hypothesis.names.size() > best.hypothesis.names.size()) {
             continue;  // a second effect that did not earn its place
         }
-        const double weight = one.hypothesis.prior * std::exp(-0.5 * ((one.cost - best.cost) / temperature + one.occam - best.occam));
-        Attribution::Share& share = by_names[one.hypothesis.names];
-        if (weight > share.probability) {
-            share = {i, weight};
+        const double evidence = one.score() - one.occam - (best.score() - best.occam);
+        const double weight = std::log(one.hypothesis.prior) - 0.5 * (evidence / temperature + one.occam - best.occam);
+        const auto [place, first] = by_names.try_emplace(one.hypothesis.names, Attribution::Share{i, weight});
+        if (!first && weight > place->second.probability) {
+            place->second = {i, weight};
         }
     }
+    double total = 0;
     for (const auto& [names, share] : by_names) {
+        result.shares.push_back(share);
+    }
+    std::stable_sort(result.shares.begin(), result.shares.end(), [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    const double largest = result.shares.front().probability;
+    for (Attribution::Share& share : result.shares) {
+        share.probability = std::exp(share.probability - largest);
         total += share.probability;
     }
     const double left = structure_left(rest, best.explained);
@@ -60,19 +68,15 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     }
     result.none_probability = gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
     result.unknown_probability = (1 - result.none_probability) * unknown;
-    for (auto& [names, share] : by_names) {
+    for (Attribution::Share& share : result.shares) {
         share.probability *= (1 - result.none_probability) * (1 - unknown) / total;
-        result.shares.push_back(share);
     }
-    std::sort(result.shares.begin(), result.shares.end(), [](const auto& a, const auto& b) { return a.probability > b.probability; });
     if (gate_p >= calibration.gate) {
         result.verdict = "none";
     } else {
         result.verdict = unexplained ? "unknown" : "effect";
     }
-    if (!result.shares.empty()) {
-        result.chosen = result.shares.front().hypothesis;
-    }
+    result.chosen = result.shares.front().hypothesis;
     return result;
 }
 

@@ -218,9 +218,8 @@ DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& m
     return orthonormal(result);
 }
 
-std::vector<double> leave_groups_out(const DesignMatrix& jacobian, const std::vector<double>& residuals,
-                                     const std::vector<std::size_t>& begin, const std::vector<double>& cost,
-                                     const std::vector<double>& numbers, double ridge) {
+std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobian, const std::vector<double>& residuals,
+                                                      const std::vector<std::size_t>& begin, const std::vector<double>& numbers, double ridge) {
     const Eigen::Map<const Eigen::MatrixXd> j(jacobian.values.data(), static_cast<Eigen::Index>(jacobian.rows),
                                               static_cast<Eigen::Index>(jacobian.columns));
     const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
@@ -229,16 +228,32 @@ std::vector<double> leave_groups_out(const DesignMatrix& jacobian, const std::ve
     for (std::size_t k = 0; k < numbers.size(); ++k) {
         slope(static_cast<Eigen::Index>(k)) += ridge * numbers[k];
     }
-    std::vector<double> result = cost;
-    for (std::size_t g = 0; g < cost.size(); ++g) {
+    std::vector<std::vector<double>> moves;
+    for (std::size_t g = 0; g + 1 < begin.size(); ++g) {
         const Eigen::Index from = static_cast<Eigen::Index>(begin[g]);
         const Eigen::Index count = static_cast<Eigen::Index>(begin[g + 1] - begin[g]);
         const Eigen::MatrixXd own = j.middleRows(from, count);
         Eigen::MatrixXd others = normal - own.transpose() * own;
         others.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff() + 1e-12 + ridge;
         const Eigen::VectorXd move = others.ldlt().solve(own.transpose() * r.segment(from, count) - slope);
-        const Eigen::VectorXd change = own * move;
-        result[g] += 2 * change.dot(r.segment(from, count)) + change.squaredNorm();
+        moves.emplace_back(move.data(), move.data() + move.size());
+    }
+    return moves;
+}
+
+std::vector<double> leave_groups_out(const DesignMatrix& jacobian, const std::vector<double>& residuals,
+                                     const std::vector<std::size_t>& begin, const std::vector<double>& cost,
+                                     const std::vector<double>& numbers, double ridge) {
+    const std::vector<std::vector<double>> moves = moves_without_groups(jacobian, residuals, begin, numbers, ridge);
+    std::vector<double> result = cost;
+    for (std::size_t g = 0; g < cost.size(); ++g) {
+        for (std::size_t i = begin[g]; i < begin[g + 1]; ++i) {
+            double change = 0;
+            for (std::size_t k = 0; k < jacobian.columns; ++k) {
+                change += jacobian.values[k * jacobian.rows + i] * moves[g][k];
+            }
+            result[g] += change * (2 * residuals[i] + change);
+        }
     }
     return result;
 }

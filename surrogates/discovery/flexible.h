@@ -66,6 +66,13 @@ double explained_square(const DesignMatrix& orthonormal_columns, const std::vect
 /// Columns of `matrix` with their parts in the span of `taken` (orthonormal) removed, made orthonormal.
 DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& matrix);
 
+/// For each group of rows (begin[g] .. begin[g + 1]) how far the numbers behind the columns move when that group is left out of the fit, to
+/// first order about a fit of all groups whose residuals are `residuals`. With a ridge about zero of that weight on the numbers, which stand
+/// at `numbers` (empty: no ridge).
+std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobian, const std::vector<double>& residuals,
+                                                      const std::vector<std::size_t>& begin, const std::vector<double>& numbers = {},
+                                                      double ridge = 0);
+
 /// Cost of each group of rows (begin[g] .. begin[g + 1]) with the numbers behind the columns fitted to the other groups alone, to first
 /// order about a fit of all groups whose residuals are `residuals` and whose cost by group is `cost`: cost[g] + |r + J d|^2 - |r|^2.
 /// With a ridge about zero of that weight on the numbers, which stand at `numbers` (empty: no ridge).

@@ -99,9 +99,20 @@ void HeaveLoop::check_excitation() {
     }
 }
 
-/// The strength of the best effect run by run: where runs disagree far beyond their errors, no one number is true of all of them.
 void HeaveLoop::check_runs_agree() {
-    const std::size_t index = result_.verdict == "effect" ? attribution_.chosen : best_single_;
+    const auto fits_best = std::min_element(fitted_.begin(), fitted_.begin() + static_cast<std::ptrdiff_t>(singles_),
+                                            [](const auto& a, const auto& b) { return a.cost + a.occam < b.cost + b.occam; });
+    const auto fitted_best = static_cast<std::size_t>(fits_best - fitted_.begin());
+    const std::size_t chosen = result_.verdict == "effect" ? attribution_.chosen : best_single_;
+    // what fits all runs best together may have lost because it fails from run to run
+    if (!runs_agree_on(chosen) || fitted_best == chosen) {
+        return;
+    }
+    runs_agree_on(fitted_best);
+}
+
+/// The strength of an effect run by run: where runs disagree far beyond their errors, no one number is true of all of them. Warns.
+bool HeaveLoop::runs_agree_on(std::size_t index) {
     const FittedHypothesis& best = fitted_[index];
     const DesignMatrix columns = experiment_->answers(best.hypothesis, best.fit.parameters, noises_[index], best.fit.residuals);
     const std::vector<std::size_t> begin = experiment_->begins();
@@ -118,7 +129,7 @@ void HeaveLoop::check_runs_agree() {
         error.push_back(jj > 0 ? chief.typical / std::sqrt(jj) : 1e300);
     }
     if (own.size() < 2) {
-        return;
+        return true;
     }
     const double middle = median(own);
     const double size = std::max(std::abs(middle - chief.start), 3 * median(error));
@@ -133,6 +144,7 @@ void HeaveLoop::check_runs_agree() {
         warn("the runs contradict each other: the " + chief.name + " of " + best.hypothesis.label() + " is " + core::format_number(middle, 2) +
              (chief.unit == "1" ? "" : " " + chief.unit) + " in most, but not in " + against + "; look at these runs apart");
     }
+    return against.empty();
 }
 
 }  // namespace underbody::discovery

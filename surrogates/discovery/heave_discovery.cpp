@@ -152,6 +152,7 @@ void HeaveLoop::list_candidates() {
     for (Hypothesis& candidate : candidates_) {
         if (candidate.names.front() == "periodic_disturbance") {
             candidate.starts = experiment_->periodic_starts({}, null_noise_, 3);
+            candidate.parameters[1].lower = experiment_->lowest_frequency();
         }
     }
 }

@@ -18,14 +18,15 @@ void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamic
     const std::vector<std::size_t>& chosen = experiment.chosen();
     sum_of_squares.assign(chosen.size(), 0);
     counts.assign(chosen.size(), 0);
-    std::vector<double> innovations, states, input, predicted;
+    std::vector<double> innovations, states, memories, input, predicted;
     // `unknown` comes as a table: the smooth force it was made from is gone by then, so the table itself is used
     for (std::size_t c = 0; c < chosen.size(); ++c) {
         const HeaveRecord& record = experiment.records().records[chosen[c]];
         const HeaveExplanation explanation = experiment.explanation(chosen[c], uses);
         innovations.clear();
         states.clear();
-        filter_innovations(record, explanation, noise, innovations, &states);
+        memories.clear();
+        filter_innovations(record, explanation, noise, innovations, &states, &memories);
         transform_input(record, explanation, input);
         const std::size_t n = record.time.size();
         std::size_t first = 0;
@@ -40,7 +41,8 @@ void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamic
             if (last < first + 2) {
                 break;
             }
-            free_run(record, explanation, input, first, last, states[2 * first], states[2 * first + 1], predicted);
+            free_run(record, explanation, input, first, last, states[2 * first], states[2 * first + 1], predicted,
+                     memories.data() + first * dynamics::history_states);
             for (std::size_t k = first + 1; k <= last; ++k) {
                 if (std::isfinite(record.gap[k])) {
                     // the average of m readings carries 1/m of their variance: the rest is put back, so that the figure is one of readings

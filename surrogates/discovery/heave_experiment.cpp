@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
 
 #include "core/text.h"
 #include "surrogates/discovery/statistics.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double process_floor = 1e-12;   ///< m^2/s^3: below it nothing changes any more
 constexpr double process_ceiling = 1e-2;
+constexpr double highest_frequency = 4;   ///< Hz, of a periodic force that gap readings can show
 constexpr double two_pi = 6.283185307179586;
 constexpr double small_force = 0.003;     ///< N, of a smooth correction: scale of its coefficients
 constexpr double smooth_ridge = 0.5;      ///< their prior: a standard deviation of 1.4 times that scale
@@ -119,16 +121,22 @@ double HeaveExperiment::lift_gain_of(const dynamics::EffectUse& use, std::size_t
     return 1;
 }
 
+double HeaveExperiment::cost_of(std::size_t record, const std::vector<dynamics::EffectUse>& uses, const FlexibleForce* flexible,
+                                const HeaveNoise& noise, std::vector<double>& innovations) const {
+    const std::size_t begin = innovations.size();
+    double cost = filter_innovations(records_.records[record], explanation(record, uses, flexible), noise, innovations);
+    for (std::size_t i = begin; i < innovations.size(); ++i) {
+        cost += innovations[i] * innovations[i];
+    }
+    return cost;
+}
+
 double HeaveExperiment::evaluate(const std::vector<dynamics::EffectUse>& uses, const FlexibleForce* flexible, const HeaveNoise& noise,
                                  std::vector<double>& innovations, std::vector<double>* by_record) const {
     innovations.clear();
     double cost = 0;
     for (const std::size_t r : chosen_) {
-        const std::size_t begin = innovations.size();
-        double own = filter_innovations(records_.records[r], explanation(r, uses, flexible), noise, innovations);
-        for (std::size_t i = begin; i < innovations.size(); ++i) {
-            own += innovations[i] * innovations[i];
-        }
+        const double own = cost_of(r, uses, flexible, noise, innovations);
         if (by_record != nullptr) {
             by_record->push_back(own);
         }
@@ -276,15 +284,8 @@ HeaveExperiment::Result HeaveExperiment::fit(const Hypothesis& hypothesis, const
     result.fitted.occam = occam_factor(hypothesis, readings());
     std::vector<double> innovations;
     evaluate(hypothesis.with(result.fitted.fit.parameters), nullptr, best_noise, innovations, &result.fitted.cost_of_group);
-    DesignMatrix columns = answers(hypothesis, result.fitted.fit.parameters, best_noise, innovations);
-    for (std::size_t j = 0; j < columns.columns; ++j) {
-        const FitParameter& p = hypothesis.parameters[j];
-        const double at = result.fitted.fit.parameters[j];
-        if (at - p.lower < 1e-9 * (p.upper - p.lower) || p.upper - at < 1e-9 * (p.upper - p.lower)) {
-            std::fill_n(columns.values.begin() + static_cast<std::ptrdiff_t>(j * columns.rows), columns.rows, 0.0);  // it will not move
-        }
-    }
-    result.fitted.held_out = held_out_cost(columns, innovations, result.fitted.cost_of_group);
+    const DesignMatrix columns = answers_inside(hypothesis, result.fitted.fit.parameters, best_noise, innovations);
+    result.fitted.held_out = held_out_cost(result.fitted, best_noise, std::max(begin.process, best_noise.process));
     const std::vector<double> variances = grouped_variances(columns, innovations, begins());
     for (std::size_t j = 0; j < variances.size(); ++j) {
         if (variances[j] > 0) {
@@ -410,13 +411,70 @@ std::vector<std::size_t> HeaveExperiment::begins() const {
     return list;
 }
 
-std::vector<double> HeaveExperiment::held_out_cost(const DesignMatrix& columns, const std::vector<double>& innovations,
-                                                   const std::vector<double>& by_record) const {
-    const std::vector<std::size_t> begin = begins();
-    if (by_record.size() < 2 || columns.columns == 0) {
-        return by_record;
+DesignMatrix HeaveExperiment::answers_inside(const Hypothesis& hypothesis, std::span<const double> numbers, const HeaveNoise& noise,
+                                             const std::vector<double>& innovations) const {
+    DesignMatrix columns = answers(hypothesis, numbers, noise, innovations);
+    for (std::size_t j = 0; j < columns.columns; ++j) {
+        const FitParameter& p = hypothesis.parameters[j];
+        if (numbers[j] - p.lower < 1e-9 * (p.upper - p.lower) || p.upper - numbers[j] < 1e-9 * (p.upper - p.lower)) {
+            std::fill_n(columns.values.begin() + static_cast<std::ptrdiff_t>(j * columns.rows), columns.rows, 0.0);
+        }
     }
-    return leave_groups_out(columns, innovations, begin, by_record);
+    return columns;
+}
+
+std::vector<double> HeaveExperiment::held_out_cost(const FittedHypothesis& fitted, HeaveNoise noise, double most_process) const {
+    if (chosen_.size() < 2 || fitted.fit.parameters.empty()) {
+        return fitted.cost_of_group;
+    }
+    // A law whose form is not quite the true one needs more process noise on runs that it was not fitted to: with the little that suits the
+    // fit every run would be lost to the runs' slow drift. So the process noise too is judged by the runs left out.
+    std::vector<double> least;
+    double sum = 1e300;
+    for (;;) {
+        std::vector<double> costs = held_out_at(fitted, noise);
+        const double own = std::accumulate(costs.begin(), costs.end(), 0.0);
+        if (!(own < sum)) {
+            return least;
+        }
+        sum = own;
+        least = std::move(costs);
+        if (noise.process >= most_process || sum - fitted.cost < 5 * static_cast<double>(fitted.fit.parameters.size())) {
+            return least;
+        }
+        noise.process = std::min(most_process, 10 * noise.process);
+    }
+}
+
+std::vector<double> HeaveExperiment::held_out_at(const FittedHypothesis& fitted, const HeaveNoise& noise) const {
+    std::vector<double> innovations, result, scratch;
+    evaluate(fitted.hypothesis.with(fitted.fit.parameters), nullptr, noise, innovations, &result);
+    const std::vector<double> by_record = result;
+    const double all = std::accumulate(by_record.begin(), by_record.end(), 0.0);
+    const std::vector<std::vector<double>> moves =
+        moves_without_groups(answers_inside(fitted.hypothesis, fitted.fit.parameters, noise, innovations), innovations, begins());
+    std::vector<double> numbers = fitted.fit.parameters;
+    for (std::size_t g = 0; g < by_record.size(); ++g) {
+        // laws bend: a step that the other runs do not like is no fit to them
+        for (double share = 1; share > 0.05; share /= 2) {
+            for (std::size_t j = 0; j < numbers.size(); ++j) {
+                const FitParameter& p = fitted.hypothesis.parameters[j];
+                numbers[j] = std::clamp(fitted.fit.parameters[j] + share * moves[g][j] * p.typical, p.lower, p.upper);
+            }
+            const std::vector<dynamics::EffectUse> uses = fitted.hypothesis.with(numbers);
+            double others = 0;
+            scratch.clear();
+            for (std::size_t k = 0; k < chosen_.size(); ++k) {
+                others += k == g ? 0 : cost_of(chosen_[k], uses, nullptr, noise, scratch);
+            }
+            if (others < all - by_record[g] + 0.1) {
+                scratch.clear();
+                result[g] = cost_of(chosen_[g], uses, nullptr, noise, scratch);
+                break;
+            }
+        }
+    }
+    return result;
 }
 
 HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
@@ -486,55 +544,108 @@ HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleFo
     return result;
 }
 
-std::vector<std::vector<double>> HeaveExperiment::periodic_starts(const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
-                                                                  std::size_t count) const {
-    // The innovations answer a small force as a linear system: one run each for sine and cosine at every frequency.
-    std::vector<double> base;
-    evaluate(uses, nullptr, noise, base);
-    struct Line {
-        double frequency, gain, amplitude, phase;
-    };
-    std::vector<Line> lines;
-    std::vector<double> moved;
-    constexpr double small = 1e-4;
-    for (double frequency = 0.03; frequency < 4; frequency *= 1.045) {
-        std::vector<double> answer[2];
-        for (int part = 0; part < 2; ++part) {
-            std::vector<dynamics::EffectUse> with = uses;
-            with.push_back(dynamics::make_use("periodic_disturbance", {{"amplitude", small, 0},
-                                                                       {"frequency", frequency, 0},
-                                                                       {"phase", part == 0 ? 0.0 : 0.25 * two_pi, 0}}));
-            evaluate(with, nullptr, noise, moved);
-            answer[part].resize(base.size());
-            for (std::size_t i = 0; i < base.size(); ++i) {
-                answer[part][i] = (base[i] - moved[i]) / small;
+double HeaveExperiment::lowest_frequency() const {
+    double longest = 1e-3;
+    for (const std::size_t r : chosen_) {
+        longest = std::max(longest, records_.records[r].time.back() - records_.records[r].time.front());
+    }
+    return 2 / longest;
+}
+
+HeaveExperiment::Line HeaveExperiment::line_at(double frequency, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                               const std::vector<double>& base) const {
+    // the innovations answer a small force as a linear system: one run each for sine and cosine
+    constexpr double small = 1e-4;  // N
+    std::vector<double> answer[2], moved;
+    for (int part = 0; part < 2; ++part) {
+        std::vector<dynamics::EffectUse> with = uses;
+        with.push_back(dynamics::make_use("periodic_disturbance", {{"amplitude", small, 0},
+                                                                   {"frequency", frequency, 0},
+                                                                   {"phase", part == 0 ? 0.0 : 0.25 * two_pi, 0}}));
+        evaluate(with, nullptr, noise, moved);
+        answer[part].resize(base.size());
+        for (std::size_t i = 0; i < base.size(); ++i) {
+            answer[part][i] = (base[i] - moved[i]) / small;
+        }
+    }
+    double ss = 0, sc = 0, cc = 0, s = 0, c = 0;
+    for (std::size_t i = 0; i < base.size(); ++i) {
+        ss += answer[0][i] * answer[0][i];
+        sc += answer[0][i] * answer[1][i];
+        cc += answer[1][i] * answer[1][i];
+        s += answer[0][i] * base[i];
+        c += answer[1][i] * base[i];
+    }
+    const double determinant = ss * cc - sc * sc;
+    if (!(determinant > 1e-12 * ss * cc)) {
+        return {frequency, 0, 0, 0};
+    }
+    const double a = (cc * s - sc * c) / determinant;   // of the sine
+    const double b = (ss * c - sc * s) / determinant;   // of the cosine
+    return {frequency, a * s + b * c, std::hypot(a, b), std::atan2(b, a)};
+}
+
+/// Peaks of the innovations' own periodogram: a line in the force is one in them too, as narrow as the runs are long.
+std::vector<double> HeaveExperiment::peaks_of(const std::vector<double>& innovations, std::size_t count) const {
+    constexpr std::size_t most = 4000;
+    const double first = lowest_frequency();
+    const double step = std::max(0.125 * first, (highest_frequency - first) / static_cast<double>(most));
+    const std::vector<std::size_t> begin = begins();
+    std::vector<double> power;
+    for (double frequency = first; frequency < highest_frequency; frequency += step) {
+        std::complex<double> sum[2];
+        for (std::size_t g = 0; g + 1 < begin.size(); ++g) {
+            const HeaveRecord& record = records_.records[chosen_[g]];
+            const std::size_t channels = record.velocity.empty() ? 1 : 2;
+            for (std::size_t k = 0; k < record.time.size(); ++k) {
+                const double angle = two_pi * frequency * record.time[k];
+                const std::complex<double> turn(std::cos(angle), std::sin(angle));
+                for (std::size_t c = 0; c < channels; ++c) {
+                    sum[c] += turn * innovations[begin[g] + channels * k + c];
+                }
             }
         }
-        double ss = 0, sc = 0, cc = 0, s = 0, c = 0;
-        for (std::size_t i = 0; i < base.size(); ++i) {
-            ss += answer[0][i] * answer[0][i];
-            sc += answer[0][i] * answer[1][i];
-            cc += answer[1][i] * answer[1][i];
-            s += answer[0][i] * base[i];
-            c += answer[1][i] * base[i];
-        }
-        const double determinant = ss * cc - sc * sc;
-        if (determinant > 1e-12 * ss * cc) {
-            const double a = (cc * s - sc * c) / determinant;   // of the sine
-            const double b = (ss * c - sc * s) / determinant;   // of the cosine
-            lines.push_back({frequency, a * s + b * c, std::hypot(a, b), std::atan2(b, a)});
+        power.push_back(std::norm(sum[0]) + std::norm(sum[1]));
+    }
+    std::vector<std::size_t> peaks;
+    for (std::size_t k = 0; k < power.size(); ++k) {
+        if ((k == 0 || power[k] >= power[k - 1]) && (k + 1 == power.size() || power[k] > power[k + 1])) {
+            peaks.push_back(k);
         }
     }
-    std::vector<Line> peaks;
-    for (std::size_t k = 0; k < lines.size(); ++k) {
-        if ((k == 0 || lines[k].gain >= lines[k - 1].gain) && (k + 1 == lines.size() || lines[k].gain > lines[k + 1].gain)) {
-            peaks.push_back(lines[k]);
-        }
+    std::sort(peaks.begin(), peaks.end(), [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
+    std::vector<double> frequencies;
+    for (std::size_t k = 0; k < std::min(count, peaks.size()); ++k) {
+        frequencies.push_back(first + step * static_cast<double>(peaks[k]));
     }
-    std::sort(peaks.begin(), peaks.end(), [](const Line& a, const Line& b) { return a.gain > b.gain; });
+    return frequencies;
+}
+
+std::vector<std::vector<double>> HeaveExperiment::periodic_starts(const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                                                  std::size_t count) const {
+    std::vector<double> base;
+    evaluate(uses, nullptr, noise, base);
+    // slow waves are bent by the filter and the motion, each run its own way: they are asked one by one
+    std::vector<double> frequencies;
+    for (double frequency = lowest_frequency(); frequency < 6 * lowest_frequency() && frequency < highest_frequency; frequency *= 1.06) {
+        frequencies.push_back(frequency);
+    }
+    for (const double frequency : peaks_of(base, 12)) {
+        frequencies.push_back(frequency);
+    }
+    std::vector<Line> lines;
+    for (const double frequency : frequencies) {
+        lines.push_back(line_at(frequency, uses, noise, base));
+    }
+    std::sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.gain > b.gain; });
     std::vector<std::vector<double>> starts;
-    for (std::size_t k = 0; k < peaks.size() && k < count; ++k) {
-        starts.push_back({std::clamp(peaks[k].amplitude, 1e-4, 1.0), peaks[k].frequency, peaks[k].phase});
+    std::vector<double> taken;
+    for (const Line& line : lines) {
+        const bool near = std::any_of(taken.begin(), taken.end(), [&](double f) { return std::abs(line.frequency - f) < 0.4 * lowest_frequency(); });
+        if (!near && starts.size() < count) {
+            starts.push_back({std::clamp(line.amplitude, 1e-4, 1.0), line.frequency, line.phase});
+            taken.push_back(line.frequency);
+        }
     }
     return starts;
 }

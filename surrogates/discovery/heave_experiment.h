@@ -79,10 +79,6 @@ public:
     [[nodiscard]] DesignMatrix answers(const Hypothesis& hypothesis, std::span<const double> numbers, const HeaveNoise& noise,
                                        const std::vector<double>& innovations) const;
 
-    /// -2 log likelihood of each run when the free numbers behind `columns` are fitted to the other runs alone (to first order).
-    /// `by_record` is the cost with numbers fitted to all. With one run: that cost.
-    [[nodiscard]] std::vector<double> held_out_cost(const DesignMatrix& columns, const std::vector<double>& innovations,
-                                                    const std::vector<double>& by_record) const;
     /// Where the innovations of the chosen records begin, and where the last ends.
     [[nodiscard]] std::vector<std::size_t> begins() const;
 
@@ -90,10 +86,31 @@ public:
     [[nodiscard]] std::vector<std::vector<double>> periodic_starts(const std::vector<dynamics::EffectUse>& uses,
                                                                    const HeaveNoise& noise, std::size_t count) const;
 
+    /// Hz: a period that no run shows twice cannot be told from any other slow change.
+    [[nodiscard]] double lowest_frequency() const;
+
     /// Number of readings behind the likelihood.
     [[nodiscard]] std::size_t readings() const;
 
 private:
+    /// -2 log likelihood of one record; its innovations are appended.
+    double cost_of(std::size_t record, const std::vector<dynamics::EffectUse>& uses, const FlexibleForce* flexible, const HeaveNoise& noise,
+                   std::vector<double>& innovations) const;
+    /// answers(), with zeros for numbers at a bound: they will not move.
+    [[nodiscard]] DesignMatrix answers_inside(const Hypothesis& hypothesis, std::span<const double> numbers, const HeaveNoise& noise,
+                                              const std::vector<double>& innovations) const;
+    /// -2 log likelihood of each run with free numbers from the other runs alone: one step of Gauss and Newton from the numbers that fit all,
+    /// within the bounds and no longer than it serves the other runs, then the filter itself; with as much process noise, from `noise` up to
+    /// `most_process`, as serves the runs left out. With one run: its cost.
+    [[nodiscard]] std::vector<double> held_out_cost(const FittedHypothesis& fitted, HeaveNoise noise, double most_process) const;
+    [[nodiscard]] std::vector<double> held_out_at(const FittedHypothesis& fitted, const HeaveNoise& noise) const;
+    /// A periodic force that is small: what it would explain, and with which numbers.
+    struct Line {
+        double frequency = 0, gain = 0, amplitude = 0, phase = 0;
+    };
+    [[nodiscard]] Line line_at(double frequency, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                               const std::vector<double>& base) const;
+    [[nodiscard]] std::vector<double> peaks_of(const std::vector<double>& innovations, std::size_t count) const;
     void widen_for_friction(Result& result, const DesignMatrix& columns, const std::vector<double>& innovations) const;
     /// What a corrected declared number makes of the lift of the tables in this record.
     [[nodiscard]] double lift_gain_of(const dynamics::EffectUse& use, std::size_t record) const;

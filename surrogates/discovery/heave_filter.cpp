@@ -114,12 +114,10 @@ public:
         force -= 0.5 * mass_slope * w * w;
         if (history_) {
             const dynamics::HistoryKernel& kernel = dynamics::history_kernel();
-            double sum = 0;
             for (std::size_t i = 0; i < dynamics::history_states; ++i) {
-                sum += kernel.weight[i] * (w + memory_[i]);
-                force_w -= terms_.history * kernel.weight[i];
+                force -= terms_.history * kernel.weight[i] * kept_[i] * (w + memory_[i]);
+                mass += terms_.history * kernel.weight[i] * grown_[i];
             }
-            force -= terms_.history * sum;
             mass += terms_.history * kernel.mass;
         }
         slope_h = (force_h - force / mass * mass_slope) / mass;
@@ -132,6 +130,14 @@ public:
             memory = -w;
         }
     }
+    /// The memory that another run of the same equation had come to; nullptr: the body has moved steadily.
+    void start_history(double w, const double* memory) {
+        start_history(w);
+        if (memory != nullptr) {
+            std::copy_n(memory, dynamics::history_states, memory_);
+        }
+    }
+    [[nodiscard]] const double* memory() const { return memory_; }
 
     /// How a step changes small differences of (gap, velocity).
     struct Transition {
@@ -143,11 +149,16 @@ public:
     double advance(double t, double rest, double u, double variance, double& h, double& w, Transition& transition) {
         double slope_h = 0;
         double slope_w = 0;
-        const double a = acceleration(t + 0.5 * rest, h, w, u, variance, slope_h, slope_w);
+        remember_over(rest);
+        double a = acceleration(t + 0.5 * rest, h, w, u, variance, slope_h, slope_w);
         double dt = rest;
         const double stiffness = std::max(std::abs(slope_w), std::sqrt(std::abs(slope_h)));
         if (stiffness * dt > 0.8) {
             dt = std::max(0.8 / stiffness, std::min(rest, shortest_step));
+            if (history_) {
+                remember_over(dt);
+                a = acceleration(t + 0.5 * dt, h, w, u, variance, slope_h, slope_w);
+            }
         }
         const double jerk = slope_h * w + slope_w * a;
         const double snap = slope_h * a + slope_w * jerk;
@@ -160,22 +171,30 @@ public:
         transition.wh = dt * slope_h + q * slope_h * slope_w;
         transition.ww = std::max(0.0, 1 + dt * slope_w + q * (slope_h + slope_w * slope_w));
         if (history_) {
-            const dynamics::HistoryKernel& kernel = dynamics::history_kernel();
-            if (dt != decay_step_) {
-                decay_step_ = dt;
-                for (std::size_t i = 0; i < dynamics::history_states; ++i) {
-                    decay_[i] = std::exp(-kernel.rate[i] * dt);
-                }
-            }
             for (std::size_t i = 0; i < dynamics::history_states; ++i) {
-                // d memory/dt = -rate (memory + w), exact for a velocity held at its mean over the step
-                memory_[i] = memory_[i] * decay_[i] - (1 - decay_[i]) * 0.5 * (before + w);
+                memory_[i] = (before + memory_[i]) * decay_[i] + (w - before) * kept_[i] - w;
             }
         }
         return dt;
     }
 
 private:
+    /// Each part of the memory, q = w + memory, obeys dq/dt = acceleration - rate q. Exact for an acceleration held over the step: of what
+    /// was there at its begin the share `kept` acts on the average, and the acceleration itself acts like a mass.
+    void remember_over(double dt) {
+        if (!history_ || dt == memory_step_) {
+            return;
+        }
+        memory_step_ = dt;
+        const dynamics::HistoryKernel& kernel = dynamics::history_kernel();
+        for (std::size_t i = 0; i < dynamics::history_states; ++i) {
+            const double x = kernel.rate[i] * dt;
+            decay_[i] = std::exp(-x);
+            kept_[i] = x > 1e-6 ? -std::expm1(-x) / x : 1 - 0.5 * x;
+            grown_[i] = x > 1e-6 ? (1 - kept_[i]) / kernel.rate[i] : 0.5 * dt;
+        }
+    }
+
     const dynamics::HeaveTerms& terms_;
     const dynamics::Curve& curve_;
     const FlexibleForce* flexible_;
@@ -186,7 +205,9 @@ private:
     bool history_;
     double memory_[dynamics::history_states];
     double decay_[dynamics::history_states] = {};
-    double decay_step_ = -1;
+    double kept_[dynamics::history_states] = {};
+    double grown_[dynamics::history_states] = {};
+    double memory_step_ = -1;
 };
 
 /// Where the motion begins, roughly: a straight line through the first second.
@@ -320,7 +341,7 @@ void prepare_input(HeaveRecord& record) {
 }
 
 double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
-                          std::vector<double>& innovations, std::vector<double>* states) {
+                          std::vector<double>& innovations, std::vector<double>* states, std::vector<double>* memories) {
     Equation equation(record, explanation);
     const dynamics::HeaveTerms& terms = explanation.terms;
     std::vector<double> input;
@@ -411,6 +432,9 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
         if (states != nullptr) {
             states->push_back(h);
             states->push_back(w);
+        }
+        if (memories != nullptr) {
+            memories->insert(memories->end(), equation.memory(), equation.memory() + dynamics::history_states);
         }
     }
     return log_determinant;
@@ -589,9 +613,9 @@ void step_once(const HeaveRecord& record, const HeaveExplanation& explanation, c
 }
 
 void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t first,
-              std::size_t last, double gap, double velocity, std::vector<double>& predicted) {
+              std::size_t last, double gap, double velocity, std::vector<double>& predicted, const double* memory) {
     Equation equation(record, explanation);
-    equation.start_history(velocity);
+    equation.start_history(velocity, memory);
     predicted.clear();
     double h = gap;
     double w = velocity;

@@ -54,9 +54,10 @@ void transform_input(const HeaveRecord& record, const HeaveExplanation& explanat
 
 /// Runs the filter over one record. Appends the normalised innovations (gap, then velocity when measured, of each step; 0 where
 /// there was no reading, so that the length never changes) and returns sum log S of the readings there were.
-/// `states`, when given, gets the filtered (gap, velocity) of each step, one after the other.
+/// `states`, when given, gets the filtered (gap, velocity) of each step, one after the other; `memories` the history_states numbers of the
+/// history force's memory.
 double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
-                          std::vector<double>& innovations, std::vector<double>* states = nullptr);
+                          std::vector<double>& innovations, std::vector<double>* states = nullptr, std::vector<double>* memories = nullptr);
 
 /// Smoothed states of one record (Rauch, Tung and Striebel 1965), with a residual force that walks at random:
 /// what force must be added to the model for the motion that was seen.
@@ -71,8 +72,9 @@ SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation&
 void step_once(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t k, double& gap,
                double& velocity);
 
-/// Free run of the explanation from (gap, velocity) at step `first` to step `last`: predicted gap readings.
+/// Free run of the explanation from (gap, velocity) at step `first` to step `last`: predicted gap readings. `memory`: of the history force
+/// there, from the filter; nullptr: the body has moved steadily before.
 void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t first,
-              std::size_t last, double gap, double velocity, std::vector<double>& predicted);
+              std::size_t last, double gap, double velocity, std::vector<double>& predicted, const double* memory = nullptr);
 
 }  // namespace underbody::discovery

@@ -78,6 +78,7 @@ private:
     [[nodiscard]] static std::string evidence(const FittedHypothesis& one);
     void check_excitation();
     void check_runs_agree();
+    bool runs_agree_on(std::size_t index);
     void warn(const std::string& text);
 
     const dynamics::Model& model_;

@@ -1,12 +1,11 @@
 #include "tests/bench/discovery/peers.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "surrogates/dynamics/predict.h"
+#include "tests/bench/discovery/peer_fits.h"
 
 namespace underbody::bench {
 
@@ -89,45 +88,6 @@ struct Scaled {
 
 double rmse(const Eigen::VectorXd& residual, double sigma) { return sigma * std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size())); }
 
-Eigen::MatrixXd monomials(const Eigen::MatrixXd& x, int degree) {
-    std::vector<Eigen::VectorXd> columns;
-    const std::function<void(Eigen::Index, int, Eigen::VectorXd)> grow = [&](Eigen::Index from, int left, const Eigen::VectorXd& product) {
-        columns.push_back(product);
-        for (Eigen::Index k = from; left > 0 && k < x.cols(); ++k) {
-            grow(k, left - 1, product.cwiseProduct(x.col(k)));
-        }
-    };
-    grow(0, degree, Eigen::VectorXd::Ones(x.rows()));
-    Eigen::MatrixXd matrix(x.rows(), static_cast<Eigen::Index>(columns.size()));
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-        matrix.col(static_cast<Eigen::Index>(k)) = columns[k];
-    }
-    return matrix;
-}
-
-/// Squared-exponential kernel: p = log amplitude, log lengths.
-Eigen::MatrixXd kernel(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const std::vector<double>& p) {
-    Eigen::MatrixXd k(a.rows(), b.rows());
-    for (Eigen::Index i = 0; i < a.rows(); ++i) {
-        for (Eigen::Index j = 0; j < b.rows(); ++j) {
-            double square = 0;
-            for (Eigen::Index v = 0; v < a.cols(); ++v) {
-                square += std::pow((a(i, v) - b(j, v)) * std::exp(-p[static_cast<std::size_t>(v) + 1]), 2);
-            }
-            k(i, j) = std::exp(2 * p[0] - 0.5 * square);
-        }
-    }
-    return k;
-}
-
-double twice_log_evidence(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const std::vector<double>& p) {
-    Eigen::MatrixXd k = kernel(x, x, p);
-    k.diagonal().array() += 1;
-    const Eigen::LLT<Eigen::MatrixXd> factor(k);
-    const Eigen::VectorXd z = factor.matrixL().solve(y);
-    return -z.squaredNorm() - 2 * factor.matrixLLT().diagonal().array().log().sum();
-}
-
 }  // namespace
 
 PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measurements& train, const dynamics::Measurements& test, const Noise& sigma) {
@@ -195,52 +155,7 @@ PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measu
         begin += data[q].residual.size();
         from += other[q].residual.size();
     }
-    double best = y.squaredNorm();
-    Eigen::VectorXd chosen = Eigen::VectorXd::Zero(library.cols());
-    for (int setting = 0; setting < 24; ++setting) {
-        const double threshold = std::vector<double>{2, 3, 4, 5, 7, 10, 14, 20}[static_cast<std::size_t>(setting) / 3];
-        const double ridge = std::vector<double>{1e-6, 0.05, 0.5}[static_cast<std::size_t>(setting) % 3];
-        std::vector<Eigen::Index> kept;
-        for (Eigen::Index k = 0; k < library.cols(); ++k) {
-            kept.push_back(k);
-        }
-        Eigen::VectorXd c;
-        for (int round = 0; round < 12 && !kept.empty(); ++round) {
-            Eigen::MatrixXd part(rows, static_cast<Eigen::Index>(kept.size()));
-            for (std::size_t k = 0; k < kept.size(); ++k) {
-                part.col(static_cast<Eigen::Index>(k)) = library.col(kept[k]);
-            }
-            Eigen::MatrixXd normal = part.transpose() * part;
-            normal.diagonal().array() += ridge;  // effects of one rig look alike: without it coefficients run away in pairs
-            c = normal.ldlt().solve(part.transpose() * y);
-            std::vector<Eigen::Index> longer;
-            for (std::size_t k = 0; k < kept.size(); ++k) {
-                if (std::abs(c(static_cast<Eigen::Index>(k))) > threshold) {
-                    longer.push_back(kept[k]);
-                }
-            }
-            if (longer.size() == kept.size()) {
-                break;
-            }
-            kept = longer;
-        }
-        if (!kept.empty()) {
-            Eigen::MatrixXd part(rows, static_cast<Eigen::Index>(kept.size()));
-            for (std::size_t k = 0; k < kept.size(); ++k) {
-                part.col(static_cast<Eigen::Index>(k)) = library.col(kept[k]);
-            }
-            c = part.colPivHouseholderQr().solve(y);  // what is kept, fitted freely
-        }
-        Eigen::VectorXd full = Eigen::VectorXd::Zero(library.cols());
-        for (std::size_t k = 0; k < kept.size(); ++k) {
-            full(kept[k]) = c(static_cast<Eigen::Index>(k));
-        }
-        const double criterion = (y - library * full).squaredNorm() + static_cast<double>(kept.size()) * std::log(static_cast<double>(rows));
-        if (criterion < best) {
-            best = criterion;
-            chosen = full;
-        }
-    }
+    const Eigen::VectorXd chosen = thresholded_least_squares(library, y);
     std::set<std::string> found;
     for (Eigen::Index k = 0; k < chosen.size(); ++k) {
         if (chosen(k) != 0) {
@@ -265,24 +180,11 @@ PeerAnswer polynomial_residual(const dynamics::Model& model, const dynamics::Mea
         const Data data = data_of(model, train, quantity, sigma.at(quantity));
         const Data other = data_of(model, test, quantity, sigma.at(quantity));
         const Scaled scaled(data, varying(data));
-        const Eigen::MatrixXd x = scaled(data), z = scaled(other);
-        double best = data.residual.squaredNorm();
-        Eigen::VectorXd left = other.residual;
-        for (int degree = 0; degree <= 3; ++degree) {
-            const Eigen::MatrixXd basis = monomials(x, degree);
-            if (3 * basis.cols() > basis.rows()) {
-                break;
-            }
-            const Eigen::VectorXd c = basis.colPivHouseholderQr().solve(data.residual);
-            const double criterion = (data.residual - basis * c).squaredNorm() +
-                                     static_cast<double>(basis.cols()) * std::log(static_cast<double>(basis.rows()));
-            if (criterion < best) {
-                best = criterion;
-                left = other.residual - monomials(z, degree) * c;
-                answer.verdict = "unknown";
-            }
+        const Polynomial fit = fit_polynomial(scaled(data), data.residual);
+        if (fit.degree >= 0) {
+            answer.verdict = "unknown";
         }
-        answer.rmse[quantity] = rmse(left, sigma.at(quantity));
+        answer.rmse[quantity] = rmse(other.residual - fit.at(scaled(other)), sigma.at(quantity));
     }
     return answer;
 }
@@ -295,43 +197,16 @@ PeerAnswer gaussian_process_discrepancy(const dynamics::Model& model, const dyna
         const Data data = data_of(model, train, quantity, sigma.at(quantity));
         const Data other = data_of(model, test, quantity, sigma.at(quantity));
         const Scaled scaled(data, varying(data));
-        const Eigen::MatrixXd x = scaled(data);
-        std::vector<double> p(scaled.channels.size() + 1, 0.7);
-        p[0] = 0;
-        double best = twice_log_evidence(x, data.residual, p);
-        for (double step = 0.8; step > 0.15; step *= 0.5) {
-            for (int round = 0; round < 3; ++round) {
-                bool moved = false;
-                for (std::size_t k = 0; k < p.size(); ++k) {
-                    for (const double sign : {1.0, -1.0}) {
-                        std::vector<double> trial = p;
-                        trial[k] = std::clamp(trial[k] + sign * step, -3.0, 4.0);
-                        const double value = twice_log_evidence(x, data.residual, trial);
-                        if (value > best + 1e-6) {
-                            best = value;
-                            p = trial;
-                            moved = true;
-                        }
-                    }
-                }
-                if (!moved) {
-                    break;
-                }
-            }
-        }
-        const double n = static_cast<double>(data.residual.size());
-        if (best + data.residual.squaredNorm() < static_cast<double>(p.size()) * std::log(n)) {
+        const GaussianProcess fit = fit_gaussian_process(scaled(data), data.residual);
+        if (!fit.found) {
             answer.rmse[quantity] = rmse(other.residual, sigma.at(quantity));
             continue;
         }
         answer.verdict = "unknown";
-        Eigen::MatrixXd k = kernel(x, x, p);
-        k.diagonal().array() += 1;
-        const Eigen::VectorXd weights = k.llt().solve(data.residual);
-        answer.rmse[quantity] = rmse(other.residual - kernel(scaled(other), x, p) * weights, sigma.at(quantity));
+        answer.rmse[quantity] = rmse(other.residual - fit.at(scaled(other)), sigma.at(quantity));
         for (std::size_t v = 0; v < scaled.channels.size(); ++v) {
             const std::string name = dynamics::channel_name(scaled.channels[v]);
-            if (p[v + 1] < std::log(5.0) && std::find(answer.depends_on.begin(), answer.depends_on.end(), name) == answer.depends_on.end()) {
+            if (fit.depends_on(v) && std::find(answer.depends_on.begin(), answer.depends_on.end(), name) == answer.depends_on.end()) {
                 answer.depends_on.push_back(name);
             }
         }

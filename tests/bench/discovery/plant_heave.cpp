@@ -44,7 +44,7 @@ struct Plant {
         return m;
     }
 
-    double force(double t, double h, double w, double u, double history) const {
+    double force(double t, double h, double w, double u) const {
         double lift = jet_lift(h);
         double relative = w;
         double f = -weight;
@@ -77,7 +77,6 @@ struct Plant {
             else if (n == "thrust_near_wall") f += e.a * (u - 0.03) * std::exp(-std::pow((h - 0.09) / 0.04, 2));
             else if (n == "jump_in_gap") f += e.a * std::tanh((h - 0.1 - 0.06 * e.b) / 0.008);
         }
-        (void)history;
         const double drag = linear * relative + quadratic * relative * std::abs(relative);
         double slope = 0;
         inertia(h, slope);
@@ -110,8 +109,10 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
     double next_step = 2 + 6 * random.uniform();
     Track track;
     std::vector<double> past_h, past_w;
-    // Basset's memory by ten exponentials, rates a factor of three apart
-    double memory[10] = {};
+    // Basset's memory by exponentials, rates a factor of three apart from a period of hours to one of milliseconds; what is faster is a mass
+    constexpr int parts = 13;
+    constexpr double slowest = 3e-4;   // 1/s
+    double memory[parts] = {};
     double history = 0;
     for (const Extra& e : plant.extras) {
         history = e.name == "history_force" ? e.a : history;
@@ -159,25 +160,24 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
                 lagged += (held - lagged) * rise;
             }
             double slope_of_mass = 0;
-            double basset = 0, extra_mass = 0;
-            double rate_of = 0.01;
-            if (history > 0) {
-                for (double& m : memory) {
-                    const double weight_of = history * std::log(3.0) * std::sqrt(rate_of / pi);
-                    basset -= weight_of * m;
-                    rate_of *= 3;
+            const double extra_mass = history * std::log(3.0) / std::sqrt(slowest * std::pow(3.0, parts) * pi) / (1 - 1 / std::sqrt(3.0));
+            const auto basset = [&](double later, double a) {   // force with the memory that an acceleration leads to
+                double sum = 0, rate_of = slowest;
+                for (int i = 0; i < parts && history > 0; ++i, rate_of *= 3) {
+                    const double decay = std::exp(-rate_of * later);
+                    sum -= history * std::log(3.0) * std::sqrt(rate_of / pi) * (memory[i] * decay + a * (1 - decay) / rate_of);
                 }
-                extra_mass = history * 2 * std::log(3.0) / std::sqrt(rate_of * pi);
-            }
-            const auto rates_of = [&](double hh, double ww, double tt) {
-                const double m = plant.inertia(hh, slope_of_mass) + extra_mass;
-                return (plant.force(tt, hh, ww, felt, 0) + basset) / m;
+                return sum;
             };
-            const double a1 = rates_of(h, w, now);
+            const auto rates_of = [&](double hh, double ww, double tt, double remembered) {
+                const double m = plant.inertia(hh, slope_of_mass) + extra_mass;
+                return (plant.force(tt, hh, ww, felt) + remembered) / m;
+            };
+            const double a1 = rates_of(h, w, now, basset(0, 0));
             const double hm = h + 0.5 * step * w, wm = w + 0.5 * step * a1;
-            const double a2 = rates_of(hm, wm, now + 0.5 * step);
+            const double a2 = rates_of(hm, wm, now + 0.5 * step, basset(0.5 * step, a1));
             if (history > 0) {
-                rate_of = 0.01;
+                double rate_of = slowest;
                 for (double& m : memory) {
                     const double decay = std::exp(-rate_of * step);
                     m = m * decay + a2 * (1 - decay) / rate_of;   // integral of a exp(-rate (t-s))
@@ -224,9 +224,9 @@ double declared_error(const std::vector<Track>& tracks) {
             double h = track.sensed[f], w = (track.sensed[f + 1] - track.sensed[f - 1]) / (2 * dt);
             for (int k = 0; k < window; ++k) {
                 const auto i = static_cast<std::size_t>(first + k);
-                const double a1 = bare.force(0, h, w, track.input[i], 0) / mass;
+                const double a1 = bare.force(0, h, w, track.input[i]) / mass;
                 const double hm = h + 0.5 * dt * w, wm = w + 0.5 * dt * a1;
-                const double a2 = bare.force(0, hm, wm, track.input[i], 0) / mass;
+                const double a2 = bare.force(0, hm, wm, track.input[i]) / mass;
                 h += dt * wm;
                 w += dt * a2;
                 const double d = h - track.sensed[i + 1];
@@ -263,6 +263,13 @@ Plant plant_of(const std::vector<std::string>& names, const std::vector<double>&
         }
     }
     return plant;
+}
+
+/// Whether the catalogue's first number means what the plant's strength does: the same law in the same terms.
+bool means_the_same(const std::string& name) {
+    return name == "constant_force" || name == "added_mass" || name == "input_gain" || name == "input_delay" || name == "actuator_lag" ||
+           name == "gap_sensor_delay" || name == "gap_sensor_bias" || name == "ambient_heave_current" || name == "declared_parameter" ||
+           name == "periodic_disturbance" || name == "coulomb_friction" || name == "history_force";
 }
 
 core::Table table_of(const Track& track, const Case& wanted, core::Random& random) {
@@ -331,7 +338,11 @@ Sample make_heave(const Case& wanted) {
     const Plant plant = plant_of(laws, strength, shape);
     Sample sample;
     sample.names = wanted.names;
-    sample.strength = plant.lag + plant.input_delay + plant.sensor_delay + plant.bias + (plant.extras.empty() ? 0 : plant.extras.front().a);
+    sample.in_catalogue_terms = std::nan("");
+    if (laws.size() == 1 && means_the_same(laws.front())) {
+        sample.in_catalogue_terms = plant.lag + plant.input_delay + plant.sensor_delay + plant.bias + (plant.extras.empty() ? 0 : plant.extras.front().a) +
+                                    (laws.front() == "input_gain" || laws.front() == "declared_parameter" ? 1 : 0);
+    }
     if (!laws.empty() && wanted.names.front() == "unknown") {
         sample.depends_on = wanted.law == "bump" || wanted.law == "ripple" || wanted.law == "jump_in_gap" ? std::vector<std::string>{"gap"}
                             : wanted.law == "thrust_near_wall" ? std::vector<std::string>{"gap", "input_force"}
@@ -339,6 +350,7 @@ Sample make_heave(const Case& wanted) {
                             : wanted.law == "warming" ? std::vector<std::string>{"time"}
                             : wanted.law == "rectifier" ? std::vector<std::string>{"input_force"}
                                                         : std::vector<std::string>{"heave_velocity"};
+        sample.missing = [plant](double t, double h, double w, double u) { return plant.force(t, h, w, u) - Plant().force(t, h, w, u); };
     }
     for (const int style : {0, 1}) {
         dynamics::Measurements& data = style == 0 ? sample.train : sample.test;

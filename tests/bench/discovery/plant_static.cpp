@@ -355,7 +355,6 @@ Sample make_static(const Case& wanted) {
     const std::vector<Law> laws = laws_of(wanted);
     Sample sample;
     sample.names = wanted.names;
-    sample.strength = laws.empty() ? 0 : laws.front().a;
     sample.in_catalogue_terms = laws.size() == 1 ? in_catalogue_terms(laws.front()) : std::nan("");
     if (wanted.names == std::vector<std::string>{"unknown"}) {
         sample.depends_on = depends_of(wanted.law, wanted.family);

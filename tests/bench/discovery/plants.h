@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,8 +31,8 @@ struct Sample {
     dynamics::Measurements test;           ///< another controller and excitation (heave), other set points (static)
     std::vector<std::string> names;
     std::vector<std::string> depends_on;   ///< of an unknown law
-    double strength = 0;                   ///< first parameter of the true law
-    double in_catalogue_terms = 0;         ///< static: what the catalogue's first parameter should come out as; NaN: another form
+    double in_catalogue_terms = 0;         ///< what the catalogue's first parameter should come out as; NaN: another form
+    std::function<double(double t, double h, double w, double u)> missing;   ///< heave, unknown laws: the force that the model lacks, N
 };
 
 /// Writes model.toml and its tables for a family into a folder; returns the model file.

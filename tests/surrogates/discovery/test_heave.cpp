@@ -11,6 +11,7 @@
 
 using namespace underbody;
 using namespace underbody::discovery;
+using underbody::test::lift_of;
 
 namespace {
 
@@ -54,6 +55,59 @@ TEST(HeaveDiscovery, NamesADampingWhosePowerIsNearlyTwo) {
     const Discovery found = found_on([](double, double, double w) { return -12 * std::copysign(std::pow(std::abs(w), 1.9), w); }, 6);
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
     EXPECT_EQ(found.effects.at(0).name, "quadratic_damping");
+}
+
+TEST(HeaveDiscovery, FindsAFastLineBetweenTheStepsOfACoarseScan) {
+    // coherent over thirty seconds: a line at 1.3 Hz is a fortieth of that wide
+    const Discovery found = found_on([](double t, double, double) { return 0.02 * std::sin(2 * 3.14159265 * 1.317 * t + 0.7); }, 8);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects.at(0).name, "periodic_disturbance");
+    EXPECT_NEAR(found.effects.at(0).parameters.at(0).value, 0.02, 4e-3);
+    EXPECT_NEAR(found.effects.at(0).parameters.at(1).value, 1.317, 3e-3);
+}
+
+TEST(HeaveDiscovery, CallsASlowWarmingNoPeriod) {
+    const Discovery found = found_on([](double t, double, double) { return 0.002 * std::tanh((t - 14) / 4); }, 9);
+    EXPECT_EQ(found.verdict, "unknown") << found.sentence;
+    EXPECT_EQ(found.depends_on, std::vector<std::string>{"time"});
+}
+
+TEST(HeaveDiscovery, NamesRoughnessWhoseLawHasAnotherForm) {
+    // numbers from the other runs miss each run a little where the law's form does: that is no reason to take it for nothing
+    const auto rough = [](double, double h, double) { return lift_of(h) * 0.35 * (0.09 - h) / (0.09 + h); };
+    const Discovery found = found_on(rough, 10);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects.at(0).name, "surface_roughness");
+}
+
+TEST(HeaveExperiment, LeavesARunOutAsIfItHadNeverBeenThere) {
+    core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    const auto rough = [](double, double h, double) { return lift_of(h) * (0.3 - 0.2 * std::pow(h / 0.1, 2)) / (1 + std::pow(h / 0.1, 2)); };
+    const dynamics::Measurements data = test::heave_runs(rough, 4, 50, 10);
+    const HeaveRecords records = prepare_heave_records(model, data);
+    const HeaveExperiment experiment(model, records, {0, 1, 2, 3}, 2e-4, {});
+    HeaveNoise noise = experiment.noise();
+    experiment.fit_process({}, noise);
+    std::vector<Hypothesis> list = heave_hypotheses(model, {});
+    keep_only(list, {"surface_roughness"});
+    const HeaveExperiment::Result all = experiment.fit(list.front(), noise);
+    ASSERT_EQ(all.fitted.held_out.size(), 4U);
+    double long_way = 0;
+    for (std::size_t out = 0; out < 4; ++out) {
+        // by the long way: the other three fitted alone, then this one read with their numbers
+        std::vector<std::size_t> others{0, 1, 2, 3};
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
+        list.front().starts = {all.fitted.fit.parameters};
+        const HeaveExperiment::Result refitted = HeaveExperiment(model, records, others, 2e-4, {}).fit(list.front(), all.noise);
+        const HeaveExperiment alone(model, records, {out}, 2e-4, {});
+        std::vector<double> innovations;
+        const double cost = alone.evaluate(list.front().with(refitted.fitted.fit.parameters), nullptr, all.noise, innovations);
+        long_way += cost - all.fitted.cost_of_group[out];
+        EXPECT_GT(all.fitted.held_out[out], all.fitted.cost_of_group[out] - 1) << out;
+    }
+    EXPECT_GT(long_way, 10);
+    EXPECT_NEAR(all.fitted.optimism(), long_way, 0.6 * long_way);
 }
 
 TEST(HeaveDiscovery, GivesTheSameVerdictAtFiveHundredHertz) {
