@@ -138,6 +138,12 @@ public:
         }
     }
     [[nodiscard]] const double* memory() const { return memory_; }
+    /// The velocity was found to be another by so much: it always was, the body did not jump.
+    void correct_velocity(double change) {
+        for (double& memory : memory_) {
+            memory -= change;
+        }
+    }
 
     /// How a step changes small differences of (gap, velocity).
     struct Transition {
@@ -368,6 +374,7 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
         h += gain_h * residual;
         w += gain_w * residual;
         n += gain_n * residual;
+        equation.correct_velocity(gain_w * residual);
         p.hh -= gain_h * ph;
         p.hw -= gain_h * pw;
         p.hn -= gain_h * pn;

@@ -269,7 +269,7 @@ Plant plant_of(const std::vector<std::string>& names, const std::vector<double>&
 bool means_the_same(const std::string& name) {
     return name == "constant_force" || name == "added_mass" || name == "input_gain" || name == "input_delay" || name == "actuator_lag" ||
            name == "gap_sensor_delay" || name == "gap_sensor_bias" || name == "ambient_heave_current" || name == "declared_parameter" ||
-           name == "periodic_disturbance" || name == "coulomb_friction" || name == "history_force";
+           name == "periodic_disturbance" || name == "coulomb_friction";
 }
 
 core::Table table_of(const Track& track, const Case& wanted, core::Random& random) {
