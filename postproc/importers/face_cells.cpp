@@ -1,290 +1,29 @@
 // Cells out of faces.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstring>
+#include <atomic>
 
 #include "core/parallel.h"
+#include "postproc/importers/cell_shapes.h"
 #include "postproc/importers/face_mesh.h"
 
 namespace underbody::postproc {
 
 namespace {
 
-// VTK's numbers, so that this file needs none of its headers.
-enum : unsigned char {
-    vtk_empty = 0,
-    vtk_triangle = 5,
-    vtk_polygon = 7,
-    vtk_quad = 9,
-    vtk_tetra = 10,
-    vtk_hexahedron = 12,
-    vtk_wedge = 13,
-    vtk_pyramid = 14,
-    vtk_polyhedron = 42
-};
-
 constexpr std::size_t block_of_cells = 8192;
-
-/// One face as a cell sees it.
-struct View {
-    const std::uint32_t* nodes;
-    std::uint32_t size;
-    bool inward;  ///< the normal of the stored node order points into the cell
-
-    /// Node i in an order whose normal points into (or out of) the cell.
-    [[nodiscard]] std::uint32_t node(std::uint32_t i, bool into) const {
-        return nodes[into == inward ? i : size - 1 - i];
-    }
-    [[nodiscard]] bool has(std::uint32_t n) const { return std::find(nodes, nodes + size, n) != nodes + size; }
-};
-
-struct Vector {
-    double x = 0, y = 0, z = 0;
-};
-
-/// What is kept while the cells of one block are built.
-struct Scratch {
-    std::vector<View> faces;
-    std::vector<std::uint32_t> nodes;
-};
-
-/// The neighbour of `node` in a face that is not `other`; 0 when the edge is not in the face.
-std::uint32_t across(const View& face, std::uint32_t node, std::uint32_t other) {
-    for (std::uint32_t i = 0; i < face.size; ++i) {
-        if (face.nodes[i] == node) {
-            const std::uint32_t next = face.nodes[(i + 1) % face.size];
-            const std::uint32_t before = face.nodes[(i + face.size - 1) % face.size];
-            return next == other ? before : before == other ? next : 0;
-        }
-    }
-    return 0;
-}
-
-/// Fills the nodes above a base polygon of `sides` edges (hexahedron, wedge); false if the faces are not such a prism.
-bool raise(const std::vector<View>& faces, std::size_t base, std::uint32_t sides, std::uint32_t* out) {
-    for (std::uint32_t i = 0; i < sides; ++i) {
-        const std::uint32_t a = out[i];
-        const std::uint32_t b = out[(i + 1) % sides];
-        std::uint32_t top = 0;
-        for (std::size_t f = 0; f < faces.size() && top == 0; ++f) {
-            if (f != base && faces[f].size == 4 && faces[f].has(b)) {
-                top = across(faces[f], a, b);
-            }
-        }
-        if (top == 0) {
-            return false;
-        }
-        out[sides + i] = top;
-    }
-    // The last face must be the lid: exactly the raised nodes.
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (f == base || faces[f].size != sides) {
-            continue;
-        }
-        bool lid = true;
-        for (std::uint32_t i = 0; i < sides; ++i) {
-            lid = lid && faces[f].has(out[sides + i]);
-        }
-        if (lid) {
-            std::array<std::uint32_t, 8> all{};
-            std::copy_n(out, 2 * sides, all.begin());
-            std::sort(all.begin(), all.begin() + 2 * sides);
-            return std::adjacent_find(all.begin(), all.begin() + 2 * sides) == all.begin() + 2 * sides;
-        }
-    }
-    return false;
-}
-
-std::size_t first_of_size(const std::vector<View>& faces, std::uint32_t size) {
-    std::size_t f = 0;
-    while (f < faces.size() && faces[f].size != size) {
-        ++f;
-    }
-    return f;
-}
-
-/// The node of `face` that is none of the `count` in `known`; 0: all are known.
-std::uint32_t other_node(const View& face, const std::uint32_t* known, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < face.size; ++i) {
-        if (std::find(known, known + count, face.nodes[i]) == known + count) {
-            return face.nodes[i];
-        }
-    }
-    return 0;
-}
-
-/// Is every face made of these nodes only?
-bool only(const std::vector<View>& faces, const std::uint32_t* nodes, std::uint32_t count) {
-    return std::all_of(faces.begin(), faces.end(),
-                       [&](const View& face) { return other_node(face, nodes, count) == 0; });
-}
-
 constexpr int fluent_polyhedron = 7;
 
-/// Type of a 3-D cell and, for the standard ones, its nodes in VTK's order.
-unsigned char standard_cell(const std::vector<View>& faces, std::array<std::uint32_t, 8>& out) {
-    std::size_t triangles = 0;
-    std::size_t quads = 0;
-    for (const auto& face : faces) {
-        triangles += face.size == 3 ? 1 : 0;
-        quads += face.size == 4 ? 1 : 0;
-    }
-    const std::size_t count = faces.size();
-    if (triangles + quads != count) {
-        return vtk_polyhedron;
-    }
-    if (count == 6 && quads == 6) {
-        for (std::uint32_t i = 0; i < 4; ++i) {
-            out[i] = faces[0].node(i, true);
-        }
-        return raise(faces, 0, 4, out.data()) ? vtk_hexahedron : vtk_polyhedron;
-    }
-    if (count == 5 && triangles == 2) {
-        const std::size_t base = first_of_size(faces, 3);
-        for (std::uint32_t i = 0; i < 3; ++i) {
-            out[i] = faces[base].node(i, false);  // VTK's wedge: the first triangle looks outward
-        }
-        return raise(faces, base, 3, out.data()) ? vtk_wedge : vtk_polyhedron;
-    }
-    const bool pyramid = count == 5 && quads == 1;
-    if (pyramid || (count == 4 && triangles == 4)) {
-        const std::uint32_t sides = pyramid ? 4 : 3;
-        const std::size_t base = first_of_size(faces, sides);
-        for (std::uint32_t i = 0; i < sides; ++i) {
-            out[i] = faces[base].node(i, true);
-        }
-        out[sides] = other_node(faces[base == 0 ? 1 : 0], out.data(), sides);
-        const bool good = out[sides] != 0 && only(faces, out.data(), sides + 1);
-        return !good ? vtk_polyhedron : pyramid ? vtk_pyramid : vtk_tetra;
-    }
-    return vtk_polyhedron;
-}
-
-void unique_nodes(Scratch& scratch) {
-    scratch.nodes.clear();
-    for (const auto& face : scratch.faces) {
-        scratch.nodes.insert(scratch.nodes.end(), face.nodes, face.nodes + face.size);
-    }
-    std::sort(scratch.nodes.begin(), scratch.nodes.end());
-    scratch.nodes.erase(std::unique(scratch.nodes.begin(), scratch.nodes.end()), scratch.nodes.end());
-}
-
-/// The edges of a 2-D cell as one ring, counter-clockwise when the cell lies as the file says; false if they do not
-/// close.
-bool ring(Scratch& scratch) {
-    // (-dy, dx) of n0 -> n1 points into the cell: the cell lies to the left, so the stored order runs
-    // counter-clockwise.
-    const std::size_t count = scratch.faces.size();
-    scratch.nodes.clear();
-    if (count < 3) {
-        return false;
-    }
-    std::uint32_t at = scratch.faces[0].node(0, true);
-    for (std::size_t step = 0; step < count; ++step) {
-        scratch.nodes.push_back(at);
-        std::size_t next = 0;
-        while (next < count && (scratch.faces[next].size != 2 || scratch.faces[next].node(0, true) != at)) {
-            ++next;
-        }
-        if (next == count) {
-            return false;
-        }
-        at = scratch.faces[next].node(1, true);
-    }
-    return at == scratch.nodes.front();
-}
-
-/// Volume and the size of the summed area vector, with the total area.
-struct Measure {
-    double volume = 0;
-    double area = 0;
-    double opening = 0;
-};
-
-Vector point(const FaceMesh& mesh, std::uint32_t node) {
-    const double* p = mesh.points.data() + 3 * (static_cast<std::size_t>(node) - 1);
-    return {p[0], p[1], p[2]};
-}
-
-/// Divergence theorem, each face at the mean of its nodes (both cells beside a warped face see the same), about the
-/// cell's own first node for precision. In 2-D the edges do the same for the area.
-Measure measure(const FaceMesh& mesh, const std::vector<View>& faces) {
-    Measure result;
-    const Vector origin = point(mesh, faces[0].nodes[0]);
-    Vector sum;
-    for (const auto& face : faces) {
-        const Vector a = point(mesh, face.node(0, false));
-        const Vector ra{a.x - origin.x, a.y - origin.y, a.z - origin.z};
-        if (mesh.dimension == 2) {
-            if (face.size != 2) {
-                continue;
-            }
-            const Vector b = point(mesh, face.node(1, false));
-            const double nx = -(b.y - a.y);  // out of the cell: the cell lies to the right of the outward order
-            const double ny = b.x - a.x;
-            result.volume += (ra.x * nx + ra.y * ny) / 2;
-            result.area += std::hypot(nx, ny);
-            sum = {sum.x + nx, sum.y + ny, 0};
-            continue;
-        }
-        Vector n;
-        Vector mean = ra;
-        for (std::uint32_t i = 1; i < face.size; ++i) {
-            const Vector b = point(mesh, face.node(i, false));
-            mean = {mean.x + b.x - origin.x, mean.y + b.y - origin.y, mean.z + b.z - origin.z};
-            if (i + 1 == face.size) {
-                break;
-            }
-            const Vector c = point(mesh, face.node(i + 1, false));
-            const Vector u{b.x - a.x, b.y - a.y, b.z - a.z};
-            const Vector v{c.x - a.x, c.y - a.y, c.z - a.z};
-            n = {n.x + (u.y * v.z - u.z * v.y) / 2, n.y + (u.z * v.x - u.x * v.z) / 2,
-                 n.z + (u.x * v.y - u.y * v.x) / 2};
-        }
-        result.volume += (mean.x * n.x + mean.y * n.y + mean.z * n.z) / (3 * face.size);
-        result.area += std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-        sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
-    }
-    result.opening = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
-    return result;
-}
-
-struct Sizes {
-    std::uint32_t connectivity = 0;
-};
-
-/// Type and sizes of a cell whose faces are in `scratch`; its nodes stay in `scratch.nodes` (VTK's order).
-/// What the file calls a polyhedron stays one, even if it has the faces of a hexahedron.
-unsigned char shape(int dimension, bool polyhedron, Scratch& scratch, Sizes& sizes) {
-    if (scratch.faces.empty()) {
-        return vtk_empty;
-    }
-    unsigned char type = vtk_empty;
-    if (dimension == 2) {
-        if (!ring(scratch)) {
-            return vtk_empty;
-        }
-        const auto count = scratch.nodes.size();
-        type = count == 3 ? vtk_triangle : count == 4 ? vtk_quad : vtk_polygon;
-    } else {
-        std::array<std::uint32_t, 8> nodes{};
-        type = polyhedron ? static_cast<unsigned char>(vtk_polyhedron) : standard_cell(scratch.faces, nodes);
-        if (type == vtk_polyhedron) {
-            unique_nodes(scratch);
-        } else {
-            const std::size_t count = type == vtk_hexahedron ? 8 : type == vtk_wedge ? 6 : type == vtk_pyramid ? 5 : 4;
-            scratch.nodes.assign(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(count));
-        }
-    }
-    sizes.connectivity = static_cast<std::uint32_t>(scratch.nodes.size());
-    return type;
+/// Corners of a zone's cells when they are all of one of Fluent's kinds; 0: they differ, or are polyhedra.
+std::uint32_t corners_of(int element) {
+    static constexpr std::array<std::uint32_t, 7> corners = {0, 3, 4, 4, 8, 5, 6};
+    return element > 0 && element < 7 ? corners[static_cast<std::size_t>(element)] : 0;
 }
 
 /// Number of faces, then per face its number of nodes and these, in an order whose normal points outward.
-void append_polyhedron(const Scratch& scratch, std::vector<std::int64_t>& stream) {
-    stream.push_back(static_cast<std::int64_t>(scratch.faces.size()));
-    for (const auto& face : scratch.faces) {
+void append_polyhedron(const CellShape& cell, std::vector<std::int64_t>& stream) {
+    stream.push_back(static_cast<std::int64_t>(cell.faces.size()));
+    for (const auto& face : cell.faces) {
         stream.push_back(face.size);
         for (std::uint32_t k = 0; k < face.size; ++k) {
             stream.push_back(static_cast<std::int64_t>(face.node(k, false)) - 1);
@@ -362,25 +101,106 @@ CellBuilder::CellBuilder(const FaceMesh& mesh, core::Progress& progress) : mesh_
     starts_[0] = 0;
 }
 
-CellArrays CellBuilder::build(const CellBlock& cells, core::Progress& progress) const {
-    const auto gather = [&](std::uint64_t cell, Scratch& scratch) {
-        scratch.faces.clear();
-        if (!hidden_cells_.empty() && hidden_cells_[cell]) {
+/// The faces of one cell; none for a hidden one.
+void CellBuilder::gather(std::uint64_t cell, CellShape& shape) const {
+    shape.faces.clear();
+    if (!hidden_cells_.empty() && hidden_cells_[cell]) {
+        return;
+    }
+    std::size_t block = 0;
+    for (std::uint32_t k = starts_[cell]; k < starts_[cell + 1]; ++k) {
+        const std::uint32_t slot = uses_[k] / 2;
+        if (slot < slots_[block] || (block + 1 < slots_.size() && slot >= slots_[block + 1])) {
+            block = static_cast<std::size_t>(std::upper_bound(slots_.begin(), slots_.end(), slot) - slots_.begin()) - 1;
+        }
+        const FaceBlock& faces = mesh_.face_blocks[block];
+        const std::size_t face = slot - slots_[block];
+        shape.faces.push_back({faces.nodes.data() + faces.begin_of(face), faces.size_of(face), uses_[k] % 2 == 0});
+    }
+}
+
+/// What is summed over cells, block by block, so that it does not depend on the threads.
+struct CellBuilder::Tally {
+    double volume = 0;
+    std::uint64_t inverted = 0, open = 0;
+
+    void add(const CellShape& cell, const FaceMesh& mesh) {
+        if (cell.faces.empty()) {
             return;
         }
-        std::size_t block = 0;
-        for (std::uint32_t k = starts_[cell]; k < starts_[cell + 1]; ++k) {
-            const std::uint32_t slot = uses_[k] / 2;
-            if (slot < slots_[block] || (block + 1 < slots_.size() && slot >= slots_[block + 1])) {
-                block =
-                    static_cast<std::size_t>(std::upper_bound(slots_.begin(), slots_.end(), slot) - slots_.begin()) - 1;
+        const CellSize size = size_of(cell, mesh.points.data(), mesh.dimension);
+        volume += size.volume;
+        inverted += !(size.volume > 0) ? 1 : 0;
+        open += !(size.opening <= 1e-6 * size.area) ? 1 : 0;
+    }
+    void into(CellArrays& out) const {
+        out.volume += volume;
+        out.inverted += inverted;
+        out.open += open;
+    }
+};
+
+CellArrays CellBuilder::build(const CellBlock& cells, core::Progress& progress) const {
+    const std::uint32_t corners = cells.elements.empty() && hidden_cells_.empty() ? corners_of(cells.element) : 0;
+    CellArrays out;
+    if (corners == 0 || !build_alike(cells, corners, out, progress)) {
+        out = build_any(cells, progress);
+    }
+    return out;
+}
+
+/// Cells that all have so many corners find their place at once. False: some are of another kind.
+bool CellBuilder::build_alike(const CellBlock& cells, std::uint32_t corners, CellArrays& out, core::Progress& progress) const {
+    const std::size_t count = cells.count;
+    check_corners(count * corners);
+    const bool plane = mesh_.dimension == 2;
+    out.types.grow_to(count);
+    out.ids.grow_to(count);
+    out.offsets.grow_to(count + 1);
+    out.connectivity.grow_to(count * corners);
+    out.offsets[count] = static_cast<std::int32_t>(count * corners);
+    std::vector<Tally> tallies((count + block_of_cells - 1) / block_of_cells);
+    std::atomic<bool> alike = true;
+    core::parallel_blocks(
+        count, block_of_cells,
+        [&](std::size_t begin, std::size_t end) {
+            CellShape cell;
+            Tally tally;
+            std::int32_t* nodes = out.connectivity.data() + begin * corners;
+            for (std::size_t i = begin; i < end; ++i) {
+                gather(cells.first + i, cell);
+                recognise(cell, mesh_.dimension, false);
+                if (cell.nodes.size() != corners || cell.type == vtk_empty || cell.type == vtk_polyhedron || (plane && cell.type == vtk_polygon)) {
+                    alike = false;
+                    return;
+                }
+                tally.add(cell, mesh_);
+                for (const std::uint32_t node : cell.nodes) {
+                    *nodes++ = static_cast<std::int32_t>(node) - 1;
+                }
+                out.types[i] = cell.type;
+                out.ids[i] = cells.first + i;
+                out.offsets[i] = static_cast<std::int32_t>(i * corners);
             }
-            const FaceBlock& faces = mesh_.face_blocks[block];
-            const std::size_t face = slot - slots_[block];
-            scratch.faces.push_back(
-                {faces.nodes.data() + faces.begin_of(face), faces.size_of(face), uses_[k] % 2 == 0});
+            tallies[begin / block_of_cells] = tally;
+        },
+        progress);
+    if (alike) {
+        for (const auto& tally : tallies) {
+            tally.into(out);
         }
-    };
+    }
+    return alike;
+}
+
+void CellBuilder::check_corners(std::uint64_t corners) const {
+    if (corners > 0x7fffffffULL) {
+        throw core::InputError("format", "a zone with more than 2^31 corners", {mesh_.file, {}, {}, {}});
+    }
+}
+
+/// Cells of any kind are built by blocks, and then put one block after another.
+CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progress) const {
     const auto polyhedron = [&](std::size_t i) {
         return (cells.elements.empty() ? cells.element : cells.elements[i]) == fluent_polyhedron;
     };
@@ -389,40 +209,33 @@ CellArrays CellBuilder::build(const CellBlock& cells, core::Progress& progress) 
     Buffer<std::uint32_t> lengths(count);
     const std::size_t blocks = (count + block_of_cells - 1) / block_of_cells;
     struct Part {
-        std::uint64_t cells = 0, connectivity = 0, stream = 0, inverted = 0, open = 0;
-        double volume = 0;
+        std::uint64_t cells = 0, connectivity = 0, stream = 0;
+        Tally tally;
         std::vector<std::int32_t> nodes;  ///< of the block's cells, until they find their place
         std::vector<std::int64_t> faces;
     };
     std::vector<Part> parts(blocks);
-    // Cells are built by blocks, whatever the number of threads, and then put one block after another.
     core::parallel_blocks(
         count, block_of_cells,
         [&](std::size_t begin, std::size_t end) {
-            Scratch scratch;
+            CellShape cell;
             Part part;
             part.nodes.reserve(8 * (end - begin));
             for (std::size_t i = begin; i < end; ++i) {
-                gather(cells.first + i, scratch);
-                Sizes sizes;
-                types[i] = shape(mesh_.dimension, polyhedron(i), scratch, sizes);
-                lengths[i] = sizes.connectivity;
-                if (scratch.faces.empty()) {
-                    continue;
-                }
-                const Measure m = measure(mesh_, scratch.faces);
-                part.volume += m.volume;
-                part.inverted += !(m.volume > 0) ? 1 : 0;
-                part.open += !(m.opening <= 1e-6 * m.area) ? 1 : 0;
-                if (types[i] == vtk_empty) {
+                gather(cells.first + i, cell);
+                recognise(cell, mesh_.dimension, polyhedron(i));
+                types[i] = cell.type;
+                lengths[i] = static_cast<std::uint32_t>(cell.nodes.size());
+                part.tally.add(cell, mesh_);
+                if (cell.type == vtk_empty) {
                     continue;
                 }
                 ++part.cells;
-                for (const std::uint32_t node : scratch.nodes) {
+                for (const std::uint32_t node : cell.nodes) {
                     part.nodes.push_back(static_cast<std::int32_t>(node) - 1);
                 }
-                if (types[i] == vtk_polyhedron) {
-                    append_polyhedron(scratch, part.faces);
+                if (cell.type == vtk_polyhedron) {
+                    append_polyhedron(cell, part.faces);
                 }
             }
             part.connectivity = part.nodes.size();
@@ -440,13 +253,9 @@ CellArrays CellBuilder::build(const CellBlock& cells, core::Progress& progress) 
         total.cells += parts[b].cells;
         total.connectivity += parts[b].connectivity;
         total.stream += parts[b].stream;
-        out.volume += parts[b].volume;
-        out.inverted += parts[b].inverted;
-        out.open += parts[b].open;
+        parts[b].tally.into(out);
     }
-    if (total.connectivity > 0x7fffffffULL) {
-        throw core::InputError("format", "a zone with more than 2^31 corners", {mesh_.file, {}, {}, {}});
-    }
+    check_corners(total.connectivity);
     out.types.grow_to(total.cells);
     out.ids.grow_to(total.cells);
     out.offsets.grow_to(total.cells + 1);

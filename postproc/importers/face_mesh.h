@@ -120,6 +120,8 @@ struct CellArrays {
     std::uint64_t open = 0;      ///< cells whose faces do not close
 };
 
+struct CellShape;
+
 /// The faces of every cell. Built once, used for each zone.
 class CellBuilder {
 public:
@@ -129,6 +131,12 @@ public:
     [[nodiscard]] CellArrays build(const CellBlock& block, core::Progress& progress) const;
 
 private:
+    struct Tally;
+    void gather(std::uint64_t cell, CellShape& shape) const;
+    bool build_alike(const CellBlock& cells, std::uint32_t corners, CellArrays& out, core::Progress& progress) const;
+    [[nodiscard]] CellArrays build_any(const CellBlock& cells, core::Progress& progress) const;
+    void check_corners(std::uint64_t corners) const;
+
     const FaceMesh& mesh_;
     Buffer<std::uint32_t> starts_;      ///< per cell id, into uses_
     Buffer<std::uint32_t> uses_;        ///< 2 * slot of the face + side

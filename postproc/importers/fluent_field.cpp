@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -59,7 +60,7 @@ private:
     [[nodiscard]] bool turned(const FaceBlock& block, std::size_t face, bool wall) const;
     [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall) const;
     [[nodiscard]] double face_area(const Element& element) const;
-    [[nodiscard]] Gathered gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids) const;
+    [[nodiscard]] Gathered gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids);
     void add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on_cells, const std::vector<double>& areas,
                     core::Problems& problems);
     void add_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) const;
@@ -71,7 +72,7 @@ private:
     std::vector<ValueBlock>& values_;
     const ReadOptions& options_;
     core::Progress& progress_;
-    std::vector<std::int32_t> place_of_node_;
+    std::vector<std::int32_t> place_of_node_;  ///< only for the nodes of the zone at hand
 };
 
 Zone Assembly::named_zone(int id, int code, bool cells) const {
@@ -84,47 +85,65 @@ Zone Assembly::named_zone(int id, int code, bool cells) const {
     return zone;
 }
 
-/// The points that `nodes` (from 0) use, in order of their ids; `nodes` and the polyhedra's `stream` become places
-/// among these. The `last` zone may take the mesh's own.
-Buffer<double> Assembly::picked_points(Buffer<std::int32_t>& nodes, Buffer<std::int64_t>& stream, bool last) {
-    constexpr std::int32_t unused = -1;
-    place_of_node_.resize(mesh_.nodes, unused);
-    std::vector<std::int32_t> used;
-    for (const std::int32_t node : nodes) {
-        if (place_of_node_[static_cast<std::size_t>(node)] == unused) {
-            place_of_node_[static_cast<std::size_t>(node)] = 0;
-            used.push_back(node);
+/// Which of so many nodes are used; small enough to stay near the processor.
+class UsedNodes {
+public:
+    explicit UsedNodes(std::size_t nodes) : words_((nodes + 63) / 64) {}
+    void mark(std::int32_t node) { words_[static_cast<std::size_t>(node) / 64] |= std::uint64_t{1} << (node % 64); }
+    [[nodiscard]] std::size_t count() const {
+        std::size_t sum = 0;
+        for (const std::uint64_t word : words_) {
+            sum += static_cast<std::size_t>(std::popcount(word));
         }
+        return sum;
     }
-    const bool all = used.size() == mesh_.nodes;
-    if (!all) {
-        std::sort(used.begin(), used.end());
-    }
-    Buffer<double> points;
-    if (all && last) {
-        points = std::move(mesh_.points);
-    } else if (all) {
-        points.grow_to(mesh_.points.size());
-        std::copy(mesh_.points.begin(), mesh_.points.end(), points.begin());
-    } else {
-        points.grow_to(3 * used.size());
-        for (std::size_t i = 0; i < used.size(); ++i) {
-            place_of_node_[static_cast<std::size_t>(used[i])] = static_cast<std::int32_t>(i);
-            std::copy_n(mesh_.points.data() + 3 * static_cast<std::size_t>(used[i]), 3, points.data() + 3 * i);
-        }
-        for (auto& node : nodes) {
-            node = place_of_node_[static_cast<std::size_t>(node)];
-        }
-        for (std::size_t i = 0; i < stream.size();) {
-            for (std::int64_t faces = stream[i++]; faces > 0; --faces) {
-                for (std::int64_t corners = stream[i++]; corners > 0; --corners, ++i) {
-                    stream[i] = place_of_node_[static_cast<std::size_t>(stream[i])];
-                }
+    /// Calls `act(node)` in order of the nodes.
+    template <typename Act>
+    void each(Act&& act) const {
+        for (std::size_t w = 0; w < words_.size(); ++w) {
+            for (std::uint64_t word = words_[w]; word != 0; word &= word - 1) {
+                act(64 * w + static_cast<std::size_t>(std::countr_zero(word)));
             }
         }
     }
-    for (const std::int32_t node : used) {
-        place_of_node_[static_cast<std::size_t>(node)] = unused;
+
+private:
+    std::vector<std::uint64_t> words_;
+};
+
+/// The points that `nodes` (from 0) use, in order of their ids; `nodes` and the polyhedra's `stream` become places
+/// among these. The `last` zone may take the mesh's own.
+Buffer<double> Assembly::picked_points(Buffer<std::int32_t>& nodes, Buffer<std::int64_t>& stream, bool last) {
+    UsedNodes used(mesh_.nodes);
+    for (const std::int32_t node : nodes) {
+        used.mark(node);
+    }
+    const std::size_t count = used.count();
+    Buffer<double> points;
+    if (count == mesh_.nodes) {
+        if (last) {
+            return std::move(mesh_.points);
+        }
+        points.grow_to(mesh_.points.size());
+        std::copy(mesh_.points.begin(), mesh_.points.end(), points.begin());
+        return points;
+    }
+    place_of_node_.resize(mesh_.nodes);
+    points.grow_to(3 * count);
+    std::int32_t place = 0;
+    used.each([&](std::size_t node) {
+        std::copy_n(mesh_.points.data() + 3 * node, 3, points.data() + 3 * static_cast<std::size_t>(place));
+        place_of_node_[node] = place++;
+    });
+    for (auto& node : nodes) {
+        node = place_of_node_[static_cast<std::size_t>(node)];
+    }
+    for (std::size_t i = 0; i < stream.size();) {
+        for (std::int64_t faces = stream[i++]; faces > 0; --faces) {
+            for (std::int64_t corners = stream[i++]; corners > 0; --corners, ++i) {
+                stream[i] = place_of_node_[static_cast<std::size_t>(stream[i])];
+            }
+        }
     }
     return points;
 }
@@ -195,7 +214,7 @@ double Assembly::face_area(const Element& element) const {
     return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / 2;
 }
 
-Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids) const {
+Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids) {
     Gathered result;
     if (ids.empty()) {
         return result;
@@ -206,7 +225,7 @@ Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const
     const bool gapless = std::adjacent_find(ids.begin(), ids.end(), [](std::uint64_t a, std::uint64_t b) {
                              return b != a + 1;
                          }) == ids.end();
-    for (const auto& block : values_) {
+    for (auto& block : values_) {
         const bool ours = block.on_cells == on_cells && block.variable == key.variable && block.phase == key.phase &&
                           (block.zone == 0 || block.zone == zone) && block.count > 0 && block.first <= last &&
                           block.first + block.count > first;
@@ -216,6 +235,11 @@ Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const
         const auto n = static_cast<std::size_t>(block.components);
         const std::uint64_t from = std::max(first, block.first);
         const std::uint64_t to = std::min(last + 1, block.first + block.count);
+        if (gapless && result.values.empty() && block.first == first && block.count == ids.size()) {
+            result = {std::move(block.values), block.components, block.count};
+            block.count = 0;  // taken: no other zone has these ids
+            return result;
+        }
         if (result.values.empty()) {
             result.components = block.components;
             result.values.grow_to(ids.size() * n);
@@ -259,6 +283,18 @@ void to_traction(Buffer<double>& forces, int components, const std::vector<doubl
     }
 }
 
+/// x, y, z by turns; a part that is not there is 0.
+Buffer<double> interleaved(const std::array<Buffer<double>, 3>& parts, std::size_t count) {
+    Buffer<double> result(3 * count);
+    const auto of = [&](std::size_t k, std::size_t i) { return parts[k].empty() ? 0 : parts[k][i]; };
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            result[3 * i + k] = of(k, i);
+        }
+    }
+    return result;
+}
+
 /// Three components out of two, the third 0.
 Buffer<double> widened(const Buffer<double>& values) {
     Buffer<double> result(values.size() / 2 * 3);
@@ -289,7 +325,7 @@ void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on
     }
     struct Joined {
         ArrayInfo info;
-        Buffer<double> values;
+        std::array<Buffer<double>, 3> parts;
     };
     std::vector<Joined> vectors;
     for (const auto& key : keys) {
@@ -320,15 +356,12 @@ void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on
                 std::find_if(vectors.begin(), vectors.end(), [&](const Joined& j) { return j.info.name == name; });
             if (joined == vectors.end()) {
                 info.components = 3;
-                vectors.push_back({info, Buffer<double>(3 * ids.size())});
+                vectors.push_back({info, {}});
                 joined = std::prev(vectors.end());
-                joined->values.fill(0);
             } else {
                 joined->info.original_name += ", " + key.variable;
             }
-            for (std::size_t i = 0; i < ids.size(); ++i) {
-                joined->values[3 * i + static_cast<std::size_t>(component->index)] = found.values[i];
-            }
+            joined->parts[static_cast<std::size_t>(component->index)] = std::move(found.values);
             continue;
         }
         if (found.components == 2 && (shear || vector_component(canonical.name + "_x"))) {
@@ -344,7 +377,7 @@ void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on
         add_array(zone, data, std::move(info), std::move(found.values));
     }
     for (auto& joined : vectors) {
-        add_array(zone, data, std::move(joined.info), std::move(joined.values));
+        add_array(zone, data, std::move(joined.info), interleaved(joined.parts, ids.size()));
     }
 }
 

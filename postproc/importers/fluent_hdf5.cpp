@@ -63,6 +63,7 @@ private:
     void read_cells();
     void read_faces();
     void cut_faces(const Part& part);
+    static void note_equal_sizes(FaceBlock& block);
     void read_beside(const std::string& side);
     void read_labels();
     void read_trees();
@@ -307,10 +308,7 @@ void Reader::read_faces() {
         }
     }
     for (auto& block : mesh_.face_blocks) {
-        block.c0.grow_to(block.count);
-        block.c0.fill(0);
-        block.c1.grow_to(block.count);
-        block.c1.fill(0);
+        note_equal_sizes(block);
     }
     read_beside("c0");
     read_beside("c1");
@@ -379,6 +377,19 @@ void Reader::cut_faces(const Part& part) {
     }
 }
 
+/// Zones whose faces all have so many corners need no list of where each begins.
+void Reader::note_equal_sizes(FaceBlock& block) {
+    const std::uint32_t size = block.count > 0 ? block.offsets[1] : 0;
+    std::uint32_t differs = 0;
+    for (std::size_t face = 0; face < block.count; ++face) {
+        differs |= (block.offsets[face + 1] - block.offsets[face]) ^ size;
+    }
+    if (differs == 0 && size > 0) {
+        block.per_face = size;
+        block.offsets.clear();
+    }
+}
+
 void Reader::read_beside(const std::string& side) {
     std::uint64_t found = 0;
     for (const auto& part : parts(root_ + "/faces/" + side)) {
@@ -393,12 +404,19 @@ void Reader::read_beside(const std::string& side) {
             const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
             if (from < to) {
                 auto& target = side == "c0" ? block.c0 : block.c1;
+                if (target.empty()) {
+                    target.grow_to(block.count);
+                    if (to - from < block.count) {
+                        target.fill(0);
+                    }
+                }
                 file_.numbers(part.path, from - part.first, to - from, target.data() + (from - block.first));
             }
         }
     }
-    if (side == "c0" && found < mesh_.faces) {
-        refuse(root_ + "/faces/c0", "the cells beside " + number(mesh_.faces - found) + " faces are missing");
+    const bool whole = std::all_of(mesh_.face_blocks.begin(), mesh_.face_blocks.end(), [](const FaceBlock& block) { return block.c0.size() == block.count; });
+    if (side == "c0" && (found < mesh_.faces || !whole)) {
+        refuse(root_ + "/faces/c0", "the cells beside " + number(mesh_.faces - std::min(found, mesh_.faces)) + " faces are missing");
     }
 }
 
@@ -623,6 +641,14 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         if (mesh_path.empty()) {
             throw core::InputError("missing", "these are solution data without a mesh", {path.string(), {}, {}, {}},
                                    "give the case (.cas.h5) they belong to as the companion file");
+        }
+    }
+    if (!data_path.empty()) {
+        // The data are tried in a process of its own: now, while there is little memory that it would have to share.
+        try {
+            Hdf5File early(data_path);
+        } catch (const core::InputError&) {
+            // said below, where it is known whether the data were asked for
         }
     }
     Reader reader(mesh_path, options, progress);

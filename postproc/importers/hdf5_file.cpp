@@ -97,18 +97,22 @@ void look_through(const std::filesystem::path& path) {
     }
 }
 
-/// A file is tried once, as long as it does not change.
+/// A file is tried once, as long as it does not change; a case and its data take turns.
 void try_once(const std::filesystem::path& path) {
+    constexpr std::size_t remembered = 16;
     static std::mutex mutex;
-    static std::string tried;
+    static std::vector<std::string> tried;
     std::error_code error;
     const auto changed = std::filesystem::last_write_time(path, error);
     const std::string print = path.string() + " " + std::to_string(std::filesystem::file_size(path, error)) + " " +
                               std::to_string(changed.time_since_epoch().count());
     const std::lock_guard lock(mutex);
-    if (print != tried) {
+    if (std::find(tried.begin(), tried.end(), print) == tried.end()) {
         try_in_child(path, [&] { look_through(path); });
-        tried = print;
+        if (tried.size() == remembered) {
+            tried.erase(tried.begin());
+        }
+        tried.push_back(print);
     }
 }
 

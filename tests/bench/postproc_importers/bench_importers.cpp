@@ -31,14 +31,16 @@ namespace fs = std::filesystem;
 using namespace underbody;
 
 struct Cost {
-    double seconds = 0;
+    double seconds = 0;    ///< of the median run
+    double best = 0;       ///< of the fastest run: what the machine's other work disturbs least
+    double processor = 0;  ///< seconds of all cores together, of the run that took the fewest
     double megabytes = 0;  ///< more than a process that reads nothing
     bool good = false;
 };
 
-constexpr int repetitions = 7;
+constexpr int repetitions = 9;
 
-/// The median of several runs, each in a fresh process.
+/// Several runs, each in a fresh process.
 Cost cost_of(const std::function<long long()>& read, long long expected) {
     std::vector<Cost> runs;
     for (int i = 0; i < repetitions; ++i) {
@@ -58,11 +60,15 @@ Cost cost_of(const std::function<long long()>& read, long long expected) {
         rusage usage{};
         ::wait4(child, &status, 0, &usage);
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        runs.push_back(
-            {time.count(), static_cast<double>(usage.ru_maxrss) / 1024, WIFEXITED(status) && WEXITSTATUS(status) == 0});
+        const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+        runs.push_back({time.count(), 0, seconds(usage.ru_utime) + seconds(usage.ru_stime), static_cast<double>(usage.ru_maxrss) / 1024,
+                        WIFEXITED(status) && WEXITSTATUS(status) == 0});
     }
     std::sort(runs.begin(), runs.end(), [](const Cost& a, const Cost& b) { return a.seconds < b.seconds; });
-    return runs[runs.size() / 2];
+    Cost cost = runs[runs.size() / 2];
+    cost.best = runs.front().seconds;
+    cost.processor = std::min_element(runs.begin(), runs.end(), [](const Cost& a, const Cost& b) { return a.processor < b.processor; })->processor;
+    return cost;
 }
 
 /// The faces of a cube of n x n x n hexahedra, each as four nodes and two cells: those inside it and its hull.
@@ -343,8 +349,10 @@ int main(int count, char** arguments) {
     const auto n = static_cast<std::uint32_t>(count > 1 ? std::atoi(arguments[1]) : 60);
     const core::TemporaryFolder folder;
     const Cost nothing = cost_of([] { return 0LL; }, 0);
-    std::printf("%u hexahedra, five fields; median of seven, memory above %.0f MB of the bare process\n", n * n * n,
-                nothing.megabytes);
+    double load = 0;
+    ::getloadavg(&load, 1);
+    std::printf("%u hexahedra, five fields; median of %d, memory above %.0f MB of the bare process; load average at the start %.1f\n", n * n * n, repetitions,
+                nothing.megabytes, load);
     bool good = true;
     for (const bool binary : {false, true}) {
         const fs::path path = folder.path() / (binary ? "binary.cas" : "ascii.cas");
@@ -354,11 +362,12 @@ int main(int count, char** arguments) {
         const Cost surface = cost_of([&] { return read_ours(path, true); }, 6LL * n * n);
         const Cost vtk = cost_of([&] { return read_by_vtk(path); }, cells);
         const auto memory = [&](const Cost& cost) { return cost.megabytes - nothing.megabytes; };
-        std::printf(
-            "%-7s ours %.3f s %.0f MB | surface alone %.3f s %.0f MB | VTK %.3f s %.0f MB%s | %.1f times faster, %.2f "
-            "of the memory\n",
-            binary ? "binary" : "ASCII", ours.seconds, memory(ours), surface.seconds, memory(surface), vtk.seconds,
-            memory(vtk), vtk.good ? "" : " (failed)", vtk.seconds / ours.seconds, memory(ours) / memory(vtk));
+        std::printf("%s: VTK %.3f s (best %.3f, processor %.3f) %.0f MB%s\n", binary ? "binary" : "ASCII", vtk.seconds, vtk.best, vtk.processor, memory(vtk),
+                    vtk.good ? "" : " (failed)");
+        std::printf("  ours %.3f s (best %.3f, processor %.3f) %.0f MB: %.1f times faster by the medians, %.1f by the best, %.1f by processor time; %.2f of the memory\n",
+                    ours.seconds, ours.best, ours.processor, memory(ours), vtk.seconds / ours.seconds, vtk.best / ours.best, vtk.processor / ours.processor,
+                    memory(ours) / memory(vtk));
+        std::printf("  surface alone %.3f s (best %.3f, processor %.3f) %.0f MB\n", surface.seconds, surface.best, surface.processor, memory(surface));
         good = good && ours.good && surface.good;
     }
     for (const bool deflated : {false, true}) {
@@ -371,11 +380,13 @@ int main(int count, char** arguments) {
         const Cost ours = cost_of([&] { return read_ours(path, false); }, cells);
         const Cost surface = cost_of([&] { return read_ours(path, true); }, 6LL * n * n);
         const auto memory = [&](const Cost& cost) { return cost.megabytes - nothing.megabytes; };
-        std::printf(
-            "HDF5, %s: ours %.3f s (%.0f MB/s) %.0f MB | surface alone %.3f s %.0f MB | the library alone %.3f s | bytes "
-            "from the disk's cache %.3f s (%.0f MB)\n",
-            deflated ? "deflated" : "plain", ours.seconds, static_cast<double>(bytes) / 1e6 / ours.seconds, memory(ours),
-            surface.seconds, memory(surface), library.seconds, plain.seconds, static_cast<double>(bytes) / 1e6);
+        const auto rate = [&](double seconds) { return static_cast<double>(bytes) / 1e6 / seconds; };
+        std::printf("HDF5, %s, %.0f MB: the library alone %.3f s (best %.3f, processor %.3f), the bytes out of the disk's cache %.3f s\n",
+                    deflated ? "deflated" : "plain", static_cast<double>(bytes) / 1e6, library.seconds, library.best, library.processor, plain.seconds);
+        std::printf("  ours %.3f s (best %.3f: %.0f MB/s, processor %.3f) %.0f MB: %.2f times the library's by the medians, %.2f by the best, %.2f by processor time\n",
+                    ours.seconds, ours.best, rate(ours.best), ours.processor, memory(ours), ours.seconds / library.seconds, ours.best / library.best,
+                    ours.processor / library.processor);
+        std::printf("  surface alone %.3f s (best %.3f, processor %.3f) %.0f MB\n", surface.seconds, surface.best, surface.processor, memory(surface));
         good = good && ours.good && surface.good && library.good;
     }
     return good ? 0 : 1;
