@@ -130,7 +130,8 @@ TEST(CellShapes, AWarpedHexahedronHasOneVolumeByFacesAndByNodes) {
     core::Random random(7);
     for (int trial = 0; trial < 200; ++trial) {
         std::vector<double> points;
-        for (const auto& corner : kinds()[0].corners) {
+        const auto all = kinds();
+        for (const auto& corner : all[0].corners) {
             for (const double x : corner) {
                 points.push_back(1e3 + x + random.uniform(-0.2, 0.2));
             }
