@@ -247,6 +247,15 @@ std::optional<ForceReport> report_begun_by(std::string_view line) {
     return report;
 }
 
+double scale_of_unit(std::string_view text, bool moments, const core::Place& place) {
+    std::string unit(core::trimmed(text));
+    const std::string lower = core::lower_case(unit);
+    const std::string si = moments ? "N m" : "N";
+    unit = lower == "n" ? "N" : lower == "n-m" || lower == "n m" ? "N m" : unit;
+    std::replace(unit.begin(), unit.end(), '-', ' ');
+    return core::conversion(unit, si, place).scale;
+}
+
 /// "Forces (n)      Coefficients", "Forces [lbf]", "Moments (n-m)": what makes SI of the numbers below.
 double scale_of_header(std::string_view line, bool moments, const core::Place& place) {
     const std::size_t open = line.find_first_of("([");
@@ -254,12 +263,12 @@ double scale_of_header(std::string_view line, bool moments, const core::Place& p
     if (open == std::string_view::npos || close == std::string_view::npos || close < open) {
         return 1;
     }
-    std::string unit(core::trimmed(line.substr(open + 1, close - open - 1)));
-    const std::string lower = core::lower_case(unit);
-    const std::string si = moments ? "N m" : "N";
-    unit = lower == "n" ? "N" : lower == "n-m" || lower == "n m" ? "N m" : unit;
-    std::replace(unit.begin(), unit.end(), '-', ' ');
-    return core::conversion(unit, si, place).scale;
+    return scale_of_unit(line.substr(open + 1, close - open - 1), moments, place);
+}
+
+/// Layouts of old put the unit under each of the three heads: "n   n   n".
+bool is_line_of_units(const std::vector<std::string>& words) {
+    return words.size() == 3 && words[0] == words[1] && words[1] == words[2] && !number_of(words[0]);
 }
 
 /// Six numbers, or six triples, at the end of a line that begins with a zone's name.
@@ -278,6 +287,7 @@ void add_row(std::vector<ForceReport>& reports, std::size_t first, std::string_v
         for (std::size_t i = 0; i + count < words.size(); ++i) {
             zone += (i > 0 ? " " : "") + words[i];
         }
+        zone = core::lower_case(zone) == "net" ? "Net" : zone;
         if (per_entry == 3 && reports.size() < first + 3) {
             for (std::size_t k = reports.size() - first; k < 3; ++k) {
                 reports.push_back(reports[first]);
@@ -308,7 +318,7 @@ const std::vector<double>* Monitor::find(const std::string& column) const {
 
 const ReportedForce* ForceReport::net() const {
     for (const auto& row : rows) {
-        if (row.zone == "Net" || row.zone == "net") {
+        if (row.zone == "Net") {
             return &row;
         }
     }
@@ -401,8 +411,13 @@ std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
         } else if (reading && (line.starts_with("Forces") || line.starts_with("Moments"))) {
             scale = scale_of_header(line, reports[first].moments, {file.name(), number, {}, {}});
         } else if (reading && !line.empty() && line.front() != '-') {
+            const auto words = words_of(line);
+            if (is_line_of_units(words) && words[0] != "force" && words[0] != "moment") {
+                scale = scale_of_unit(words[0], reports[first].moments, {file.name(), number, {}, {}});
+                continue;
+            }
             add_row(reports, first, line, scale);
-            reading = !core::lower_case(line).starts_with("net");
+            reading = core::lower_case(words.front()) != "net";
         }
     }
     if (reading && !reports.empty() && !reports.back().rows.empty()) {

@@ -139,6 +139,14 @@ TEST(ForceReports, TheLayoutOfFluent6IsRead) {
     ASSERT_NE(reports[0].net(), nullptr);
     EXPECT_EQ(reports[0].net()->total, 2);
     EXPECT_EQ(reports[0].rows[0].zone, "cylinder");
+    const auto pounds = read_force_reports(written(
+        folder,
+        "Force vector: (1 0 0)\n                pressure   viscous     total    pressure     viscous       total\n"
+        "zone name          force     force     force coefficient coefficient coefficient\n"
+        "                     lbf       lbf       lbf\n--------- ------ -----\n"
+        "net-cage 1.5 0.5 2 3 1 4\n--------- ------ -----\nnet 1.5 0.5 2 3 1 4\n"));
+    EXPECT_NEAR(pounds.at(0).net()->total, 2 * 4.4482216152605, 1e-9);
+    EXPECT_EQ(pounds[0].rows[0].zone, "net-cage");
 }
 
 TEST(ForceReports, ATextThatEndsWithinAReportIsRefused) {
