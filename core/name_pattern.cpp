@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "core/text.h"
 #include "core/units.h"
@@ -154,7 +155,9 @@ std::vector<NamePattern::Found> NamePattern::files(const fs::path& root) const {
             found.push_back({entry->path().lexically_normal(), std::move(*match_found)});
         }
     }
-    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.path < b.path; });
+    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+        return std::tie(a.match.texts, a.match.numbers, a.path) < std::tie(b.match.texts, b.match.numbers, b.path);
+    });
     return found;
 }
 

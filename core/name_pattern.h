@@ -30,7 +30,7 @@ public:
         std::filesystem::path path;
         Match match;
     };
-    /// All files that fit, sorted by name; the pattern may have several folders. `root` is where a relative pattern starts.
+    /// All files that fit, by their texts, then by their numbers, then by name; the pattern may have several folders. `root` is where a relative pattern starts.
     [[nodiscard]] std::vector<Found> files(const std::filesystem::path& root = ".") const;
 
     /// True when the text has a brace, `*` or `?`.

@@ -259,7 +259,16 @@ Quantity parse_quantity(std::string_view text, const Place& place) {
 
 double parse_in(std::string_view text, std::string_view unit_si, const Place& place) {
     const Quantity quantity = parse_quantity(text, place);
-    const double value = quantity.unit.empty() ? quantity.value : convert(quantity.value, quantity.unit, unit_si, place);
+    double value = quantity.value;
+    try {
+        value = quantity.unit.empty() ? value : convert(value, quantity.unit, unit_si, place);
+    } catch (const InputError& error) {
+        if (!place.file.empty()) {
+            throw;
+        }
+        // An option has no line to point at: its text says which one it was.
+        throw InputError(error.kind(), "'" + std::string(text) + "': " + error.message(), place, error.hint());
+    }
     if (!std::isfinite(value)) {
         throw InputError("range", "'" + std::string(text) + "' is not finite", place);
     }

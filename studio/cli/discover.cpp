@@ -48,7 +48,8 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
         }
     }
     for (const discovery::ErrorChange& change : found.error) {
-        text += "\nError of " + change.channel + " on held-out data: " + core::format_number(change.before.rmse, 3) + " -> " +
+        text += "\nError of " + change.channel + " on held-out data" +
+                (change.horizon > 0 ? ", " + core::format_number(change.horizon, 4) + " s ahead: " : ": ") + core::format_number(change.before.rmse, 3) + " -> " +
                 core::format_number(change.after.rmse, 3) + " " + change.unit + " (noise " + core::format_number(change.noise, 3) + ")";
     }
     text += "\n\nNext experiment: " + found.next_experiment + "\nReport: " + (folder / "report.html").string() + "\n";

@@ -176,7 +176,7 @@ int run_sweep(const Arguments& a, const dynamics::Model& model, const dynamics::
         dynamics::to_json(one, sweep.regions[i]);
         one["value"] = sweep.value[i];
         json["regions"].push_back(one);
-        shell.print(names.back() + "\n");
+        shell.print((i > 0 ? "\n" : "") + names.back());
         print_classes(shell, sweep.regions[i].classes);
     }
     if (!a.out.empty()) {
@@ -208,7 +208,7 @@ int run_variants(const Arguments& a, const dynamics::Model& model, const dynamic
         dynamics::to_json(one, regions[i]);
         one["name"] = names[i];
         json["variants"].push_back(one);
-        shell.print(names[i] + "\n");
+        shell.print((i > 0 ? "\n" : "") + names[i]);
         print_classes(shell, regions[i].classes);
     }
     if (shell.json) {

@@ -80,7 +80,7 @@ void Shell::print_json(const nlohmann::json& document) {
 
 void Shell::print(const std::string& text) {
     if (!json) {
-        std::cout << text << '\n';
+        std::cout << text << (text.ends_with('\n') ? "" : "\n");
     }
 }
 
@@ -146,8 +146,10 @@ int Shell::run_action() {
         report(error, "wrong use");
         return wrong_usage;
     } catch (const core::InputError& error) {
-        report(error, "error");
-        return wrong_input;
+        // A value with a unit that stands in no file stood on the command line.
+        const bool option = error.place().file.empty() && (error.kind() == "unit" || error.kind() == "parse");
+        report(error, option ? "wrong use" : "error");
+        return option ? wrong_usage : wrong_input;
     } catch (const core::Error& error) {
         report(error, "error");
         return wrong_input;

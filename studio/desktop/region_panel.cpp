@@ -75,7 +75,7 @@ void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, cons
     std::transform(x->begin(), x->end(), std::back_inserter(path.x), to_x);
     std::transform(y->begin(), y->end(), std::back_inserter(path.y), to_y);
     core::FigurePoints start{
-        "start", {path.x.front()}, {path.y.front()}, {}, {20, 20, 20, 255}, core::FigurePoints::Shape::circle, 9};
+        "start", {path.x.front()}, {path.y.front()}, {}, {20, 20, 20, 255}, core::FigurePoints::Shape::diamond, 10};
     figure.curves.push_back(std::move(path));
     figure.points.push_back(std::move(start));
 }

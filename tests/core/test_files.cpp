@@ -119,6 +119,18 @@ TEST(NamePattern, FindsFilesInFolders) {
     EXPECT_TRUE(NamePattern("none/*.csv").files(folder.path()).empty());
 }
 
+TEST(NamePattern, SortsFilesByTheNumbersInTheirNames) {
+    const TemporaryFolder folder;
+    for (const char* name : {"b-h1.csv", "a-h10.csv", "a-h2.csv", "a-h1.5.csv", "a-h-3.csv"}) {
+        write_file(folder.path() / name, "1");
+    }
+    std::vector<std::string> names;
+    for (const auto& found : NamePattern("{v}-h{gap:mm}.csv").files(folder.path())) {
+        names.push_back(found.path.filename().string());
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"a-h-3.csv", "a-h1.5.csv", "a-h2.csv", "a-h10.csv", "b-h1.csv"}));
+}
+
 TEST(Parallel, CoversEveryIndexOnceAndRethrows) {
     std::vector<std::atomic<int>> seen(10001);
     parallel_blocks(seen.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -115,6 +115,16 @@ TEST(CommandLine, TakesTheCommonOptionsBeforeAndAfterTheCommand) {
     EXPECT_EQ(run_underbody({"info", "a.csv", "--threads", "-3"}, folder.path()).exit_code, 2);
 }
 
+TEST(CommandLine, AValueWithAWrongUnitIsAWrongCommandLine) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "a.csv", test::cube_field(0.005, 100));
+    for (const char* density : {"5 kg", "heavy"}) {
+        const auto run = run_underbody({"loads", "a.csv", "--density", density}, folder.path());
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_NE(run.errors.find("'" + std::string(density) + "'"), std::string::npos) << run.errors;
+    }
+}
+
 // ---- files that cannot be used ----
 
 /// How each command is given a file.
