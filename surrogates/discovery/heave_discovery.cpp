@@ -144,17 +144,48 @@ void HeaveLoop::list_candidates() {
     }
     candidates_ = heave_hypotheses(model_, varying);
     if (!records_.input_recorded) {
-        std::erase_if(candidates_, [](const Hypothesis& h) {
-            return h.names.front().rfind("input_", 0) == 0 || h.names.front() == "actuator_lag";
+        // a motion without input that is seen later is a motion without input: only a velocity beside the gap could tell
+        std::erase_if(candidates_, [&](const Hypothesis& h) {
+            return h.names.front().rfind("input_", 0) == 0 || h.names.front() == "actuator_lag" ||
+                   (h.names.front() == "gap_sensor_delay" && !records_.velocity_measured);
         });
     }
-    keep_only(candidates_, options_.candidates);
+    keep_shapes_inside();
     for (Hypothesis& candidate : candidates_) {
         if (candidate.names.front() == "periodic_disturbance") {
             candidate.starts = experiment_->periodic_starts({}, null_noise_, 3);
-            candidate.parameters[1].lower = experiment_->lowest_frequency();
+            std::erase_if(candidate.starts, [&](const std::vector<double>& start) { return start[1] < candidate.parameters[1].lower; });
         }
     }
+    std::erase_if(candidates_, [](const Hypothesis& h) { return h.names.front() == "periodic_disturbance" && h.starts.empty(); });
+    keep_only(candidates_, options_.candidates);
+}
+
+/// A wave of which no run shows a few cycles, or an inertia that grows only far below every gap that was visited, is none that these
+/// runs can show: it would pass for any slow change.
+void HeaveLoop::keep_shapes_inside() {
+    double lowest = 1e300;
+    for (const std::size_t r : train_) {
+        for (const double gap : records_.records[r].gap) {
+            lowest = std::isfinite(gap) ? std::min(lowest, gap) : lowest;
+        }
+    }
+    const double slowest = 2 * experiment_->lowest_frequency();   // four cycles of the longest run
+    std::erase_if(candidates_, [&](Hypothesis& candidate) {
+        for (FitParameter& parameter : candidate.parameters) {
+            if (candidate.names.front() == "periodic_disturbance" && parameter.name == "frequency") {
+                parameter.lower = std::max(parameter.lower, slowest);
+                parameter.start = std::max(parameter.start, slowest);
+            } else if (candidate.names.front() == "gap_dependent_added_mass" && parameter.name == "length") {
+                parameter.lower = std::max(parameter.lower, 0.1 * lowest);
+                parameter.start = std::max(parameter.start, parameter.lower);
+            }
+            if (parameter.lower >= parameter.upper) {
+                return true;
+            }
+        }
+        return false;
+    });
 }
 
 void HeaveLoop::fit_singles() {

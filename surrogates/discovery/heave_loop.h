@@ -29,6 +29,7 @@ private:
     void set_null(HeaveNoise noise);
     [[nodiscard]] HeaveExperiment::Result fitted(const Hypothesis& hypothesis, const HeaveNoise& begin) const;
     void list_candidates();
+    void keep_shapes_inside();
     void fit_singles();
     void try_hold();
     void colour_noise();

@@ -39,6 +39,9 @@ private:
     void open_gate();
     /// A second effect is looked for only where the best single one leaves structure, and stays only when it earns its place.
     void fit_pairs();
+    /// Two laws of which each does far more than both together (a gain of seven beside a power that undoes it) are no two effects: they
+    /// bend into a law that neither has.
+    [[nodiscard]] bool cancels(const FittedHypothesis& pair) const;
     void decide();
     void make_correction();
     [[nodiscard]] double stability() const;

@@ -1,6 +1,7 @@
 // From fitted effects to a verdict for static sets: the gate, pairs, what they leave, and how stable the answer is.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <set>
 
@@ -83,6 +84,7 @@ void StaticLoop::fit_pairs() {
             found[k] = fitted(joined(fitted_[a].hypothesis, fitted_[a].fit.parameters, second, second.starts.empty() ? second.start() : second.starts.front()));
         },
         progress_);
+    std::erase_if(found, [&](const FittedHypothesis& pair) { return cancels(pair); });
     const std::size_t best = best_hypothesis(found, 2);
     if (best >= found.size()) {
         return;
@@ -96,6 +98,27 @@ void StaticLoop::fit_pairs() {
         fitted_.insert(fitted_.end(), found.begin(), found.end());
         rest_ = rest;
     }
+}
+
+bool StaticLoop::cancels(const FittedHypothesis& pair) const {
+    constexpr double most = 20;
+    const std::vector<dynamics::EffectUse> uses = pair.hypothesis.with(pair.fit.parameters);
+    double parts = 0;
+    std::vector<double> moved;
+    const auto size_of = [&](const std::vector<dynamics::EffectUse>& some) {
+        experiment_.residuals(train_, some, moved);
+        double sum = 0;
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            sum += (moved[i] - null_residuals_[i]) * (moved[i] - null_residuals_[i]);
+        }
+        return sum;
+    };
+    for (const std::string& name : pair.hypothesis.names) {
+        std::vector<dynamics::EffectUse> own;
+        std::copy_if(uses.begin(), uses.end(), std::back_inserter(own), [&](const dynamics::EffectUse& use) { return use.name == name; });
+        parts += size_of(own);
+    }
+    return parts > most * size_of(uses);
 }
 
 void StaticLoop::make_correction() {

@@ -127,6 +127,33 @@ TEST(HeaveDiscovery, CallsALawOutsideTheCatalogueUnknownOverItsVariable) {
     EXPECT_LT(found.error.front().after.rmse, 0.6 * found.error.front().before.rmse);
 }
 
+TEST(HeaveDiscovery, DoesNotTakeASlowChangeForAWave) {
+    const Discovery found = found_on([](double t, double, double) { return 0.006 * std::tanh((t - 15) / 6); }, 7);
+    ASSERT_NE(found.verdict, "none") << found.sentence;
+    for (const FoundEffect& effect : found.effects) {
+        EXPECT_NE(effect.name, "periodic_disturbance") << found.sentence;
+    }
+    const Discovery wave = found_on([](double t, double, double) { return 0.002 * std::sin(2 * 3.14159265 * 0.3 * t + 1); }, 7);
+    ASSERT_EQ(wave.verdict, "effect") << wave.sentence;
+    EXPECT_EQ(wave.effects.at(0).name, "periodic_disturbance");
+}
+
+TEST(HeaveDiscovery, CannotSeeADelayOfTheGapWithoutARecordedInput) {
+    core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    dynamics::Measurements data = test::heave_runs([](double, double, double) { return 0.0; }, 2, 50, 5, 10);
+    for (dynamics::MeasuredRun& run : data.runs) {
+        core::Table table;
+        table.source = run.table.source;
+        table.add_numbers("time", "s", run.table.numbers("time"));
+        table.add_numbers("gap", "m", run.table.numbers("gap"));
+        run.table = std::move(table);
+    }
+    DiscoverOptions options;
+    options.candidates = {"gap_sensor_delay"};
+    EXPECT_THROW((void)discover(model, data, options), core::InputError);
+}
+
 TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
