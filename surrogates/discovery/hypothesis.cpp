@@ -67,6 +67,18 @@ Hypothesis make(const dynamics::EffectInfo& info, const std::vector<std::string>
     return hypothesis;
 }
 
+/// Numbers that are forces are moments where all that they act on are moments.
+void take_units_of(Hypothesis& hypothesis, const std::vector<std::string>& quantities) {
+    for (std::size_t j = 0; j < hypothesis.parameters.size(); ++j) {
+        const dynamics::EffectUse& use = hypothesis.uses[hypothesis.slots[j].use];
+        const std::vector<std::string> concerned = use.quantity.empty() ? quantities : std::vector<std::string>{use.quantity};
+        std::string& unit = hypothesis.parameters[j].unit;
+        if ((unit == "N" || unit == "N/s") && std::all_of(concerned.begin(), concerned.end(), [](const std::string& name) { return name.ends_with("moment"); })) {
+            unit.insert(1, " m");
+        }
+    }
+}
+
 bool varies(const std::vector<Channel>& varying, const std::string& name) {
     Channel channel{};
     return dynamics::find_channel(name, channel) && std::find(varying.begin(), varying.end(), channel) != varying.end();
@@ -295,6 +307,7 @@ std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const st
             } else if (info.name == "speed_exponent") {
                 start_at_declared_exponent(list[k], model, quantities);
             }
+            take_units_of(list[k], quantities);
         }
     }
     for (Hypothesis& hypothesis : declared_numbers(model, varying, quantities)) {
@@ -389,6 +402,11 @@ void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& na
 }
 
 Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b) {
+    const auto scales = [](const Hypothesis& h) { return h.names.front() == "sensor_gain"; };
+    if (scales(b) && !scales(a)) {
+        // a gain acts on the force, then comes what is added to the reading: with both linear a fit cannot get caught on its way to a small gain
+        return joined(b, start_b, a, start_a);
+    }
     Hypothesis both = a;
     for (std::size_t j = 0; j < both.parameters.size(); ++j) {
         both.parameters[j].start = start_a[j];

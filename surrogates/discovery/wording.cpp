@@ -23,7 +23,7 @@ std::string value_text(const FoundParameter& parameter) {
     double scale = 1;
     std::string unit = parameter.unit == "1" ? "" : parameter.unit;
     const double size = std::max(std::abs(parameter.value), 3 * parameter.sigma);
-    const bool prefixed = unit == "m" || unit == "N" || unit == "N m" || unit == "s" || unit == "N/m" || unit == "m/s" || unit == "N/s";
+    const bool prefixed = unit == "m" || unit == "N" || unit == "N m" || unit == "s" || unit == "N/m" || unit == "m/s" || unit == "N/s" || unit == "N m/s";
     if (prefixed && size > 0 && size < 0.1) {
         const bool micro = size < 1e-4;
         scale = micro ? 1e6 : 1e3;
