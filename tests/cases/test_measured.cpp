@@ -97,7 +97,8 @@ TEST(MeasuredStudies, PerforatedBallsSlowDownByDrag) {
     UNDERBODY_NEEDS_SHARED("measured/ball_drops");
     for (const cases::MeasuredStudy& study : cases::ball_drop_studies(folder())) {
         if (study.name.find("Whiffle") != std::string::npos) {
-            EXPECT_GT(probability_of(study.found, "damping"), 0.5) << study.name << ": " << study.found.sentence;
+            // steady or unsteady (the owner of the data: linear drag fits better than the quadratic one that physics expects)
+            EXPECT_GT(probability_of(study.found, "damping") + probability_of(study.found, "history_force"), 0.5) << study.name << ": " << study.found.sentence;
         }
     }
 }
