@@ -176,19 +176,18 @@ std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlan
         return "its gap, " + core::format_number(middle, 4) + " m in the middle, lies outside the tables of the declared model " + where +
                (unit ? ": a thousandth or a thousandfold would fit" : "");
     }
-    double outside = 0;
-    double count = 0;
-    for (const double value : gap) {
-        if (std::isfinite(value)) {
-            count += 1;
-            outside += value < lower || value > upper ? 1 : 0;
-        }
+    const auto share_outside = [&](double factor) {
+        const auto out = std::count_if(finite.begin(), finite.end(), [&](double x) { return factor * x < lower || factor * x > upper; });
+        return static_cast<double>(out) / static_cast<double>(finite.size());
+    };
+    const double outside = share_outside(1);
+    if (outside > 0.5) {
+        unit = share_outside(1e3) < 0.1 || share_outside(1e-3) < 0.1;
+        return "it spends " + core::format_number(100 * outside, 3) + " % of its time outside the tables of the declared model " + where +
+               (unit ? ": a thousandth or a thousandfold would fit" : "");
     }
-    if (outside > 0.5 * count) {
-        return "it spends " + core::format_number(100 * outside / count, 2) + " % of its time outside the tables of the declared model " + where;
-    }
-    if (outside > 0.02 * count) {
-        doubt = "spends " + core::format_number(100 * outside / count, 2) + " % of its time outside the tables of the declared model " + where +
+    if (outside > 0.02) {
+        doubt = "spends " + core::format_number(100 * outside, 3) + " % of its time outside the tables of the declared model " + where +
                 ", where they hold their end values: what is found there may be the missing table";
     }
     return "";

@@ -182,6 +182,21 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
         EXPECT_EQ(error.kind(), "unit");
         EXPECT_NE(error.hint().find("mm"), std::string::npos);
     }
+    for (double& value : millimetres) {
+        value *= 1e-6;   // metres in a column labelled mm
+    }
+    core::Table small;
+    small.source = "run-1.csv";
+    small.add_numbers("time", "s", data.runs[0].table.numbers("time"));
+    small.add_numbers("gap", "m", millimetres);
+    small.add_numbers("input_force", "N", data.runs[0].table.numbers("input_force"));
+    wrong.runs[0].table = small;
+    try {
+        (void)prepare_heave_records(model, wrong);
+        ADD_FAILURE() << "a gap of a tenth of a millimetre was taken";
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(error.kind(), "unit") << error.message();
+    }
     // a sensor that stands still
     core::Table stuck;
     stuck.source = "run-1.csv";
