@@ -336,14 +336,7 @@ void DataReader::unknown(std::uint64_t index, bool binary) {
         text_.inside(0);
         return;
     }
-    if (text_.next() == '(') {
-        text_.stream().get();
-        text_.inside(0);
-    }
-    if (!text_.accept(')')) {
-        text_.expect('(');
-        text_.skip_binary_body(index);
-    }
+    text_.skip_binary_section(index);
 }
 
 }  // namespace

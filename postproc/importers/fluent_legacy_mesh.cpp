@@ -544,15 +544,7 @@ void MeshReader::unknown(std::uint64_t index, Coding coding) {
         text_.inside(0);
         return;
     }
-    // A header may be all there is: "(2040 (1 8))".
-    if (text_.next() == '(') {
-        text_.stream().get();
-        text_.inside(0);
-    }
-    if (!text_.accept(')')) {
-        text_.expect('(');
-        text_.skip_binary_body(index);
-    }
+    text_.skip_binary_section(index);
 }
 
 void MeshReader::finish() {

@@ -456,6 +456,17 @@ void FluentText::skip_plain_body() {
     fail("the file ends within the section");
 }
 
+void FluentText::skip_binary_section(std::uint64_t index) {
+    if (next() == '(') {
+        in_.get();
+        inside(0);
+    }
+    if (!accept(')')) {
+        expect('(');
+        skip_binary_body(index);
+    }
+}
+
 void FluentText::close_plain_body() {
     const int found = next();
     if (found != ')') {

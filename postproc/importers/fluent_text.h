@@ -56,6 +56,9 @@ public:
     void close_binary_body(std::uint64_t index);
     /// Searches for that end: for sections whose length nobody told.
     void skip_binary_body(std::uint64_t index);
+    /// Header and body of a binary section of unknown content, from behind its index on. A header may be all there is:
+    /// "(2040 (1 8))".
+    void skip_binary_section(std::uint64_t index);
 
     /// One hexadecimal number of 32 bits.
     std::uint32_t hexadecimal();

@@ -6,6 +6,7 @@
 #include "surrogates/dynamics/heave_pitch.h"
 #include "surrogates/dynamics/heave_pitch_contact.h"
 #include "surrogates/dynamics/ode.h"
+#include "surrogates/dynamics/trajectory_parts.h"
 
 namespace underbody::dynamics {
 
@@ -256,20 +257,7 @@ core::Figure trajectory_figure(const PitchTrajectory& trajectory) {
         pitch.y.push_back(572.9577951308232 * y[2]);
     }
     figure.curves = {gap, pitch};
-    for (const char* kind : {"contact", "contact change", "lift_off", "escape", "equilibrium"}) {
-        core::FigurePoints points;
-        points.name = kind;
-        for (const TrajectoryEvent& event : trajectory.events) {
-            if (event.kind == kind) {
-                points.x.push_back(event.time);
-                points.y.push_back(1e3 * event.gap);
-            }
-        }
-        if (!points.x.empty()) {
-            points.colour = core::palette(figure.points.size() + 2);
-            figure.points.push_back(std::move(points));
-        }
-    }
+    add_events(figure, trajectory.events, {"contact", "contact change", "lift_off", "escape", "equilibrium"});
     figure.caption = "Gap at the centre of the base and pitch (nose up) against time; ends by " + trajectory.end + ".";
     return figure;
 }

@@ -8,6 +8,7 @@
 #include "surrogates/dynamics/heave.h"
 #include "surrogates/dynamics/ode.h"
 #include "surrogates/dynamics/surroundings.h"
+#include "surrogates/dynamics/trajectory_parts.h"
 
 namespace underbody::dynamics {
 
@@ -304,20 +305,7 @@ core::Figure trajectory_figure(const Trajectory& trajectory, const std::vector<H
             figure.lines.push_back({false, 1e3 * e.gap, e.name + (e.stable ? " (stable)" : " (unstable)")});
         }
     }
-    for (const char* kind : {"contact", "lift_off", "escape", "equilibrium"}) {
-        core::FigurePoints points;
-        points.name = kind;
-        for (const TrajectoryEvent& event : trajectory.events) {
-            if (event.kind == kind) {
-                points.x.push_back(event.time);
-                points.y.push_back(1e3 * event.gap);
-            }
-        }
-        if (!points.x.empty()) {
-            points.colour = core::palette(figure.points.size() + 1);
-            figure.points.push_back(std::move(points));
-        }
-    }
+    add_events(figure, trajectory.events, {"contact", "lift_off", "escape", "equilibrium"});
     figure.caption = "Gap against time; ends by " + trajectory.end + ".";
     return figure;
 }

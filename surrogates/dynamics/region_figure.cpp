@@ -73,6 +73,17 @@ core::FigureCurve clipped(const RegionBoundary& line, const std::vector<core::Na
     return curve;
 }
 
+/// A grid (of classes or of values) over the whole frame.
+template <typename Grid>
+void place(Grid& grid, const core::Figure& figure, std::size_t columns, std::size_t rows) {
+    grid.columns = columns;
+    grid.rows = rows;
+    grid.x_lower = figure.x.lower;
+    grid.x_upper = figure.x.upper;
+    grid.y_lower = figure.y.lower;
+    grid.y_upper = figure.y.upper;
+}
+
 void add_equilibria(core::Figure& figure, const StabilityRegion& region) {
     const Shown x = shown(region.axes[0].name), y = shown(region.axes[1].name);
     core::FigurePoints stable{"stable equilibrium", {}, {}, {}, {0, 0, 0, 255}, core::FigurePoints::Shape::disc, 9};
@@ -100,10 +111,6 @@ void add_equilibria(core::Figure& figure, const StabilityRegion& region) {
     }
 }
 
-}  // namespace
-
-namespace {
-
 bool over_gap_and_pitch(const StabilityRegion& region) {
     const std::string &x = region.axes[0].name, &y = region.axes[1].name;
     return (x == "gap" && y == "pitch") || (x == "pitch" && y == "gap");
@@ -116,12 +123,7 @@ core::Figure region_figure(const StabilityRegion& region) {
     figure.title = "Where each start ends";
     frame(figure, region.axes);
     core::FigureClasses map;
-    map.columns = region.columns;
-    map.rows = region.rows;
-    map.x_lower = figure.x.lower;
-    map.x_upper = figure.x.upper;
-    map.y_lower = figure.y.lower;
-    map.y_upper = figure.y.upper;
+    place(map, figure, region.columns, region.rows);
     map.index = region.index;
     std::size_t attractor = 0;
     for (const EndClass& end : region.classes) {
@@ -241,12 +243,7 @@ core::Figure probability_figure(const ProbabilityMap& map) {
     figure.title = "Chance that a start is safe";
     frame(figure, map.axes);
     core::FigureMap values;
-    values.columns = map.columns;
-    values.rows = map.rows;
-    values.x_lower = figure.x.lower;
-    values.x_upper = figure.x.upper;
-    values.y_lower = figure.y.lower;
-    values.y_upper = figure.y.upper;
+    place(values, figure, map.columns, map.rows);
     values.values.assign(map.safe.begin(), map.safe.end());
     values.label = "probability";
     values.unit = "1";

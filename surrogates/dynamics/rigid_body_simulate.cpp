@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "surrogates/dynamics/ode.h"
 #include "surrogates/dynamics/rigid_body.h"
+#include "surrogates/dynamics/trajectory_parts.h"
 
 namespace underbody::dynamics {
 
@@ -340,13 +341,7 @@ core::Table BodyTrajectory::table() const {
     table.add_numbers("lift_force", "N", lift);
     table.add_numbers("drag_force", "N", drag);
     table.add_numbers("pitch_moment", "N m", moment);
-    for (std::size_t j = 0; j < jets.size(); ++j) {
-        std::vector<double> column;
-        for (const std::vector<double>& one : thrust) {
-            column.push_back(one[j]);
-        }
-        table.add_numbers(jets[j], "N", column);
-    }
+    add_thrusts(table, jets, thrust);
     table.add_numbers("outside_table", "1", flags);
     return table;
 }
@@ -356,26 +351,16 @@ core::Figure trajectory_figure(const BodyTrajectory& trajectory) {
     figure.title = "Motion of the vehicle";
     figure.x = {"time", "s"};
     figure.y = {"gap in mm, angles in degrees, speed in cm/s", ""};
-    const struct {
-        const char* name;
-        BodyStateIndex state;
-        double scale;
-    } shown[] = {{"speed forward, cm/s", state_u, 100},
-                 {"speed to starboard, cm/s", state_v, 100},
-                 {"pitch (nose up), deg", state_theta, 57.29577951308232},
-                 {"heading, deg", state_psi, 57.29577951308232}};
     core::FigureCurve gap{"gap, mm", trajectory.time, {}, core::palette(0)};
     for (const double h : trajectory.gap) {
         gap.y.push_back(1e3 * h);
     }
     figure.curves.push_back(std::move(gap));
-    for (const auto& one : shown) {
-        core::FigureCurve curve{one.name, trajectory.time, {}, core::palette(figure.curves.size())};
-        for (const BodyState& y : trajectory.state) {
-            curve.y.push_back(one.scale * y[one.state]);
-        }
-        figure.curves.push_back(std::move(curve));
-    }
+    add_states(figure, trajectory.time, trajectory.state,
+               {{"speed forward, cm/s", state_u, 100},
+                {"speed to starboard, cm/s", state_v, 100},
+                {"pitch (nose up), deg", state_theta, 57.29577951308232},
+                {"heading, deg", state_psi, 57.29577951308232}});
     figure.caption = "Gap at the centre of the base, speeds along the body, pitch and heading; ends by " +
                      trajectory.end + ".";
     return figure;

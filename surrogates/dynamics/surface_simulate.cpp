@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "surrogates/dynamics/ode.h"
 #include "surrogates/dynamics/surface_motion.h"
+#include "surrogates/dynamics/trajectory_parts.h"
 
 namespace underbody::dynamics {
 
@@ -215,13 +216,7 @@ core::Table SurfaceTrajectory::table() const {
     table.add_numbers("contact_point", "m", forward);
     table.add_numbers("friction_x", "N", fx);
     table.add_numbers("friction_y", "N", fy);
-    for (std::size_t j = 0; j < jets.size(); ++j) {
-        std::vector<double> column;
-        for (const std::vector<double>& one : thrust) {
-            column.push_back(one[j]);
-        }
-        table.add_numbers(jets[j], "N", column);
-    }
+    add_thrusts(table, jets, thrust);
     return table;
 }
 
@@ -230,21 +225,11 @@ core::Figure trajectory_figure(const SurfaceTrajectory& trajectory) {
     figure.title = "Motion on the ground";
     figure.x = {"time", "s"};
     figure.y = {"speeds in cm/s, angles in degrees", ""};
-    const struct {
-        const char* name;
-        std::size_t state;
-        double scale;
-    } shown[] = {{"speed forward, cm/s", 0, 100},
-                 {"speed to starboard, cm/s", 1, 100},
-                 {"yaw rate, deg/s", 2, 57.29577951308232},
-                 {"heading, deg", 3, 57.29577951308232}};
-    for (const auto& one : shown) {
-        core::FigureCurve curve{one.name, trajectory.time, {}, core::palette(figure.curves.size())};
-        for (const SurfaceState& y : trajectory.state) {
-            curve.y.push_back(one.scale * y[one.state]);
-        }
-        figure.curves.push_back(std::move(curve));
-    }
+    add_states(figure, trajectory.time, trajectory.state,
+               {{"speed forward, cm/s", 0, 100},
+                {"speed to starboard, cm/s", 1, 100},
+                {"yaw rate, deg/s", 2, 57.29577951308232},
+                {"heading, deg", 3, 57.29577951308232}});
     figure.caption = "Speeds along the body, yaw and heading of a run flat on the ground; ends by " + trajectory.end +
                      ".";
     return figure;

@@ -237,7 +237,7 @@ TEST(CommandLine, EndsWith130OnCtrlCAndLeavesNothingHalfWritten) {
              {"discover", "runs/model.toml", "--data", "runs", "--out", "found"}}) {
         const auto run = interrupted(arguments, folder.path(), 0.5);
         EXPECT_EQ(run.exit_code, 130) << arguments[0];
-        EXPECT_LT(run.seconds, 5) << arguments[0];
+        EXPECT_LT(run.seconds, 20) << arguments[0];  // at once, on a busy machine too; left alone they take minutes
         EXPECT_EQ(entries(), before) << arguments[0];
     }
 }
