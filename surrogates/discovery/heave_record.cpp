@@ -337,6 +337,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
     std::vector<double> steps;
     std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
     bool unit = false;
+    std::size_t still = 0;
+    std::size_t swapped = 0;
     for (std::size_t r = 0; r < data.runs.size(); ++r) {
         const dynamics::MeasuredRun& run = data.runs[r];
         const std::string file = run.table.source;
@@ -361,6 +363,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         }
         if (stuck(gap) || 2 * saturated > gap.size()) {
             remark(result.problems, "the gap of " + run.name + " stands still for a fifth of the run: a stuck sensor? the run is left out", file);
+            ++still;
             continue;
         }
         std::string doubt;
@@ -377,6 +380,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         const std::optional<double> declared = data.declared_noise("gap");
         if (declared && noise < 0.05 * *declared && input_noise > 0.5 * *declared && input_noise < 2 * *declared) {
             remark(result.problems, run.name + " is left out: gap has no noise and input_force that of the gap sensor; the two columns look swapped", file);
+            ++swapped;
             continue;
         }
         const std::size_t outliers = drop_outliers(gap, std::max(noise, 1e-9));
@@ -430,12 +434,18 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         prepare_input(record);
         result.records.push_back(std::move(record));
     }
+    if (swapped > 0 && 2 * swapped >= data.runs.size()) {
+        // what looks right in the others is then chance
+        throw core::InputError("swapped", "gap and input_force look swapped in " + std::to_string(swapped) + " of " + std::to_string(data.runs.size()) + " runs: gap has no noise, and input_force has that of the gap sensor",
+                               core::Place{data.folder.string(), {}, {}, {}}, "exchange the two names in the header lines");
+    }
     if (result.records.empty()) {
         const std::string first = result.problems.empty() ? "" : result.problems.front().message;
         throw core::InputError(unit ? "unit" : "range",
                                "no run can be used" + (first.empty() ? std::string() : ": " + first),
                                core::Place{data.folder.string(), {}, {}, {}},
-                               unit ? "is the column's unit mm, or m written as mm?"
+                               unit                        ? "is the column's unit mm, or m written as mm?"
+                               : still == data.runs.size() ? "look at the gap sensor and its cable; a saturated one needs another range"
                                     : "give the model tables that cover the gaps that were measured, or runs within them; `underbody predict` "
                                       "shows the model beside each run");
     }

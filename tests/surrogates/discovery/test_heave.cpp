@@ -208,6 +208,24 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
     EXPECT_EQ(records.records.size(), 1U);
     ASSERT_FALSE(records.problems.empty());
     EXPECT_NE(records.problems.front().message.find("stuck"), std::string::npos);
+    still.runs.pop_back();
+    try {
+        (void)prepare_heave_records(model, still);
+        ADD_FAILURE() << "a sensor that stands still was taken";
+    } catch (const core::InputError& error) {
+        EXPECT_NE(error.hint().find("sensor"), std::string::npos) << error.hint();
+    }
+    // gap and input force under each other's name
+    dynamics::Measurements exchanged = data;
+    for (dynamics::MeasuredRun& run : exchanged.runs) {
+        core::Table other;
+        other.source = run.table.source;
+        other.add_numbers("time", "s", run.table.numbers("time"));
+        other.add_numbers("gap", "m", run.table.numbers("input_force"));
+        other.add_numbers("input_force", "N", run.table.numbers("gap"));
+        run.table = other;
+    }
+    EXPECT_THROW((void)prepare_heave_records(model, exchanged), core::InputError);
 }
 
 namespace {
