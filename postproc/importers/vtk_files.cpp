@@ -1,5 +1,6 @@
 // Files that VTK reads right: its own, plain surfaces, Tecplot. Numbers and names are made canonical.
 #include <vtkAppendFilter.h>
+#include <vtkBoundingBox.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -153,7 +154,73 @@ void go_round_corners(vtkUnstructuredGrid& grid) {
     grid.SetCells(types, cells, grid.GetFaceLocations(), grid.GetFaces());
 }
 
-void add_zone(Field& field, const std::string& name, vtkDataObject* object, const ReadOptions& options) {
+/// Grids may hold faces too: 0 empty or of points and lines, 2 faces alone, 3 anything else.
+int dimension_of(vtkDataSet& data) {
+    int most = 0;
+    for (vtkIdType c = 0; c < data.GetNumberOfCells() && most < 3; ++c) {
+        switch (data.GetCellType(c)) {
+            case VTK_TRIANGLE:
+            case VTK_QUAD:
+            case VTK_PIXEL:
+            case VTK_POLYGON:
+                most = most == 0 && c > 0 ? 3 : 2;  // faces mixed with lines stay a grid
+                break;
+            case VTK_EMPTY_CELL:
+            case VTK_VERTEX:
+            case VTK_POLY_VERTEX:
+            case VTK_LINE:
+            case VTK_POLY_LINE:
+                most = most == 2 ? 3 : most;
+                break;
+            default:
+                most = 3;
+        }
+    }
+    return most;
+}
+
+/// What the grids of a file are, all together.
+struct Extent {
+    bool solid = false;  ///< some have cells with a volume
+    vtkBoundingBox faces;
+};
+
+void measure(vtkDataObject* object, Extent& extent) {
+    if (auto* tree = vtkDataObjectTree::SafeDownCast(object)) {
+        auto walk = vtkSmartPointer<vtkDataObjectTreeIterator>::New();
+        walk->SetDataSet(tree);
+        for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem()) {
+            measure(walk->GetCurrentDataObject(), extent);
+        }
+    } else if (auto* data = vtkDataSet::SafeDownCast(object); data != nullptr && vtkPolyData::SafeDownCast(data) == nullptr &&
+                                                              data->GetNumberOfPoints() > 0) {
+        const int dimension = dimension_of(*data);
+        extent.solid = extent.solid || dimension == 3;
+        if (dimension == 2) {
+            extent.faces.AddBounds(data->GetBounds());
+        }
+    }
+}
+
+/// Grids of faces are surfaces, unless they all lie in one plane and are a plane flow.
+bool grids_are_surfaces(vtkDataObject* object) {
+    Extent extent;
+    measure(object, extent);
+    if (!extent.faces.IsValid()) {
+        return false;
+    }
+    const double size = extent.faces.GetDiagonalLength();
+    return extent.solid || std::min({extent.faces.GetLength(0), extent.faces.GetLength(1), extent.faces.GetLength(2)}) > 1e-9 * size;
+}
+
+vtkSmartPointer<vtkPolyData> surface_of(vtkUnstructuredGrid& grid) {
+    auto surface = vtkSmartPointer<vtkPolyData>::New();
+    surface->SetPoints(grid.GetPoints());
+    surface->SetPolys(grid.GetCells());
+    return surface;
+}
+
+void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
     auto* data = vtkDataSet::SafeDownCast(object);
     if (data == nullptr || data->GetNumberOfPoints() == 0) {
         return;
@@ -178,6 +245,12 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, cons
         zone.volume = vtkSmartPointer<vtkUnstructuredGrid>::New();
         zone.volume->ShallowCopy(data);
         zone.kind = ZoneKind::fluid;
+    }
+    if (zone.volume != nullptr && faces_are_surfaces && dimension_of(*zone.volume) == 2) {
+        go_round_corners(*zone.volume);
+        zone.surface = surface_of(*zone.volume);
+        zone.volume = nullptr;
+        zone.kind = ZoneKind::unknown;
     }
     if (!matches_any(options.zones, name) || (zone.volume != nullptr && options.surfaces_only)) {
         return;
@@ -204,10 +277,10 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, cons
 }
 
 /// All leaves of a tree, named after the path to them.
-void add_tree(Field& field, const std::string& path, vtkDataObject* object, const ReadOptions& options) {
+void add_tree(Field& field, const std::string& path, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
     auto* tree = vtkDataObjectTree::SafeDownCast(object);
     if (tree == nullptr) {
-        add_zone(field, path, object, options);
+        add_zone(field, path, object, faces_are_surfaces, options);
         return;
     }
     auto walk = vtkSmartPointer<vtkDataObjectTreeIterator>::New();
@@ -219,7 +292,7 @@ void add_tree(Field& field, const std::string& path, vtkDataObject* object, cons
         const char* own =
             walk->HasCurrentMetaData() != 0 ? walk->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()) : nullptr;
         const std::string name = own != nullptr ? own : std::to_string(index);
-        add_tree(field, path.empty() ? name : path + "/" + name, walk->GetCurrentDataObject(), options);
+        add_tree(field, path.empty() ? name : path + "/" + name, walk->GetCurrentDataObject(), faces_are_surfaces, options);
     }
 }
 
@@ -356,7 +429,8 @@ Field field_for(const fs::path& path, const std::string& format) {
 
 Field read_one(const fs::path& path, const std::string& format, vtkDataObject* object, const ReadOptions& options) {
     Field field = field_for(path, format);
-    add_tree(field, vtkDataObjectTree::SafeDownCast(object) != nullptr ? "" : path.stem().string(), object, options);
+    add_tree(field, vtkDataObjectTree::SafeDownCast(object) != nullptr ? "" : path.stem().string(), object,
+             grids_are_surfaces(object), options);
     if (field.zones.empty() && options.zones.empty() && !options.surfaces_only) {
         throw core::InputError("format", "there are no points in this file", {path.string(), {}, {}, {}});
     }

@@ -239,7 +239,7 @@ core::Figure gamma_figure(const GammaChart& chart) {
     figure.x = {"jet angle gamma", "deg"};
     figure.y = {"yaw torque of a pair", "N m"};
     core::FigureCurve torque{"yaw torque at full thrust", {}, chart.torque, core::palette(0)};
-    core::FigureCurve surge{"share of thrust left forward (of the largest torque)", {}, {}, core::palette(1), 2, true};
+    core::FigureCurve surge{"forward thrust left (1: the height of the largest torque)", {}, {}, core::palette(1), 2, true};
     const double most = *std::max_element(chart.torque.begin(), chart.torque.end());
     for (std::size_t i = 0; i < chart.gamma.size(); ++i) {
         torque.x.push_back(chart.gamma[i] * degrees);

@@ -264,6 +264,7 @@ core::Figure Consistency::figure() const {
     f.x = {"gap", "mm", 0, 0, false};
     f.y = {"NEES", "1", 0, 0, false};
     core::FigureBand band;
+    band.name = "where 95 % of such means lie";
     for (const double gap : gaps) {
         band.x.push_back(1e3 * gap);
         band.lower.push_back(lower);
@@ -280,7 +281,7 @@ core::Figure Consistency::figure() const {
         }
         f.points.push_back(points);
     }
-    f.lines.push_back({false, 3, "", {120, 120, 120, 255}, true});
+    f.lines.push_back({false, 3, "as stated", {120, 120, 120, 255}, true});
     return f;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "import_support.h"
+#include "postproc/loads.h"
 #include "postproc/vtk_files.h"
 #include "tests/support/support.h"
 
@@ -64,7 +65,27 @@ void expect_safe(const fs::path& path) {
     }
 }
 
+/// The faces of a tetrahedron as a grid, with a pressure of 1 + 2x + 3y + 4z at its corners.
+const std::string hull =
+    "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+    "CELLS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\nCELL_TYPES 4\n5 5 5 5\nPOINT_DATA 4\nSCALARS p double 1\nLOOKUP_TABLE default\n"
+    "1 3 4 5\n";
+
 }  // namespace
+
+TEST(VtkFiles, GridsOfFacesAreSurfacesUnlessTheyArePlane) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(written(folder, "hull.vtk", hull));
+    ASSERT_NE(field.zones.at(0).surface, nullptr);
+    EXPECT_EQ(field.zones[0].volume, nullptr);
+    const auto loads = postproc::loads(field);
+    EXPECT_EQ(loads.values_from, "nodes");
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(loads.total.force[k], -(2.0 + static_cast<double>(k)) / 6, 1e-12);  // minus gradient times volume
+    }
+    const auto plane = read_field(written(folder, "plane.vtk", replaced(hull, "0 0 0 1\nCELLS", "0 1 1 0\nCELLS")));
+    EXPECT_NE(plane.zones.at(0).volume, nullptr);
+}
 
 TEST(VtkFiles, XmlLegacyAndStructuredGridsHaveTheirCellsAndArrays) {
     const core::TemporaryFolder folder;
