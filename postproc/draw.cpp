@@ -127,6 +127,7 @@ public:
         window_->AddRenderer(main_);
         window_->AddRenderer(over_);
         make_colours();
+        find_middle();
         for (const auto& surface : scene_.surfaces) {
             add(surface);
         }
@@ -212,9 +213,34 @@ private:
         return actor;
     }
 
+    /// What draws has single precision: everything is drawn about the middle, however far from the origin it lies.
+    void find_middle() {
+        constexpr double far = std::numeric_limits<double>::infinity();
+        Point lower = {far, far, far};
+        Point upper = {-far, -far, -far};
+        for_points([&](const Point& p) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                lower[k] = std::min(lower[k], p[k]);
+                upper[k] = std::max(upper[k], p[k]);
+            }
+        });
+        for (std::size_t k = 0; k < 3; ++k) {
+            middle_[k] = lower[k] <= upper[k] ? 0.5 * (lower[k] + upper[k]) : 0;
+        }
+    }
+
+    [[nodiscard]] vtkSmartPointer<vtkPoints> about_middle(std::vector<Point> points) const {
+        for (auto& p : points) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                p[k] -= middle_[k];
+            }
+        }
+        return points_of(points);
+    }
+
     void add(const DrawnSurface& surface) {
         vtkNew<vtkPolyData> data;
-        data->SetPoints(points_of(surface.points));
+        data->SetPoints(about_middle(surface.points));
         vtkNew<vtkCellArray> cells;
         for (const auto& triangle : surface.triangles) {
             cells->InsertNextCell({static_cast<vtkIdType>(triangle[0]), static_cast<vtkIdType>(triangle[1]), static_cast<vtkIdType>(triangle[2])});
@@ -283,7 +309,7 @@ private:
 
     void add(const DrawnLine& line) {
         vtkNew<vtkPolyData> data;
-        data->SetPoints(points_of(line.points));
+        data->SetPoints(about_middle(line.points));
         vtkNew<vtkCellArray> cells;
         cells->InsertNextCell(static_cast<int>(line.points.size()));
         for (std::size_t i = 0; i < line.points.size(); ++i) {
@@ -319,7 +345,8 @@ private:
         constexpr double far = std::numeric_limits<double>::infinity();
         std::array<double, 6> seen = {far, -far, far, -far, far, -far};  // along right, up, back
         for_points([&](const Point& p) {
-            const Point q = {dot(p, axes_.right), dot(p, axes_.up), dot(p, axes_.back)};
+            const Point from = {p[0] - middle_[0], p[1] - middle_[1], p[2] - middle_[2]};
+            const Point q = {dot(from, axes_.right), dot(from, axes_.up), dot(from, axes_.back)};
             for (std::size_t k = 0; k < 3; ++k) {
                 seen[2 * k] = std::min(seen[2 * k], q[k]);
                 seen[2 * k + 1] = std::max(seen[2 * k + 1], q[k]);
@@ -458,7 +485,8 @@ private:
                {black, black, black}, 2.5);
         const std::string label = length < 0.9995e-3 ? core::format_number(length * 1e6, 3) + " um"
                                   : length < 0.9995  ? core::format_number(length * 1e3, 3) + " mm"
-                                                     : core::format_number(length, 3) + " m";
+                                  : length < 999.5   ? core::format_number(length, 3) + " m"
+                                                     : core::format_number(length * 1e-3, 3) + " km";
         text(label, x + pixels + 14 * unit_, y, number_size, false, 0.1, -1);
     }
 
@@ -511,6 +539,7 @@ private:
     ViewAxes axes_;
     std::pair<double, double> range_;
     double width_ = 0, height_ = 0, scale_ = 1, unit_ = 1;
+    Point middle_{};  ///< of what is drawn
     vtkNew<vtkRenderWindow> window_;
     vtkNew<vtkRenderer> back_;
     vtkNew<vtkRenderer> main_;

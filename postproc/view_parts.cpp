@@ -7,6 +7,7 @@
 #include <vtkCutter.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
+#include <vtkGeometryFilter.h>
 #include <vtkNew.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
@@ -210,16 +211,11 @@ vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::
     return result;
 }
 
-DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point& normal, const std::string& array) {
-    vtkNew<vtkPlane> plane;
-    plane->SetOrigin(through.data());
-    plane->SetNormal(normal.data());
-    vtkNew<vtkCutter> cutter;
-    cutter->SetInputData(&volume);
-    cutter->SetCutFunction(plane);
-    cutter->GenerateTrianglesOn();
+namespace {
+
+DrawnSurface flat_triangles(vtkAlgorithm& from, const std::string& array) {
     vtkNew<vtkTriangleFilter> triangles;
-    triangles->SetInputConnection(cutter->GetOutputPort());
+    triangles->SetInputConnection(from.GetOutputPort());
     triangles->PassLinesOff();
     triangles->PassVertsOff();
     triangles->Update();
@@ -231,6 +227,25 @@ DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point&
     }
     drawn.smooth = false;
     return drawn;
+}
+
+}  // namespace
+
+DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point& normal, const std::string& array) {
+    vtkNew<vtkPlane> plane;
+    plane->SetOrigin(through.data());
+    plane->SetNormal(normal.data());
+    vtkNew<vtkCutter> cutter;
+    cutter->SetInputData(&volume);
+    cutter->SetCutFunction(plane);
+    cutter->GenerateTrianglesOn();
+    return flat_triangles(*cutter, array);
+}
+
+DrawnSurface plane_cells(vtkUnstructuredGrid& volume, const std::string& array) {
+    vtkNew<vtkGeometryFilter> cells;
+    cells->SetInputData(&volume);
+    return flat_triangles(*cells, array);
 }
 
 namespace {

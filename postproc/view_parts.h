@@ -46,6 +46,9 @@ vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::
 /// The grid cut by a plane, as triangles with values at their points.
 DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point& normal, const std::string& array);
 
+/// The cells of a two-dimensional case, as triangles with values at their points.
+DrawnSurface plane_cells(vtkUnstructuredGrid& volume, const std::string& array);
+
 /// Streamlines of `velocity` (point data) through the seeds, each one line from upstream to downstream; values are
 /// speeds. No stream crosses the mirror plane of a half model.
 std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest, const ViewMirror& mirror = {});

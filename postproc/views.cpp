@@ -62,6 +62,15 @@ public:
 
     [[nodiscard]] std::vector<std::string> possible() const {
         std::vector<std::string> names;
+        if (field_.dimension == 2) {
+            if (volume_has("pressure")) {
+                names.emplace_back("pressure-plane");
+            }
+            if (volume_has("velocity")) {
+                names.emplace_back("speed-plane");
+            }
+            return names;
+        }
         if (!zones_.empty() && has_array("pressure")) {
             if (has_base_) {
                 names.emplace_back("pressure-underbody");
@@ -94,6 +103,8 @@ public:
                             : name == "pressure-hull"      ? surface_view("pressure", false)
                             : name == "pressure-symmetry"  ? symmetry_view("pressure")
                             : name == "speed-symmetry"     ? symmetry_view("velocity")
+                            : name == "pressure-plane"     ? plane_view("pressure")
+                            : name == "speed-plane"        ? plane_view("velocity")
                                                            : gap_view();
         finish(composed, name);
         return composed;
@@ -222,6 +233,43 @@ private:
             through[k] = mirror_.at + inside * 1e-5 * diagonal(body_);  // just inside the cells
         }
         return {through, normal};
+    }
+
+    /// A two-dimensional case as it lies: x to the right, y up, about its walls where these are small in it.
+    [[nodiscard]] Composed plane_view(const std::string& array) const {
+        Composed composed;
+        Scene& scene = composed.scene;
+        DrawnSurface plane = plane_cells(*volume_with(field_, {array}), array);
+        if (plane.triangles.empty()) {
+            throw core::InputError("view", "the plane case has no cells to draw", {field_.files.front(), {}, {}, {}});
+        }
+        Box all = empty_box();
+        for (const auto& p : plane.points) {
+            widen(all, p);
+        }
+        Box walls = empty_box();
+        for (const auto& zone : field_.zones) {
+            if (zone.kind == ZoneKind::wall && zone.surface != nullptr && zone.surface->GetNumberOfPoints() > 0) {
+                widen(walls, box_of(zone));
+            }
+        }
+        Box box = all;
+        const double room = 1.5 * diagonal(walls);
+        for (std::size_t k = 0; k < 2 && walls[0] <= walls[1]; ++k) {
+            box[2 * k] = std::max(all[2 * k], walls[2 * k] - room);
+            box[2 * k + 1] = std::min(all[2 * k + 1], walls[2 * k + 1] + room);
+        }
+        scene.range = range_within(plane, box);
+        plane.contours = 14;
+        scene.surfaces.push_back(std::move(plane));
+        scene.value_name = label(array);
+        scene.value_unit = unit(array);
+        scene.camera.towards = {0, 0, -1};
+        scene.camera.up = {0, 1, 0};
+        scene.camera.box = options_.box.value_or(box);
+        scene.title = scene.value_name + " in the plane";
+        composed.caption = box == all ? "The whole plane of a two-dimensional case." : "A two-dimensional case, about its walls.";
+        return composed;
     }
 
     [[nodiscard]] Composed symmetry_view(const std::string& array) const {
@@ -469,7 +517,7 @@ std::vector<View> views(const Field& field, const ViewOptions& options, core::Pr
     const Composer composer(field, options);
     const auto names = composer.possible();
     if (names.empty()) {
-        throw core::InputError("view", "the field has no surface with a pressure to draw", {field.files.empty() ? "" : field.files.front(), {}, {}, {}});
+        throw core::InputError("view", "the field has no surface with a pressure to draw, nor a plane of cells with one", {field.files.empty() ? "" : field.files.front(), {}, {}, {}});
     }
     std::vector<View> result;
     for (std::size_t i = 0; i < names.size(); ++i) {

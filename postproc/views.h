@@ -101,9 +101,9 @@ struct View {
     std::pair<double, double> range;  ///< of the colours, SI
 };
 
-/// Everything that this field allows: pressure on the underbody (seen from below) and on the hull; with a volume also
+/// Everything that this field allows. Two-dimensional cases: pressure and speed over their plane. Else pressure on the underbody (seen from below) and on the hull; with a volume also
 /// pressure and speed in the symmetry plane, streamlines in the gap, and the profile across the gap.
-/// Throws core::InputError when the field has no surface with a pressure.
+/// Throws core::InputError when the field has nothing of these.
 std::vector<View> views(const Field& field, const ViewOptions& options = {}, core::Progress& progress = core::Progress::none());
 
 /// Names that `views` can make of this field.

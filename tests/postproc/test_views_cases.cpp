@@ -52,6 +52,18 @@ TEST(ViewsOfAVolume, ShowTheSymmetryPlaneAndTheGap) {
     EXPECT_THAT(names, testing::IsSupersetOf({"pressure-underbody", "pressure-hull", "pressure-symmetry", "speed-symmetry", "streamlines-gap"}));
 }
 
+TEST(ViewsOfAPlaneCase, ShowItsCellsAndNoHull) {
+    UNDERBODY_NEEDS_SHARED("samples/fluent_cff/room.cas.h5");
+    const Field field = read_field(test::shared_folder() / "samples/fluent_cff/room.cas.h5");
+    EXPECT_THAT(possible_views(field), testing::ElementsAre("pressure-plane", "speed-plane"));
+    const View pressure = view(field, "pressure-plane");
+    EXPECT_GT(pressure.png.size(), 20000U);
+    // Within the cells' -31.6 and 44.5 Pa (the reference lists them), a little less at the nodes between.
+    EXPECT_NEAR(pressure.range.first, -31.6, 5);
+    EXPECT_NEAR(pressure.range.second, 44.5, 1);
+    keep(pressure, "room-");
+}
+
 TEST(ViewsOfAVolume, LeaveAGroundOutThatWouldHideTheBody) {
     UNDERBODY_NEEDS_SHARED("cfd/volume/ellipse-h5-coarse.cas.gz");
     ReadOptions surfaces;

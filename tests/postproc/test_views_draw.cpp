@@ -1,5 +1,11 @@
 // Pictures: that they are drawn at all, without a display, and that they show what they were given.
 #include <gmock/gmock.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGReader.h>
+#include <vtkPointData.h>
+#include <vtkSmartPointer.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -62,6 +68,47 @@ TEST(Pictures, AreDrawnWithoutADisplay) {
         core::write_file(std::filesystem::path(folder) / "sphere-diverging.png", other);
     }
     EXPECT_EQ(draw_png(sphere()), png);  // the same scene, the same bytes
+}
+
+namespace {
+
+/// Mean difference of two pictures' colours, 0 to 255.
+double apart(const std::string& a, const std::string& b) {
+    const auto pixels = [](const std::string& png) {
+        vtkNew<vtkPNGReader> reader;
+        reader->SetMemoryBuffer(png.data());
+        reader->SetMemoryBufferLength(static_cast<vtkIdType>(png.size()));
+        reader->Update();
+        return vtkSmartPointer<vtkImageData>(reader->GetOutput());
+    };
+    const auto first = pixels(a);
+    const auto second = pixels(b);
+    auto* x = first->GetPointData()->GetScalars();
+    auto* y = second->GetPointData()->GetScalars();
+    if (x->GetNumberOfValues() != y->GetNumberOfValues()) {
+        return 255;
+    }
+    double sum = 0;
+    for (vtkIdType i = 0; i < x->GetNumberOfTuples(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+            sum += std::abs(x->GetComponent(i, c) - y->GetComponent(i, c));
+        }
+    }
+    return sum / (3.0 * static_cast<double>(x->GetNumberOfTuples()));
+}
+
+}  // namespace
+
+TEST(Pictures, LookTheSameHoweverFarFromTheOriginTheBodyLies) {
+    const std::string here = draw_png(sphere());
+    Scene scene = sphere();
+    for (auto& point : scene.surfaces[0].points) {
+        point = {point[0] + 4e5, point[1] - 3e5, point[2] + 50};
+    }
+    EXPECT_LT(apart(here, draw_png(scene)), 0.2);
+    scene.surfaces[0].values.assign(scene.surfaces[0].values.size(), 0);  // the measure does see a difference
+    scene.range = {-100, 100};
+    EXPECT_GT(apart(here, draw_png(scene)), 5);
 }
 
 TEST(Pictures, SayWhatIsMissingWithoutXvfb) {
