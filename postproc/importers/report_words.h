@@ -16,7 +16,7 @@ std::vector<std::string> words_of(std::string_view line);
 /// A number as solvers write it, with "nan(ind)" and "1.#INF" among them.
 std::optional<double> number_of(const std::string& word);
 
-/// All words as numbers; nothing when one is none.
+/// All words as numbers; nothing when one is none, or there are no words.
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& words);
 
 [[noreturn]] inline void fail_in_line(const std::string& file, std::int64_t line, const std::string& what) {

@@ -64,7 +64,7 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& wo
         }
         numbers.push_back(*value);
     }
-    return numbers;
+    return numbers.empty() ? std::nullopt : std::optional(std::move(numbers));
 }
 
 namespace {
@@ -167,7 +167,7 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
             fail_in_line(file, number, "a line with more than " + std::to_string(most_columns) + " columns");
         }
         auto row = numbers_of(words);
-        if (!row || row->empty()) {
+        if (!row) {
             // A head; after a restart it may come again.
             if (rows.empty() || line.front() == '"' || line.front() == '(') {
                 heads.push_back(std::move(words));
@@ -417,7 +417,7 @@ std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
                 continue;
             }
             add_row(reports, first, line, scale);
-            reading = core::lower_case(words.front()) != "net";
+            reading = words.empty() || core::lower_case(words.front()) != "net";
         }
     }
     if (reading && !reports.empty() && !reports.back().rows.empty()) {

@@ -159,6 +159,14 @@ TEST(ForceReports, ATextThatEndsWithinAReportIsRefused) {
     }
 }
 
+TEST(ForceReports, ALineOfBracketsAloneEndsNothing) {
+    const core::TemporaryFolder folder;
+    const auto reports = read_force_reports(written(folder, "Forces - Direction Vector (1 0 0)\nForces (n)\nhull 1 2 3 4 5 6\n)\nnet 1 2 3 4 5 6\n"));
+    ASSERT_EQ(reports.size(), 1U);
+    EXPECT_EQ(reports[0].rows.back().zone, "Net");
+    EXPECT_EQ(reports[0].rows.back().total, 3);
+}
+
 namespace {
 
 std::string cfx_output() { return core::read_file(test::data_folder() / "reports" / "cfx_001.out"); }
