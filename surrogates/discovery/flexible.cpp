@@ -288,6 +288,19 @@ std::vector<double> grouped_variances(const DesignMatrix& jacobian, const std::v
     return variances;
 }
 
+void take_out(const DesignMatrix& basis, std::vector<double>& y) {
+    for (std::size_t k = 0; k < basis.columns; ++k) {
+        const double* column = basis.values.data() + k * basis.rows;
+        double dot = 0;
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            dot += column[i] * y[i];
+        }
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            y[i] -= dot * column[i];
+        }
+    }
+}
+
 RidgeFit ridge_fit(const DesignMatrix& matrix, const std::vector<double>& y) {
     const Eigen::Index n = static_cast<Eigen::Index>(matrix.rows);
     const Eigen::Map<const Eigen::MatrixXd> a(matrix.values.data(), n, static_cast<Eigen::Index>(matrix.columns));

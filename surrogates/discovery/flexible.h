@@ -63,6 +63,9 @@ DesignMatrix orthonormal(const DesignMatrix& matrix);
 /// Sum of squares of `y` in the span of orthonormal columns.
 double explained_square(const DesignMatrix& orthonormal_columns, const std::vector<double>& y);
 
+/// Takes the part of `y` in the span of orthonormal columns away.
+void take_out(const DesignMatrix& orthonormal_columns, std::vector<double>& y);
+
 /// Columns of `matrix` with their parts in the span of `taken` (orthonormal) removed, made orthonormal.
 DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& matrix);
 

@@ -35,6 +35,39 @@ Readings readings_of(const StaticExperiment& experiment, std::size_t quantity) {
     return readings;
 }
 
+struct Outside {
+    std::string ranges;   ///< "gap 2 to 50 measured, 0.001 to 0.1 in lift.csv"
+    std::string slip;     ///< a unit that would explain it; empty: none
+};
+
+Outside outside_of(const StaticExperiment& experiment) {
+    Outside outside;
+    for (const dynamics::ForceSource& source : experiment.model().forces) {
+        for (std::size_t i = 0; i < source.axes.size(); ++i) {
+            const tables::TableAxis& axis = source.table.axes()[i];
+            double low = 1e300, high = -1e300;
+            for (const Observation& one : experiment.observations()) {
+                low = std::min(low, one.at[source.axes[i]]);
+                high = std::max(high, one.at[source.axes[i]]);
+            }
+            const std::string text = axis.name + " " + core::format_number(low, 3) + " to " + core::format_number(high, 3) + " measured, " +
+                                     core::format_number(axis.lower, 3) + " to " + core::format_number(axis.upper, 3) + " in " + source.table_file;
+            if ((low >= axis.lower && high <= axis.upper) || outside.ranges.find(text) != std::string::npos) {
+                continue;
+            }
+            outside.ranges += (outside.ranges.empty() ? "" : "; ") + text;
+            for (const double factor : {1000.0, 0.001, 57.29578, 0.01745329}) {
+                if (low > axis.upper && low * 0.999 / factor >= axis.lower && high / factor <= 1.001 * axis.upper) {
+                    outside.slip = "The " + axis.name + " looks " + core::format_number(factor, 4) + " times too large: is its unit right?";
+                } else if (high < axis.lower && low / factor >= 0.999 * axis.lower && high / factor <= axis.upper) {
+                    outside.slip = "The " + axis.name + " looks " + core::format_number(1 / factor, 4) + " times too small: is its unit right?";
+                }
+            }
+        }
+    }
+    return outside;
+}
+
 class Checker {
 public:
     Checker(const StaticExperiment& experiment, const dynamics::Measurements& data) : experiment_(experiment), place_{data.folder.string(), {}, {}, {}} {
@@ -142,37 +175,12 @@ private:
     }
 
     void check_tables() {
-        const std::size_t n = experiment_.observations().size();
-        if (experiment_.outside_tables() == 0) {
-            return;
+        if (experiment_.outside_tables() > 0) {
+            const Outside outside = outside_of(experiment_);
+            warn(std::to_string(experiment_.outside_tables()) + " of " + std::to_string(experiment_.observations().size()) +
+                 " readings lie outside the range of a declared table, which holds its end value there (" + outside.ranges +
+                 "): what is found there is about the table's end, not about physics" + (outside.slip.empty() ? "" : ". " + outside.slip));
         }
-        std::string ranges;
-        std::string slip;
-        for (const dynamics::ForceSource& source : experiment_.model().forces) {
-            for (std::size_t i = 0; i < source.axes.size(); ++i) {
-                const tables::TableAxis& axis = source.table.axes()[i];
-                double low = 1e300, high = -1e300;
-                for (const Observation& one : experiment_.observations()) {
-                    low = std::min(low, one.at[source.axes[i]]);
-                    high = std::max(high, one.at[source.axes[i]]);
-                }
-                const std::string text = axis.name + " " + core::format_number(low, 3) + " to " + core::format_number(high, 3) + " measured, " +
-                                         core::format_number(axis.lower, 3) + " to " + core::format_number(axis.upper, 3) + " in " + source.table_file;
-                if ((low < axis.lower || high > axis.upper) && ranges.find(text) == std::string::npos) {
-                    ranges += (ranges.empty() ? "" : "; ") + text;
-                    for (const double factor : {1000.0, 0.001, 57.29578, 0.01745329}) {
-                        if (low > axis.upper && low * 0.999 / factor >= axis.lower && high / factor <= 1.001 * axis.upper) {
-                            slip = ". The " + axis.name + " looks " + core::format_number(factor, 4) + " times too large: is its unit right?";
-                        } else if (high < axis.lower && low / factor >= 0.999 * axis.lower && high / factor <= axis.upper) {
-                            slip = ". The " + axis.name + " looks " + core::format_number(1 / factor, 4) + " times too small: is its unit right?";
-                        }
-                    }
-                }
-            }
-        }
-        warn(std::to_string(experiment_.outside_tables()) + " of " + std::to_string(n) +
-             " readings lie outside the range of a declared table, which holds its end value there (" + ranges +
-             "): what is found there is about the table's end, not about physics" + slip);
     }
 
     /// A logger that wrote a block twice makes everything look more certain than it is.
@@ -204,16 +212,12 @@ private:
                  {Channel::gap, "gap_offset, surface_roughness, buoyancy of cables"}, {Channel::speed, "speed_exponent, current"},
                  {Channel::jet_voltage, "pump_curve"}}) {
             const Channel channel = held_one.first;
-            const bool used = std::any_of(experiment_.model().forces.begin(), experiment_.model().forces.end(), [&](const dynamics::ForceSource& source) {
-                return std::find(source.axes.begin(), source.axes.end(), channel) != source.axes.end() ||
-                       std::any_of(source.scales.begin(), source.scales.end(), [&](const auto& scale) { return scale.channel == channel; });
-            });
-            if (used && std::find(varying.begin(), varying.end(), channel) == varying.end()) {
+            if (model_feels(channel) && std::find(varying.begin(), varying.end(), channel) == varying.end()) {
                 held += (held.empty() ? "" : "; ") + std::string(dynamics::channel_name(channel)) + " (" + held_one.second + ")";
             }
         }
         if (!held.empty() && experiment_.set_points() > 1) {
-            note("held throughout, so that effects of it cannot be seen: " + held);
+            warn("held throughout, so that effects of it cannot be seen: " + held);
         }
         for (std::size_t a = 0; a < varying.size(); ++a) {
             for (std::size_t b = a + 1; b < varying.size(); ++b) {
@@ -224,6 +228,23 @@ private:
                 }
             }
         }
+    }
+
+    /// Whether the declared forces change when a channel moves by a tenth.
+    [[nodiscard]] bool model_feels(Channel channel) const {
+        Observation one = experiment_.observations().front();
+        if (!one.at.has(channel)) {
+            return false;
+        }
+        for (std::size_t q = 0; q < readings_.size(); ++q) {
+            one.quantity = q;
+            Observation moved = one;
+            moved.at[channel] *= 1.1;
+            if (std::abs(experiment_.predict(moved, {}) - experiment_.predict(one, {})) > 1e-6 * std::abs(experiment_.predict(one, {}))) {
+                return true;
+            }
+        }
+        return false;
     }
 
     /// Of ranks (Spearman): a sweep is a sweep in any unit.
@@ -262,6 +283,16 @@ private:
 };
 
 }  // namespace
+
+void refuse_outside_tables(const StaticExperiment& experiment, const dynamics::Measurements& data) {
+    if (experiment.outside_tables() < experiment.observations().size()) {
+        return;
+    }
+    const Outside outside = outside_of(experiment);
+    throw core::InputError("range", "every reading lies outside the range of the declared tables (" + outside.ranges + "): there is nothing to compare",
+                           core::Place{data.folder.string(), {}, {}, {}},
+                           outside.slip.empty() ? "declare a table over the measured range" : outside.slip);
+}
 
 core::Problems check_static_data(const StaticExperiment& experiment, const dynamics::Measurements& data) { return Checker(experiment, data).run(); }
 

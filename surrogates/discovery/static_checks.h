@@ -8,6 +8,9 @@
 
 namespace underbody::discovery {
 
+/// Throws core::InputError when every reading lies outside the range of a declared table: there is nothing to compare.
+void refuse_outside_tables(const StaticExperiment& experiment, const dynamics::Measurements& data);
+
 /// Remarks on the readings and the set points: sensors that stand still or are clipped, columns that look swapped, forces or gaps that look
 /// wrong by a unit, set points outside the declared tables, readings that stand there twice, channels that did not vary or ran together.
 core::Problems check_static_data(const StaticExperiment& experiment, const dynamics::Measurements& data);

@@ -37,19 +37,6 @@ double sum_of_squares(const std::vector<double>& r) {
     return sum;
 }
 
-void take_out(const DesignMatrix& basis, std::vector<double>& y) {
-    for (std::size_t k = 0; k < basis.columns; ++k) {
-        const double* column = basis.values.data() + k * basis.rows;
-        double dot = 0;
-        for (std::size_t i = 0; i < y.size(); ++i) {
-            dot += column[i] * y[i];
-        }
-        for (std::size_t i = 0; i < y.size(); ++i) {
-            y[i] -= dot * column[i];
-        }
-    }
-}
-
 }  // namespace
 
 StaticLoop::StaticLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
@@ -57,6 +44,7 @@ StaticLoop::StaticLoop(const dynamics::Model& model, const dynamics::Measurement
     : model_(model), data_(data), options_(options), progress_(progress), calibration_(static_calibration()), experiment_(model, data) {}
 
 Discovery StaticLoop::run() {
+    refuse_outside_tables(experiment_, data_);
     split();
     experiment_.estimate_noise();
     progress_.report(0.1, "fitting the effects of the catalogue");
@@ -161,7 +149,16 @@ FittedHypothesis StaticLoop::fitted(const Hypothesis& hypothesis) const {
 }
 
 void StaticLoop::fit_singles() {
-    std::vector<Hypothesis> candidates = static_hypotheses(experiment_.model(), experiment_.varying(), experiment_.quantities());
+    std::vector<Channel> seen = experiment_.varying();
+    if (experiment_.set_points() == 1) {
+        // nothing tells them apart there: all that can have moved the readings share the probability
+        for (const Channel channel : {Channel::gap, Channel::speed, Channel::jet_voltage}) {
+            if (experiment_.observations().front().at.has(channel) && std::find(seen.begin(), seen.end(), channel) == seen.end()) {
+                seen.push_back(channel);
+            }
+        }
+    }
+    std::vector<Hypothesis> candidates = static_hypotheses(experiment_.model(), seen, experiment_.quantities());
     keep_lengths_inside(candidates);
     keep_only(candidates, options_.candidates);
     experiment_.residuals(train_, {}, null_residuals_);

@@ -44,6 +44,8 @@ private:
     [[nodiscard]] bool cancels(const FittedHypothesis& pair) const;
     void decide();
     void make_correction();
+    /// Whether the verdict stands when each set point counts with its weight.
+    [[nodiscard]] bool same_verdict(const std::vector<double>& weight) const;
     [[nodiscard]] double stability() const;
 
     // static_twins.cpp

@@ -100,8 +100,8 @@ StaticStructure::StaticStructure(const StaticExperiment& experiment, const std::
         if (few) {
             add({channel}, design(experiment, chosen, {channel}, 2));
         }
-        if (channel == Channel::time) {
-            add({channel}, design(experiment, chosen, {channel}, 16));  // several waves in a day of measuring
+        if (channel == Channel::time || channel == Channel::gap) {
+            add({channel}, design(experiment, chosen, {channel}, 16));  // several waves in a day of measuring, or over the gap
         }
     }
     for (std::size_t a = 0; a < varying.size(); ++a) {
@@ -127,11 +127,25 @@ StaticStructure::StaticStructure(const StaticExperiment& experiment, const std::
     }
 }
 
+namespace {
+
+/// What a fit of the columns takes off the square of each row.
+void add_gain_of_rows(const DesignMatrix& basis, const std::vector<double>& y, std::vector<double>& gain) {
+    std::vector<double> left = y;
+    take_out(basis, left);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        gain[i] += y[i] * y[i] - left[i] * left[i];
+    }
+}
+
+}  // namespace
+
 SmoothFit StaticStructure::best(const std::vector<double>& residuals) const {
     SmoothFit whole;
     double smallest = 1;
     const double penalty = std::log(static_cast<double>(residuals.size()) / static_cast<double>(quantities_));
     std::vector<SmoothFit> by_quantity(quantities_);
+    std::vector<const Test*> chosen(quantities_, nullptr);
     for (std::size_t q = 0; q < quantities_; ++q) {
         double best = 1e300;
         double strongest = 0;
@@ -148,6 +162,7 @@ SmoothFit StaticStructure::best(const std::vector<double>& residuals) const {
             const double criterion = degrees * penalty - gain;
             if (criterion < best) {
                 best = criterion;
+                chosen[q] = &test;
                 own.variables.clear();
                 for (const Channel channel : test.variables) {
                     own.variables.emplace_back(dynamics::channel_name(channel));
@@ -159,8 +174,13 @@ SmoothFit StaticStructure::best(const std::vector<double>& residuals) const {
         own.p = std::min(1.0, std::pow(10.0, -strongest) * static_cast<double>(std::max<std::size_t>(count, 1)));
         smallest = std::min(smallest, own.p);
     }
-    for (const SmoothFit& own : by_quantity) {
+    whole.gain_of_row.assign(residuals.size(), 0);
+    for (std::size_t q = 0; q < quantities_; ++q) {
+        const SmoothFit& own = by_quantity[q];
         if (own.p < 1e-3 || own.p == smallest) {
+            if (chosen[q] != nullptr) {
+                add_gain_of_rows(chosen[q]->basis, residuals, whole.gain_of_row);
+            }
             whole.gain += own.gain;
             whole.degrees += own.degrees;
             for (const std::string& name : own.variables) {
@@ -228,20 +248,21 @@ namespace {
 /// One way to write a correction down: splines of every variable, or of the first times a power of the second.
 class CorrectionShape {
 public:
-    CorrectionShape(const std::vector<std::vector<double>>& values, int power) : power_(power) {
+    /// `columns` of each variable that gets splines: all of them, or the first alone where the second comes in as a power.
+    CorrectionShape(const std::vector<std::vector<double>>& values, int power, const std::vector<std::size_t>& columns) : power_(power) {
         for (const std::vector<double>& variable : values) {
             // gaps from 1 to 40 mm and the like: what happens near the ground needs the finer steps
             const auto [low, high] = std::minmax_element(variable.begin(), variable.end());
             logarithmic_.push_back(*low > 0 && *high > 6 * *low);
         }
         std::vector<std::vector<double>> seen;
-        for (std::size_t v = 0; v < (power_ > 0 ? 1 : values.size()); ++v) {
+        for (std::size_t v = 0; v < columns.size(); ++v) {
             seen.emplace_back();
             for (const double value : values[v]) {
                 seen.back().push_back(scaled(v, value));
             }
         }
-        basis_ = FlexibleBasis(seen, seen.size() == 1 ? 10 : 6);
+        basis_ = FlexibleBasis(seen, columns);
     }
     [[nodiscard]] std::size_t columns() const { return basis_.columns(); }
     void evaluate(const double* point, double* out) const {
@@ -264,6 +285,30 @@ private:
     std::vector<bool> logarithmic_;
     FlexibleBasis basis_;
 };
+
+struct CorrectionForm {
+    int power = 0;
+    std::vector<std::size_t> columns;
+};
+
+/// From coarse to fine: few knots for a slow law, as many as levels for a bump between two of them. Which one is for the data to say.
+std::vector<CorrectionForm> correction_forms(const std::vector<Channel>& variables) {
+    constexpr std::size_t fine = FlexibleBasis::most_columns;
+    std::vector<CorrectionForm> forms;
+    if (variables.size() == 1) {
+        return {{0, {5}}, {0, {10}}, {0, {fine}}};
+    }
+    forms.push_back({0, std::vector<std::size_t>(variables.size(), variables.size() == 2 ? 5 : 3)});
+    if (variables.size() == 2) {
+        forms.insert(forms.end(), {{0, {6, 6}}, {0, {10, 4}}, {0, {fine, 2}}, {0, {fine, 3}}});
+        if (variables[1] == Channel::speed || variables[1] == Channel::jet_voltage) {
+            for (const int power : {1, 2, 3}) {
+                forms.insert(forms.end(), {{power, {5}}, {power, {10}}, {power, {fine}}});
+            }
+        }
+    }
+    return forms;
+}
 
 /// Grid lines of a table: the levels that were measured and the middles between them, or equal steps where there are many.
 std::vector<double> grid_lines(std::vector<double> values) {
@@ -308,17 +353,16 @@ dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const 
             y.push_back(residuals[row]);
         }
     }
-    std::vector<int> powers{0};
-    if (variables.size() == 2 && (variables[1] == Channel::speed || variables[1] == Channel::jet_voltage)) {
-        powers = {0, 1, 2, 3};
-    }
     std::unique_ptr<CorrectionShape> shape;
     RidgeFit fit;
     double best = 1e300;
     std::vector<double> point(variables.size());
     std::vector<double> out;
-    for (const int power : powers) {
-        auto trial = std::make_unique<CorrectionShape>(values, power);
+    for (const auto& [power, columns] : correction_forms(variables)) {
+        auto trial = std::make_unique<CorrectionShape>(values, power, columns);
+        if (3 * trial->columns() > y.size() && shape != nullptr) {
+            continue;   // as many numbers as that would follow the noise
+        }
         DesignMatrix matrix;
         matrix.rows = y.size();
         matrix.columns = trial->columns();

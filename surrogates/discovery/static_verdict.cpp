@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "surrogates/discovery/static_loop.h"
+#include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/telling.h"
 
 namespace underbody::discovery {
@@ -164,13 +165,38 @@ void StaticLoop::decide() {
     }
 }
 
-double StaticLoop::stability() const {
-    if (result_.verdict == "none" || attribution_.shares.empty()) {
-        return result_.none_probability;
+bool StaticLoop::same_verdict(const std::vector<double>& weight) const {
+    const auto of_rows = [&](const std::vector<double>& gain) {
+        double sum = 0;
+        for (std::size_t i = 0; i < gain.size(); ++i) {
+            sum += weight[experiment_.observations()[train_[i]].set_point] * gain[i];
+        }
+        return sum;
+    };
+    const auto of_groups = [&](const FittedHypothesis& one) {
+        return std::inner_product(weight.begin(), weight.end(), one.explained_by_group.begin(), 0.0);
+    };
+    if (result_.verdict == "none") {
+        // the gate's chance follows the tail of what looked most like something, smooth or named
+        const auto chance = [&](double gain, double drawn, double degrees) {
+            const double whole = chi_squared_tail(gain, degrees);
+            return std::pair(whole, gate_ * chi_squared_tail(std::max(drawn, 0.0), degrees) / std::max(whole, 1e-300));
+        };
+        std::pair<double, double> strongest = chance(whole_.gain, of_rows(whole_.gain_of_row), whole_.degrees);
+        if (best_single_ < fitted_.size()) {
+            const FittedHypothesis& best = fitted_[best_single_];
+            strongest = std::min(strongest, chance(best.explained, of_groups(best), static_cast<double>(best.hypothesis.parameters.size())));
+        }
+        return strongest.second >= calibration_.gate;
     }
-    return share_of_draws(experiment_.set_points(), options_.seed + 1, [&](const std::vector<double>& weight) {
-        return best_in_draw(attribution_, fitted_, weight) == attribution_.chosen;
-    });
+    const SmoothFit left{{}, of_rows(rest_.gain_of_row), rest_.degrees, rest_.p, {}};
+    const bool unknown = attribution_.chosen >= fitted_.size() ||
+                         (rest_.p < calibration_.unknown_p && structure_left(left, of_groups(fitted_[attribution_.chosen])) > calibration_.unknown_share);
+    return result_.verdict == "unknown" ? unknown : !unknown && best_in_draw(attribution_, fitted_, weight) == attribution_.chosen;
+}
+
+double StaticLoop::stability() const {
+    return share_of_draws(experiment_.set_points(), options_.seed + 1, [&](const std::vector<double>& weight) { return same_verdict(weight); });
 }
 
 }  // namespace underbody::discovery
