@@ -46,7 +46,8 @@ double round_below(double value) {
 std::vector<double> round_ticks(double low, double high, int count) {
     std::vector<double> ticks;
     const double span = high - low;
-    if (!(span > 0) || !std::isfinite(span) || count < 1) {
+    // Ends that differ by rounding alone leave no room for a step: counting up would never end.
+    if (!(span > 1e-12 * std::max(std::abs(low), std::abs(high))) || !std::isfinite(span) || count < 1) {
         return {low};
     }
     const double rough = span / count;
@@ -68,7 +69,7 @@ std::pair<double, double> drawn_range(std::pair<double, double> range, ColourMap
         high = std::max(std::abs(low), std::abs(high));
         low = -high;
     }
-    if (low == high) {
+    if (high - low <= 1e-9 * std::max(std::abs(low), std::abs(high))) {  // one value but for rounding
         const double pad = low == 0 ? 1 : 0.5 * std::abs(low);
         return {low - pad, high + pad};
     }

@@ -142,6 +142,8 @@ TEST(ColourMaps, RunFromEndToEndAndAreCentred) {
 }
 
 TEST(ColourMaps, TicksAreRound) {
+    EXPECT_EQ(round_ticks(1, std::nextafter(1, 2), 6).size(), 1U);  // ended only with the memory
+    EXPECT_EQ(drawn_range({1, std::nextafter(1, 2)}, ColourMap::viridis).first, 0.5);
     EXPECT_THAT(round_ticks(-3.2, 7.1, 5), testing::Pointwise(testing::DoubleNear(1e-12), std::vector<double>{-2, 0, 2, 4, 6}));
     EXPECT_EQ(round_below(0.037), 0.02);
     EXPECT_EQ(round_below(5.5), 5);
