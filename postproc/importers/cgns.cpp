@@ -489,7 +489,8 @@ std::vector<Condition> Reader::conditions(int zone) {
         if (cg_boco_gridlocation_read(file_, base_, zone, b, &location) != CG_OK) {
             location = CGNS_ENUMV(Vertex);
         }
-        condition.faces = elements || location == CGNS_ENUMV(FaceCenter);
+        const bool edges_bound = cell_dimension_ == 2 && location == CGNS_ENUMV(EdgeCenter);
+        condition.faces = elements || edges_bound || location == CGNS_ENUMV(FaceCenter);
         const int indices = type_ == CGNS_ENUMV(Structured) ? cell_dimension_ : 1;
         check_room(static_cast<double>(points) * indices);
         std::vector<cgsize_t> raw(static_cast<std::size_t>(std::max<cgsize_t>(0, points)) *

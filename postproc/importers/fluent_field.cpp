@@ -219,9 +219,10 @@ Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const
     if (ids.empty()) {
         return result;
     }
-    const std::uint64_t first = ids[0];
-    const std::uint64_t last = ids[ids.size() - 1];
-    // The blocks of a zone may come in any order, so its two ends do not tell.
+    // The blocks of a zone may come in any order: its two ends do not tell where its ids begin and end.
+    const auto [lowest, highest] = std::minmax_element(ids.begin(), ids.end());
+    const std::uint64_t first = *lowest;
+    const std::uint64_t last = *highest;
     const bool gapless = std::adjacent_find(ids.begin(), ids.end(), [](std::uint64_t a, std::uint64_t b) {
                              return b != a + 1;
                          }) == ids.end();

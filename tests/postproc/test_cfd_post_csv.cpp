@@ -201,6 +201,23 @@ TEST(CfdPostCsv, ReadsLinesPointsAndProfilesWithoutCoordinates) {
     EXPECT_EQ(profile.zones[0].surface->GetFieldData()->GetArray("pressure_total")->GetComponent(1, 0), 1.1e5);
 }
 
+TEST(CfdPostCsv, KeepsACylindricalProfileAsATableWithItsCoordinates) {
+    const Field profile = read_text("[Name]\nInflow\n[Spatial Fields]\nr,Theta,z\n[Data]\nr [ mm ], Theta [ degree ], z [ m ], Pressure [ Pa ], Velocity r [ m s^-1 ]\n"
+                                    "200,0,0.5,1,3\n200,90,0.5,2,4\n");
+    const auto& zone = profile.zones[0];
+    EXPECT_EQ(zone.kind, ZoneKind::other);  // nobody knows where its axis lies: no surface is made of it
+    EXPECT_EQ(zone.original_kind, "profile without coordinates");
+    auto* data = zone.surface->GetFieldData();
+    ASSERT_NE(data->GetArray("r"), nullptr);
+    EXPECT_NEAR(data->GetArray("r")->GetComponent(1, 0), 0.2, 1e-15);
+    ASSERT_NE(data->GetArray("Theta"), nullptr);
+    EXPECT_NEAR(data->GetArray("Theta")->GetComponent(1, 0), M_PI / 2, 1e-12);
+    ASSERT_NE(data->GetArray("z"), nullptr);
+    EXPECT_EQ(data->GetArray("z")->GetComponent(0, 0), 0.5);
+    EXPECT_EQ(data->GetArray("pressure")->GetComponent(1, 0), 2);
+    EXPECT_EQ(data->GetArray("Velocity r")->GetComponent(0, 0), 3);
+}
+
 TEST(CfdPostCsv, FindsFacesThatRunOppositeWaysAndFacesWithoutArea) {
     const Field turned = read_text(replaced(good, "0, 2, 3\n", "3, 2, 0\n"));
     ASSERT_FALSE(turned.problems.empty());

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <set>
@@ -340,6 +341,51 @@ TEST(Cgns, PolyhedraOfFacesAreWhole) {
     EXPECT_GT(test::smallest_volume(*domain->volume), 0.2);
     ASSERT_NE(field.find("end"), nullptr);
     EXPECT_NEAR(test::area_of(*field.find("end")->surface), 1.25, 1e-12);
+}
+
+TEST(Cgns, APlaneCaseHasAreasAndLines) {
+    for (const int type : {CG_FILE_HDF5, CG_FILE_ADF}) {
+        const core::TemporaryFolder folder;
+        const fs::path path = folder.path() / "plane.cgns";
+        int file = 0;
+        int base = 0;
+        int zone = 0;
+        int index = 0;
+        cg_set_file_type(type);
+        ASSERT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), CG_OK);
+        cg_set_file_type(CG_FILE_NONE);
+        cg_base_write(file, "Base", 2, 2, &base);
+        const cgsize_t size[3] = {5, 2, 0};  // a unit square and a triangle beside it
+        cg_zone_write(file, base, "plane", size, CGNS_ENUMV(Unstructured), &zone);
+        const double x[] = {0, 1, 1, 0, 2};
+        const double y[] = {0, 0, 1, 1, 0};
+        cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), "CoordinateX", x, &index);
+        cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), "CoordinateY", y, &index);
+        const cgsize_t quads[] = {1, 2, 3, 4};
+        const cgsize_t triangles[] = {2, 5, 3};
+        const cgsize_t rim[] = {1, 2, 2, 5, 5, 3, 3, 4, 4, 1};
+        cg_section_write(file, base, zone, "quads", CGNS_ENUMV(QUAD_4), 1, 1, 0, quads, &index);
+        cg_section_write(file, base, zone, "triangles", CGNS_ENUMV(TRI_3), 2, 2, 0, triangles, &index);
+        cg_section_write(file, base, zone, "rim", CGNS_ENUMV(BAR_2), 3, 7, 0, rim, &index);
+        const cgsize_t range[] = {3, 7};
+        cg_boco_write(file, base, zone, "wall", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), 2, range, &index);
+        cg_boco_gridlocation_write(file, base, zone, index, CGNS_ENUMV(EdgeCenter));
+        const double pressure[] = {0, 1, 1, 0, 2};  // x
+        int solution = 0;
+        cg_sol_write(file, base, zone, "Flow Solution", CGNS_ENUMV(Vertex), &solution);
+        cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", pressure, &index);
+        ASSERT_EQ(cg_close(file), CG_OK);
+        const auto field = read_field(path);
+        EXPECT_EQ(field.dimension, 2);
+        EXPECT_EQ(test::cells_of(field), 2);
+        EXPECT_NEAR(test::volume_of(field), 1.5, 1e-12);
+        const auto* wall = field.find("wall");
+        ASSERT_NE(wall, nullptr);
+        EXPECT_EQ(wall->kind, ZoneKind::wall);
+        EXPECT_EQ(wall->surface->GetNumberOfLines(), 5);
+        EXPECT_NEAR(test::area_of(*wall->surface), 1 + 1 + std::sqrt(2.0) + 1 + 1, 1e-12);
+        EXPECT_NE(wall->find("pressure"), nullptr);
+    }
 }
 
 TEST(Cgns, BoundariesTakeThePressureOfTheCellsBehindThem) {
