@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/html.h"
 #include "core/text.h"
+#include "surrogates/discovery/wording.h"
 
 namespace underbody::cases {
 
@@ -142,7 +143,7 @@ void write_measured_reports(const std::vector<MeasuredStudy>& studies, const std
     std::vector<std::vector<std::string>> rows;
     for (const MeasuredStudy& study : studies) {
         const discovery::ErrorChange& error = study.found.error.front();
-        rows.push_back({study.name, study.declared, study.found.verdict,
+        rows.push_back({study.name, study.declared, discovery::verdict_names(study.found),
                         core::format_number(error.before.rmse, 3) + " to " + core::format_number(error.after.rmse, 3) + " " + error.unit, study.known});
     }
     page.table({"study", "declared", "verdict", "held-out error", "what is known"}, rows);

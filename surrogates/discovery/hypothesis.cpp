@@ -67,8 +67,13 @@ Hypothesis make(const dynamics::EffectInfo& info, const std::vector<std::string>
     return hypothesis;
 }
 
-/// Numbers that are forces are moments where all that they act on are moments.
-void take_units_of(Hypothesis& hypothesis, const std::vector<std::string>& quantities) {
+/// The catalogue speaks of lift; where something else was measured the hypothesis speaks of that. Numbers that are forces are moments
+/// where all that they act on are moments.
+void speak_of(Hypothesis& hypothesis, const std::vector<std::string>& quantities) {
+    const auto lift = std::find(hypothesis.depends_on.begin(), hypothesis.depends_on.end(), "lift_force");
+    if (lift != hypothesis.depends_on.end() && std::find(quantities.begin(), quantities.end(), "lift_force") == quantities.end()) {
+        *lift = quantities.front();
+    }
     for (std::size_t j = 0; j < hypothesis.parameters.size(); ++j) {
         const dynamics::EffectUse& use = hypothesis.uses[hypothesis.slots[j].use];
         const std::vector<std::string> concerned = use.quantity.empty() ? quantities : std::vector<std::string>{use.quantity};
@@ -307,7 +312,7 @@ std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const st
             } else if (info.name == "speed_exponent") {
                 start_at_declared_exponent(list[k], model, quantities);
             }
-            take_units_of(list[k], quantities);
+            speak_of(list[k], quantities);
         }
     }
     for (Hypothesis& hypothesis : declared_numbers(model, varying, quantities)) {

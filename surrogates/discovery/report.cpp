@@ -14,7 +14,7 @@ namespace {
 
 std::string percent(double share) {
     const double value = 100 * share;
-    return value > 99.5 && share < 1 ? "> 99 %" : value < 0.5 && share > 0 ? "< 1 %" : core::format_number(std::round(value), 3) + " %";
+    return value > 99.5 && share < 1 ? "> 99 %" : value < 0.5 ? "< 1 %" : core::format_number(std::round(value), 3) + " %";
 }
 
 std::string in_noise(const ErrorEstimate& estimate, double noise) { return core::format_number(estimate.rmse / std::max(noise, 1e-300), 3); }
@@ -30,13 +30,9 @@ std::string headline(const Discovery& d) {
     if (d.verdict == "unknown") {
         return "Something is missing that the catalogue does not know: it depends on " + list_of(d.depends_on);
     }
-    std::vector<std::string> names;
-    for (const FoundEffect& effect : d.effects) {
-        std::string name = effect.name;
-        std::replace(name.begin(), name.end(), '_', ' ');
-        names.push_back(name);
-    }
-    return "The model lacks: " + list_of(names);
+    std::string text = verdict_names(d);
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return "The model lacks: " + text;
 }
 
 void add_facts(core::HtmlPage& page, const Discovery& d) {

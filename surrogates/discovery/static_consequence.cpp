@@ -65,8 +65,9 @@ Consequence static_consequence(const dynamics::Model& before, const std::vector<
     dynamics::Model after = before;
     for (const dynamics::EffectUse& use : uses) {
         std::vector<std::string>& side = dynamics::belongs_to_the_rig(use.name) ? rig : body;
-        if (std::find(side.begin(), side.end(), use.name) == side.end()) {
-            side.push_back(use.name);
+        const std::string name = use.name == "unknown" ? "the smooth correction" : use.name;
+        if (std::find(side.begin(), side.end(), name) == side.end()) {
+            side.push_back(name);
         }
         after = after.with_effect(use);
     }

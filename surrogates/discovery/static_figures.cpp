@@ -46,7 +46,8 @@ core::FigurePoints binned(const std::vector<std::pair<double, double>>& sorted, 
         levels.insert(x);
     }
     const bool by_level = levels.size() <= 16;
-    const std::size_t size = std::max<std::size_t>(6, sorted.size() / 12);
+    // a tow tank's dozen of runs shows its curve reading by reading
+    const std::size_t size = sorted.size() <= 48 ? 1 : std::max<std::size_t>(6, sorted.size() / 12);
     for (std::size_t begin = 0; begin < sorted.size();) {
         std::size_t end = begin;
         double x = 0, y = 0, square = 0;
@@ -166,7 +167,7 @@ core::Figure error_figure(const Discovery& result) {
                                                                      : ", " + core::format_number(change.horizon, 3) + " s";
             bars.labels.push_back(change.channel + horizon);
             bars.values.push_back(estimate.rmse / std::max(change.noise, 1e-300));
-            bars.errors.push_back(0.25 * (estimate.high - estimate.low) / std::max(change.noise, 1e-300));
+            bars.errors.push_back(std::min(0.25 * (estimate.high - estimate.low), estimate.rmse) / std::max(change.noise, 1e-300));
         }
         figure.bars.push_back(std::move(bars));
     }

@@ -80,8 +80,9 @@ std::string where(const StaticExperiment& experiment, const Candidate& candidate
     for (const Channel channel : experiment.varying()) {
         if (channel != Channel::time && channel != Channel::temperature) {
             const std::string unit = dynamics::channel_unit(channel);
+            const bool small = unit == "m" && std::abs(candidate.at[channel]) < 1;
             text += (text.empty() ? "" : ", ") + std::string(dynamics::channel_name(channel)) + " " +
-                    core::format_number(candidate.at[channel], 3) + (unit == "1" ? "" : " " + unit);
+                    core::format_number((small ? 1000 : 1) * candidate.at[channel], 3) + (unit == "1" ? "" : small ? " mm" : " " + unit);
         }
     }
     return text;
@@ -100,7 +101,7 @@ std::string static_told_apart(const StaticExperiment& experiment, const FittedHy
     }
     const double repeats = std::ceil(36 / (list.front().separation * list.front().separation));
     return "they differ most at " + where(experiment, list.front()) + ": by " + core::format_number(list.front().separation, 3) +
-           " standard deviations a reading, so " + core::format_number(std::min(repeats, 1e6), 4) + " readings there decide";
+           " standard deviations a reading, so " + (repeats <= 1 ? "one reading there decides" : core::format_number(std::min(repeats, 1e6), 4) + " readings there decide");
 }
 
 void next_static_experiment(const StaticExperiment& experiment, const std::vector<FittedHypothesis>& fitted,

@@ -279,12 +279,79 @@ public:
         }
     }
 
+    /// One row a point; `values[v]` are the variable v's.
+    [[nodiscard]] DesignMatrix design(const std::vector<std::vector<double>>& values, std::size_t rows) const {
+        DesignMatrix matrix;
+        matrix.rows = rows;
+        matrix.columns = columns();
+        matrix.values.resize(matrix.rows * matrix.columns);
+        std::vector<double> point(values.size());
+        std::vector<double> out(columns());
+        for (std::size_t row = 0; row < matrix.rows; ++row) {
+            for (std::size_t v = 0; v < values.size(); ++v) {
+                point[v] = values[v][row];
+            }
+            evaluate(point.data(), out.data());
+            for (std::size_t k = 0; k < out.size(); ++k) {
+                matrix.at(row, k) = out[k];
+            }
+        }
+        return matrix;
+    }
+
 private:
     [[nodiscard]] double scaled(std::size_t v, double value) const { return logarithmic_[v] ? std::log(std::max(value, 1e-12)) : value; }
     int power_;
     std::vector<bool> logarithmic_;
     FlexibleBasis basis_;
 };
+
+/// Sum of squares that fits to the other set points leave, a fifth of them held out at a time.
+double held_out_square(const DesignMatrix& matrix, const std::vector<double>& y, const std::vector<std::size_t>& set_point) {
+    constexpr std::size_t folds = 5;
+    const std::size_t points = *std::max_element(set_point.begin(), set_point.end()) + 1;
+    core::Random random(1);
+    std::vector<std::size_t> fold(points);
+    for (std::size_t g = 0; g < points; ++g) {
+        fold[g] = random.below(folds);
+    }
+    double sum = 0;
+    for (std::size_t f = 0; f < folds; ++f) {
+        std::vector<std::size_t> inside;
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            if (fold[set_point[i]] != f) {
+                inside.push_back(i);
+            }
+        }
+        if (inside.empty() || inside.size() == y.size()) {
+            continue;
+        }
+        DesignMatrix part;
+        part.rows = inside.size();
+        part.columns = matrix.columns;
+        part.values.reserve(part.rows * part.columns);
+        std::vector<double> own;
+        for (std::size_t k = 0; k < matrix.columns; ++k) {
+            for (const std::size_t i : inside) {
+                part.values.push_back(matrix.values[k * matrix.rows + i]);
+            }
+        }
+        for (const std::size_t i : inside) {
+            own.push_back(y[i]);
+        }
+        const RidgeFit fit = ridge_fit(part, own);
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            if (fold[set_point[i]] == f) {
+                double left = y[i];
+                for (std::size_t k = 0; k < matrix.columns; ++k) {
+                    left -= fit.coefficients[k] * matrix.values[k * matrix.rows + i];
+                }
+                sum += left * left;
+            }
+        }
+    }
+    return sum;
+}
 
 struct CorrectionForm {
     int power = 0;
@@ -344,6 +411,7 @@ dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const 
     });
     std::vector<std::vector<double>> values(variables.size());
     std::vector<double> y;
+    std::vector<std::size_t> set_point;
     for (std::size_t row = 0; row < chosen.size(); ++row) {
         const Observation& one = experiment.observations()[chosen[row]];
         if (one.quantity == quantity) {
@@ -351,40 +419,25 @@ dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const 
                 values[v].push_back(one.at[variables[v]]);
             }
             y.push_back(residuals[row]);
+            set_point.push_back(one.set_point);
         }
     }
     std::unique_ptr<CorrectionShape> shape;
-    RidgeFit fit;
     double best = 1e300;
-    std::vector<double> point(variables.size());
-    std::vector<double> out;
     for (const auto& [power, columns] : correction_forms(variables)) {
         auto trial = std::make_unique<CorrectionShape>(values, power, columns);
         if (3 * trial->columns() > y.size() && shape != nullptr) {
             continue;   // as many numbers as that would follow the noise
         }
-        DesignMatrix matrix;
-        matrix.rows = y.size();
-        matrix.columns = trial->columns();
-        matrix.values.resize(matrix.rows * matrix.columns);
-        out.resize(trial->columns());
-        for (std::size_t row = 0; row < y.size(); ++row) {
-            for (std::size_t v = 0; v < variables.size(); ++v) {
-                point[v] = values[v][row];
-            }
-            trial->evaluate(point.data(), out.data());
-            for (std::size_t k = 0; k < out.size(); ++k) {
-                matrix.at(row, k) = out[k];
-            }
-        }
-        RidgeFit own = ridge_fit(matrix, y);
-        const double left = std::max(static_cast<double>(y.size()) - own.degrees, 1.0);
-        if (own.residual_square / (left * left) < best) {
-            best = own.residual_square / (left * left);
-            fit = std::move(own);
+        const double error = held_out_square(trial->design(values, y.size()), y, set_point);
+        if (error < best) {
+            best = error;
             shape = std::move(trial);
         }
     }
+    const RidgeFit fit = ridge_fit(shape->design(values, y.size()), y);
+    std::vector<double> point(variables.size());
+    std::vector<double> out;
     std::vector<std::vector<double>> lines;
     std::size_t count = 1;
     for (const std::vector<double>& variable : values) {

@@ -61,7 +61,13 @@ std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHyp
                     part.uses.push_back(use);
                 }
             }
-            part.depends_on = dynamics::effect(name).info().depends_on;
+            const std::vector<std::string>& catalogue = dynamics::effect(name).info().depends_on;
+            const auto knows = [&](const std::string& variable) { return std::find(catalogue.begin(), catalogue.end(), variable) != catalogue.end(); };
+            // what the catalogue says of lift holds of whatever was measured
+            std::erase_if(part.depends_on, [&](const std::string& variable) {
+                const bool reading = variable.ends_with("_force") || variable.ends_with("_moment");
+                return !knows(variable) && !(reading && knows("lift_force"));
+            });
         }
         parts.push_back(std::move(part));
     }

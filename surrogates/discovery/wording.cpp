@@ -37,6 +37,30 @@ std::string probability_text(double probability) {
     return probability > 0.995 ? "above 0.99" : probability < 0.005 ? "below 0.01" : core::format_number(probability, 2);
 }
 
+namespace {
+
+constexpr double tied = 0.2;   ///< a rival of that probability is worth a name in the verdict
+
+}  // namespace
+
+std::string verdict_names(const Discovery& discovery) {
+    if (discovery.verdict == "none") {
+        return "none";
+    }
+    if (discovery.verdict == "unknown") {
+        return "unknown, over " + list_of(discovery.depends_on);
+    }
+    std::vector<std::string> names;
+    for (const FoundEffect& effect : discovery.effects) {
+        names.push_back(effect.name);
+    }
+    std::string text = list_of(names);
+    for (const FoundEffect& rival : discovery.alternatives) {
+        text += rival.probability > tied ? ", or " + rival.name : "";
+    }
+    return text;
+}
+
 std::string verdict_sentence(const Discovery& discovery) {
     const std::string error =
         discovery.error.empty() || discovery.verdict == "none"
@@ -64,7 +88,7 @@ std::string verdict_sentence(const Discovery& discovery) {
     }
     text += ", probability " + probability_text(discovery.effects.front().probability) + ".";
     for (const FoundEffect& rival : discovery.alternatives) {
-        if (rival.probability > 0.2) {
+        if (rival.probability > tied) {
             text += " These data cannot well tell it from " + rival.name + " (" + core::format_number(rival.probability, 2) + ").";
         }
     }

@@ -11,6 +11,10 @@ namespace underbody::discovery {
 /// "gap and speed", "gap, speed and time"; "nothing that was measured" for none.
 std::string list_of(const std::vector<std::string>& names);
 
+/// The verdict in names: "none", "coulomb_friction and input_delay", "gap_offset or force_bias" where the data cannot well tell them apart,
+/// "unknown, over gap and speed".
+std::string verdict_names(const Discovery& discovery);
+
 /// The verdict for people, one or two sentences.
 std::string verdict_sentence(const Discovery& discovery);
 

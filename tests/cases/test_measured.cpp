@@ -35,6 +35,11 @@ TEST(MeasuredStudies, ABearingDeclaredViscousLacksATorqueThatHardlyGrowsWithTheS
     // in one direction of rotation Coulomb's torque is a constant; with the slope that falls it is a power of the speed near zero
     EXPECT_LT(study.found.error.front().after.rmse, 0.1 * study.found.error.front().before.rmse) << study.found.sentence;
     EXPECT_LT(study.found.error.front().after.rmse, 0.035) << study.found.sentence;
+    ASSERT_EQ(study.found.effects.size(), 2U) << study.found.sentence;
+    EXPECT_EQ(study.found.effects[0].name, "force_bias");
+    EXPECT_EQ(study.found.effects[0].parameters.at(0).unit, "N m");
+    EXPECT_EQ(study.found.effects[1].name, "sensor_gain");
+    EXPECT_EQ(study.found.effects[1].depends_on, std::vector<std::string>{"yaw_moment"});
 }
 
 TEST(MeasuredStudies, StrutsDeclaredQuadraticTakeATorqueOfALowerPower) {
@@ -74,6 +79,7 @@ TEST(MeasuredStudies, UnderAPlateSuctionAndABiasOfTheOpticsAreATie) {
     EXPECT_GT(probability_of(study.found, "force_bias"), 0.15) << study.found.sentence;
     EXPECT_GT(probability_of(study.found, "gap_offset"), 0.15) << study.found.sentence;
     EXPECT_LT(study.found.effects.front().probability, 0.6) << study.found.sentence;
+    EXPECT_NE(discovery::report_html(study.found, study.model, study.measured, {}).find("The model lacks: gap offset, or force bias"), std::string::npos);
 }
 
 TEST(MeasuredStudies, HeavyBallsFallByTheirWeightAloneAndLightOnesDoNot) {

@@ -95,6 +95,37 @@ TEST(StaticDiscovery, WritesEverythingAndItsModelIsReadBack) {
     EXPECT_TRUE(json["consequence"]["estimator"].is_null()) << "set points have no motion to estimate";
 }
 
+TEST(StaticDiscovery, CountsHowOftenResampledSetPointsGiveTheSameVerdict) {
+    const Discovery none = found_on(declared, 5);
+    ASSERT_EQ(none.verdict, "none") << none.sentence;
+    EXPECT_GT(none.stability, 0.8);
+    EXPECT_NE(none.stability, none.none_probability);
+    // a bias at the edge of what can be seen: some draws of the same set points show it, others do not
+    const Discovery faint = found_on([](double h, double v) { return declared(h, v) + 0.0004; }, 5);
+    EXPECT_LT(faint.stability, 1);
+    const auto bump = [](double h, double v) { return declared(h, v) + 0.012 * std::exp(-std::pow((h - 0.025) / 0.015, 2)); };
+    const Discovery unknown = found_on(bump, 5);
+    ASSERT_EQ(unknown.verdict, "unknown") << unknown.sentence;
+    EXPECT_GT(unknown.stability, 0.8);
+}
+
+TEST(StaticDiscovery, DrawsABumpThatOnlyAFewGapsShow) {
+    const auto bump = [](double h, double v) { return declared(h, v) + 0.012 * std::exp(-std::pow((h - 0.025) / 0.015, 2)) * v / 8; };
+    const Discovery found = found_on(bump, 6);
+    ASSERT_EQ(found.verdict, "unknown") << found.sentence;
+    const dynamics::StaticModel corrected(found.model, "lift_force");
+    double largest = 0;
+    for (const double gap : {0.005, 0.01, 0.02, 0.04, 0.07, 0.1}) {   // at voltages between the measured ones
+        for (const double volts : {5.0, 8.0, 11.0}) {
+            dynamics::Conditions at;
+            at[dynamics::Channel::gap] = gap;
+            at[dynamics::Channel::jet_voltage] = volts;
+            largest = std::max(largest, std::abs(corrected(at) - bump(gap, volts)));
+        }
+    }
+    EXPECT_LT(largest, 0.1 * 0.012 * 11 / 8);
+}
+
 TEST(StaticDiscovery, WritesSetPointsForTheNextExperimentWithinTheMeasuredRange) {
     const Discovery found = found_on([](double h, double v) { return declared(h, v) + 0.004; }, 3);
     ASSERT_GT(found.next_set_points.rows(), 0U);
