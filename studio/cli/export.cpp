@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/cli/table_options.h"
 #include "surrogates/tables/exports/export.h"
@@ -40,7 +41,7 @@ tables::ExportOptions options_of(const ExportCommand& command) {
     }
     options.frame = command.frame == "ned" ? tables::Frame::ned : tables::Frame::up;
     if (!command.max_error.empty()) {
-        options.max_error = core::parse_in(command.max_error, "1");
+        options.max_error = option_value("--max-error", command.max_error, "1");
     }
     for (const auto part : core::split(command.points, ',')) {
         if (core::trimmed(part).empty()) {

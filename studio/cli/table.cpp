@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/cli/table_analysis.h"
 #include "studio/cli/table_options.h"
@@ -85,7 +86,7 @@ int run_at(Shell& shell, const AtCommand& command) {
                 line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " + table.unit() + "/" + axis.unit + " along " + axis.name;
                 if (e.beyond[k] != 0) {
                     shell.warn(axis.name + " is outside the table by " + shown(table, axis.name, axis.unit, std::abs(e.beyond[k])) + ": " +
-                               (table.range() == tables::RangePolicy::extrapolate ? "extrapolated" : "the end value is held"));
+                               tables::outside_words(axis.range));
                 }
             }
             if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
@@ -146,9 +147,9 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
 int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
     const auto table = command.table.fit(shell);
     tables::EquilibriumOptions options;
-    options.net_weight = core::parse_in(command.weight, "N");
-    options.virtual_mass = command.mass.empty() ? 0 : core::parse_in(command.mass, "kg");
-    options.damping = command.damping.empty() ? 0 : core::parse_in(command.damping, "N s/m");
+    options.net_weight = option_value("--weight", command.weight, "N");
+    options.virtual_mass = command.mass.empty() ? 0 : option_value("--mass", command.mass, "kg");
+    options.damping = command.damping.empty() ? 0 : option_value("--damping", command.damping, "N s/m");
     options.scale = command.scale;
     options.held = read_assignments(command.held);
     options.draws = command.draws;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/cli/table_options.h"
 #include "studio/figures/render.h"
@@ -17,6 +18,8 @@
 #include "surrogates/tables/compare.h"
 #include "surrogates/tables/continuation.h"
 #include "surrogates/tables/figures.h"
+#include "surrogates/tables/many_points.h"
+#include "surrogates/tables/pitch.h"
 #include "surrogates/tables/select.h"
 
 namespace underbody::studio {
@@ -46,9 +49,9 @@ int run_continue(Shell& shell, const ContinueCommand& command) {
     options.parameter = std::string(core::trimmed(command.along.substr(0, equals)));
     const auto* known = core::find_quantity(options.parameter);
     const std::string unit = options.parameter == "net_weight" ? "N" : known != nullptr ? known->unit : "1";
-    options.lower = core::parse_in(command.along.substr(equals + 1, colon - equals - 1), unit);
-    options.upper = core::parse_in(command.along.substr(colon + 1), unit);
-    options.base.net_weight = core::parse_in(command.weight, "N");
+    options.lower = option_value("--along", command.along.substr(equals + 1, colon - equals - 1), unit);
+    options.upper = option_value("--along", command.along.substr(colon + 1), unit);
+    options.base.net_weight = option_value("--weight", command.weight, "N");
     options.base.held = read_assignments(command.held);
     options.exponent = command.exponent;
     for (const auto& [name, value] : table.conditions()) {
@@ -57,8 +60,9 @@ int run_continue(Shell& shell, const ContinueCommand& command) {
         }
     }
     if (!command.reference.empty()) {
-        options.reference = core::parse_in(command.reference, unit);
+        options.reference = option_value("--reference", command.reference, unit);
     }
+    shell.show(tables::outside_remarks(table, options.base.held));
     const auto curve = tables::continue_equilibria(table, options, shell.progress());
     std::size_t points = 0;
     for (const auto& branch : curve.branches) {
@@ -87,6 +91,7 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
     table.quantity = "pitch_moment";
     const auto moment = table.fit(shell);
     const auto held = read_assignments(command.held);
+    shell.show(tables::outside_remarks(moment, held));
     nlohmann::json document;
     document["windows"] = nlohmann::json::array();
     const bool over_gap = moment.axes().size() > 1;
@@ -108,7 +113,7 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
     if (!command.weight.empty()) {
         table.quantity = "lift_force";
         tables::CoupledOptions options;
-        options.net_weight = core::parse_in(command.weight, "N");
+        options.net_weight = option_value("--weight", command.weight, "N");
         document["equilibria"] = nlohmann::json::array();
         for (const auto& e : tables::coupled_equilibria(table.fit(shell), moment, options)) {
             shell.print(e.kind + " balance of heave and pitch at gap " + number(e.gap) + " m, pitch " + number(core::convert(std::abs(e.pitch) < 1e-12 ? 0 : e.pitch, "rad", "deg"), 4) + " deg; eigenvalues of the stiffness " + eigenvalue(e.eigenvalues[0]) + " and " +
@@ -155,6 +160,9 @@ int run_compare(Shell& shell, const CompareCommand& command) {
         throw core::UsageError("measure", "there is no measure '" + command.measure + "'", {}, core::did_you_mean(command.measure, measures));
     }
     options.measure = static_cast<tables::Measure>(at - measures.begin());
+    for (const auto& [name, table] : all) {
+        shell.show(tables::outside_remarks(table, options.held));
+    }
     const auto result = tables::compare_tables(all, options);
     for (std::size_t i = 0; i < result.names.size(); ++i) {
         shell.print(result.names[i] + ": " + result.measure + " " + number(result.values[i]) + " +- " + number(result.errors[i], 2));
@@ -184,9 +192,9 @@ int run_collapse(Shell& shell, const CollapseCommand& command) {
     }
     tables::CollapseOptions options;
     options.by = command.by;
-    options.length = command.length.empty() ? 0 : core::parse_in(command.length, "m");
-    options.width = command.width.empty() ? 0 : core::parse_in(command.width, "m");
-    options.density = command.density.empty() ? options.density : core::parse_in(command.density, "kg/m^3");
+    options.length = command.length.empty() ? 0 : option_value("--length", command.length, "m");
+    options.width = command.width.empty() ? 0 : option_value("--width", command.width, "m");
+    options.density = command.density.empty() ? options.density : option_value("--density", command.density, "kg/m^3");
     const auto result = tables::collapse(points, command.table.quantity.empty() ? forces.front() : command.table.quantity, options);
     for (const auto& g : result.groups) {
         std::string where;

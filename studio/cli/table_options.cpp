@@ -18,7 +18,7 @@ void TableOptions::add_to(CLI::App& command) {
     command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either; of a model: what is held, such as speed=0.5m/s");
     command.add_option("--axes", axes, "columns that are axes, such as gap,pitch (default: all known ones that vary)");
     command.add_option("--kind", kind, "auto | interpolation | gp | spline")->capture_default_str();
-    command.add_option("--range", range, "outside the points: clamp | refuse | extrapolate")->capture_default_str();
+    command.add_option("--range", range, "outside the points: clamp | refuse | extrapolate, for all axes or one by one: gap=refuse,pitch=clamp (default clamp, or what an exported table says)");
 }
 
 tables::FitOptions TableOptions::fit_options() const {
@@ -35,15 +35,7 @@ tables::FitOptions TableOptions::fit_options() const {
     } else {
         throw core::UsageError("kind", "there is no kind of table '" + kind + "'", {}, core::did_you_mean(kind, kinds));
     }
-    if (range == "clamp") {
-        options.range = tables::RangePolicy::clamp;
-    } else if (range == "refuse") {
-        options.range = tables::RangePolicy::refuse;
-    } else if (range == "extrapolate") {
-        options.range = tables::RangePolicy::extrapolate;
-    } else {
-        throw core::UsageError("range", "there is no range policy '" + range + "'", {}, core::did_you_mean(range, {"clamp", "refuse", "extrapolate"}));
-    }
+    options.range = tables::parse_range_policies(range);
     for (const auto name : core::split(axes, ',')) {
         if (!core::trimmed(name).empty()) {
             options.axes.emplace_back(core::trimmed(name));

@@ -21,7 +21,7 @@ struct TableOptions {
     std::string where;
     std::string axes;
     std::string kind = "auto";
-    std::string range = "clamp";
+    std::string range;
 
     /// Adds TABLE.csv, --quantity, --where, --axes, --kind, --range.
     void add_to(CLI::App& command);

@@ -30,7 +30,7 @@ struct Slice {
     double at(double x, double* slope, double* sigma) {
         point[axis] = x;
         std::array<double, max_axes> s{};
-        const double v = table->value(point.data(), s.data());
+        const double v = table->value_by_policy(point.data(), s.data(), 1U << axis);
         if (slope != nullptr) {
             *slope = s[axis];
         }

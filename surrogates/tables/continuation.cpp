@@ -27,6 +27,7 @@ public:
             }
         }
         point_ = held_point(table, axis_, held);
+        free_ = 1U << axis_ | (parameter_axis_ != none ? 1U << parameter_axis_ : 0);
         const bool weight = options.parameter == "net_weight";
         const auto* known = core::find_quantity(options.parameter);
         if (!weight && parameter_axis_ == none && (known == nullptr || options.parameter == table.axes()[axis_].name)) {
@@ -55,7 +56,7 @@ public:
             scale *= std::pow(std::abs(parameter / options_.reference), options_.exponent);
         }
         std::array<double, max_axes> s{};
-        const double v = scale * table_.value(point_.data(), slope != nullptr ? s.data() : nullptr) - weight;
+        const double v = scale * table_.value_by_policy(point_.data(), slope != nullptr ? s.data() : nullptr, free_) - weight;
         if (slope != nullptr) {
             *slope = scale * s[axis_];
         }
@@ -70,6 +71,7 @@ private:
     const ContinuationOptions& options_;
     std::size_t axis_ = 0;
     std::size_t parameter_axis_ = none;
+    unsigned free_ = 0;
     std::vector<double> point_;
 };
 
@@ -304,196 +306,6 @@ void to_json(nlohmann::json& json, const EquilibriumCurve& curve) {
             list.push_back({{curve.parameter, b.parameter}, {curve.axis, b.gap}, {"stiffness", b.stiffness}, {"stable", b.stability == Stability::stable}});
         }
         json["branches"].push_back(std::move(list));
-    }
-}
-
-std::vector<PitchWindow> pitch_windows(const ForceTable& moment, const Held& held) {
-    const std::size_t axis = axis_index(moment, "pitch");
-    std::vector<double> point = held_point(moment, axis, held);
-    const auto at = [&](double pitch, double& slope) {
-        std::array<double, max_axes> s{};
-        point[axis] = pitch;
-        const double m = moment.value(point.data(), s.data());
-        slope = s[axis];
-        return m;
-    };
-    std::vector<PitchWindow> windows;
-    const auto& a = moment.axes()[axis];
-    const int samples = 2000;
-    double last_slope = 0;
-    double last = a.lower;
-    at(a.lower, last_slope);
-    const auto edge = [&](double low, double high) {
-        return bisected(
-            [&](double p) {
-                double s = 0;
-                at(p, s);
-                return s;
-            },
-            low, high);
-    };
-    bool open = last_slope < 0;
-    PitchWindow window;
-    window.lower = a.lower;
-    for (int i = 1; i <= samples; ++i) {
-        const double pitch = i == samples ? a.upper : a.lower + (a.upper - a.lower) * i / samples;
-        double slope = 0;
-        at(pitch, slope);
-        const bool restoring = slope < 0;
-        if (restoring && !open) {
-            window = {};
-            window.lower = edge(last, pitch);
-        }
-        if (open && (!restoring || i == samples)) {
-            window.upper = restoring ? a.upper : edge(last, pitch);
-            windows.push_back(window);
-        }
-        open = restoring;
-        last = pitch;
-    }
-    for (auto& w : windows) {
-        w.side = w.lower > 0 ? "nose up" : w.upper < 0 ? "nose down" : "level";
-        w.stiffness = -1;
-        w.trim_lower = INFINITY;
-        w.trim_upper = -INFINITY;
-        for (int i = 0; i <= 200; ++i) {
-            double slope = 0;
-            const double pitch = w.lower + (w.upper - w.lower) * i / 200;
-            const double torque = -at(pitch, slope);
-            w.trim_lower = std::min(w.trim_lower, torque);
-            w.trim_upper = std::max(w.trim_upper, torque);
-            if (-slope > w.stiffness) {
-                w.stiffness = -slope;
-                w.best_pitch = pitch;
-                w.trim_torque = torque;
-            }
-        }
-    }
-    return windows;
-}
-
-core::Figure pitch_figure(const ForceTable& moment, const Held& held) {
-    FigureOptions options;
-    options.axis = "pitch";
-    options.held = held;
-    options.title = "pitch moment against pitch, nose up positive";
-    core::Figure figure = curve_figure(moment, options);
-    const auto x = core::conversion("rad", figure.x.unit);
-    for (const auto& w : pitch_windows(moment, held)) {
-        core::FigureLine line;
-        line.vertical = true;
-        line.colour = core::palette(2);
-        line.at = x(w.lower);
-        line.label = w.side + ": stable";
-        figure.lines.push_back(line);
-        line.at = x(w.upper);
-        line.label.clear();
-        figure.lines.push_back(line);
-    }
-    return figure;
-}
-
-void to_json(nlohmann::json& json, const PitchWindow& w) {
-    json = nlohmann::json{{"lower", w.lower},         {"upper", w.upper},           {"side", w.side},           {"best_pitch", w.best_pitch},
-                          {"stiffness", w.stiffness}, {"trim_torque", w.trim_torque}, {"trim_lower", w.trim_lower}, {"trim_upper", w.trim_upper}};
-}
-
-std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options) {
-    struct Side {
-        const ForceTable& table;
-        std::size_t gap, pitch;
-        std::vector<double> point;
-        double at(double h, double p, double* slope) {
-            point[gap] = h;
-            point[pitch] = p;
-            std::array<double, max_axes> s{};
-            const double v = table.value(point.data(), s.data());
-            slope[0] = s[gap];
-            slope[1] = s[pitch];
-            return v;
-        }
-    };
-    const auto side = [&](const ForceTable& table) {
-        Side s{table, axis_index(table, "gap"), axis_index(table, "pitch"), {}};
-        Held held = options.held;
-        held.emplace_back("gap", table.axes()[s.gap].lower);
-        held.emplace_back("pitch", table.axes()[s.pitch].lower);
-        s.point = held_point(table, {}, held);
-        return s;
-    };
-    Side force = side(lift);
-    Side torque = side(moment);
-    const auto& fg = lift.axes()[force.gap];
-    const auto& fp = lift.axes()[force.pitch];
-    const auto& mg = moment.axes()[torque.gap];
-    const auto& mp = moment.axes()[torque.pitch];
-    const double h0 = std::max(fg.lower, mg.lower), h1 = std::min(fg.upper, mg.upper);
-    const double p0 = std::max(fp.lower, mp.lower), p1 = std::min(fp.upper, mp.upper);
-    std::vector<CoupledEquilibrium> found;
-    if (!(h0 < h1) || !(p0 < p1)) {
-        throw core::UsageError("range", "lift and moment have no common range of gap and pitch");
-    }
-    const int n = 60;
-    const bool log = h0 > 0 && h1 / h0 > 4;
-    const auto gap_at = [&](double t) { return log ? h0 * std::pow(h1 / h0, t) : h0 + (h1 - h0) * t; };
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) {
-            double h = gap_at((i + 0.5) / n);
-            double p = p0 + (p1 - p0) * (j + 0.5) / n;
-            double fs[2], ms[2];
-            bool converged = false;
-            for (int k = 0; k < 30; ++k) {
-                const double f = force.at(h, p, fs) - options.net_weight;
-                const double m = torque.at(h, p, ms) + options.trim_torque;
-                const double det = fs[0] * ms[1] - fs[1] * ms[0];
-                if (det == 0) {
-                    break;
-                }
-                const double dh = (f * ms[1] - fs[1] * m) / det;
-                const double dp = (fs[0] * m - f * ms[0]) / det;
-                // From the middle of its cell a start may walk a few cells, no further: every equilibrium has starts near it.
-                if (k == 0 && (std::abs(dh) > 6 * (gap_at(std::min(1.0, (i + 1.0) / n)) - gap_at(static_cast<double>(i) / n)) || std::abs(dp) > 6 * (p1 - p0) / n)) {
-                    break;
-                }
-                h -= dh;
-                p -= dp;
-                if (h < h0 || h > h1 || p < p0 || p > p1) {
-                    break;
-                }
-                if (std::abs(dh) < 1e-13 * (h1 - h0) && std::abs(dp) < 1e-13 * (p1 - p0)) {
-                    converged = true;
-                    break;
-                }
-            }
-            const bool known = std::any_of(found.begin(), found.end(), [&](const auto& e) {
-                return std::abs(e.gap - h) < 1e-7 * (h1 - h0) && std::abs(e.pitch - p) < 1e-7 * (p1 - p0);
-            });
-            if (!converged || known) {
-                continue;
-            }
-            CoupledEquilibrium e;
-            e.gap = h;
-            e.pitch = p;
-            force.at(h, p, fs);
-            torque.at(h, p, ms);
-            e.stiffness = {{{-fs[0], -fs[1]}, {-ms[0], -ms[1]}}};
-            const bool masses = options.virtual_mass > 0 && options.virtual_inertia > 0;
-            const double a = e.stiffness[0][0] / (masses ? options.virtual_mass : 1), b = e.stiffness[0][1] / (masses ? options.virtual_mass : 1);
-            const double c = e.stiffness[1][0] / (masses ? options.virtual_inertia : 1), d = e.stiffness[1][1] / (masses ? options.virtual_inertia : 1);
-            const std::complex<double> root = std::sqrt(std::complex<double>((a - d) * (a - d) / 4 + b * c));
-            e.eigenvalues = {(a + d) / 2 - root, (a + d) / 2 + root};
-            e.kind = root.imag() != 0 ? "flutter" : e.eigenvalues[0].real() > 0 ? "stable" : "divergent";
-            found.push_back(e);
-        }
-    }
-    std::sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
-    return found;
-}
-
-void to_json(nlohmann::json& json, const CoupledEquilibrium& e) {
-    json = nlohmann::json{{"gap", e.gap}, {"pitch", e.pitch}, {"stiffness", e.stiffness}, {"kind", e.kind}, {"stable", e.kind == "stable"}};
-    for (const auto& v : e.eigenvalues) {
-        json["eigenvalues"].push_back({{"real", v.real()}, {"imaginary", v.imag()}});
     }
 }
 

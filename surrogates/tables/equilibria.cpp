@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "surrogates/tables/many_points.h"
 
 namespace underbody::tables {
 
@@ -152,11 +153,9 @@ Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options
             continue;
         }
         result.held.emplace_back(table.axes()[k].name, point[k]);
-        if (point[k] < table.axes()[k].lower || point[k] > table.axes()[k].upper) {
-            result.remarks.push_back({core::Problem::Severity::warning,
-                                      table.axes()[k].name + " lies outside the table, which holds its end value there",
-                                      {table.source(), {}, {}, {}}});
-        }
+    }
+    for (auto& remark : outside_remarks(table, result.held)) {
+        result.remarks.push_back(std::move(remark));
     }
     result.quantity = table.quantity();
     result.source = table.source();

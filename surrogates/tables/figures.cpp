@@ -104,7 +104,7 @@ void add_curve(core::Figure& figure, const ForceTable& table, std::size_t axis, 
     double widest = 0;
     for (const double x : samples_of(table, axis, options)) {
         at[axis] = x;
-        const double value = table.value(at.data());
+        const double value = table.value_by_policy(at.data(), nullptr, 1U << axis);
         const double sigma = table.sigma(at.data());
         widest = std::max(widest, sigma);
         curve.x.push_back(x_shown(x));
@@ -280,7 +280,7 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
                 blank = true;
                 continue;
             }
-            map.values.push_back(v_shown(table.value(at.data())));
+            map.values.push_back(v_shown(table.value_by_policy(at.data(), nullptr, 1U << kx | 1U << ky)));
             low = std::min(low, map.values.back());
             high = std::max(high, map.values.back());
         }

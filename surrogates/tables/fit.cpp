@@ -34,7 +34,7 @@ double root_mean_square(const std::vector<double>& misses, const std::vector<dou
 std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options) {
     using Kind = FitOptions::Kind;
     if (options.kind == Kind::gaussian_process) {
-        return fit_gaussian_process(points, options, nullptr);
+        return fit_gaussian_process(points, nullptr);
     }
     const bool automatic = options.kind == Kind::automatic;
     if (!points.full_grid) {
@@ -42,7 +42,7 @@ std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, cons
             throw InputError("grid", "the points do not fill a grid, which interpolation needs" + (points.missing.empty() ? "" : ": " + points.missing),
                              {points.table.source, {}, {}, {}}, "fit a Gaussian process, or add the missing set points");
         }
-        return fit_gaussian_process(points, options, nullptr);
+        return fit_gaussian_process(points, nullptr);
     }
     auto interpolated = fit_interpolation(points, options);
     const auto say = [&](const std::string& text) { interpolated->remarks.push_back({core::Problem::Severity::note, text, {points.table.source, {}, {}, {}}}); };
@@ -64,7 +64,7 @@ std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, cons
         return interpolated;
     }
     std::vector<double> misses;
-    auto process = fit_gaussian_process(points, options, &misses);
+    auto process = fit_gaussian_process(points, &misses);
     if (misses.size() != known.size()) {
         return interpolated;
     }

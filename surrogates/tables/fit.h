@@ -28,7 +28,7 @@ ErrorModel::Growth end_growth(const CubicGrid& grid, std::size_t k);
 std::vector<double> interpolation_misses(const SetPoints& points);
 
 /// Gaussian process, any points. `score` (may be null) gets its leave-one-out errors, in the order of the points.
-std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& points, const FitOptions& options, std::vector<double>* misses);
+std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& points, std::vector<double>* misses);
 
 /// Exact interpolation of a full grid.
 std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, const FitOptions& options);

@@ -7,6 +7,7 @@
 
 #include "surrogates/tables/fit.h"
 #include "surrogates/tables/force_table_impl.h"
+#include "surrogates/tables/hull.h"
 
 namespace underbody::tables {
 
@@ -24,6 +25,21 @@ nlohmann::json facts_of(const core::Table& table) {
     return nullptr;
 }
 
+/// One word for each axis; older files have one for all.
+RangePolicy exported_policy(const nlohmann::json& facts, std::size_t axis) {
+    const auto range = facts.find("range");
+    if (range == facts.end()) {
+        return RangePolicy::clamp;
+    }
+    const auto& word = range->is_array() && axis < range->size() ? (*range)[axis] : *range;
+    const auto policy = word.is_string() ? range_policy(word.get<std::string>()) : std::nullopt;
+    if (!policy) {
+        throw core::InputError("range", "an exported table has the range policy " + word.dump() + " on its axis " + std::to_string(axis + 1), {},
+                               "it is clamp, refuse or extrapolate");
+    }
+    return *policy;
+}
+
 std::vector<std::string> slope_columns(const std::string& quantity, const std::vector<TableAxis>& axes) {
     std::vector<std::string> names{quantity};
     for (std::size_t mask = 1; mask < std::size_t{1} << axes.size(); ++mask) {
@@ -36,13 +52,7 @@ std::vector<std::string> slope_columns(const std::string& quantity, const std::v
     return names;
 }
 
-}  // namespace
-
-std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, const std::string& quantity, const FitOptions& options) {
-    const nlohmann::json facts = facts_of(table);
-    if (facts.is_null() || facts.value("quantity", "") != quantity) {
-        return nullptr;
-    }
+std::shared_ptr<const ForceTable::Impl> taken_back(const nlohmann::json& facts, const core::Table& table, const std::string& quantity, const FitOptions& options) {
     FitOptions named = options;
     named.axes = facts.value("axes", std::vector<std::string>{});
     for (const auto& name : named.axes) {
@@ -68,9 +78,16 @@ std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, c
     result->axes = points.axes;
     result->points = points.table;
     result->constants = points.constants;
-    result->range = options.range != RangePolicy::clamp                  ? options.range
-                    : facts.value("range", "clamp") == "extrapolate" ? RangePolicy::extrapolate
-                                                                         : RangePolicy::clamp;
+    for (std::size_t k = 0; k < result->axes.size(); ++k) {
+        result->axes[k].range = options.range.of(result->axes[k].name, exported_policy(facts, k));
+    }
+    const nlohmann::json conditions = facts.value("conditions", nlohmann::json::object());
+    for (const auto& [name, value] : conditions.items()) {
+        result->constants.emplace_back(name, value.get<double>());
+    }
+    if (facts.contains("hull")) {
+        result->hull = std::make_shared<Hull>(result->axes, facts["hull"].get<std::vector<std::vector<double>>>());
+    }
     result->kind = "exported grid";
     result->remarks.push_back({core::Problem::Severity::note, "an exported table: taken with its slopes and error, not fitted again", {table.source, {}, {}, {}}});
     std::vector<std::vector<double>> grid;
@@ -104,6 +121,18 @@ std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, c
         }
     }
     return result;
+}
+
+}  // namespace
+
+std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, const std::string& quantity, const FitOptions& options) {
+    const nlohmann::json facts = facts_of(table);
+    try {
+        return facts.is_null() || facts.value("quantity", "") != quantity ? nullptr : taken_back(facts, table, quantity, options);
+    } catch (const nlohmann::json::exception& error) {
+        throw core::InputError("parse", std::string("the line of an exported table that describes it is damaged: ") + error.what(), {table.source, {}, {}, {}},
+                               "export it again");
+    }
 }
 
 }  // namespace underbody::tables

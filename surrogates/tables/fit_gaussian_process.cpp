@@ -322,7 +322,7 @@ std::string described(const ProcessMixture& mixture, const SetPoints& points) {
 
 }  // namespace
 
-std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_points, const FitOptions& options, std::vector<double>* misses) {
+std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_points, std::vector<double>* misses) {
     check_spread(all_points);
     core::Problems remarks = all_points.remarks;
     const SetPoints points = reduced(all_points, 1200, remarks);
@@ -343,7 +343,6 @@ std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_poin
     table->axes = points.axes;
     table->points = points.table;
     table->constants = points.constants;
-    table->range = options.range;
     table->kind = "Gaussian process";
     table->rule = SlopeRule::not_a_knot;
     remarks.push_back({core::Problem::Severity::note, described(*mixture, points), {points.table.source, {}, {}, {}}});

@@ -142,7 +142,6 @@ std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, con
     table->remarks = points.remarks;
     table->points = points.table;
     table->constants = points.constants;
-    table->range = options.range;
     table->rule = options.kind == FitOptions::Kind::spline ? SlopeRule::not_a_knot : SlopeRule::monotone;
     const std::size_t n = points.axes.size();
     table->kind = table->rule == SlopeRule::not_a_knot ? "not-a-knot cubic spline" : "monotone cubic";

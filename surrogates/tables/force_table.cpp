@@ -29,7 +29,6 @@ const core::Problems& ForceTable::remarks() const { return impl_->remarks; }
 const core::Table& ForceTable::points() const { return impl_->points; }
 const std::vector<double>& ForceTable::knots(std::size_t axis) const { return impl_->surface.axis(axis).points(); }
 const std::vector<std::pair<std::string, double>>& ForceTable::conditions() const { return impl_->constants; }
-RangePolicy ForceTable::range() const { return impl_->range; }
 
 ForceTable ForceTable::read(const std::filesystem::path& path, const std::string& quantity, const FitOptions& options) {
     return fit(read_points(path), quantity, options);
@@ -49,6 +48,25 @@ ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity
 }
 
 double ForceTable::value(const double* point, double* slope) const noexcept { return impl_->surface.value(point, slope); }
+
+double ForceTable::value_by_policy(const double* point, double* slope, unsigned free) const {
+    unsigned going_on = 0;
+    for (std::size_t k = 0; k < impl_->axes.size(); ++k) {
+        const TableAxis& axis = impl_->axes[k];
+        if ((free >> k & 1) != 0 || (point[k] >= axis.lower && point[k] <= axis.upper) || std::isnan(point[k])) {
+            continue;
+        }
+        if (axis.range == RangePolicy::refuse) {
+            throw InputError("range",
+                             axis.name + " " + core::format_number(point[k], 6) + " " + axis.unit + " is outside the table, which covers " +
+                                 core::format_number(axis.lower, 6) + " to " + core::format_number(axis.upper, 6) + " " + axis.unit + " and refuses all else",
+                             {impl_->source, {}, {}, {}}, "take a value in the range, or let " + axis.name + " hold its end value (clamp) or extrapolate");
+        }
+        going_on |= axis.range == RangePolicy::extrapolate ? 1U << k : 0;
+    }
+    return going_on == 0 ? impl_->surface.value(point, slope) : impl_->surface.continued(point, slope, going_on);
+}
+
 void values(const ForceTable& table, const double* points, std::size_t count, double* value, double* slope) noexcept {
     table.impl().surface.values(points, count, value, slope);
 }
@@ -66,24 +84,26 @@ Evaluation ForceTable::at(std::span<const double> point) const {
             throw InputError("range", axis.name + " is not a number");
         }
         result.beyond[k] = point[k] < axis.lower ? point[k] - axis.lower : point[k] > axis.upper ? point[k] - axis.upper : 0;
-        if (result.beyond[k] == 0) {
-            continue;
-        }
-        result.outside = true;
-        if (t.range == RangePolicy::refuse) {
-            throw InputError("range",
-                             axis.name + " " + core::format_number(point[k], 6) + " " + axis.unit + " is outside the table, which covers " +
-                                 core::format_number(axis.lower, 6) + " to " + core::format_number(axis.upper, 6) + " " + axis.unit,
-                             {t.source, {}, {}, {}}, "let it hold its end values (clamp) or extrapolate");
-        }
+        result.outside = result.outside || result.beyond[k] != 0;
     }
-    result.value = t.range == RangePolicy::extrapolate ? t.surface.continued(point.data(), result.slope.data())
-                                                       : t.surface.value(point.data(), result.slope.data());
+    result.value = value_by_policy(point.data(), result.slope.data());
     result.sigma = t.error.sigma(point.data(), result.beyond.data());
     return result;
 }
 
 double beyond_points(const ForceTable& table, const double* point) { return table.impl().hull ? table.impl().hull->distance(point) : 0; }
+
+core::Problems outside_remarks(const ForceTable& table, const Held& held) {
+    core::Problems remarks;
+    for (const auto& [name, value] : held) {
+        const auto& axes = table.axes();
+        const auto axis = std::find_if(axes.begin(), axes.end(), [&n = name](const TableAxis& a) { return a.name == n; });
+        if (axis != axes.end() && (value < axis->lower || value > axis->upper)) {
+            remarks.push_back({core::Problem::Severity::warning, axis->name + " lies outside the table: " + outside_words(axis->range), {table.source(), {}, {}, {}}});
+        }
+    }
+    return remarks;
+}
 
 double ForceTable::sigma(const double* point) const noexcept {
     std::array<double, max_axes> beyond{};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/table.h"
+#include "surrogates/tables/range_policy.h"
 
 namespace underbody::tables {
 
@@ -21,13 +22,7 @@ struct TableAxis {
     double lower = 0;
     double upper = 0;
     std::vector<double> points;  ///< distinct set points, ascending
-};
-
-/// What happens outside the points of an axis.
-enum class RangePolicy {
-    clamp,        ///< hold the end value, slope zero, flagged (default)
-    refuse,       ///< throw core::InputError
-    extrapolate,  ///< go on with the end slope, with growing error, flagged
+    RangePolicy range = RangePolicy::clamp;
 };
 
 struct Evaluation {
@@ -45,7 +40,7 @@ struct FitOptions {
         gaussian_process,  ///< scattered or gridded points with errors
         spline,            ///< not-a-knot cubic spline: exact, C2, may overshoot; full grids only
     } kind = Kind::automatic;
-    RangePolicy range = RangePolicy::clamp;
+    RangePolicies range;            ///< a name that is no axis of the table: core::UsageError
     std::vector<std::string> axes;  ///< columns to use as axes; empty: every known set-point column that varies
 };
 
@@ -68,10 +63,17 @@ public:
     /// The points it was fitted to (SI).
     [[nodiscard]] const core::Table& points() const;
 
-    /// `point` in SI, one value per axis, in the order of axes().
+    /// `point` in SI, one value per axis, in the order of axes(). Outside an axis its policy (axes()[k].range) decides: refused points throw
+    /// core::InputError that names the axis and its range; beyond extrapolated axes the function goes on along its tangent there (C1, and linear in
+    /// each of these coordinates), so that the slopes are those of the value everywhere.
     [[nodiscard]] Evaluation at(std::span<const double> point) const;
-    /// The hot path: clamped value and slopes (`slope` has one entry per axis), no error, no allocation, never throws.
+    /// The hot path: value and slopes (`slope` has one entry per axis) held at the ends of all axes whatever their policies, no error, no allocation,
+    /// never throws.
     [[nodiscard]] double value(const double* point, double* slope = nullptr) const noexcept;
+
+    /// value() by the policies of the axes, as at() has it; throws as at() does where an axis refuses. Axes whose bit is set in `free` (those that a
+    /// search moves along) are held at their ends. NaN in, NaN out.
+    double value_by_policy(const double* point, double* slope = nullptr, unsigned free = 0) const;
 
     /// One standard deviation at a point; grows beyond the range whatever the policy. Never throws.
     [[nodiscard]] double sigma(const double* point) const noexcept;
@@ -80,7 +82,6 @@ public:
     [[nodiscard]] const std::vector<double>& knots(std::size_t axis) const;
     /// Columns of the points that held one value throughout (name, SI value): the conditions the table was made under.
     [[nodiscard]] const std::vector<std::pair<std::string, double>>& conditions() const;
-    [[nodiscard]] RangePolicy range() const;
 
     /// Another table whose values are drawn from this one's error (correlated along the axes), for probability maps.
     [[nodiscard]] ForceTable drawn(std::uint64_t seed) const;

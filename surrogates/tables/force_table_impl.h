@@ -24,7 +24,6 @@ struct ForceTable::Impl {
     core::Problems remarks;
     core::Table points;
     std::vector<std::pair<std::string, double>> constants;
-    RangePolicy range = RangePolicy::clamp;
     SlopeRule rule = SlopeRule::monotone;
     CubicGrid surface;  ///< what value() evaluates
     ErrorModel error;   ///< standard deviation over the same axes

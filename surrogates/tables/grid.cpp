@@ -13,6 +13,7 @@ GridAxis::GridAxis(std::vector<double> points) : x_(std::move(points)) {
     assert(x_.size() >= 2);
     const std::size_t cells = x_.size() - 1;
     lower_ = x_.front();
+    upper_ = x_.back();
     const double span = x_.back() - x_.front();
     double shortest = span;
     for (std::size_t i = 0; i < cells; ++i) {
@@ -23,7 +24,7 @@ GridAxis::GridAxis(std::vector<double> points) : x_(std::move(points)) {
     const double wanted = std::min(std::ceil(span / shortest) + 1, 16384.0);
     const auto buckets = static_cast<std::size_t>(std::max(wanted, static_cast<double>(cells)));
     per_unit_ = static_cast<double>(buckets) / span;
-    last_bucket_ = buckets - 1;
+    last_bucket_ = static_cast<std::int32_t>(buckets) - 1;
     stop_.assign(x_.begin() + 1, x_.end());
     stop_.back() = std::numeric_limits<double>::infinity();
     first_.resize(buckets);
@@ -57,7 +58,8 @@ void CubicGrid::set_axes(std::vector<std::vector<double>> points) {
     for (auto& axis : points) {
         axes_.emplace_back(std::move(axis));
     }
-    nodes_.resize(count << axes_.size());
+    dimensions_ = axes_.size();
+    nodes_.resize(count << dimensions_);
 }
 
 CubicGrid::CubicGrid(std::vector<std::vector<double>> points, std::vector<double> hermite) {
@@ -228,6 +230,7 @@ void CubicGrid::build_cells() {
         const auto& x = axes_[0].points();
         const auto& y = axes_[1].points();
         const std::size_t columns = y.size() - 1;
+        bicubic_columns_ = columns;
         bicubics_.resize((x.size() - 1) * columns);
         for (std::size_t i = 0; i + 1 < x.size(); ++i) {
             for (std::size_t j = 0; j < columns; ++j) {
@@ -247,127 +250,6 @@ void CubicGrid::build_cells() {
                         cell[4 * q + power] = c[q];  // powers of x side by side, for the vector unit
                     }
                 }
-            }
-        }
-    }
-}
-
-double CubicGrid::from_cells_1(const Spot& s, double* slope) const noexcept {
-    const double* c = &cells_[4 * s.cell];
-    const double u = s.offset;
-    if (slope != nullptr) {
-        slope[0] = s.held ? 0 : c[1] + u * (2 * c[2] + 3 * u * c[3]);
-    }
-    return c[0] + u * (c[1] + u * (c[2] + u * c[3]));
-}
-
-double CubicGrid::from_cells_2(const Spot* s, double* slope) const noexcept {
-    const double* c = bicubics_[s[0].cell * (axes_[1].size() - 1) + s[1].cell].c;
-    const double u = s[0].offset;
-    const double v = s[1].offset;
-    double p[4];
-    for (int i = 0; i < 4; ++i) {
-        p[i] = c[i] + v * (c[4 + i] + v * (c[8 + i] + v * c[12 + i]));
-    }
-    if (slope != nullptr) {
-        double d[4];
-        for (int i = 0; i < 4; ++i) {
-            d[i] = c[4 + i] + v * (2 * c[8 + i] + 3 * v * c[12 + i]);
-        }
-        slope[0] = s[0].held ? 0 : p[1] + u * (2 * p[2] + 3 * u * p[3]);
-        slope[1] = s[1].held ? 0 : d[0] + u * (d[1] + u * (d[2] + u * d[3]));
-    }
-    return p[0] + u * (p[1] + u * (p[2] + u * p[3]));
-}
-
-namespace {
-
-/// Hermite functions on a cell of width h at distance `offset` from its start: [differentiated][corner][derivative].
-void hermite_weights(double h, double offset, double (&w)[2][2][2]) {
-    const double t = offset / h;
-    const double r = 1 - t;
-    w[0][0][0] = r * r * (1 + 2 * t);
-    w[0][1][0] = t * t * (3 - 2 * t);
-    w[0][0][1] = h * t * r * r;
-    w[0][1][1] = -h * t * t * r;
-    w[1][0][0] = -6 * t * r / h;
-    w[1][1][0] = 6 * t * r / h;
-    w[1][0][1] = r * (1 - 3 * t);
-    w[1][1][1] = t * (3 * t - 2);
-}
-
-}  // namespace
-
-/// Sum over corners and derivatives of the products of Hermite functions; any number of axes.
-double CubicGrid::from_nodes(const Spot* spots, double* slope) const noexcept {
-    const std::size_t n = axes_.size();
-    const std::size_t width = std::size_t{1} << n;
-    double weight[max_axes][2][2][2];  // [axis][differentiated][corner][derivative]
-    std::size_t base = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const auto& x = axes_[k].points();
-        const double h = x[spots[k].cell + 1] - x[spots[k].cell];
-        hermite_weights(h, spots[k].offset, weight[k]);
-        base += spots[k].cell * stride_[k];
-    }
-    double value = 0;
-    double gradient[max_axes] = {};
-    for (std::size_t corner = 0; corner < width; ++corner) {
-        std::size_t node = base;
-        for (std::size_t k = 0; k < n; ++k) {
-            node += (corner >> k & 1) * stride_[k];
-        }
-        const double* data = &nodes_[node * width];
-        for (std::size_t mask = 0; mask < width; ++mask) {
-            double product = data[mask];
-            for (std::size_t k = 0; k < n; ++k) {
-                product *= weight[k][0][corner >> k & 1][mask >> k & 1];
-            }
-            value += product;
-            if (slope == nullptr) {
-                continue;
-            }
-            for (std::size_t j = 0; j < n; ++j) {
-                double part = data[mask];
-                for (std::size_t k = 0; k < n; ++k) {
-                    part *= weight[k][k == j ? 1 : 0][corner >> k & 1][mask >> k & 1];
-                }
-                gradient[j] += part;
-            }
-        }
-    }
-    if (slope != nullptr) {
-        for (std::size_t k = 0; k < n; ++k) {
-            slope[k] = spots[k].held ? 0 : gradient[k];
-        }
-    }
-    return value;
-}
-
-void CubicGrid::derivatives(const double* point, double* result) const noexcept {
-    const std::size_t n = axes_.size();
-    const std::size_t width = std::size_t{1} << n;
-    double weight[max_axes][2][2][2];  // [axis][differentiated][corner][derivative]
-    std::size_t base = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const Spot s = spot(k, point[k]);
-        const auto& x = axes_[k].points();
-        hermite_weights(x[s.cell + 1] - x[s.cell], s.offset, weight[k]);
-        base += s.cell * stride_[k];
-    }
-    for (std::size_t wanted = 0; wanted < width; ++wanted) {
-        result[wanted] = 0;
-        for (std::size_t corner = 0; corner < width; ++corner) {
-            std::size_t node = base;
-            for (std::size_t k = 0; k < n; ++k) {
-                node += (corner >> k & 1) * stride_[k];
-            }
-            for (std::size_t mask = 0; mask < width; ++mask) {
-                double product = nodes_[node * width + mask];
-                for (std::size_t k = 0; k < n; ++k) {
-                    product *= weight[k][wanted >> k & 1][corner >> k & 1][mask >> k & 1];
-                }
-                result[wanted] += product;
             }
         }
     }
@@ -424,38 +306,6 @@ CubicGrid CubicGrid::transformed(double factor, unsigned mirrored) const {
         }
     }
     return {std::move(turned), std::move(hermite)};
-}
-
-double CubicGrid::value(const double* point, double* slope) const noexcept {
-    if (axes_.size() == 1) {
-        return from_cells_1(spot(0, point[0]), slope);
-    }
-    Spot spots[max_axes];
-    for (std::size_t k = 0; k < axes_.size(); ++k) {
-        spots[k] = spot(k, point[k]);
-    }
-    return axes_.size() == 2 ? from_cells_2(spots, slope) : from_nodes(spots, slope);
-}
-
-double CubicGrid::continued(const double* point, double* slope) const noexcept {
-    double edge[max_axes];
-    double at_edge[max_axes];
-    Spot spots[max_axes];
-    for (std::size_t k = 0; k < axes_.size(); ++k) {
-        edge[k] = std::isnan(point[k]) ? point[k] : std::clamp(point[k], axes_[k].lower(), axes_[k].upper());
-        spots[k] = spot(k, edge[k]);
-        spots[k].held = false;
-    }
-    double result = axes_.size() == 1   ? from_cells_1(spots[0], at_edge)
-                    : axes_.size() == 2 ? from_cells_2(spots, at_edge)
-                                        : from_nodes(spots, at_edge);
-    for (std::size_t k = 0; k < axes_.size(); ++k) {
-        result += at_edge[k] * (point[k] - edge[k]);
-        if (slope != nullptr) {
-            slope[k] = at_edge[k];
-        }
-    }
-    return result;
 }
 
 }  // namespace underbody::tables

@@ -24,15 +24,16 @@ public:
 
     [[nodiscard]] const std::vector<double>& points() const { return x_; }
     [[nodiscard]] std::size_t size() const { return x_.size(); }
-    [[nodiscard]] double lower() const { return x_.front(); }
-    [[nodiscard]] double upper() const { return x_.back(); }
+    [[nodiscard]] double lower() const { return lower_; }
+    [[nodiscard]] double upper() const { return upper_; }
 
     /// Cell of a coordinate inside [lower, upper]; 0 .. size()-2.
     [[nodiscard]] std::size_t cell(double x) const noexcept {
-        const auto bucket = static_cast<std::size_t>((x - lower_) * per_unit_);
+        const auto bucket = static_cast<std::int32_t>((x - lower_) * per_unit_);
         std::size_t i = first_[bucket < last_bucket_ ? bucket : last_bucket_];
         // Always the same number of steps (one unless the axis is very uneven), and no branch that depends on x.
-        for (unsigned step = 0; step < steps_; ++step) {
+        i += x >= stop_[i] ? 1 : 0;
+        for (unsigned step = 1; step < steps_; ++step) {
             i += x >= stop_[i] ? 1 : 0;
         }
         return i;
@@ -42,9 +43,10 @@ private:
     std::vector<double> x_;
     std::vector<double> stop_;  ///< upper end of each cell; infinite for the last
     std::vector<std::uint32_t> first_;
-    std::size_t last_bucket_ = 0;
+    std::int32_t last_bucket_ = 0;
     unsigned steps_ = 0;  ///< largest number of cells that a bucket reaches beyond its first
     double lower_ = 0;
+    double upper_ = 0;
     double per_unit_ = 0;
 };
 
@@ -72,9 +74,9 @@ public:
     [[nodiscard]] CubicGrid transformed(double factor, unsigned mirrored) const;
     [[nodiscard]] std::vector<std::vector<double>> points() const;
 
-    [[nodiscard]] std::size_t dimensions() const { return axes_.size(); }
+    [[nodiscard]] std::size_t dimensions() const { return dimensions_; }
     [[nodiscard]] const GridAxis& axis(std::size_t k) const { return axes_[k]; }
-    [[nodiscard]] std::size_t nodes() const { return nodes_.size() >> axes_.size(); }
+    [[nodiscard]] std::size_t nodes() const { return nodes_.size() >> dimensions_; }
     /// Hermite data of all nodes (last axis fastest), 2^dimensions numbers a node: entry m is the derivative once along
     /// every axis k whose bit k is set in m.
     [[nodiscard]] const std::vector<double>& hermite() const { return nodes_; }
@@ -84,8 +86,9 @@ public:
     /// value() of many points, bit for bit, several times as fast on two axes: `points` [count * dimensions], `value` [count], `slope` (may be
     /// null) [count * dimensions].
     void values(const double* points, std::size_t count, double* value, double* slope) const noexcept;
-    /// The same with the function continued along its end slopes beyond the axes.
-    double continued(const double* point, double* slope) const noexcept;
+    /// The same, but beyond the ends of the axes whose bit is set in `going_on` the function goes on along its tangent: C1 everywhere, linear in each of
+    /// these coordinates there, with the slopes of that function.
+    double continued(const double* point, double* slope, unsigned going_on) const noexcept;
 
     /// Where a coordinate lies: cell, distance from its lower end, and whether it had to be held.
     struct Spot {
@@ -109,11 +112,13 @@ private:
     void limit_cross_slopes();
     void limit_node(std::size_t node, std::span<const std::size_t> index);
     void build_cells();
-    double from_nodes(const Spot* spots, double* slope) const noexcept;
-    double from_cells_1(const Spot& s, double* slope) const noexcept;
-    double from_cells_2(const Spot* s, double* slope) const noexcept;
+    double from_nodes(const double* point, double* slope, unsigned going_on) const noexcept;
+    double value_1(double x, double* slope) const noexcept;
+    double value_2(const double* point, double* slope) const noexcept;
 
     std::vector<GridAxis> axes_;
+    std::size_t dimensions_ = 0;
+    std::size_t bicubic_columns_ = 0;  ///< cells along the second of two axes
     std::array<std::size_t, max_axes> stride_{};  ///< in nodes
     /// Bicubic coefficients of one cell, powers of the first axis side by side; two cache lines.
     struct alignas(64) Bicubic {

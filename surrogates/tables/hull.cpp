@@ -7,7 +7,7 @@
 
 namespace underbody::tables {
 
-Hull::Hull(const std::vector<TableAxis>& axes, const std::vector<std::vector<double>>& points) : axes_(axes) {
+Hull::Hull(const std::vector<TableAxis>& axes, const std::vector<std::vector<double>>& points) : axes_(axes), made_of_(points) {
     for (auto& axis : axes_) {
         axis.points.clear();
     }

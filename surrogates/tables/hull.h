@@ -15,10 +15,13 @@ public:
 
     /// 0 inside, to rounding. Coordinates beyond an axis count as its end. (Wolfe 1976, Finding the nearest point in a polytope.)
     [[nodiscard]] double distance(const double* point) const;
+    /// The points that it was made of, SI.
+    [[nodiscard]] const std::vector<std::vector<double>>& points() const { return made_of_; }
 
 private:
     [[nodiscard]] double coordinate(std::size_t axis, double x) const;
     std::vector<TableAxis> axes_;
+    std::vector<std::vector<double>> made_of_;
     std::vector<double> points_;  ///< [point * axes]
 };
 

@@ -67,7 +67,7 @@ Line::Line(const ForceTable& table, std::size_t axis, std::vector<double> point)
     std::array<double, max_axes> slope{};
     for (const double x : x_) {
         point[axis] = x;
-        value_.push_back(table.value(point.data(), slope.data()));
+        value_.push_back(table.value_by_policy(point.data(), slope.data(), 1U << axis));
         slope_.push_back(slope[axis]);
     }
     prepare();

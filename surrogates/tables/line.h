@@ -24,7 +24,8 @@ std::vector<double> held_point(const ForceTable& table, std::optional<std::size_
 /// C1 piecewise cubic in one variable.
 class Line {
 public:
-    /// The table along an axis. Between the grid lines of the table it is one cubic, so nothing is lost.
+    /// The table along an axis. Between the grid lines of the table it is one cubic, so nothing is lost. Held values outside their axes follow
+    /// the axes' policies; throws core::InputError where one refuses.
     Line(const ForceTable& table, std::size_t axis, std::vector<double> point);
     /// Hermite data; at least two ascending points.
     Line(std::vector<double> x, std::vector<double> value, std::vector<double> slope);

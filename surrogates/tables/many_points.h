@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "surrogates/tables/force_table.h"
+#include "surrogates/tables/line.h"
 
 namespace underbody::tables {
 
@@ -15,5 +16,8 @@ void values(const ForceTable& table, const double* points, std::size_t count, do
 /// factor of four or more). > 0: no points lie around, the error is that of an extrapolation although no axis is exceeded. 0 inside, for one axis and
 /// for grids. Beyond an axis its end counts.
 double beyond_points(const ForceTable& table, const double* point);
+
+/// A warning for every held value that lies outside its axis, with what the table does there.
+core::Problems outside_remarks(const ForceTable& table, const Held& held);
 
 }  // namespace underbody::tables

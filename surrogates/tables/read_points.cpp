@@ -53,9 +53,15 @@ core::Table table_of(const nlohmann::json& json, const std::filesystem::path& pa
     }
     core::Table table;
     table.source = path.string();
-    nlohmann::json facts{{"underbody_table", 1}, {"range", json.value("outside", "clamp")}, {"quantity", quantity}, {"cell_error", json.at("cell_error")}, {"growth", json.at("growth")}};
+    nlohmann::json facts{{"underbody_table", 1}, {"quantity", quantity}, {"cell_error", json.at("cell_error")}, {"growth", json.at("growth")}};
+    for (const char* kept : {"conditions", "hull"}) {
+        if (json.contains(kept)) {
+            facts[kept] = json[kept];
+        }
+    }
     for (std::size_t k = 0; k < n; ++k) {
         facts["axes"].push_back(axes[k].at("name"));
+        facts["range"].push_back(axes[k].value("outside", json.value("outside", "clamp")));  // of older files: one word for all axes
         table.add_numbers(axes[k].at("name"), core::si_unit(axes[k].at("unit").get<std::string>()), places[k]);
     }
     table.comments.push_back(facts.dump());

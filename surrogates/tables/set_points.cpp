@@ -332,6 +332,18 @@ const std::vector<std::string>& axis_names() {
     return names;
 }
 
+namespace {
+
+void check_policies(const RangePolicies& policies, const std::vector<std::string>& axes, const std::string& source) {
+    for (const auto& [name, policy] : policies.named) {
+        if (std::find(axes.begin(), axes.end(), name) == axes.end()) {
+            throw core::UsageError("axis", "the table has no axis '" + name + "' to " + to_string(policy), {source, {}, {}, {}}, core::did_you_mean(name, axes));
+        }
+    }
+}
+
+}  // namespace
+
 SetPoints set_points(const core::Table& table, const std::string& quantity, const FitOptions& options) {
     SetPoints points;
     points.quantity = quantity;
@@ -344,6 +356,7 @@ SetPoints set_points(const core::Table& table, const std::string& quantity, cons
     if (names.size() > max_axes) {
         throw InputError("axis", "a table has at most " + std::to_string(max_axes) + " axes", {points.table.source, {}, {}, {}});
     }
+    check_policies(options.range, names, points.table.source);
     points.x.assign(points.table.rows(), std::vector<double>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
         const auto& values = points.table.numbers(names[k]);
@@ -353,7 +366,7 @@ SetPoints set_points(const core::Table& table, const std::string& quantity, cons
             }
             points.x[i][k] = values[i];
         }
-        points.axes.push_back({names[k], points.table.find(names[k])->unit, 0, 0, {}});
+        points.axes.push_back({names[k], points.table.find(names[k])->unit, 0, 0, {}, options.range.of(names[k])});
     }
     points.value = points.table.numbers(quantity);
     read_sigma(points);

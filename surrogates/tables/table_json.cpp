@@ -1,4 +1,5 @@
 // Tables and their values as JSON.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "surrogates/tables/figures.h"
@@ -7,15 +8,17 @@
 namespace underbody::tables {
 
 namespace {
-std::string policy_name(RangePolicy policy) {
-    return policy == RangePolicy::clamp ? "clamp" : policy == RangePolicy::refuse ? "refuse" : "extrapolate";
+/// Of all axes; "mixed" when they differ.
+std::string common_policy(const std::vector<TableAxis>& axes) {
+    const bool same = std::all_of(axes.begin(), axes.end(), [&](const TableAxis& a) { return a.range == axes.front().range; });
+    return same ? to_string(axes.front().range) : "mixed";
 }
 }  // namespace
 
 void to_json(nlohmann::json& json, const ForceTable& table) {
     json = nlohmann::json{{"quantity", table.quantity()}, {"unit", table.unit()},
                           {"kind", table.kind()},         {"source", table.source()},
-                          {"points", table.points().rows()}, {"range_policy", policy_name(table.range())}};
+                          {"points", table.points().rows()}, {"range_policy", common_policy(table.axes())}};
     json["axes"] = nlohmann::json::array();
     for (std::size_t k = 0; k < table.axes().size(); ++k) {
         const TableAxis& axis = table.axes()[k];
@@ -23,6 +26,7 @@ void to_json(nlohmann::json& json, const ForceTable& table) {
                                 {"unit", axis.unit},
                                 {"lower", axis.lower},
                                 {"upper", axis.upper},
+                                {"range_policy", to_string(axis.range)},
                                 {"set_points", axis.points.size()},
                                 {"grid_lines", table.knots(k).size()}});
     }

@@ -25,7 +25,7 @@ TEST(ExportCommand, WritesEveryFormatAndLeavesFilesOfOthersAlone) {
     core::write_file(folder.path() / "mine.h", "int precious;\n");
     const auto run = run_underbody({"export", "lift.csv", "--format", "c", "--out", "mine.h"}, folder.path());
     EXPECT_EQ(run.exit_code, 3);
-    EXPECT_THAT(run.errors, HasSubstr("not written by Underbody"));
+    EXPECT_THAT(run.errors, HasSubstr("no force table that Underbody wrote"));
     EXPECT_EQ(core::read_file(folder.path() / "mine.h"), "int precious;\n");
     EXPECT_EQ(run_underbody({"export", "lift.csv", "--format", "d", "--out", "x"}, folder.path()).exit_code, 2);
 }

@@ -46,6 +46,39 @@ TEST(TableCommand, SaysWhatIsWrong) {
     const auto outside = run_underbody({"table", "at", "lift.csv", "gap=200mm"}, folder.path());
     EXPECT_EQ(outside.exit_code, 0);
     EXPECT_THAT(outside.errors, HasSubstr("outside the table by 100 mm"));
+    // A unit that is none of a force is a mistake of the command line.
+    const auto unit = run_underbody({"table", "equilibria", "lift.csv", "--weight", "3 mm"}, folder.path());
+    EXPECT_EQ(unit.exit_code, 2);
+    EXPECT_THAT(unit.errors, HasSubstr("--weight"));
+    EXPECT_EQ(run_underbody({"table", "equilibria", "lift.csv", "--mass", "heavy"}, folder.path()).exit_code, 2);
+    EXPECT_EQ(run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.2 kg:0.6"}, folder.path()).exit_code, 2);
+}
+
+TEST(TableCommand, TakesARangePolicyForEachAxis) {
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "lift.csv",
+                     "gap [mm], pitch [deg], lift_force [N]\n1,-2,.66\n1,2,.7\n2,-2,.4\n2,2,.45\n5,-2,.27\n5,2,.3\n");
+    const auto at = [&](const std::string& point, const std::string& range) {
+        return run_underbody({"table", "at", "lift.csv", point, "--range", range, "--json"}, folder.path());
+    };
+    const auto refused = at("gap=6mm,pitch=0", "gap=refuse,pitch=clamp");
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.output, HasSubstr("gap 0.006 m is outside the table, which covers 0.001 to 0.005 m"));
+    const auto held = at("gap=5mm,pitch=3deg", "gap=refuse,pitch=clamp");
+    ASSERT_EQ(held.exit_code, 0) << held.errors;
+    EXPECT_NEAR(nlohmann::json::parse(held.output)["value"].get<double>(), 0.3, 1e-12);
+    const auto further = at("gap=5mm,pitch=3deg", "refuse,pitch=extrapolate");
+    ASSERT_EQ(further.exit_code, 0) << further.errors;
+    EXPECT_NEAR(nlohmann::json::parse(further.output)["value"].get<double>(), 0.3075, 1e-9);
+    EXPECT_EQ(at("gap=5mm,pitch=3deg", "pich=clamp").exit_code, 2);
+    EXPECT_THAT(at("gap=5mm,pitch=3deg", "pich=clamp").output, HasSubstr("pitch"));
+    EXPECT_EQ(at("gap=5mm,pitch=3deg", "gap=clam").exit_code, 2);
+    // An exported table keeps the policies of its axes.
+    ASSERT_EQ(run_underbody({"export", "lift.csv", "--format", "json", "--out", "t.json", "--range", "gap=refuse"}, folder.path()).exit_code, 0);
+    EXPECT_EQ(run_underbody({"table", "at", "t.json", "gap=6mm,pitch=0"}, folder.path()).exit_code, 3);
+    EXPECT_EQ(run_underbody({"table", "at", "t.json", "gap=6mm,pitch=0", "--range", "clamp"}, folder.path()).exit_code, 0);
+    const auto fit = run_underbody({"table", "fit", "t.json", "--json"}, folder.path());
+    EXPECT_EQ(nlohmann::json::parse(fit.output)["tables"][0]["axes"][0]["range_policy"], "refuse");
 }
 
 }  // namespace

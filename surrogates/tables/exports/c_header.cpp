@@ -94,7 +94,7 @@ private:
 
     void head() {
         out_ += "/*\n";
-        for (auto line : g_.origin) {
+        for (auto line : header_lines(g_)) {
             for (std::size_t at; (at = line.find("*/")) != std::string::npos;) {
                 line.replace(at, 2, "* /");
             }
@@ -120,7 +120,9 @@ private:
         out_ += "    " + name_ + "_real slope[" + std::to_string(n_) + "];             /* " + g_.unit + " per unit of each axis */\n";
         out_ += "    " + name_ + "_real sigma;                /* " + g_.unit + ", one standard deviation */\n";
         out_ += "    " + name_ + "_real beyond[" + std::to_string(n_) + "];            /* how far outside each axis, signed; 0 inside */\n";
-        out_ += "    int outside;                   /* 1 when the point lies outside the table */\n} " + name_ + "_result;\n\n";
+        out_ += "    int outside;                   /* 1 when the point lies outside the table */\n";
+        out_ += "    int refused;                   /* 1 when it lies outside an axis that refuses this: value and slopes are not numbers then */\n} " + name_ +
+                "_result;\n\n";
     }
 
     void data() {
@@ -184,18 +186,7 @@ private:
         }
         sum_part();
         sigma_part();
-        if (g_.range == RangePolicy::extrapolate) {
-            for (std::size_t k = 0; k < n_; ++k) {
-                const std::string id = std::to_string(k);
-                out_ += "    result->value += result->slope[" + id + "] * result->beyond[" + id + "];\n";
-            }
-            out_ += "    (void)held;\n";
-        } else {
-            for (std::size_t k = 0; k < n_; ++k) {
-                const std::string id = std::to_string(k);
-                out_ += "    if (held[" + id + "]) {\n        result->slope[" + id + "] = " + number(0) + ";\n    }\n";
-            }
-        }
+        outside_part();
         out_ += "}\n\n";
     }
 
@@ -217,7 +208,13 @@ private:
         // Not a number: v < x[0] is false, v - v carries it on.
         out_ += "            t[" + id + "] = (p - " + x + "[cell[" + id + "]]) / h;\n            if (!(v >= " + x + "[0]) && !(v < " + x + "[0])) {\n                t[" + id +
                 "] = v - v;\n            }\n";
-        out_ += "            " + name_ + "_weights(h, t[" + id + "], w[" + id + "], d[" + id + "]);\n        }\n    }\n";
+        out_ += "            " + name_ + "_weights(h, t[" + id + "], w[" + id + "], d[" + id + "]);\n";
+        if (g_.axes[k].range == RangePolicy::extrapolate) {
+            // The functions of the end cell go on along their tangents.
+            out_ += "            if (held[" + id + "]) {\n                unsigned m;\n                for (m = 0; m < 4u; ++m) {\n                    w[" + id +
+                    "][m] += result->beyond[" + id + "] * d[" + id + "][m];\n                }\n            }\n";
+        }
+        out_ += "        }\n    }\n";
     }
 
     void sum_part() {
@@ -284,6 +281,30 @@ private:
             }
         }
         out_ += "    result->sigma = sigma;\n";
+    }
+
+    void outside_part() {
+        std::string refused;
+        for (std::size_t k = 0; k < n_; ++k) {
+            const std::string id = std::to_string(k);
+            const RangePolicy range = g_.axes[k].range;
+            if (range == RangePolicy::clamp) {
+                out_ += "    if (held[" + id + "]) {\n        result->slope[" + id + "] = " + number(0) + ";\n    }\n";
+            } else if (range == RangePolicy::refuse) {
+                refused += (refused.empty() ? "held[" : " || held[") + id + "]";
+            }
+        }
+        out_ += "    result->refused = " + (refused.empty() ? "0" : refused) + ";\n";
+        if (!refused.empty()) {
+            out_ += "    if (result->refused) {\n        const " + name_ + "_real zero = " + number(0) + ";\n        result->value = zero / zero;\n";
+            for (std::size_t k = 0; k < n_; ++k) {
+                out_ += "        result->slope[" + std::to_string(k) + "] = result->value;\n";
+            }
+            out_ += "    }\n";
+        }
+        if (std::all_of(g_.axes.begin(), g_.axes.end(), [](const ExportAxis& a) { return a.range == RangePolicy::extrapolate; })) {
+            out_ += "    (void)held;\n";
+        }
     }
 
     void shorthands() {

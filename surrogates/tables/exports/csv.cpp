@@ -29,15 +29,23 @@ void export_csv(const ExportGrid& grid, const std::filesystem::path& path, Expor
     const std::size_t n = grid.axes.size();
     const std::size_t width = std::size_t{1} << n;
     std::string text;
-    for (const auto& line : grid.origin) {
+    for (const auto& line : header_lines(grid)) {
         text += "# " + line + "\n";
     }
-    nlohmann::json facts{{"underbody_table", 1}, {"range", grid.range == RangePolicy::extrapolate ? "extrapolate" : "clamp"}};
+    nlohmann::json facts{{"underbody_table", 1}};
     facts["quantity"] = grid.quantity;
     for (std::size_t k = 0; k < n; ++k) {
         facts["axes"].push_back(grid.axes[k].name);
+        facts["range"].push_back(to_string(grid.axes[k].range));
         facts["cell_error"].push_back(grid.error.empty() ? std::vector<double>{} : grid.error.cell_error(k));
         facts["growth"].push_back(grid.error.growth(k));
+    }
+    facts["conditions"] = nlohmann::json::object();
+    for (const auto& [name, value] : grid.conditions) {
+        facts["conditions"][name] = value;
+    }
+    if (!grid.hull.empty()) {
+        facts["hull"] = grid.hull;
     }
     text += "# " + facts.dump() + "\n";
     for (const auto& axis : grid.axes) {

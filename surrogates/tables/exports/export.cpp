@@ -13,6 +13,8 @@ namespace {
 struct Exporter {
     ExportFormat format;
     void (*write)(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
+    bool straight = false;  ///< its consumer draws straight lines between the points
+    std::filesystem::path (*beside)(const std::filesystem::path& path) = nullptr;  ///< a second file that it writes
 };
 
 const std::vector<Exporter>& exporters() {
@@ -20,15 +22,22 @@ const std::vector<Exporter>& exporters() {
         {{"c", ".h", "C99 header: no heap, no library, constant time; double or float"}, export_c},
         {{"csv", ".csv", "table with slopes and error that this program reads back exactly"}, export_csv},
         {{"json", ".json", "grid, Hermite data and error"}, export_json},
-        {{"mat", ".mat", "MATLAB and Octave: .mat and a .m that looks it up"}, export_mat},
-        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"}, export_jsbsim},
+        {{"mat", ".mat", "MATLAB and Octave: .mat and a .m that looks it up"}, export_mat, false, mat_function},
+        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"}, export_jsbsim, true},
         {{"fmu", ".fmu", "FMU 2.0, model exchange and co-simulation, Linux x86-64, source included"}, export_fmu},
     };
     return all;
 }
 
-/// A file that is there is replaced only if this program wrote it.
-void check_path(const std::filesystem::path& path, bool overwrite) {
+/// Every export says so near its beginning (an FMU in its first entry, which is stored as it is).
+bool is_export(const std::filesystem::path& path) {
+    const core::MappedFile file(path);
+    const std::string_view head = file.bytes().substr(0, 4096);
+    return file.bytes().empty() || head.find("orce table by Underbody") != std::string_view::npos || head.find("Underbody force table") != std::string_view::npos;
+}
+
+/// A file that is there is replaced only if it is an export, and not the one that the table was made of.
+void check_path(const std::filesystem::path& path, const ForceTable& table, bool overwrite) {
     std::error_code ignored;
     if (path.empty()) {
         throw core::UsageError("path", "an export needs a path to write to");
@@ -36,13 +45,15 @@ void check_path(const std::filesystem::path& path, bool overwrite) {
     if (std::filesystem::is_directory(path, ignored)) {
         throw core::InputError("exists", "this is a folder, an export is a file", {path.string(), {}, {}, {}});
     }
-    if (!overwrite && std::filesystem::exists(path, ignored)) {
-        const core::MappedFile file(path);
-        const std::string_view bytes = file.bytes();
-        if (!bytes.empty() && bytes.find("Underbody") == std::string_view::npos) {
-            throw core::InputError("exists", "the file is there and was not written by Underbody", {path.string(), {}, {}, {}},
-                                   "choose another name, or say --overwrite");
-        }
+    if (!std::filesystem::exists(path, ignored)) {
+        return;
+    }
+    if (std::filesystem::equivalent(path, table.source(), ignored)) {
+        throw core::InputError("exists", "the table is made of this file: the export would replace its points", {path.string(), {}, {}, {}}, "choose another name");
+    }
+    if (!overwrite && !is_export(path)) {
+        throw core::InputError("exists", "the file is there and is no force table that Underbody wrote", {path.string(), {}, {}, {}},
+                               "choose another name, or say --overwrite");
     }
 }
 
@@ -69,12 +80,16 @@ ExportResult export_table(const ForceTable& table, const std::string& format, co
         }
         throw core::UsageError("format", "there is no export format '" + format + "'", {}, core::did_you_mean(format, names));
     }
-    check_path(path, options.overwrite);
+    check_path(path, table, options.overwrite);
+    if (found->beside != nullptr) {
+        check_path(found->beside(path), table, options.overwrite);
+    }
     progress.report(0, "export");
-    const ExportGrid grid = export_grid(table, options, progress);
+    const ExportGrid grid = export_grid(table, options, found->straight, progress);
     ExportResult result;
     result.files.push_back(path);
     result.error = grid.thinning_error;
+    result.remarks = grid.remarks;
     for (const auto& axis : grid.axes) {
         result.grid.push_back(axis.points.size());
     }

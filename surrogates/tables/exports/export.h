@@ -43,7 +43,7 @@ struct ExportFormat {
 const std::vector<ExportFormat>& export_formats();
 
 /// Throws core::UsageError for an unknown format, an axis that is none, a share that makes no sense; core::InputError (kind "exists")
-/// when the path holds something this program did not write; core::SystemError when it cannot be written. Whole files by rename.
+/// when the path holds something this program did not write, or the file that the table was made of; core::SystemError when it cannot be written. Whole files by rename.
 ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path,
                           const ExportOptions& options = {}, core::Progress& progress = core::Progress::none());
 

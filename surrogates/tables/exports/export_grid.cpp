@@ -9,7 +9,9 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/force_table_impl.h"
+#include "surrogates/tables/hull.h"
 #include "surrogates/tables/line.h"
+#include "surrogates/tables/select.h"
 
 namespace underbody::tables {
 
@@ -121,6 +123,30 @@ ErrorModel mirrored_error(const ErrorModel& error, const CubicGrid& to, unsigned
     return result;
 }
 
+/// Columns of one value that are neither axes nor conditions nor forces: the mass and the size of the body, the variant, the mesh ...
+std::vector<std::string> other_constants(const ForceTable& table) {
+    std::vector<std::string> lines;
+    const core::Table& points = table.points();
+    const auto forces = force_columns(points);
+    for (const auto& column : points.columns()) {
+        const bool axis = std::any_of(table.axes().begin(), table.axes().end(), [&](const TableAxis& a) { return a.name == column.name; });
+        const bool condition = std::any_of(table.conditions().begin(), table.conditions().end(), [&](const auto& c) { return c.first == column.name; });
+        const bool force = std::find(forces.begin(), forces.end(), column.name) != forces.end() || column.name.ends_with("_sigma") || column.name.starts_with(table.quantity());
+        if (axis || condition || force || points.rows() == 0) {
+            continue;
+        }
+        if (column.is_text()) {
+            const auto& text = column.text;
+            if (std::all_of(text.begin(), text.end(), [&](const std::string& t) { return t == text.front(); }) && !text.front().empty()) {
+                lines.push_back("Of " + column.name + " " + text.front());
+            }
+        } else if (std::all_of(column.numbers.begin(), column.numbers.end(), [&](double v) { return v == column.numbers.front(); })) {
+            lines.push_back("Of " + column.name + " = " + core::format_number(column.numbers.front(), 9) + (column.unit == "1" ? "" : " " + column.unit));
+        }
+    }
+    return lines;
+}
+
 void write_origin(ExportGrid& grid, const ForceTable& table, const ExportOptions& options) {
     auto& lines = grid.origin;
     lines.push_back("Force table by Underbody: " + grid.quantity + " [" + grid.unit + "]" + (grid.meaning.empty() ? "" : ", " + grid.meaning));
@@ -134,14 +160,18 @@ void write_origin(ExportGrid& grid, const ForceTable& table, const ExportOptions
         lines.push_back("Axis " + axis.name + " [" + axis.unit + "]: " + core::format_number(axis.points.front(), 9) + " to " +
                         core::format_number(axis.points.back(), 9) + ", " + std::to_string(axis.points.size()) + " points");
     }
-    for (const auto& [name, value] : table.conditions()) {
+    for (const auto& [name, value] : grid.conditions) {
         const auto* known = core::find_quantity(name);
         lines.push_back("Holds for " + name + " = " + core::format_number(value, 9) + (known != nullptr ? " " + known->unit : ""));
     }
+    for (const auto& line : other_constants(table)) {
+        lines.push_back(line);
+    }
+    if (!grid.hull.empty()) {
+        lines.push_back("The points do not fill the box of the axes: where none lie around, the value is an extrapolation, and sigma says how far to trust it");
+    }
     lines.push_back(options.frame == Frame::ned ? "Frame: body axes, x forward, y starboard, z down (NED); pitch and pitch_moment nose up"
                                                 : "Frame: lift positive up, drag positive against the motion; pitch and pitch_moment nose up");
-    lines.push_back(grid.range == RangePolicy::extrapolate ? "Outside its range it goes on with its end slopes, and says so"
-                                                           : "Outside its range it holds its end value with slope zero, and says so");
     if (grid.thinning_error > 0) {
         lines.push_back("Differs from the full table by at most " + core::format_number(grid.thinning_error, 3) + " " + grid.unit);
     }
@@ -162,33 +192,107 @@ std::string identifier(const std::string& text) {
     return result;
 }
 
-ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, core::Progress& progress) {
+namespace {
+
+/// Differences are sampled, between the samples they may be a little larger.
+constexpr double margin = 1.02;
+
+std::size_t most_points(std::size_t axes, bool asked) {
+    const std::size_t most[] = {asked ? 20000u : 400u, asked ? 1000u : 60u, asked ? 100u : 20u};
+    return most[std::min<std::size_t>(axes, 3) - 1];
+}
+
+/// Points for straight lines between them.
+std::vector<std::vector<double>> straight_points(const ForceTable::Impl& full, const CubicGrid& surface, const ExportOptions& options, double allowed,
+                                                 core::Progress& progress) {
+    const std::size_t most = most_points(surface.dimensions(), options.max_error > 0);
+    if (options.max_error <= 0) {
+        return points_for_straight_lines(surface, 1e-3 * range_of_points(full), most, progress);
+    }
+    auto points = thinned_for_straight_lines(surface, allowed, most, progress);
+    if (const double reached = largest_straight_difference(surface, points); reached > allowed) {
+        throw core::UsageError("range",
+                               "straight lines between the points, as this format draws them, stay within " + core::format_number(reached, 3) + " " + full.unit +
+                                   " of the table on at most " + std::to_string(most) + " points an axis, not within " + core::format_number(allowed, 3) + " " + full.unit,
+                               {}, "allow a larger error, or take a format with cubics, such as c, json or fmu");
+    }
+    return points;
+}
+
+/// The function on the points that the options ask for.
+CubicGrid chosen_surface(const ForceTable& table, const ExportOptions& options, bool straight, ExportGrid& grid, core::Progress& progress) {
+    const ForceTable::Impl& full = table.impl();
+    CubicGrid surface = full.surface;
+    if (!options.points.empty()) {
+        surface = surface.resampled(chosen_points(table, surface, options));
+    }
+    const double asked = options.max_error * range_of_points(full);
+    const double spent = options.points.empty() ? 0 : margin * largest_difference(full.surface, surface);
+    if (options.max_error > 0 && spent >= asked) {
+        grid.remarks.push_back({core::Problem::Severity::warning,
+                                "the points asked for are too few for the error asked for: they alone differ from the table by up to " +
+                                    core::format_number(spent, 3) + " " + full.unit,
+                                {}});
+        return surface;
+    }
+    const double allowed = (asked - spent) / margin;
+    if (straight && (options.points.empty() || options.max_error > 0)) {
+        return surface.resampled(straight_points(full, surface, options, allowed, progress));
+    }
+    return options.max_error > 0 ? surface.resampled(thinned_points(surface, allowed, progress)) : surface;
+}
+
+/// With straight lines between the nodes never less than the error at the nodes and half way to their neighbours.
+ErrorModel straight_error(const ErrorModel& error, const CubicGrid& to) {
+    const std::size_t n = to.dimensions();
+    auto points = to.points();
+    std::vector<double> sigma(to.nodes());
+    for (std::size_t node = 0; node < sigma.size(); ++node) {
+        double at[CubicGrid::max_axes];
+        std::size_t index[CubicGrid::max_axes];
+        std::size_t rest = node;
+        for (std::size_t k = n; k-- > 0;) {
+            index[k] = rest % points[k].size();
+            at[k] = points[k][index[k]];
+            rest /= points[k].size();
+        }
+        sigma[node] = error.sigma(at, nullptr);
+        for (std::size_t k = 0; k < n; ++k) {
+            const double here = at[k];
+            for (const std::size_t next : {index[k] - 1, index[k] + 1}) {  // below the first: wraps to a large number
+                if (next < points[k].size()) {
+                    at[k] = 0.5 * (here + points[k][next]);
+                    sigma[node] = std::max(sigma[node], error.sigma(at, nullptr));
+                }
+            }
+            at[k] = here;
+        }
+    }
+    ErrorModel result(std::move(points), std::move(sigma));
+    for (std::size_t k = 0; k < n; ++k) {
+        result.set_growth(k, error.growth(k));
+    }
+    return result;
+}
+
+}  // namespace
+
+ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, bool straight, core::Progress& progress) {
     if (!(options.max_error >= 0) || options.max_error >= 1) {
         throw core::UsageError("range", "the largest error is a share of the force's range between 0 and 1, such as 0.5%");
     }
     const ForceTable::Impl& full = table.impl();
     ExportGrid grid;
     grid.single_precision = options.single_precision;
-    grid.range = full.range;
     grid.quantity = full.quantity;
     grid.unit = full.unit;
     if (const auto* known = core::find_quantity(full.quantity)) {
         grid.meaning = known->meaning;
     }
-    CubicGrid surface = full.surface;
-    if (!options.points.empty()) {
-        surface = surface.resampled(chosen_points(table, surface, options));
-    }
-    if (options.max_error > 0) {
-        const double allowed = options.max_error * range_of_points(full);
-        const double spent = options.points.empty() ? 0 : largest_difference(full.surface, surface);
-        if (spent < allowed) {
-            surface = surface.resampled(thinned_points(surface, allowed - spent, progress));
-        }
-    }
-    const bool same = surface.points() == full.surface.points();
-    grid.thinning_error = same ? 0 : largest_difference(full.surface, surface);
-    ErrorModel error = same ? full.error : resampled_error(full.error, surface);
+    CubicGrid surface = chosen_surface(table, options, straight, grid, progress);
+    const bool same = !straight && surface.points() == full.surface.points();
+    grid.thinning_error = same ? 0 : margin * (straight ? largest_straight_difference(full.surface, surface.points()) : largest_difference(full.surface, surface));
+    ErrorModel error = same ? full.error : straight ? straight_error(full.error, surface) : resampled_error(full.error, surface);
     // Thinning moves the value by up to thinning_error: the error says so everywhere between the points.
     if (!same && !error.empty()) {
         std::vector<double> cells = error.cell_error(0).empty() ? std::vector<double>(surface.axis(0).size() - 1, 0.0) : error.cell_error(0);
@@ -225,21 +329,56 @@ ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, co
     grid.surface = factor == 1 && mirrored == 0 ? std::move(surface) : surface.transformed(factor, mirrored);
     grid.error = mirrored_error(error, grid.surface, mirrored);
     for (std::size_t k = 0; k < names.size(); ++k) {
-        grid.axes.push_back({names[k], full.axes[k].unit, grid.surface.axis(k).points()});
+        grid.axes.push_back({names[k], full.axes[k].unit, grid.surface.axis(k).points(), full.axes[k].range});
+    }
+    for (const auto& [name, value] : table.conditions()) {
+        const auto turned = std::find_if(std::begin(turned_axes), std::end(turned_axes), [&](const Turned& t) { return name == t.up; });
+        const bool turns = options.frame == Frame::ned && turned != std::end(turned_axes);
+        grid.conditions.emplace_back(turns ? turned->ned : name, turns ? -value : value);
+    }
+    if (full.hull) {
+        grid.hull = full.hull->points();
+        for (auto& point : grid.hull) {
+            for (std::size_t k = 0; k < point.size(); ++k) {
+                point[k] = (mirrored >> k & 1) != 0 ? -point[k] : point[k];
+            }
+        }
     }
     grid.name = identifier(options.name.empty() ? grid.quantity : options.name);
     write_origin(grid, table, options);
     return grid;
 }
 
-double largest_difference(const CubicGrid& fine, const CubicGrid& coarse) {
-    const std::size_t n = fine.dimensions();
-    // Corners, middles and quarters of the cells of the fine grid; fewer a cell for many axes.
+std::vector<std::string> outside_lines(const ExportGrid& grid) {
+    std::vector<std::string> lines;
+    for (const auto& axis : grid.axes) {
+        lines.push_back("Outside the range of " + axis.name + " " +
+                        (axis.range == RangePolicy::clamp    ? "it holds its end value with slope zero, and says so"
+                         : axis.range == RangePolicy::refuse ? "it refuses: value and slopes are not numbers there"
+                                                             : "it goes on along its tangent with growing sigma, and says so"));
+    }
+    return lines;
+}
+
+std::vector<std::string> header_lines(const ExportGrid& grid) {
+    auto lines = grid.origin;
+    for (auto& line : outside_lines(grid)) {
+        lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+namespace {
+
+/// Corners, middles and quarters of the cells between the lines; fewer a cell for many axes.
+template <class Visit>
+void for_samples(const std::vector<std::vector<double>>& lines, Visit&& visit) {
+    const std::size_t n = lines.size();
     const std::size_t a_cell = n == 1 ? 8 : n == 2 ? 4 : 2;
     std::vector<std::vector<double>> samples(n);
     std::size_t count = 1;
     for (std::size_t k = 0; k < n; ++k) {
-        const auto& x = fine.axis(k).points();
+        const auto& x = lines[k];
         for (std::size_t i = 0; i + 1 < x.size(); ++i) {
             for (std::size_t j = 0; j < a_cell; ++j) {
                 samples[k].push_back(x[i] + (x[i + 1] - x[i]) * static_cast<double>(j) / static_cast<double>(a_cell));
@@ -248,7 +387,6 @@ double largest_difference(const CubicGrid& fine, const CubicGrid& coarse) {
         samples[k].push_back(x.back());
         count *= samples[k].size();
     }
-    double worst = 0;
     double at[CubicGrid::max_axes];
     for (std::size_t i = 0; i < count; ++i) {
         std::size_t rest = i;
@@ -256,8 +394,34 @@ double largest_difference(const CubicGrid& fine, const CubicGrid& coarse) {
             at[k] = samples[k][rest % samples[k].size()];
             rest /= samples[k].size();
         }
-        worst = std::max(worst, std::abs(fine.value(at, nullptr) - coarse.value(at, nullptr)));
+        visit(at);
     }
+}
+
+}  // namespace
+
+double largest_difference(const CubicGrid& fine, const CubicGrid& coarse) {
+    double worst = 0;
+    for_samples(fine.points(), [&](const double* at) { worst = std::max(worst, std::abs(fine.value(at, nullptr) - coarse.value(at, nullptr))); });
+    return worst;
+}
+
+double largest_straight_difference(const CubicGrid& fine, const std::vector<std::vector<double>>& points) {
+    const std::size_t n = fine.dimensions();
+    std::vector<double> values;
+    const CubicGrid sampled = fine.resampled(points);
+    for (std::size_t i = 0; i < sampled.nodes(); ++i) {
+        values.push_back(sampled.hermite()[i << n]);
+    }
+    const ErrorModel straight(points, std::move(values));  // multilinear between the nodes
+    std::vector<std::vector<double>> lines = fine.points();
+    for (std::size_t k = 0; k < n; ++k) {
+        lines[k].insert(lines[k].end(), points[k].begin(), points[k].end());
+        std::sort(lines[k].begin(), lines[k].end());
+        lines[k].erase(std::unique(lines[k].begin(), lines[k].end()), lines[k].end());
+    }
+    double worst = 0;
+    for_samples(lines, [&](const double* at) { worst = std::max(worst, std::abs(straight.sigma(at, nullptr) - fine.value(at, nullptr))); });
     return worst;
 }
 

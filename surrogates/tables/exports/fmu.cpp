@@ -90,20 +90,25 @@ EXPORTED fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], 
     double out[OUTPUTS];
     size_t i;
     int evaluated = 0;
+    int refused = 0;
+    fmi2Status status = fmi2OK;
     for (i = 0; i < n; ++i) {
         if (vr[i] < AXES) {
             value[i] = instance->input[vr[i]];
         } else if (vr[i] < AXES + OUTPUTS) {
             if (!evaluated) {
-                evaluate(instance->input, out);
+                refused = evaluate(instance->input, out);
                 evaluated = 1;
             }
             value[i] = out[vr[i] - AXES];
+            if (refused && vr[i] <= AXES + AXES) {
+                status = fmi2Discard; /* outside an axis that refuses this: no value, no slopes */
+            }
         } else {
             return fmi2Error;
         }
     }
-    return fmi2OK;
+    return status;
 }
 EXPORTED fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
     size_t i;
@@ -119,7 +124,9 @@ EXPORTED fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2Valu
                                                  size_t n_known, const fmi2Real d_known[], fmi2Real d_unknown[]) {
     double out[OUTPUTS];
     size_t i, j;
-    evaluate(((const Instance*)c)->input, out);
+    if (evaluate(((const Instance*)c)->input, out)) {
+        return fmi2Discard;
+    }
     for (i = 0; i < n_unknown; ++i) {
         d_unknown[i] = 0;
         if (unknown[i] != AXES) {
@@ -231,17 +238,17 @@ std::string source(const ExportGrid& grid, const std::string& guid) {
     for (std::size_t k = 0; k < n; ++k) {
         text += (k == 0 ? "" : ", ") + core::format_number(0.5 * (grid.axes[k].points.front() + grid.axes[k].points.back()));
     }
-    text += "};\nstatic void evaluate(const double* input, double* out) {\n    " + grid.name + "_real point[AXES];\n    " + grid.name + "_result r;\n    unsigned k;\n";
+    text += "};\n/* 1 when the point is refused. */\nstatic int evaluate(const double* input, double* out) {\n    " + grid.name + "_real point[AXES];\n    " + grid.name + "_result r;\n    unsigned k;\n";
     text += "    for (k = 0; k < AXES; ++k) {\n        point[k] = (" + grid.name + "_real)input[k];\n    }\n    " + grid.name + "_at(point, &r);\n";
     text += "    out[0] = (double)r.value;\n    for (k = 0; k < AXES; ++k) {\n        out[1 + k] = (double)r.slope[k];\n    }\n";
-    text += "    out[1 + AXES] = (double)r.sigma;\n    out[2 + AXES] = r.outside;\n}\n";
+    text += "    out[1 + AXES] = (double)r.sigma;\n    out[2 + AXES] = r.outside;\n    return r.refused;\n}\n";
     return text + wrapper;
 }
 
 std::string description(const ExportGrid& grid, const std::string& guid) {
     const std::size_t n = grid.axes.size();
     std::string origin;
-    for (const auto& line : grid.origin) {
+    for (const auto& line : header_lines(grid)) {
         origin += (origin.empty() ? "" : ". ") + line;
     }
     const auto escaped = [](const std::string& t) { return core::escape_html(t); };

@@ -46,7 +46,7 @@ private:
 
 std::string lookup(const ExportGrid& grid, const std::string& name, const std::string& mat) {
     std::string text = "function [value, slope, sigma, outside] = " + name + "(point, file)\n";
-    for (const auto& line : grid.origin) {
+    for (const auto& line : header_lines(grid)) {
         text += "% " + line + "\n";
     }
     text += "%\n% point: one row a point, one column an axis";
@@ -75,6 +75,7 @@ std::string lookup(const ExportGrid& grid, const std::string& name, const std::s
         "    h = reshape(x(i + 1) - x(i), rows, 1); s = (p - reshape(x(i), rows, 1)) ./ h; q = 1 - s; u(:, k) = s;\n"
         "    w{k} = [q .* q .* (1 + 2 * s), h .* s .* q .* q, s .* s .* (3 - 2 * s), -h .* s .* s .* q];\n"
         "    d{k} = [-6 * s .* q ./ h, q .* (1 - 3 * s), 6 * s .* q ./ h, s .* (3 * s - 2)];\n"
+        "    if t.outside(k) == 2, w{k} = w{k} + repmat(beyond(:, k), 1, 4) .* d{k}; end  % on along the tangent\n"
         "    cells = t.(sprintf('cell_error%d', k - 1));\n"
         "    if ~isempty(cells), sigma = sigma + reshape(cells(i), rows, 1) * 4 .* s .* q; end\n"
         "    sigma = sigma + abs(beyond(:, k)) .* reshape(t.growth(k, 1 + (beyond(:, k) > 0)), rows, 1);\n"
@@ -100,16 +101,18 @@ std::string lookup(const ExportGrid& grid, const std::string& name, const std::s
         "        value = value + product; slope = slope + part;\n"
         "    end\n"
         "end\n"
-        "if t.extrapolate\n"
-        "    value = value + sum(slope .* beyond, 2);\n"
-        "else\n"
-        "    slope(held) = 0;\n"
-        "end\n"
+        "policy = repmat(reshape(t.outside, 1, n), rows, 1);\n"
+        "slope(held & policy == 0) = 0;\n"
+        "refused = any(held & policy == 1, 2); value(refused) = NaN; slope(refused, :) = NaN;\n"
         "end\n";
     return text;
 }
 
 }  // namespace
+
+std::filesystem::path mat_function(const std::filesystem::path& path) {
+    return path.parent_path() / (identifier(path.stem().string()) + "_at.m");
+}
 
 void export_mat(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result) {
     const std::size_t width = std::size_t{1} << grid.axes.size();
@@ -117,21 +120,21 @@ void export_mat(const ExportGrid& grid, const std::filesystem::path& path, Expor
     {
         MatFile file(pending.path());
         std::string origin;
-        for (const auto& line : grid.origin) {
+        for (const auto& line : header_lines(grid)) {
             origin += line + "\n";
         }
         file.text("origin", origin);
         file.text("quantity", grid.quantity);
         file.text("unit", grid.unit);
         file.reals("axes", {static_cast<double>(grid.axes.size())}, 1, 1);
-        file.reals("extrapolate", {grid.range == RangePolicy::extrapolate ? 1.0 : 0.0}, 1, 1);
-        std::vector<double> growth(2 * grid.axes.size());
+        std::vector<double> growth(2 * grid.axes.size()), outside(grid.axes.size());
         for (std::size_t k = 0; k < grid.axes.size(); ++k) {
             const std::string id = std::to_string(k);
             file.text("axis" + id, grid.axes[k].name + " [" + grid.axes[k].unit + "]");
             file.reals("x" + id, grid.axes[k].points, grid.axes[k].points.size(), 1);
             const auto& cells = grid.error.cell_error(k);
             file.reals("cell_error" + id, cells, cells.size(), cells.empty() ? 0 : 1);
+            outside[k] = grid.axes[k].range == RangePolicy::clamp ? 0 : grid.axes[k].range == RangePolicy::refuse ? 1 : 2;
             growth[k] = grid.error.growth(k)[0];
             growth[grid.axes.size() + k] = grid.error.growth(k)[1];
         }
@@ -139,12 +142,11 @@ void export_mat(const ExportGrid& grid, const std::filesystem::path& path, Expor
         file.reals("hermite", grid.surface.hermite(), width, grid.surface.nodes());
         file.reals("sigma", grid.error.node_sigma(), grid.error.node_sigma().size(), 1);
         file.reals("growth", growth, grid.axes.size(), 2);
+        file.reals("outside", outside, grid.axes.size(), 1);  // 0 holds its ends, 1 refuses, 2 goes on along its tangent
     }
     pending.commit();
-    std::filesystem::path m = path;
-    const std::string name = identifier(path.stem().string() == grid.name ? grid.name : path.stem().string());
-    m.replace_filename(name + "_at.m");
-    core::write_file(m, lookup(grid, name + "_at", path.filename().string()));
+    const std::filesystem::path m = mat_function(path);
+    core::write_file(m, lookup(grid, m.stem().string(), path.filename().string()));
     result.files.push_back(m);
 }
 

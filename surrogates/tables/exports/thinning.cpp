@@ -1,4 +1,5 @@
-// The smallest grid that keeps an error: axis by axis a shortest path over the grid lines there are.
+// The smallest grid that keeps an error: axis by axis a shortest path over the grid lines there are; for consumers that evaluate the cubic, and for
+// those that draw straight lines between the points.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,8 +45,10 @@ double hermite(double t, double h, double a, double b, double sa, double sb) {
     return a * r * r * (1 + 2 * t) + b * t * t * (3 - 2 * t) + h * t * r * (sa * r - sb * t);
 }
 
-/// Does one cubic from point i to point j stay within `allowed` of the fine function on every line?
-bool joins(const Lines& lines, std::size_t i, std::size_t j, double allowed) {
+enum class Between { cubic, straight };
+
+/// Does one cubic, or one straight line, from point i to point j stay within `allowed` of the fine function on every line?
+bool joins(const Lines& lines, Between between, std::size_t i, std::size_t j, double allowed) {
     const double h = lines.x[j] - lines.x[i];
     const std::size_t m = lines.x.size();
     for (std::size_t line = 0; line < lines.count; ++line) {
@@ -56,7 +59,8 @@ bool joins(const Lines& lines, std::size_t i, std::size_t j, double allowed) {
             for (const double part : {0.25, 0.5, 0.75, 1.0}) {
                 const double x = lines.x[cell] + part * width;
                 const double fine = hermite(part, width, value[cell], value[cell + 1], slope[cell], slope[cell + 1]);
-                const double coarse = hermite((x - lines.x[i]) / h, h, value[i], value[j], slope[i], slope[j]);
+                const double t = (x - lines.x[i]) / h;
+                const double coarse = between == Between::straight ? (1 - t) * value[i] + t * value[j] : hermite(t, h, value[i], value[j], slope[i], slope[j]);
                 if (std::abs(fine - coarse) > allowed) {
                     return false;
                 }
@@ -66,7 +70,7 @@ bool joins(const Lines& lines, std::size_t i, std::size_t j, double allowed) {
     return true;
 }
 
-std::vector<double> fewest_points(const Lines& lines, double allowed, core::Progress& progress) {
+std::vector<double> fewest_points(const Lines& lines, Between between, double allowed, core::Progress& progress) {
     const std::size_t m = lines.x.size();
     constexpr std::size_t unreached = std::numeric_limits<std::size_t>::max();
     std::vector<std::size_t> steps(m, unreached);
@@ -77,7 +81,7 @@ std::vector<double> fewest_points(const Lines& lines, double allowed, core::Prog
         std::size_t failures = 0;
         // Past a few misfits in a row a longer stretch hardly ever fits again.
         for (std::size_t j = i + 1; j < m && failures < 4; ++j) {
-            if (j > i + 1 && !joins(lines, i, j, allowed)) {
+            if (j > i + 1 && !joins(lines, between, i, j, allowed)) {
                 ++failures;
                 continue;
             }
@@ -97,9 +101,9 @@ std::vector<double> fewest_points(const Lines& lines, double allowed, core::Prog
     return kept;
 }
 
-}  // namespace
-
-std::vector<std::vector<double>> thinned_points(const CubicGrid& surface, double allowed, core::Progress& progress) {
+/// Fewest points an axis such that `difference` of them stays within `allowed`; those of the surface when none fits.
+template <class Difference>
+std::vector<std::vector<double>> thinned(const CubicGrid& surface, Between between, double allowed, Difference&& difference, core::Progress& progress) {
     std::vector<Lines> lines;
     for (std::size_t k = 0; k < surface.dimensions(); ++k) {
         lines.push_back(lines_along(surface, k));
@@ -108,13 +112,78 @@ std::vector<std::vector<double>> thinned_points(const CubicGrid& surface, double
     for (const double share : {1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.05, 0.01}) {
         std::vector<std::vector<double>> points;
         for (const auto& axis : lines) {
-            points.push_back(fewest_points(axis, share * allowed, progress));
+            points.push_back(fewest_points(axis, between, share * allowed, progress));
         }
-        if (largest_difference(surface, surface.resampled(points)) <= allowed) {
+        if (difference(points) <= allowed) {
             return points;
         }
     }
     return surface.points();
+}
+
+/// Does a straight line over the cell err by more than `allowed` anywhere on the grid's lines along axis k?
+bool bends(const CubicGrid& surface, std::size_t k, double low, double high, double allowed) {
+    const std::size_t n = surface.dimensions();
+    const std::size_t lines = surface.nodes() / surface.axis(k).size();
+    for (std::size_t line = 0; line < lines; ++line) {
+        double at[CubicGrid::max_axes];
+        std::size_t rest = line;
+        for (std::size_t j = n; j-- > 0;) {
+            if (j != k) {
+                at[j] = surface.axis(j).points()[rest % surface.axis(j).size()];
+                rest /= surface.axis(j).size();
+            }
+        }
+        const auto value = [&](double x) {
+            at[k] = x;
+            return surface.value(at, nullptr);
+        };
+        const double a = value(low), b = value(high);
+        for (const double t : {0.25, 0.5, 0.75}) {  // a cubic may cross its chord in the middle
+            if (std::abs(value(low + t * (high - low)) - (1 - t) * a - t * b) > allowed) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> thinned_points(const CubicGrid& surface, double allowed, core::Progress& progress) {
+    const auto difference = [&](const std::vector<std::vector<double>>& points) { return largest_difference(surface, surface.resampled(points)); };
+    return thinned(surface, Between::cubic, allowed, difference, progress);
+}
+
+std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress) {
+    auto points = surface.points();
+    const std::size_t n = surface.dimensions();
+    for (std::size_t k = 0; k < n; ++k) {
+        for (bool refining = true; refining;) {
+            progress.check();
+            std::vector<double> refined;
+            const auto& x = points[k];
+            for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+                refined.push_back(x[i]);
+                if (bends(surface, k, x[i], x[i + 1], allowed / static_cast<double>(n))) {
+                    refined.push_back(0.5 * (x[i] + x[i + 1]));
+                }
+            }
+            refined.push_back(x.back());
+            refining = refined.size() > x.size() && refined.size() <= most;
+            if (refining) {
+                points[k] = std::move(refined);
+            }
+        }
+    }
+    return points;
+}
+
+std::vector<std::vector<double>> thinned_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress) {
+    // Candidates twice as dense as they need be.
+    const CubicGrid fine = surface.resampled(points_for_straight_lines(surface, allowed / 4, most, progress));
+    const auto difference = [&](const std::vector<std::vector<double>>& points) { return largest_straight_difference(surface, points); };
+    return thinned(fine, Between::straight, allowed, difference, progress);
 }
 
 }  // namespace underbody::tables

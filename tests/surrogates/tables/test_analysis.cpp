@@ -10,6 +10,7 @@
 #include "surrogates/tables/collapse.h"
 #include "surrogates/tables/compare.h"
 #include "surrogates/tables/continuation.h"
+#include "surrogates/tables/pitch.h"
 #include "surrogates/tables/select.h"
 #include "tests/support/support.h"
 #include "tests/surrogates/tables/tables_support.h"

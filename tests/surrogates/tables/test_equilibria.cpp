@@ -158,6 +158,31 @@ TEST(Equilibria, OfATableOfTwoAxesHoldTheOther) {
     EXPECT_THROW(equilibria(table, options), core::UsageError);
 }
 
+TEST(Equilibria, FollowThePolicyOfAHeldAxis) {
+    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01, 0.02}, {-0.05, 0, 0.05}, [](double h, double p) { return 1e-3 / h + 2 * p; });
+    tables::FitOptions options;
+    options.kind = tables::FitOptions::Kind::interpolation;
+    tables::EquilibriumOptions wanted;
+    wanted.net_weight = 0.4;
+    wanted.held = {{"pitch", 0.1}};
+    const auto of = [&](const char* range) {
+        options.range = tables::parse_range_policies(range);
+        return tables::equilibria(tables::ForceTable::fit(data, "lift_force", options), wanted);
+    };
+    const auto holding = of("clamp");
+    wanted.held = {{"pitch", 0.05}};
+    const auto at_the_end = of("clamp");
+    wanted.held = {{"pitch", 0.1}};
+    ASSERT_EQ(holding.all.size(), 1u);
+    EXPECT_DOUBLE_EQ(holding.all[0].gap, at_the_end.all[0].gap);
+    ASSERT_EQ(holding.remarks.size(), 1u);
+    EXPECT_EQ(holding.remarks[0].message, "pitch lies outside the table: the end value is held");
+    const auto going_on = of("pitch=extrapolate");
+    ASSERT_EQ(going_on.all.size(), 1u);
+    EXPECT_NEAR(1e-3 / going_on.all[0].gap, 0.4 - 0.2, 0.03) << "the linear part goes on";
+    EXPECT_THROW(of("pitch=refuse"), core::InputError);
+}
+
 TEST(Equilibria, KnowHowSureTheyAre) {
     const auto table = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, 0.02\n0.5, 0.5, 0.02\n1, 0, 0.02\n"));
     EquilibriumOptions options;

@@ -309,6 +309,69 @@ TEST(ForceTable, RefusesOrExtrapolatesWhenToldTo) {
     EXPECT_GT(going_on.at({&further, 1}).sigma, beyond.sigma);
 }
 
+TEST(ForceTable, FollowsThePolicyOfEachAxis) {
+    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01}, {-0.07, -0.02, 0.03, 0.07}, [](double h, double p) { return 3e-3 / h + 5 * p * p + 0.01 * p / h; });
+    FitOptions options;
+    options.kind = FitOptions::Kind::interpolation;
+    options.range = tables::parse_range_policies("gap=refuse,pitch=clamp");
+    const auto mixed = ForceTable::fit(data, "lift_force", options);
+    const double beyond_pitch[2] = {0.003, 0.1}, at_its_end[2] = {0.003, 0.07}, beyond_gap[2] = {0.02, 0};
+    EXPECT_DOUBLE_EQ(mixed.at(beyond_pitch).value, mixed.at(at_its_end).value);
+    EXPECT_EQ(mixed.at(beyond_pitch).slope[1], 0);
+    EXPECT_TRUE(mixed.at(beyond_pitch).outside);
+    EXPECT_THAT(message_of([&] { (void)mixed.at(beyond_gap); }), HasSubstr("gap 0.02 m is outside the table, which covers 0.001 to 0.01 m"));
+    EXPECT_NO_THROW((void)mixed.value(beyond_gap)) << "the hot path holds the ends";
+    options.range = tables::parse_range_policies("refuse,pitch=extrapolate");
+    const auto other = ForceTable::fit(data, "lift_force", options);
+    EXPECT_NEAR(other.at(beyond_pitch).value, other.at(at_its_end).value + 0.03 * other.at(at_its_end).slope[1], 1e-12);
+    EXPECT_THAT(message_of([&] { (void)other.at(beyond_gap); }), HasSubstr("gap"));
+}
+
+TEST(ForceTable, HasTheSlopesOfItsValueBeyondItsEndsToo) {
+    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01}, {-0.07, -0.02, 0.03, 0.07}, [](double h, double p) { return 3e-3 / h + 5 * p * p + 0.01 * p / h; });
+    core::Random random(4);
+    for (const char* range : {"extrapolate", "gap=extrapolate,pitch=clamp", "clamp,pitch=extrapolate"}) {
+        FitOptions options;
+        options.kind = FitOptions::Kind::interpolation;
+        options.range = tables::parse_range_policies(range);
+        const auto table = ForceTable::fit(data, "lift_force", options);
+        for (int i = 0; i < 400; ++i) {
+            const double p[2] = {random.uniform(-0.005, 0.016), random.uniform(-0.15, 0.15)};
+            const auto e = table.at(p);
+            for (int k = 0; k < 2; ++k) {
+                double a[2] = {p[0], p[1]}, b[2] = {p[0], p[1]};
+                const double step = k == 0 ? 1e-8 : 1e-7;
+                a[k] -= step;
+                b[k] += step;
+                const double difference = (table.at(b).value - table.at(a).value) / (2 * step);
+                EXPECT_NEAR(e.slope[k], difference, 1e-4 * (1 + std::abs(difference))) << range << " at " << p[0] << ", " << p[1];
+            }
+        }
+    }
+}
+
+TEST(ForceTable, SaysWhatIsWrongWithRangePolicies) {
+    const auto error_of = [](const std::string& range) {
+        try {
+            FitOptions options;
+            options.range = tables::parse_range_policies(range);
+            ForceTable::fit(csv("gap [mm], lift_force [N]\n1, 3\n2, 2\n4, 1\n"), "lift_force", options);
+        } catch (const core::UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_THAT(error_of("clam"), HasSubstr("clamp"));
+    EXPECT_THAT(error_of("gap=hold"), HasSubstr("there is no range policy 'hold'"));
+    EXPECT_THAT(error_of("gop=refuse"), HasSubstr("gap"));
+    EXPECT_THAT(error_of("pitch=refuse"), HasSubstr("no axis 'pitch'"));
+    EXPECT_THAT(error_of("pitch=refuse"), HasSubstr("known: gap"));
+    EXPECT_THAT(error_of("clamp,refuse"), HasSubstr("twice"));
+    EXPECT_THAT(error_of("gap=clamp,gap=refuse"), HasSubstr("twice"));
+    EXPECT_THAT(error_of("=clamp"), HasSubstr("names no axis"));
+    EXPECT_EQ(error_of(" gap = refuse , extrapolate"), "no error");
+}
+
 TEST(ForceTable, CarriesTheErrorsOfItsPoints) {
     const ForceTable table = monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 3, 0.1\n2, 2, 0.2\n3, 1, 0.1\n4, 0, 0.1\n"));
     const double at = 0.002;

@@ -1,0 +1,50 @@
+// Pitch: the windows in which the pitch moment restores, the trim torque that each needs, and heave coupled with pitch.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/figure.h"
+#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/line.h"
+
+namespace underbody::tables {
+
+/// A range of pitch in which the pitch moment restores (d moment / d pitch < 0, both nose up). Thesis figures 4-18, 4-19 have the opposite sign.
+struct PitchWindow {
+    double lower = 0, upper = 0;  ///< rad
+    std::string side;             ///< "nose up", "nose down" or "level" (holds zero)
+    double best_pitch = 0;        ///< rad, where it is stiffest
+    double stiffness = 0;         ///< N m/rad there, -dM/dpitch
+    double trim_torque = 0;       ///< N m, nose up, that holds it there: -M
+    double trim_lower = 0, trim_upper = 0;  ///< N m over the window
+};
+/// `moment`: a table of pitch_moment with an axis pitch; `held`: its other axes.
+std::vector<PitchWindow> pitch_windows(const ForceTable& moment, const Held& held);
+core::Figure pitch_figure(const ForceTable& moment, const Held& held);
+void to_json(nlohmann::json& json, const PitchWindow& window);
+
+struct CoupledOptions {
+    double net_weight = 0;       ///< N
+    double trim_torque = 0;      ///< N m, nose up, constant
+    double virtual_mass = 0;     ///< kg; 0: eigenvalues of the stiffness itself
+    double virtual_inertia = 0;  ///< kg m^2 (I_yy + B_q)
+    Held held;                   ///< axes other than gap and pitch
+};
+struct CoupledEquilibrium {
+    double gap = 0, pitch = 0;
+    /// -[[dF/dh, dF/dpitch], [dM/dh, dM/dpitch]]; N/m, N/rad, N, N m/rad.
+    std::array<std::array<double, 2>, 2> stiffness{};
+    /// Of the stiffness, or of mass^-1 stiffness (1/s^2) when mass and inertia are given.
+    std::array<std::complex<double>, 2> eigenvalues{};
+    /// "stable": both real and positive; "divergent": one real and negative; "flutter": complex (grows without damping, the stiffness is not symmetric).
+    std::string kind;
+};
+/// All points in the common range of lift and moment where both balance. Both tables need axes gap and pitch.
+std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options);
+void to_json(nlohmann::json& json, const CoupledEquilibrium& equilibrium);
+
+}  // namespace underbody::tables

@@ -1,0 +1,174 @@
+// The FMU, loaded by a small importer of FMI 2.0, evaluates like the table.
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/surrogates/tables/exports_support.h"
+
+namespace underbody {
+namespace {
+
+using tables::ForceTable;
+using ::testing::HasSubstr;
+
+/// Entries of a zip of stored files.
+std::map<std::string, std::string> unzipped(const std::string& zip) {
+    std::map<std::string, std::string> entries;
+    const auto number = [&](std::size_t at, int bytes) {
+        std::size_t v = 0;
+        for (int i = bytes; i-- > 0;) {
+            v = v << 8 | static_cast<unsigned char>(zip[at + i]);
+        }
+        return v;
+    };
+    for (std::size_t at = 0; number(at, 4) == 0x04034b50;) {
+        const std::size_t size = number(at + 18, 4), name = number(at + 26, 2);
+        entries[zip.substr(at + 30, name)] = zip.substr(at + 30 + name, size);
+        at += 30 + name + size;
+    }
+    return entries;
+}
+
+enum Status { ok, warning, discard, error };
+
+/// The functions of FMI 2.0 that a simulator calls.
+class Fmu {
+public:
+    explicit Fmu(const std::filesystem::path& library) : library_(::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL)) {}
+    ~Fmu() {
+        if (library_ != nullptr) {
+            ::dlclose(library_);
+        }
+    }
+    Fmu(const Fmu&) = delete;
+    Fmu& operator=(const Fmu&) = delete;
+
+    [[nodiscard]] bool loaded() const { return library_ != nullptr; }
+    void* instantiate(int type, const std::string& guid) {
+        return function<void* (*)(const char*, int, const char*, const char*, const void*, int, int)>("fmi2Instantiate")("x", type, guid.c_str(), "", nullptr, 0, 0);
+    }
+    template <class... Arguments>
+    int call(const char* name, Arguments... arguments) {
+        return function<int (*)(Arguments...)>(name)(arguments...);
+    }
+    void free(void* instance) { function<void (*)(void*)>("fmi2FreeInstance")(instance); }
+
+private:
+    template <class Function>
+    Function function(const char* name) {
+        void* found = ::dlsym(library_, name);
+        if (found == nullptr) {
+            throw std::runtime_error(std::string("the FMU lacks ") + name);
+        }
+        return reinterpret_cast<Function>(found);
+    }
+    void* library_;
+};
+
+/// The life of a model-exchange instance without states: events once, then continuous time.
+void enter_continuous_time(Fmu& fmu, void* instance) {
+    struct {
+        int flags[5];
+        double next;
+    } event = {{1, 1, 1, 1, 1}, 0};
+    ASSERT_EQ(fmu.call("fmi2NewDiscreteStates", instance, static_cast<void*>(&event)), ok);
+    EXPECT_EQ(event.flags[0], 0) << "no further events";
+    ASSERT_EQ(fmu.call("fmi2EnterContinuousTimeMode", instance), ok);
+    ASSERT_EQ(fmu.call("fmi2SetTime", instance, 1.5), ok);
+    double none = 0;
+    ASSERT_EQ(fmu.call("fmi2GetDerivatives", instance, &none, std::size_t{0}), ok);
+    int asks_event = 1, asks_end = 1;
+    ASSERT_EQ(fmu.call("fmi2CompletedIntegratorStep", instance, 1, &asks_event, &asks_end), ok);
+    EXPECT_EQ(asks_event + asks_end, 0);
+}
+
+void check_values(Fmu& fmu, void* instance, const ForceTable& table, bool steps) {
+    const std::size_t n = table.axes().size();
+    const auto points = test::random_points(table, 10000);
+    const test::Sizes sizes(table, points);
+    const unsigned inputs[4] = {0, 1, 2, 3};
+    std::vector<unsigned> outputs;
+    for (unsigned k = 0; k < n + 3; ++k) {
+        outputs.push_back(static_cast<unsigned>(n) + k);
+    }
+    std::vector<double> out(n + 3);
+    for (std::size_t i = 0; i < 10000; ++i) {
+        const double* point = &points[i * n];
+        ASSERT_EQ(fmu.call("fmi2SetReal", instance, static_cast<const unsigned*>(inputs), n, point), ok);
+        if (steps) {
+            ASSERT_EQ(fmu.call("fmi2DoStep", instance, 0.1 * static_cast<double>(i), 0.1, 1), ok);
+        }
+        const auto e = test::expected(table, point);
+        ASSERT_EQ(fmu.call("fmi2GetReal", instance, static_cast<const unsigned*>(outputs.data()), outputs.size(), out.data()), e.refused ? discard : ok);
+        ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, point, sizes, 1e-12, out[0], &out[1], out[1 + n], out[2 + n] != 0));
+        if (i % 100 == 0) {
+            const double along[4] = {0.5, -2, 1, 1};
+            double change = 0, wanted = 0;
+            for (std::size_t k = 0; k < n; ++k) {
+                wanted += along[k] * e.at.slope[k];
+            }
+            const int status = fmu.call("fmi2GetDirectionalDerivative", instance, static_cast<const unsigned*>(outputs.data()), std::size_t{1},
+                                        static_cast<const unsigned*>(inputs), n, static_cast<const double*>(along), &change);
+            ASSERT_EQ(status, e.refused ? discard : ok);
+            ASSERT_TRUE(e.refused || std::abs(change - wanted) <= 1e-9 * (1 + std::abs(wanted)));
+        }
+    }
+    if (std::any_of(table.axes().begin(), table.axes().end(), [](const auto& a) { return a.range == tables::RangePolicy::refuse; })) {
+        // Whether it is outside can be asked at a point that is refused.
+        const double outside[4] = {1e3, 1e3, 1e3, 1e3};
+        ASSERT_EQ(fmu.call("fmi2SetReal", instance, static_cast<const unsigned*>(inputs), n, static_cast<const double*>(outside)), ok);
+        ASSERT_EQ(fmu.call("fmi2GetReal", instance, static_cast<const unsigned*>(&outputs[n + 2]), std::size_t{1}, out.data()), ok);
+        EXPECT_EQ(out[0], 1);
+    }
+}
+
+TEST(ExportsOfFmu, AreLoadedAndEvaluateLikeTheTable) {
+    core::TemporaryFolder folder;
+    int number = 0;
+    for (const auto& table : test::tables_of_all_policies()) {
+        const auto path = folder.path() / "lift.fmu";
+        export_table(table, "fmu", path);
+        const std::string first = core::read_file(path);
+        export_table(table, "fmu", path);
+        EXPECT_TRUE(first == core::read_file(path)) << "the same table must give the same bytes";
+        if (test::have("python3")) {
+            EXPECT_EQ(std::system(("python3 -c \"import zipfile,xml.dom.minidom as m;z=zipfile.ZipFile('" + path.string() +
+                                   "');assert z.testzip() is None;m.parseString(z.read('modelDescription.xml'))\"").c_str()),
+                      0);
+        }
+        const auto entries = unzipped(first);
+        ASSERT_TRUE(entries.contains("modelDescription.xml"));
+        ASSERT_TRUE(entries.contains("sources/fmu.c"));
+        if (!entries.contains("binaries/linux64/lift_force.so")) {
+            GTEST_SKIP() << "skipped: no C compiler, so the FMU has no binary";
+        }
+        const std::string& xml = entries.at("modelDescription.xml");
+        EXPECT_THAT(xml, HasSubstr("Force table by Underbody: lift_force [N]"));
+        EXPECT_THAT(xml, HasSubstr("Outside the range of gap"));
+        EXPECT_THAT(xml, HasSubstr("name=\"lift_force_per_gap\""));
+        EXPECT_THAT(xml, HasSubstr("<Real unit=\"m\""));
+        const std::size_t g = xml.find("guid=\"") + 6;
+        const std::string guid = xml.substr(g, xml.find('"', g) - g);
+        const auto library = folder.path() / ("lift" + std::to_string(number++) + ".so");
+        core::write_file(library, entries.at("binaries/linux64/lift_force.so"));
+        Fmu fmu(library);
+        ASSERT_TRUE(fmu.loaded()) << ::dlerror();
+        EXPECT_EQ(fmu.instantiate(1, "wrong"), nullptr);
+        for (const int type : {0, 1}) {  // model exchange, co-simulation
+            void* instance = fmu.instantiate(type, guid);
+            ASSERT_NE(instance, nullptr);
+            ASSERT_EQ(fmu.call("fmi2EnterInitializationMode", instance), ok);
+            ASSERT_EQ(fmu.call("fmi2ExitInitializationMode", instance), ok);
+            if (type == 0) {
+                ASSERT_NO_FATAL_FAILURE(enter_continuous_time(fmu, instance));
+            }
+            ASSERT_NO_FATAL_FAILURE(check_values(fmu, instance, table, type == 1));
+            fmu.free(instance);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace underbody

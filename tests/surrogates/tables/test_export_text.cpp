@@ -1,0 +1,151 @@
+// CSV and JSON come back as the table that they were made from; the JSON evaluates by its own words.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "surrogates/tables/many_points.h"
+#include "tests/surrogates/tables/exports_support.h"
+#include "tests/surrogates/tables/json_evaluator.h"
+
+namespace underbody {
+namespace {
+
+using tables::ForceTable;
+using ::testing::HasSubstr;
+
+void check_read_back(const std::string& format) {
+    core::TemporaryFolder folder;
+    auto all = test::tables_of_all_policies();
+    all.push_back(test::ref_a_spline());
+    for (const ForceTable& table : all) {
+        const auto path = folder.path() / ("t." + format);
+        export_table(table, format, path, {});
+        const ForceTable again = ForceTable::read(path, "lift_force");
+        EXPECT_EQ(again.kind(), "exported grid");
+        const std::size_t n = table.axes().size();
+        ASSERT_EQ(again.axes().size(), n);
+        for (std::size_t k = 0; k < n; ++k) {
+            EXPECT_EQ(again.axes()[k].range, table.axes()[k].range);
+        }
+        const auto points = test::random_points(table, 10000);
+        const test::Sizes sizes(table, points);
+        for (std::size_t i = 0; i < points.size(); i += n) {
+            const auto e = test::expected(again, &points[i]);
+            ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, &points[i], sizes, 1e-12, e.at.value, e.at.slope.data(), e.at.sigma, e.at.outside));
+        }
+    }
+}
+
+TEST(ExportsOfText, OfCsvReadBackAsTheSameTable) { check_read_back("csv"); }
+TEST(ExportsOfText, OfJsonReadBackAsTheSameTable) { check_read_back("json"); }
+
+TEST(ExportsOfText, OfOlderVersionsAreReadWithTheirOnePolicyForAllAxes) {
+    core::TemporaryFolder folder;
+    export_table(test::two_axes("extrapolate"), "csv", folder.path() / "t.csv");
+    std::string csv = core::read_file(folder.path() / "t.csv");
+    const std::string now = R"("range":["extrapolate","extrapolate"])";
+    ASSERT_NE(csv.find(now), std::string::npos);
+    core::write_file(folder.path() / "old.csv", csv.replace(csv.find(now), now.size(), R"("range":"extrapolate")"));
+    export_table(test::two_axes("extrapolate"), "json", folder.path() / "t.json");
+    auto json = nlohmann::json::parse(core::read_file(folder.path() / "t.json"));
+    json["outside"] = "extrapolate";
+    for (auto& axis : json["axes"]) {
+        axis.erase("outside");
+    }
+    core::write_file(folder.path() / "old.json", json.dump());
+    for (const char* name : {"old.csv", "old.json"}) {
+        for (const auto& axis : ForceTable::read(folder.path() / name, "lift_force").axes()) {
+            EXPECT_EQ(axis.range, tables::RangePolicy::extrapolate) << name;
+        }
+        // What the caller says goes first.
+        tables::FitOptions options;
+        options.range = tables::parse_range_policies("gap=clamp");
+        const auto table = ForceTable::read(folder.path() / name, "lift_force", options);
+        EXPECT_EQ(table.axes()[0].range, tables::RangePolicy::clamp) << name;
+        EXPECT_EQ(table.axes()[1].range, tables::RangePolicy::extrapolate) << name;
+    }
+}
+
+TEST(ExportsOfText, KeepTheConditionsOfTheTableAndWhereItsPointsAre) {
+    std::string text = "# a diagonal band\ngap [mm], pitch [deg], speed [m/s], mass [kg], variant, lift_force [N], lift_force_sigma [N]\n";
+    for (int i = 0; i < 9; ++i) {
+        for (const int j : {-1, 0, 1}) {
+            text += std::to_string(2 + i) + "," + std::to_string(0.5 * (i + j) - 2) + ",0.5,2.2,ellipse," + std::to_string(0.6 - 0.05 * i + 0.02 * j) + ",0.01\n";
+        }
+    }
+    const auto table = ForceTable::fit(test::csv(text), "lift_force");
+    core::TemporaryFolder folder;
+    for (const char* name : {"t.csv", "t.json"}) {
+        export_table(table, std::string(name).substr(2), folder.path() / name);
+        const auto again = ForceTable::read(folder.path() / name, "lift_force");
+        ASSERT_EQ(again.conditions().size(), 1u);
+        EXPECT_EQ(again.conditions()[0], (std::pair<std::string, double>("speed", 0.5)));
+        const double in_the_band[2] = {0.006, 0}, far_from_it[2] = {0.010, -0.034};
+        EXPECT_NEAR(beyond_points(again, in_the_band), 0, 1e-9);
+        EXPECT_GT(beyond_points(again, far_from_it), 0.1);
+        EXPECT_NEAR(beyond_points(again, far_from_it), beyond_points(table, far_from_it), 1e-12);
+        const std::string written = core::read_file(folder.path() / name);
+        EXPECT_THAT(written, HasSubstr("Holds for speed = 0.5 m/s"));
+        EXPECT_THAT(written, HasSubstr("Of mass = 2.2 kg"));
+        EXPECT_THAT(written, HasSubstr("Of variant ellipse"));
+        EXPECT_THAT(written, HasSubstr("The points do not fill the box of the axes"));
+    }
+}
+
+TEST(ExportsOfText, ThatAreNoTablesSayWhatIsWrong) {
+    core::TemporaryFolder folder;
+    const auto message = [&](const std::string& text) {
+        core::write_file(folder.path() / "t.json", text);
+        try {
+            ForceTable::read(folder.path() / "t.json", "lift_force");
+        } catch (const core::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_THAT(message("{\"a\": }"), HasSubstr("not JSON"));
+    EXPECT_THAT(message("{\"a\": 1}"), HasSubstr("not a force table"));
+    EXPECT_THAT(message("{\"format\": \"Underbody force table\"}"), HasSubstr("not complete"));
+    export_table(test::one_axis(), "json", folder.path() / "ours.json");
+    auto json = nlohmann::json::parse(core::read_file(folder.path() / "ours.json"));
+    json["hermite"].erase(json["hermite"].begin());
+    EXPECT_THAT(message(json.dump()), HasSubstr("grid points together"));
+}
+
+TEST(ExportsOfText, ThatAreDamagedSayWhatIsWrong) {
+    core::TemporaryFolder folder;
+    export_table(test::one_axis(), "csv", folder.path() / "t.csv");
+    const std::string csv = core::read_file(folder.path() / "t.csv");
+    const auto message = [&](const std::string& from, const std::string& to) {
+        std::string text = csv;
+        EXPECT_NE(text.find(from), std::string::npos);
+        core::write_file(folder.path() / "bad.csv", text.replace(text.find(from), from.size(), to));
+        try {
+            ForceTable::read(folder.path() / "bad.csv", "lift_force");
+        } catch (const core::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_THAT(message(R"("range":["clamp"])", R"("range":["hold"])"), HasSubstr("range policy \"hold\""));
+    EXPECT_THAT(message(R"("axes":["gap"])", R"("axes":7)"), HasSubstr("damaged"));
+}
+
+TEST(ExportsOfText, OfJsonEvaluateByTheirOwnWords) {
+    core::TemporaryFolder folder;
+    for (const ForceTable& table : test::tables_of_all_policies()) {
+        export_table(table, "json", folder.path() / "t.json", {});
+        const test::JsonTable json{nlohmann::json::parse(core::read_file(folder.path() / "t.json"))};
+        const std::size_t n = table.axes().size();
+        const auto points = test::random_points(table, 10000);
+        const test::Sizes sizes(table, points);
+        for (std::size_t i = 0; i < points.size(); i += n) {
+            const auto v = json.at(&points[i]);
+            ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, &points[i], sizes, 1e-12, v.value, v.slope, v.sigma, v.outside));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace underbody
