@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "core/text.h"
@@ -94,6 +95,27 @@ void hold_scales(const Model& model, const Axes& axes, Conditions& held, ForcePo
     }
 }
 
+/// What the forces were computed for, one value a column: held channels, and the vehicle they belong to.
+void add_constants(core::Table& points, const Model& model, const Axes& axes, const Conditions& held) {
+    const auto add = [&](const char* name, const char* unit, double value) {
+        if (points.find(name) == nullptr && std::isfinite(value)) {  // what the model does not state is not stated here
+            points.add_numbers(name, unit, std::vector<double>(points.rows(), value));
+        }
+    };
+    for (std::size_t i = 0; i < channel_count; ++i) {
+        const auto channel = static_cast<Channel>(i);
+        if (held.has(channel) && !axes.contains(channel)) {
+            add(channel_name(channel), channel_unit(channel), held[channel]);
+        }
+    }
+    add("mass", "kg", model.vehicle.mass);
+    add("added_mass_heave", "kg", model.vehicle.added_mass_heave);
+    add("net_weight", "N", model.vehicle.net_weight);
+    add("length", "m", model.vehicle.length);
+    add("width", "m", model.vehicle.width);
+    add("density", "kg/m^3", model.environment.density);
+}
+
 }  // namespace
 
 bool belongs_to_the_rig(const std::string& effect) {
@@ -148,6 +170,7 @@ ForcePoints force_points(const Model& declared, const Conditions& given) {
     for (std::size_t q = 0; q < quantities.size(); ++q) {
         out.points.add_numbers(quantities[q], core::find_quantity(quantities[q])->unit, std::move(forces[q]));
     }
+    add_constants(out.points, model, axes, held);
     return out;
 }
 

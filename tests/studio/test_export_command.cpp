@@ -41,6 +41,9 @@ TEST(ExportCommand, TakesAModelWithWhatWasFoundInIt) {
     const auto run = run_underbody({"export", "model.toml", "--where", "speed=1m/s", "--format", "c", "--out", "lift.h"}, folder.path());
     EXPECT_EQ(run.exit_code, 0) << run.errors;
     EXPECT_THAT(run.errors, HasSubstr("sensor_gain"));
+    const std::string header = core::read_file(folder.path() / "lift.h");
+    EXPECT_THAT(header, HasSubstr("Holds for speed = 1 m/s"));
+    EXPECT_THAT(header, HasSubstr("Of mass = 2.2 kg"));
     const auto at = run_underbody({"table", "at", "model.toml", "gap=5mm", "--where", "speed=1m/s", "--json"}, folder.path());
     ASSERT_EQ(at.exit_code, 0) << at.errors;
     EXPECT_THAT(at.output, HasSubstr("0.7636"));   // .27 N * 2^1.5

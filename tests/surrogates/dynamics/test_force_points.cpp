@@ -64,6 +64,19 @@ TEST(ForcePoints, HoldWhatOnlyScalesWhereTheyAreTold) {
     }
 }
 
+TEST(ForcePoints, SayWhatTheyBelongTo) {
+    Model model = test::ref_a_model();
+    model.forces[0].scales.push_back({Channel::speed, 0.5, 2, 0});
+    model.vehicle.length = 0.2;
+    model.vehicle.width = std::nan("");
+    const core::Table points = force_points(model).points;
+    EXPECT_EQ(points.numbers("speed").back(), 0.5);
+    EXPECT_EQ(points.numbers("mass").front(), model.vehicle.mass);
+    EXPECT_EQ(points.numbers("length").front(), 0.2);
+    EXPECT_EQ(points.find("width"), nullptr) << "what the model does not state is not stated here";
+    EXPECT_EQ(points.numbers("net_weight").front(), model.vehicle.net_weight);
+}
+
 TEST(ForcePoints, AreRefusedForAModelWithoutForces) {
     EXPECT_THROW((void)force_points(test::free_model(1, 0, 0, 1)), core::InputError);
 }
