@@ -16,6 +16,9 @@ namespace underbody::tables {
 
 namespace {
 
+/// Small gaps are where the forces change: they are drawn on a logarithmic axis, as in the picture of a table.
+bool spans_decades(double lower, double upper) { return lower > 0 && upper >= 20 * lower; }
+
 const std::vector<std::string>& known_levels() {
     static const std::vector<std::string> names = {"speed", "length", "jet_voltage", "jet_flow"};
     return names;
@@ -239,8 +242,10 @@ Collapse collapse(const core::Table& table, const std::string& quantity, const C
     result.points.add_numbers("deviation", "1", out_deviation);
     if (reference.curve) {
         const auto& axis = reference.curve->axes().front();
-        for (int i = 0; i <= 200; ++i) {
-            const double x = i == 200 ? axis.upper : axis.lower + (axis.upper - axis.lower) * i / 200;
+        const bool log = spans_decades(axis.lower, axis.upper);
+        for (int i = 0; i <= 400; ++i) {
+            const double t = i / 400.0;
+            const double x = i == 400 ? axis.upper : log ? axis.lower * std::pow(axis.upper / axis.lower, t) : axis.lower + (axis.upper - axis.lower) * t;
             result.curve_x.push_back(x);
             result.curve_y.push_back(reference.curve->value(&x));
             result.curve_sigma.push_back(reference.curve->sigma(&x));
@@ -253,7 +258,7 @@ core::Figure collapse_figure(const Collapse& c) {
     core::Figure figure;
     figure.title = c.quantity + " collapsed by " + c.by;
     figure.caption = c.verdict + ".";
-    figure.x = {c.abscissa, c.abscissa == "gap" ? "m" : "1", 0, 0, false};
+    figure.x = {c.abscissa, c.abscissa == "gap" ? "m" : "1", 0, 0, !c.curve_x.empty() && spans_decades(c.curve_x.front(), c.curve_x.back())};
     figure.y = {c.coefficient, c.coefficient_unit, 0, 0, false};
     core::FigureCurve curve;
     curve.name = c.by + " " + core::format_number(c.reference, 4) + " " + c.by_unit + " (curve)";

@@ -259,7 +259,9 @@ core::Figure continuation_figure(const ForceTable& table, const EquilibriumCurve
     core::Figure figure;
     figure.title = "equilibria against " + curve.parameter;
     figure.x = {curve.parameter, curve.parameter_unit, 0, 0, false};
-    figure.y = {curve.axis, shown_unit(table, curve.axis), 0, 0, false};
+    const TableAxis& axis = table.axes()[axis_index(table, curve.axis)];
+    // Small gaps are where the forces change, as in the picture of the table.
+    figure.y = {curve.axis, shown_unit(table, curve.axis), 0, 0, axis.name == "gap" && axis.lower > 0 && axis.upper >= 20 * axis.lower};
     const auto shown = core::conversion(curve.axis_unit, figure.y.unit);
     bool named[2] = {false, false};
     for (const auto& branch : curve.branches) {

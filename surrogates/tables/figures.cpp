@@ -119,10 +119,11 @@ void add_curve(core::Figure& figure, const ForceTable& table, std::size_t axis, 
     }
 }
 
-std::string described(const ForceTable& table, std::size_t axis, const std::vector<double>& at) {
+/// Values of the axes that are held: of all but one or two.
+std::string described(const ForceTable& table, std::size_t axis, const std::vector<double>& at, std::size_t other = max_axes) {
     std::string text;
     for (std::size_t k = 0; k < at.size(); ++k) {
-        if (k != axis) {
+        if (k != axis && k != other) {
             const auto& a = table.axes()[k];
             text += (text.empty() ? "" : ", ") + a.name + " " + core::format_number(to_shown(table, a.name, a.unit)(at[k]), 4) + " " +
                     shown_unit(table, a.name);
@@ -200,6 +201,7 @@ core::Figure curve_figure(const ForceTable& table, const FigureOptions& options)
     figure.y = axis_of(table, table.quantity());
     figure.title = options.title.empty() ? table.quantity() + " against " + table.axes()[axis].name : options.title;
     const std::string held = described(table, axis, at);
+    figure.title += held.empty() ? "" : " at " + held;
     figure.caption = caption_of(table) + (held.empty() ? "" : " At " + held + ".");
     add_curve(figure, table, axis, at, options, table.kind(), core::palette(0), true);
     auto points = points_on(table, axis, at);
@@ -254,7 +256,9 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
     figure.x = axis_of(table, ax.name);
     figure.y = axis_of(table, ay.name);
     figure.title = options.title.empty() ? table.quantity() + " over " + ax.name + " and " + ay.name : options.title;
-    figure.caption = caption_of(table);
+    const std::string held = described(table, kx, at, ky);
+    figure.title += held.empty() ? "" : " at " + held;
+    figure.caption = caption_of(table) + (held.empty() ? "" : " At " + held + ".");
     core::FigureMap map;
     map.columns = map.rows = static_cast<std::size_t>(std::clamp(options.samples / 2, 20, 400));
     // Cells are of one width: a logarithmic axis needs narrow ones for its small end.

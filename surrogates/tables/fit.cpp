@@ -29,6 +29,35 @@ double root_mean_square(const std::vector<double>& misses, const std::vector<dou
     return count == 0 ? std::nan("") : std::sqrt(sum / static_cast<double>(count));
 }
 
+constexpr std::size_t many = 2500;  ///< more points than are worth the time of leaving each one out
+
+/// Many points of a full grid with errors. Interpolation that misses points left out by no more than their errors stays; else a process of their
+/// averages is tried at the points themselves, each of which is one of many that made it.
+std::shared_ptr<const ForceTable::Impl> of_many(const SetPoints& points, const std::shared_ptr<ForceTable::Impl>& interpolated) {
+    const auto known = interpolation_misses(points, 1 + points.x.size() / 5000);
+    const double of_interpolation = root_mean_square(known, known);
+    const double stated = root_mean_square(points.sigma, known);
+    const auto say = [&](ForceTable::Impl& table, const std::string& text) { table.remarks.push_back({core::Problem::Severity::note, text, {points.table.source, {}, {}, {}}}); };
+    const auto in_words = [&](double v) { return core::format_number(v, 3) + " " + points.unit; };
+    if (!(of_interpolation > 1.05 * stated)) {  // independent errors alone would make it 1.1 to 1.3 times as much
+        say(*interpolated, "interpolated: left-out points are met within " + in_words(of_interpolation) + ", no worse than their stated errors");
+        return interpolated;
+    }
+    auto process = fit_gaussian_process(points, nullptr);
+    std::vector<double> misses(points.x.size(), 0.0);
+    for (std::size_t i = 0; i < misses.size(); ++i) {
+        misses[i] = std::isnan(known[i]) ? 0 : process->surface.value(points.x[i].data(), nullptr) - points.value[i];
+    }
+    const double of_process = root_mean_square(misses, known);
+    const std::string scores = "points are missed by " + in_words(of_process) + " by a Gaussian process of their averages, left-out ones by " + in_words(of_interpolation) + " by interpolation";
+    if (of_process < of_interpolation) {
+        say(*process, "Gaussian process chosen: " + scores);
+        return process;
+    }
+    say(*interpolated, "interpolated: " + scores);
+    return interpolated;
+}
+
 }  // namespace
 
 std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options) {
@@ -53,9 +82,12 @@ std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, cons
         say("interpolated: the points fill a grid and state no errors, so they are taken as exact");
         return interpolated;
     }
-    if (points.x.size() > 2500 || points.x.size() < points.axes.size() + 3) {
-        say(points.x.size() > 2500 ? "interpolated: a full grid of this size needs no smoothing" : "interpolated: too few points to judge by leaving one out");
+    if (points.x.size() < points.axes.size() + 3) {
+        say("interpolated: too few points to judge by leaving one out");
         return interpolated;
+    }
+    if (points.x.size() > many) {
+        return of_many(points, interpolated);
     }
     const auto known = interpolation_misses(points);
     const double of_interpolation = root_mean_square(known, known);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/figures.h"
 
@@ -90,7 +91,7 @@ core::Figure pitch_figure(const ForceTable& moment, const Held& held) {
         line.vertical = true;
         line.colour = core::palette(2);
         line.at = x(w.lower);
-        line.label = w.side + ": stable";
+        line.label = w.side + ": stable " + core::format_number(x(w.lower), 3) + " to " + core::format_number(x(w.upper), 3) + " " + figure.x.unit;
         figure.lines.push_back(line);
         line.at = x(w.upper);
         line.label.clear();
