@@ -25,6 +25,26 @@ const std::string pressure_variable = "SV_P";
 /// The faces or cells of a zone: which ids they have, in order.
 using Ids = Buffer<std::uint64_t>;
 
+/// From where to where the ids of a zone go. Its blocks may come in any order: the ends of the list do not tell.
+struct Span {
+    std::uint64_t first = 1, last = 0;
+    bool gapless = false;  ///< and in order
+};
+Span span_of(const Ids& ids) {
+    Span span;
+    if (ids.empty()) {
+        return span;
+    }
+    span.first = span.last = ids[0];
+    span.gapless = true;
+    for (std::size_t i = 1; i < ids.size(); ++i) {
+        span.gapless = span.gapless && ids[i] == ids[i - 1] + 1;
+        span.first = std::min(span.first, ids[i]);
+        span.last = std::max(span.last, ids[i]);
+    }
+    return span;
+}
+
 /// One variable of one zone, gathered from its blocks.
 struct Gathered {
     Buffer<double> values;
@@ -60,7 +80,7 @@ private:
     [[nodiscard]] bool turned(const FaceBlock& block, std::size_t face, bool wall) const;
     [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall) const;
     [[nodiscard]] double face_area(const Element& element) const;
-    [[nodiscard]] Gathered gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids);
+    [[nodiscard]] Gathered gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids, const Span& span);
     void add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on_cells, const std::vector<double>& areas,
                     core::Problems& problems);
     void add_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) const;
@@ -214,18 +234,12 @@ double Assembly::face_area(const Element& element) const {
     return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / 2;
 }
 
-Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids) {
+Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids, const Span& span) {
     Gathered result;
     if (ids.empty()) {
         return result;
     }
-    // The blocks of a zone may come in any order: its two ends do not tell where its ids begin and end.
-    const auto [lowest, highest] = std::minmax_element(ids.begin(), ids.end());
-    const std::uint64_t first = *lowest;
-    const std::uint64_t last = *highest;
-    const bool gapless = std::adjacent_find(ids.begin(), ids.end(), [](std::uint64_t a, std::uint64_t b) {
-                             return b != a + 1;
-                         }) == ids.end();
+    const auto [first, last, gapless] = span;
     for (auto& block : values_) {
         const bool ours = block.on_cells == on_cells && block.variable == key.variable && block.phase == key.phase &&
                           (block.zone == 0 || block.zone == zone) && block.count > 0 && block.first <= last &&
@@ -329,6 +343,7 @@ void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on
         std::array<Buffer<double>, 3> parts;
     };
     std::vector<Joined> vectors;
+    const Span span = span_of(ids);
     for (const auto& key : keys) {
         progress_.check();
         const std::string phase = key.phase == 1 ? "" : ".phase-" + std::to_string(key.phase);
@@ -339,7 +354,7 @@ void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on
         if (!wanted(shear ? "wall_shear" + phase : name, key.variable)) {
             continue;
         }
-        Gathered found = gather(key, zone.id, on_cells, ids);
+        Gathered found = gather(key, zone.id, on_cells, ids, span);
         if (found.found == 0) {
             continue;
         }
