@@ -1,0 +1,460 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+#include "postproc/importers/fluent_hdf5.h"
+#include "postproc/importers/hdf5_file.h"
+#include "postproc/importers/understood.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string number(std::uint64_t value) { return std::to_string(value); }
+
+/// One of the numbered parts that an array is stored in, by ids.
+struct Part {
+    std::string path;
+    std::uint64_t first = 1;
+    std::uint64_t count = 0;
+};
+
+class Reader {
+public:
+    Reader(const fs::path& path, const ReadOptions& options, core::Progress& progress)
+        : file_(path), options_(options), progress_(progress) {
+        mesh_.file = path.string();
+    }
+
+    FaceMesh read_mesh();
+    FluentSettings read_settings() const;
+    [[nodiscard]] std::string understood() const {
+        std::string text = number(mesh_.nodes) + " nodes, " + number(mesh_.faces) + " faces, " + number(mesh_.cells) + " cells";
+        for (std::size_t i = 0; i < std::min<std::size_t>(mesh_.labels.size(), 12); ++i) {
+            text += (i == 0 ? ", zones " : ", ") + mesh_.labels[i].name;
+        }
+        return text;
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& path, const std::string& what) const {
+        throw core::InputError("format", path + ": " + what, {file_.name(), {}, {}, {}},
+                               "the file is damaged or incomplete");
+    }
+    [[nodiscard]] std::uint64_t count(const std::string& name) const;
+    [[nodiscard]] std::vector<Part> parts(const std::string& path) const;
+    void read_nodes();
+    [[nodiscard]] std::vector<std::uint32_t> places_of_used_nodes();
+    void read_cells();
+    void read_faces();
+    void cut_faces(const Part& part);
+    static void note_equal_sizes(FaceBlock& block);
+    void read_beside(const std::string& side);
+    void read_labels();
+    void read_trees();
+
+    Hdf5File file_;
+    const ReadOptions& options_;
+    core::Progress& progress_;
+    FaceMesh mesh_;
+    const std::string root_ = "/meshes/1";
+};
+
+std::uint64_t Reader::count(const std::string& name) const {
+    const auto value = file_.attribute(root_, name);
+    if (!value || *value < 0) {
+        refuse(root_, "its attribute " + name + " is missing");
+    }
+    return static_cast<std::uint64_t>(*value);
+}
+
+std::vector<Part> Reader::parts(const std::string& path) const {
+    std::vector<Part> result;
+    for (const auto& child : file_.children(path)) {
+        const std::string inner = path + "/" + child;
+        const auto first = file_.attribute(inner, "minId");
+        const auto last = file_.attribute(inner, "maxId");
+        if (!first || !last) {
+            continue;
+        }
+        if (*first < 1 || *last + 1 < *first || *last > 0x7fffffffLL) {
+            refuse(inner, "ids " + std::to_string(*first) + " to " + std::to_string(*last));
+        }
+        result.push_back({inner, static_cast<std::uint64_t>(*first), static_cast<std::uint64_t>(*last - *first + 1)});
+    }
+    return result;
+}
+
+FaceMesh Reader::read_mesh() {
+    if (!file_.has(root_)) {
+        refuse(root_, "there is no mesh in this file");
+    }
+    mesh_.dimension = static_cast<int>(file_.attribute(root_, "dimension").value_or(0));
+    mesh_.nodes = count("nodeCount");
+    mesh_.faces = count("faceCount");
+    mesh_.cells = count("cellCount");
+    read_cells();
+    read_faces();
+    read_nodes();
+    read_trees();
+    read_labels();
+    hide_generated_faces(mesh_);
+    check_mesh(mesh_, options_.surfaces_only, progress_);
+    return std::move(mesh_);
+}
+
+void Reader::read_nodes() {
+    progress_.report(0.1, "reading nodes");
+    const auto pieces = parts(root_ + "/nodes/coords");
+    std::uint64_t found = 0;
+    std::uint64_t last = 0;
+    for (const auto& part : pieces) {
+        const auto shape = file_.shape(part.path);
+        if (shape.size() != 2 || shape[0] != part.count || (shape[1] != 2 && shape[1] != 3)) {
+            refuse(part.path, "its size does not fit its ids");
+        }
+        found += part.count;
+        last = std::max(last, part.first + part.count - 1);
+    }
+    if (found != mesh_.nodes || last != mesh_.nodes) {
+        refuse(root_ + "/nodes", "the mesh has " + number(mesh_.nodes) + " nodes, " + number(found) + " are there, up to " +
+                                     number(last));
+    }
+    const std::vector<std::uint32_t> places = options_.surfaces_only ? places_of_used_nodes() : std::vector<std::uint32_t>();
+    mesh_.points.grow_to(3 * mesh_.nodes);
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 16;
+    Buffer<double> raw;
+    for (const auto& part : pieces) {
+        const std::size_t width = file_.shape(part.path)[1];
+        if (width == 3 && places.empty()) {
+            file_.reals(part.path, 0, part.count, mesh_.points.data() + 3 * (part.first - 1));
+            continue;
+        }
+        for (std::uint64_t done = 0; done < part.count; done += at_once) {
+            progress_.check();
+            const std::uint64_t some = std::min(at_once, part.count - done);
+            raw.grow_to(some * width);
+            file_.reals(part.path, done, some, raw.data());
+            for (std::uint64_t i = 0; i < some; ++i) {
+                const std::uint64_t node = part.first - 1 + done + i;
+                const std::uint64_t place = places.empty() ? node : places[node];
+                if (place >= mesh_.nodes) {
+                    continue;
+                }
+                double* out = mesh_.points.data() + 3 * place;
+                std::copy_n(raw.data() + i * width, width, out);
+                out[2] = width == 2 ? 0 : out[2];
+            }
+        }
+    }
+    for (const double x : mesh_.points) {
+        if (!std::isfinite(x)) {
+            refuse(root_ + "/nodes", "a coordinate that is not a number");
+        }
+    }
+    for (const std::string& where :
+         {std::string("/"), std::string("/meshes"), root_, root_ + "/nodes", root_ + "/nodes/coords"}) {
+        if (const auto unit = file_.text_attribute(where, "units")) {
+            mesh_.length_unit = *unit;
+            mesh_.length_unit_known = true;
+        }
+    }
+}
+
+/// Of a surface only its own nodes are kept: the faces get the numbers that these have among themselves.
+/// The list says where a node of the file goes; beyond the number of nodes: nowhere.
+std::vector<std::uint32_t> Reader::places_of_used_nodes() {
+    constexpr std::uint32_t nowhere = 0xffffffffU;
+    std::vector<std::uint32_t> places(mesh_.nodes, nowhere);
+    for (const auto& block : mesh_.face_blocks) {
+        for (const std::uint32_t node : block.nodes) {
+            if (node == 0 || node > mesh_.nodes) {
+                refuse(root_ + "/faces", "a face of zone " + std::to_string(block.zone) + " names node " + number(node) +
+                                             " of " + number(mesh_.nodes));
+            }
+            places[node - 1] = 0;
+        }
+    }
+    std::uint32_t used = 0;
+    for (auto& place : places) {
+        place = place == nowhere ? nowhere : used++;
+    }
+    for (auto& block : mesh_.face_blocks) {
+        for (auto& node : block.nodes) {
+            node = places[node - 1] + 1;
+        }
+    }
+    mesh_.declared_nodes = mesh_.nodes;
+    mesh_.nodes = used;
+    return places;
+}
+
+void Reader::read_cells() {
+    const std::string topology = root_ + "/cells/zoneTopology/";
+    if (mesh_.cells == 0 && !file_.has(topology + "id")) {
+        return;
+    }
+    const auto ids = file_.numbers(topology + "id");
+    const auto first = file_.numbers(topology + "minId");
+    const auto last = file_.numbers(topology + "maxId");
+    const auto element =
+        file_.has(topology + "cellType") ? file_.numbers(topology + "cellType") : Buffer<std::uint32_t>();
+    const auto type = file_.has(topology + "zoneType") ? file_.numbers(topology + "zoneType") : Buffer<std::uint32_t>();
+    const std::string joined_names = file_.text(topology + "name");
+    const auto names = core::split(joined_names, ';');
+    if (first.size() != ids.size() || last.size() != ids.size()) {
+        refuse(topology, "its lists differ in length");
+    }
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        constexpr std::uint32_t solid = 17;
+        CellBlock block;
+        block.zone = static_cast<int>(ids[i] & 0x7fffffffU);
+        block.first = first[i];
+        block.count = last[i] >= first[i] ? last[i] - first[i] + 1 : 0;
+        block.element = i < element.size() ? static_cast<int>(std::min<std::uint32_t>(element[i], 255)) : 0;
+        if (block.count > mesh_.cells || block.first == 0) {
+            refuse(topology, "cells beyond the " + number(mesh_.cells) + " of the mesh");
+        }
+        mesh_.labels.push_back({block.zone, i < type.size() && type[i] == solid ? "solid" : "fluid",
+                                i < names.size() ? std::string(core::trimmed(names[i])) : ""});
+        mesh_.cell_blocks.push_back(std::move(block));
+    }
+    if (options_.surfaces_only) {
+        return;
+    }
+    // Codes of mixed zones: they tell polyhedra that look like hexahedra.
+    for (const auto& part : parts(root_ + "/cells/ctype")) {
+        const auto kind = file_.attribute(part.path, "elementType").value_or(0);
+        const bool mixed = kind == 0 && file_.has(part.path + "/cell-types");
+        const auto codes = mixed ? file_.numbers(part.path + "/cell-types") : Buffer<std::uint32_t>();
+        if (mixed && codes.size() != part.count) {
+            refuse(part.path, "its size does not fit its ids");
+        }
+        for (auto& block : mesh_.cell_blocks) {
+            const std::uint64_t from = std::max(block.first, part.first);
+            const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
+            if (from >= to) {
+                continue;
+            }
+            if (!mixed) {
+                block.element = block.element == 0 ? static_cast<int>(kind & 255) : block.element;
+                continue;
+            }
+            if (block.elements.empty()) {
+                block.elements.grow_to(block.count);
+                block.elements.fill(0);
+            }
+            for (std::uint64_t id = from; id < to; ++id) {
+                block.elements[id - block.first] =
+                    static_cast<unsigned char>(std::min<std::uint32_t>(codes[id - part.first], 255));
+            }
+        }
+    }
+}
+
+void Reader::read_faces() {
+    const std::string topology = root_ + "/faces/zoneTopology/";
+    const auto ids = file_.numbers(topology + "id");
+    const auto first = file_.numbers(topology + "minId");
+    const auto last = file_.numbers(topology + "maxId");
+    const auto type = file_.numbers(topology + "zoneType");
+    const std::string joined_names = file_.text(topology + "name");
+    const auto names = core::split(joined_names, ';');
+    if (first.size() != ids.size() || last.size() != ids.size() || type.size() != ids.size()) {
+        refuse(topology, "its lists differ in length");
+    }
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        FaceBlock block;
+        block.zone = static_cast<int>(ids[i] & 0x7fffffffU);
+        block.kind = static_cast<int>(std::min<std::uint32_t>(type[i], 0xffff));
+        block.first = first[i];
+        block.count = last[i] >= first[i] ? last[i] - first[i] + 1 : 0;
+        total += block.count;
+        if (block.first == 0 || block.first + block.count - 1 > mesh_.faces || total > mesh_.faces) {
+            refuse(topology, "faces beyond the " + number(mesh_.faces) + " of the mesh");
+        }
+        mesh_.labels.push_back(
+            {block.zone, type_of_code(block.kind), i < names.size() ? std::string(core::trimmed(names[i])) : ""});
+        if (!(options_.surfaces_only && is_inner_code(block.kind)) && block.count > 0) {
+            mesh_.face_blocks.push_back(std::move(block));
+        }
+    }
+    std::sort(mesh_.face_blocks.begin(), mesh_.face_blocks.end(),
+              [](const FaceBlock& a, const FaceBlock& b) { return a.first < b.first; });
+    progress_.report(0.2, "reading faces");
+    for (const auto& part : parts(root_ + "/faces/nodes")) {
+        progress_.check();
+        cut_faces(part);
+    }
+    for (const auto& block : mesh_.face_blocks) {
+        if (block.offsets.size() != block.count + 1) {
+            refuse(root_ + "/faces/nodes", "the faces of zone " + std::to_string(block.zone) + " are missing");
+        }
+    }
+    for (auto& block : mesh_.face_blocks) {
+        note_equal_sizes(block);
+    }
+    read_beside("c0");
+    read_beside("c1");
+}
+
+/// Gives each zone its share of a part of the faces; faces that nobody wants are not read. A zone may lie in several
+/// parts.
+void Reader::cut_faces(const Part& part) {
+    const auto shape = file_.shape(part.path + "/nnodes");
+    const auto nodes = file_.shape(part.path + "/nodes");
+    if (shape.size() != 1 || shape[0] != part.count || nodes.size() != 1) {
+        refuse(part.path, "its size does not fit its ids");
+    }
+    std::uint64_t at = 0;
+    std::uint64_t id = part.first;
+    std::vector<std::uint32_t> sizes;
+    // The corners of the faces from `from` on, with what came before them in `sum`.
+    const auto corners_of = [&](std::uint64_t from, std::uint64_t count, std::uint64_t sum) {
+        sizes.resize(count);
+        file_.numbers(part.path + "/nnodes", from - part.first, count, sizes.data());
+        for (const std::uint32_t size : sizes) {
+            sum += size;
+        }
+        if (sum > nodes[0] - std::min(at, nodes[0])) {
+            refuse(part.path, "faces up to " + number(from + count - 1) + " want more nodes than there are");
+        }
+        return sum;
+    };
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 18;
+    for (auto& block : mesh_.face_blocks) {
+        const std::uint64_t end = std::min(block.first + block.count, part.first + part.count);
+        if (end <= id || block.first >= part.first + part.count) {
+            continue;
+        }
+        while (id < block.first) {
+            const std::uint64_t some = std::min(at_once, block.first - id);
+            at += corners_of(id, some, 0);
+            id += some;
+        }
+        if (block.offsets.empty()) {
+            block.offsets.push(0);
+        }
+        if (block.offsets.size() != id - block.first + 1) {
+            refuse(part.path, "the faces of zone " + std::to_string(block.zone) + " are not in order");
+        }
+        const std::size_t before = block.nodes.size();
+        std::uint64_t corners = 0;
+        std::size_t next = block.offsets.size();
+        block.offsets.grow_to(next + (end - id));
+        for (std::uint64_t from = id; from < end; from += at_once) {
+            const std::uint64_t sum = corners_of(from, std::min(at_once, end - from), corners);
+            if (before + sum > 0xffffffffULL) {
+                refuse(part.path, "too many corners");
+            }
+            std::uint64_t place = before + corners;
+            for (const std::uint32_t size : sizes) {
+                place += size;
+                block.offsets[next++] = static_cast<std::uint32_t>(place);
+            }
+            corners = sum;
+        }
+        block.nodes.grow_to(before + corners);
+        file_.numbers(part.path + "/nodes", at, corners, block.nodes.data() + before);
+        at += corners;
+        id = end;
+    }
+}
+
+/// Zones whose faces all have so many corners need no list of where each begins.
+void Reader::note_equal_sizes(FaceBlock& block) {
+    const std::uint32_t size = block.count > 0 ? block.offsets[1] : 0;
+    std::uint32_t differs = 0;
+    for (std::size_t face = 0; face < block.count; ++face) {
+        differs |= (block.offsets[face + 1] - block.offsets[face]) ^ size;
+    }
+    if (differs == 0 && size > 0) {
+        block.per_face = size;
+        block.offsets.clear();
+    }
+}
+
+void Reader::read_beside(const std::string& side) {
+    std::uint64_t found = 0;
+    for (const auto& part : parts(root_ + "/faces/" + side)) {
+        progress_.check();
+        const auto shape = file_.shape(part.path);
+        if (shape.size() != 1 || shape[0] != part.count) {
+            refuse(part.path, "its size does not fit its ids");
+        }
+        found += part.count;
+        for (auto& block : mesh_.face_blocks) {
+            const std::uint64_t from = std::max(block.first, part.first);
+            const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
+            if (from < to) {
+                auto& target = side == "c0" ? block.c0 : block.c1;
+                if (target.empty()) {
+                    target.grow_to(block.count);
+                    if (to - from < block.count) {
+                        target.fill(0);
+                    }
+                }
+                file_.numbers(part.path, from - part.first, to - from, target.data() + (from - block.first));
+            }
+        }
+    }
+    const bool whole = std::all_of(mesh_.face_blocks.begin(), mesh_.face_blocks.end(), [](const FaceBlock& block) { return block.c0.size() == block.count; });
+    if (side == "c0" && (found < mesh_.faces || !whole)) {
+        refuse(root_ + "/faces/c0", "the cells beside " + number(mesh_.faces - std::min(found, mesh_.faces)) + " faces are missing");
+    }
+}
+
+/// Adapted meshes keep the parents of what they split.
+void Reader::read_trees() {
+    for (const auto& part : parts(root_ + "/cells/tree")) {
+        mesh_.hidden_cells.push_back({part.first, part.first + part.count - 1});
+    }
+    for (const auto& part : parts(root_ + "/faces/tree")) {
+        mesh_.hidden_faces.push_back({part.first, part.first + part.count - 1});
+    }
+}
+
+/// The texts of the legacy sections 39 know the types better than the codes do.
+void Reader::read_labels() {
+    const std::string text = file_.text("/settings/Thread Variables");
+    for (std::size_t at = text.find("(39 ("); at != std::string::npos; at = text.find("(39 (", at + 1)) {
+        const std::size_t end = std::min(text.find(')', at), text.size());
+        std::vector<std::string> words;
+        for (const auto word : core::split(std::string_view(text).substr(at + 5, end - at - 5), ' ')) {
+            if (!word.empty()) {
+                words.emplace_back(word);
+            }
+        }
+        if (words.size() < 3) {
+            continue;
+        }
+        for (auto& label : mesh_.labels) {
+            if (core::parse_integer(words[0]) == label.id) {
+                label.type = words[1];
+                label.name = label.name.empty() ? words[2] : label.name;
+            }
+        }
+    }
+}
+
+FluentSettings Reader::read_settings() const {
+    FluentSettings settings;
+    settings.writer = file_.text("/settings/Origin");
+    settings.variables = file_.text("/settings/Rampant Variables");
+    return settings;
+}
+
+}  // namespace
+
+Hdf5Mesh read_hdf5_mesh(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
+    Reader reader(path, options, progress);
+    Hdf5Mesh result;
+    result.settings = reader.read_settings();
+    result.mesh = telling([&] { return reader.read_mesh(); }, [&] { return reader.understood(); });
+    return result;
+}
+
+}  // namespace underbody::postproc
