@@ -43,7 +43,8 @@ struct Nozzle {
 /// when the ellipsoid stands out beyond the rectangle by no more than the depth of the base, else a quarter of an
 /// ellipse, which runs smoothly into the base. `ellipse_front`: the same without the cut in front. `taper` and
 /// `base_pitch`, both about the centre of the flat base, then move the part below the midplane, by the square of the
-/// depth: at the base in full, at the midplane nothing, with no kink there.
+/// depth: at the base in full, at the midplane nothing, with no kink there. What stands below the base (a protrusion) moves
+/// with the base and keeps its shape.
 struct BodyShape {
     std::string name = "body";
     double length = 0.2032;

@@ -98,6 +98,10 @@ TrainingOptions training_options(const Arguments& a, const SeparatedPlant& plant
             throw core::UsageError("name", "--region knows gap and heave_velocity, not '" + r.name + "'");
         }
     }
+    constexpr double no_end = 1e6;  // m: no table bounds the gaps
+    if (a.data.empty() && a.moments_of.empty() && !(o.gap_upper - o.gap_lower < no_end)) {
+        throw core::UsageError("range", "the model has no force table whose gaps could be sampled", {}, "say them: --region gap=0:0.1");
+    }
     double largest = 0, slope = 0;
     for (int i = 0; i <= 400; ++i) {
         largest = std::max(largest, std::abs(plant.ground_force(o.gap_lower + (o.gap_upper - o.gap_lower) * i / 400, slope)));

@@ -149,6 +149,14 @@ TEST_F(LearnAndEstimate, RefusesWrongRequestsWithThePlaceAndAHint) {
     EXPECT_EQ(test::run_underbody({"estimate", "model.toml", "--data", "runs", "--poles", "x"}, folder()).exit_code, 2);
 }
 
+TEST_F(LearnAndEstimate, AModelWithoutATableIsAskedForItsGaps) {
+    std::ofstream(folder() / "bare.toml") << "[vehicle]\nmass = 2.2\nadded_mass_heave = 1.8\nnet_weight = 0.002\n"
+                                             "[drag.heave]\nlinear = 0.02\nquadratic = 6\n";
+    const auto run = test::run_underbody({"learn", "bare.toml"}, folder());
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_NE(run.errors.find("--region gap=0:0.1"), std::string::npos) << run.errors;
+}
+
 TEST_F(LearnAndEstimate, EstimatesTheForcesWithTheirErrorsAndLabels) {
     const auto run =
         test::run_underbody({"estimate", "model.toml", "--data", "runs", "--out", "est.csv", "--json"}, folder());
