@@ -55,8 +55,8 @@ namespace {
 
 /// Functions of one variable times a power of another: most forces in water grow as a power of a speed or a voltage.
 DesignMatrix scaled_design(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen, Channel variable, Channel scale,
-                           int power) {
-    DesignMatrix matrix = design(experiment, chosen, {variable}, 6);
+                           int power, std::size_t columns) {
+    DesignMatrix matrix = design(experiment, chosen, {variable}, columns);
     for (std::size_t row = 0; row < chosen.size(); ++row) {
         const double factor = std::pow(experiment.observations()[chosen[row]].at[scale], power);
         for (std::size_t k = 0; k < matrix.columns; ++k) {
@@ -120,7 +120,10 @@ StaticStructure::StaticStructure(const StaticExperiment& experiment, const std::
         for (const Channel variable : varying) {
             if (variable != scale) {
                 for (const int power : {1, 2}) {
-                    add({variable, scale}, scaled_design(experiment, chosen, variable, scale, power));
+                    add({variable, scale}, scaled_design(experiment, chosen, variable, scale, power, 6));
+                    if (variable == Channel::gap) {
+                        add({variable, scale}, scaled_design(experiment, chosen, variable, scale, power, 16));
+                    }
                 }
             }
         }
