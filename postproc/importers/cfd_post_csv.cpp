@@ -83,7 +83,8 @@ HeaderCell header_cell(std::string_view text) {
     return cell;
 }
 
-/// CFX writes C, F, R for temperatures, where UDUNITS reads coulomb, farad and a gas constant.
+/// CFX writes C, F, R for temperatures, where UDUNITS reads coulomb, farad and a gas constant; pounds per square
+/// foot it knows only spelt out.
 std::string readable_unit(const std::string& unit) {
     if (unit == "C") {
         return "degC";
@@ -93,6 +94,9 @@ std::string readable_unit(const std::string& unit) {
     }
     if (unit == "R") {
         return "degR";
+    }
+    if (unit == "psf") {
+        return "lbf ft^-2";
     }
     return unit;
 }

@@ -101,6 +101,7 @@ TEST(CfdPostCsv, ConvertsTheUnitsOfTheHeader) {
     EXPECT_NEAR(value(field.zones[1], "temperature", 1), 275.15, 1e-9);
     ASSERT_EQ(field.problems.size(), 1U);  // mixed units are said
     EXPECT_THAT(field.problems[0].message, HasSubstr("different units"));
+    EXPECT_NEAR(value(read_text(replaced(good, "Pressure [ Pa ]", "Pressure [ psf ]")).zones[0], "pressure", 0), 15 * 47.88025898, 1e-6);
 }
 
 TEST(CfdPostCsv, AsksForUnitsThatTheFileDoesNotSay) {
