@@ -135,6 +135,7 @@ std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector
 /// Readings at the ends of a sensor's range: many at exactly the largest or smallest value, in one piece.
 std::size_t drop_saturated(std::vector<double>& values, double noise) {
     std::size_t dropped = 0;
+    const double step = reading_step(values);
     for (const bool upper : {true, false}) {
         double end = upper ? -1e300 : 1e300;
         for (const double value : values) {
@@ -150,7 +151,11 @@ std::size_t drop_saturated(std::vector<double>& values, double noise) {
             run = value == end ? run + 1 : 0;
             longest = std::max(longest, run);
         }
-        if (at_end > std::max<std::size_t>(8, values.size() / 100) && longest >= 5 && noise > 0) {
+        // one that rounds repeats every value: its end counts only when it has far more readings than the value beside it
+        const double beside = end + (upper ? -step : step);
+        const auto at_next = static_cast<std::size_t>(
+            step > 0 ? std::count_if(values.begin(), values.end(), [&](double v) { return std::abs(v - beside) < 0.1 * step; }) : 0);
+        if (at_end > std::max<std::size_t>(8, values.size() / 100) && longest >= 5 && noise > 0 && at_end > 10 * at_next) {
             std::replace(values.begin(), values.end(), end, std::nan(""));
             dropped += at_end;
         }

@@ -27,6 +27,24 @@ TEST(Statistics, NoiseOfASmoothSignalIsFoundDespiteOutliers) {
     EXPECT_NEAR(noise_from_second_differences(y), 2e-4, 1e-5);
 }
 
+TEST(Statistics, NoiseOfASensorThatRoundsIsThatOfItsSteps) {
+    std::vector<double> y, fine;
+    for (int i = 0; i < 2000; ++i) {
+        const double h = 0.1 + 0.05 * std::sin(2e-3 * i) + 0.02 * std::cos(7e-3 * i);
+        fine.push_back(h);
+        y.push_back(7e-4 * std::round(h / 7e-4));
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        sum += (y[i] - fine[i]) * (y[i] - fine[i]);
+    }
+    const double truth = std::sqrt(sum / static_cast<double>(y.size()));
+    EXPECT_NEAR(reading_step(y), 7e-4, 1e-9);
+    EXPECT_NEAR(noise_from_second_differences(y), truth, 0.1 * truth);
+    EXPECT_EQ(reading_step(fine), 0);
+    EXPECT_EQ(reading_step(std::vector<double>(50, 0.1)), 0);
+}
+
 TEST(Statistics, GroupIntervalsHoldTheTruthAsOftenAsTheySay) {
     int held = 0;
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
