@@ -1,0 +1,290 @@
+#include "postproc/loads_parts.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+#include "postproc/body_zones.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+using core::InputError;
+using Severity = core::Problem::Severity;
+using Part = SummedZone;
+
+class Chooser {
+public:
+    Chooser(const Field& field, const LoadsOptions& options, LoadsResult& result) : field_(field), options_(options), result_(result) {}
+
+    std::vector<Part> choose() {
+        choose_zones();
+        return std::move(parts_);
+    }
+
+private:
+    [[nodiscard]] core::Place place() const { return {result_.file, {}, {}, {}}; }
+    void warn(std::string text) { result_.problems.push_back({Severity::warning, std::move(text), {}}); }
+
+    static bool has_polygons(const Zone& zone) { return zone.surface->GetNumberOfPolys() > 0; }
+    [[nodiscard]] bool is_surface(const Zone& zone) const {
+        return zone.surface != nullptr && (has_polygons(zone) || (field_.dimension == 2 && zone.surface->GetNumberOfLines() > 0));
+    }
+
+    /// The lines of a plane case as a strip of one metre depth: sums over it are forces per metre. The normal of a line
+    /// n0 -> n1 that looks into the fluid is z x t.
+    static vtkSmartPointer<vtkPolyData> extruded(const Zone& zone) {
+        vtkPolyData& lines = *zone.surface;
+        const vtkIdType nodes = lines.GetNumberOfPoints();
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        for (const double z : {-0.5, 0.5}) {
+            for (vtkIdType i = 0; i < nodes; ++i) {
+                double x[3];
+                lines.GetPoint(i, x);
+                points->InsertNextPoint(x[0], x[1], z);
+            }
+        }
+        vtkNew<vtkCellArray> quads;
+        vtkNew<vtkIdList> ids;
+        std::vector<vtkIdType> from;  // the line each quad came from
+        for (vtkIdType c = 0; c < lines.GetNumberOfLines(); ++c) {
+            lines.GetLines()->GetCellAtId(c, ids);
+            for (vtkIdType i = 0; i + 1 < ids->GetNumberOfIds(); ++i) {
+                const vtkIdType a = ids->GetId(i);
+                const vtkIdType b = ids->GetId(i + 1);
+                quads->InsertNextCell({a, a + nodes, b + nodes, b});
+                from.push_back(lines.GetNumberOfVerts() + c);
+            }
+        }
+        auto result = vtkSmartPointer<vtkPolyData>::New();
+        result->SetPoints(points);
+        result->SetPolys(quads);
+        for (const char* name : {"pressure", "kinematic_pressure", "pressure_absolute", "wall_shear", "kinematic_wall_shear"}) {
+            if (auto* on_lines = lines.GetCellData()->GetArray(name)) {
+                auto copy = vtk::TakeSmartPointer(on_lines->NewInstance());
+                copy->SetName(name);
+                copy->SetNumberOfComponents(on_lines->GetNumberOfComponents());
+                for (const auto line : from) {
+                    copy->InsertNextTuple(line, on_lines);
+                }
+                result->GetCellData()->AddArray(copy);
+            }
+            if (auto* on_nodes = lines.GetPointData()->GetArray(name)) {
+                auto copy = vtk::TakeSmartPointer(on_nodes->NewInstance());
+                copy->SetName(name);
+                copy->SetNumberOfComponents(on_nodes->GetNumberOfComponents());
+                for (vtkIdType i = 0; i < 2 * nodes; ++i) {
+                    copy->InsertNextTuple(i % nodes, on_nodes);
+                }
+                result->GetPointData()->AddArray(copy);
+            }
+        }
+        return result;
+    }
+
+    [[nodiscard]] std::vector<const Zone*> wanted_zones() const {
+        std::vector<const Zone*> zones;
+        std::vector<std::string> names;
+        const bool walls = std::any_of(field_.zones.begin(), field_.zones.end(), [](const Zone& z) { return z.kind == ZoneKind::wall; });
+        for (const auto& zone : field_.zones) {
+            names.push_back(zone.name);
+            const bool by_kind = walls ? zone.kind == ZoneKind::wall : zone.surface != nullptr && zone.volume == nullptr && (zone.kind != ZoneKind::line || field_.dimension == 2);
+            if (options_.zones.empty() ? by_kind : matches_any(options_.zones, zone.name)) {
+                zones.push_back(&zone);
+            }
+        }
+        for (const auto& pattern : options_.zones) {
+            if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches(pattern, name); })) {
+                throw InputError("zone", "no zone fits '" + pattern + "'", place(), core::did_you_mean(pattern, names));
+            }
+        }
+        if (zones.empty()) {
+            throw InputError("zone", "the file holds no surface to integrate over", place(), "zones: underbody info FILE");
+        }
+        return zones;
+    }
+
+    void choose_zones() {
+        for (const Zone* zone : wanted_zones()) {
+            if (!is_surface(*zone)) {
+                throw InputError("zone", "zone '" + zone->name + "' has no faces, so that forces cannot be integrated", place(),
+                                 field_.format == "CFD-Post CSV" ? "export it with 'Line and Face Connectivity', or leave it out with --zones" : "leave it out with --zones");
+            }
+            Part part;
+            part.zone = zone;
+            part.polygons = has_polygons(*zone) ? zone->surface : extruded(*zone);
+            part.surface = std::make_unique<SurfaceArrays>(*part.polygons);
+            parts_.push_back(std::move(part));
+        }
+        if (options_.zones.empty() && parts_.size() > 1) {
+            leave_out_other_walls();
+        }
+        for (auto& part : parts_) {
+            take_pressure(part);
+            take_shear(part);
+        }
+        std::vector<std::string> from;
+        for (const auto& part : parts_) {
+            std::string word = part.values.pressure_on_nodes ? "nodes" : "faces";
+            if (const auto* info = part.zone->find("pressure"); info != nullptr && info->on == Location::cells) {
+                word = "cells";
+            }
+            if (std::find(from.begin(), from.end(), word) == from.end()) {
+                from.push_back(word);
+            }
+        }
+        std::sort(from.begin(), from.end());
+        for (const auto& word : from) {
+            result_.values_from += (result_.values_from.empty() ? "" : ", ") + word;
+        }
+    }
+
+    /// A ground or a tunnel is a wall too. `audit` refuses when the rest does not close either.
+    void leave_out_other_walls() {
+        std::vector<WallShape> walls;
+        for (const auto& part : parts_) {
+            walls.push_back(shape_of(part.zone->name, *part.surface, part.zone->normals_into_fluid));
+        }
+        const auto is_other = [&](const std::string& name) {
+            return std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& zone) { return zone.name == name; });
+        };
+        for (auto& other : walls_beside_body(walls)) {
+            result_.left_out.push_back({std::move(other.name), std::move(other.why)});
+        }
+        std::erase_if(parts_, [&](const Part& part) { return is_other(part.zone->name); });
+        std::erase_if(walls, [&](const WallShape& wall) { return is_other(wall.name); });
+        const auto bodies = separate_bodies(walls);
+        if (!bodies.empty()) {
+            warn("zones " + quoted(bodies) + " are bodies of their own that lie apart: the loads are the sum over all; name those that are meant with --zones");
+        }
+    }
+
+    static vtkDataArray* array_of(const Part& part, const char* name, bool& on_nodes) {
+        on_nodes = false;
+        if (auto* array = part.polygons->GetCellData()->GetArray(name)) {
+            return array;
+        }
+        on_nodes = true;
+        return part.polygons->GetPointData()->GetArray(name);
+    }
+
+    void take_pressure(Part& part) {
+        bool on_nodes = true;
+        double scale = 1;
+        vtkDataArray* array = array_of(part, "pressure", on_nodes);
+        if (array == nullptr) {
+            array = array_of(part, "kinematic_pressure", on_nodes);
+            const auto density = options_.references.density ? options_.references.density : field_.density;
+            if (array != nullptr && !density) {
+                throw InputError("missing", "zone '" + part.zone->name + "' has p/rho instead of a pressure, and the file does not say the density", place(),
+                                 "give it: --density \"998 kg/m^3\"");
+            }
+            scale = density.value_or(1);
+        }
+        if (array == nullptr) {
+            array = array_of(part, "pressure_absolute", on_nodes);
+        }
+        if (array == nullptr) {
+            std::vector<std::string> names;
+            for (const auto& info : part.zone->arrays) {
+                names.push_back(info.name);
+            }
+            throw InputError("missing", "zone '" + part.zone->name + "' has no pressure", place(), core::did_you_mean("pressure", names));
+        }
+        part.values.pressure = values_of(*array, part.own_pressure);
+        if (scale != 1) {
+            std::vector<double> scaled(part.values.pressure.begin(), part.values.pressure.end());
+            std::for_each(scaled.begin(), scaled.end(), [&](double& p) { p *= scale; });
+            part.own_pressure = std::move(scaled);
+            part.values.pressure = part.own_pressure;
+        }
+        part.values.pressure_on_nodes = on_nodes;
+        part.values.reference_pressure = options_.reference_pressure;
+    }
+
+    void take_shear(Part& part) {
+        bool on_nodes = true;
+        vtkDataArray* array = array_of(part, "wall_shear", on_nodes);
+        double scale = 1;
+        if (array == nullptr) {
+            array = array_of(part, "kinematic_wall_shear", on_nodes);
+            scale = options_.references.density ? *options_.references.density : field_.density.value_or(std::nan(""));
+            if (array != nullptr && std::isnan(scale)) {
+                throw InputError("missing", "zone '" + part.zone->name + "' has wall shear over density, and the file does not say the density", place(),
+                                 "give it: --density \"998 kg/m^3\"");
+            }
+        }
+        if (array == nullptr || array->GetNumberOfComponents() != 3) {
+            warn("zone '" + part.zone->name + "' has no wall shear vector: its viscous part is left out");
+            return;
+        }
+        part.values.shear = values_of(*array, part.own_shear);
+        if (scale != 1) {
+            std::vector<double> scaled(part.values.shear.begin(), part.values.shear.end());
+            std::for_each(scaled.begin(), scaled.end(), [&](double& t) { t *= scale; });
+            part.own_shear = std::move(scaled);
+            part.values.shear = part.own_shear;
+        }
+        part.values.shear_on_nodes = on_nodes;
+    }
+
+    const Field& field_;
+    const LoadsOptions& options_;
+    LoadsResult& result_;
+    std::vector<Part> parts_;
+};
+
+[[noreturn]] void throw_missing(const Part& part, const Field& field, const std::string& file, const std::string& name, std::size_t index) {
+    core::Place where{file, {}, {}, {}};
+    const ArrayInfo* info = part.zone->find(name);
+    for (const auto& problem : field.problems) {  // the importer noted where the first one stands
+        if (info != nullptr && problem.place.line && problem.message.find("'" + info->original_name.substr(0, info->original_name.size() - 2)) != std::string::npos &&
+            problem.message.find("zone '" + part.zone->name + "'") != std::string::npos) {
+            where = problem.place;
+            break;
+        }
+    }
+    const bool nodes = name == "pressure" ? part.values.pressure_on_nodes : part.values.shear_on_nodes;
+    throw InputError("missing", "zone '" + part.zone->name + "': " + name + " has no finite value at " + (nodes ? "node " : "face ") + std::to_string(index) +
+                     ", so that the force cannot be had", where);
+}
+
+}  // namespace
+
+std::vector<SummedZone> zones_to_sum(const Field& field, const LoadsOptions& options, LoadsResult& result) { return Chooser(field, options, result).choose(); }
+
+void refuse_missing_values(const SummedZone& part, const Field& field, const std::string& file) {
+    const auto finite = [](const Vector& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); };
+    if (finite(part.sums.pressure_force) && finite(part.sums.shear_force)) {
+        return;
+    }
+    for (const auto& [values, name, components] : {std::tuple{part.values.pressure, "pressure", std::size_t{1}},
+                                                   std::tuple{part.values.shear, "wall_shear", std::size_t{3}}}) {
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (!std::isfinite(values[i])) {
+                throw_missing(part, field, file, name, i / components);
+            }
+        }
+    }
+    throw InputError("range", "zone '" + part.zone->name + "' has points that are no numbers", {file, {}, {}, {}});
+}
+
+std::string quoted(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) {
+        text += (text.empty() ? "'" : ", '") + name + "'";
+    }
+    return text;
+}
+
+}  // namespace underbody::postproc

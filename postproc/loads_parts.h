@@ -1,0 +1,38 @@
+// The zones whose faces are summed to loads, with their values: which ones, from where, in SI.
+#pragma once
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "postproc/face_integral.h"
+#include "postproc/loads.h"
+
+namespace underbody::postproc {
+
+/// One zone, ready to be summed.
+struct SummedZone {
+    const Zone* zone = nullptr;
+    vtkSmartPointer<vtkPolyData> polygons;  ///< of the zone; a plane case's lines as a strip of one metre depth
+    std::unique_ptr<SurfaceArrays> surface;
+    FaceValues values;
+    std::vector<double> own_pressure;  ///< what `values` look into, unless that is VTK's
+    std::vector<double> own_shear;
+    FaceSums sums;
+    double sign = 1;
+};
+
+/// The zones asked for, or those of the body; sets `values_from` and `left_out` of the result and adds to its problems.
+/// Throws InputError: no zone fits, a zone without faces or without pressure, a density that is missing.
+std::vector<SummedZone> zones_to_sum(const Field& field, const LoadsOptions& options, LoadsResult& result);
+
+/// Throws InputError that names the first value that is missing, if the zone's sums are not finite.
+void refuse_missing_values(const SummedZone& part, const Field& field, const std::string& file);
+
+/// "'base', 'hull'"
+std::string quoted(const std::vector<std::string>& names);
+
+}  // namespace underbody::postproc
