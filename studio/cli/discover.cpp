@@ -1,5 +1,6 @@
 // underbody discover: what does the model lack?
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -32,7 +33,26 @@ struct Arguments {
     std::vector<std::string> candidates;
 };
 
+/// "", " over 2 s", " in free run".
+std::string horizon_text(const discovery::ErrorChange& change) {
+    return change.horizon <= 0 ? "" : std::isinf(change.horizon) ? " in free run" : " over " + core::format_number(change.horizon, 3) + " s";
+}
+
+/// The smallest effects that would have been seen, one a line.
+std::string limits_text(const discovery::Discovery& found) {
+    constexpr std::size_t most = 6;
+    std::string text;
+    std::size_t lines = 0;
+    for (const discovery::DetectionLimit& limit : found.limits) {
+        if (std::isfinite(limit.value) && lines++ < most) {
+            text += "  " + limit.name + ": " + limit.parameter + " " + discovery::value_text({limit.parameter, limit.value, 0, limit.unit}) + "\n";
+        }
+    }
+    return text.empty() ? "" : "\nSmallest effects that these data would have shown, nine times in ten (all of them in the report):\n" + text;
+}
+
 void print(Shell& shell, const discovery::Discovery& found, const std::filesystem::path& folder) {
+    const bool missing = found.verdict != "none";
     std::string text = found.sentence + "\n";
     for (const discovery::FoundEffect& effect : found.effects) {
         text += "\n" + effect.name + ", probability " + discovery::probability_text(effect.probability) + "\n";
@@ -40,19 +60,22 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
             text += "  " + parameter.name + " = " + discovery::value_text(parameter) + "\n";
         }
     }
-    if (!found.alternatives.empty()) {
+    if (missing && !found.alternatives.empty()) {
         text += "\nWhat else it could be:\n";
         for (const discovery::FoundEffect& rival : found.alternatives) {
             text += "  " + rival.name + ", probability " + discovery::probability_text(rival.probability) +
                     (rival.told_apart_by.empty() ? "" : ": " + rival.told_apart_by) + "\n";
         }
     }
+    text += missing ? "" : limits_text(found);
     for (const discovery::ErrorChange& change : found.error) {
-        text += "\nError of " + change.channel + " on held-out data" +
-                (change.horizon > 0 ? ", " + core::format_number(change.horizon, 4) + " s ahead: " : ": ") + core::format_number(change.before.rmse, 3) + " -> " +
-                core::format_number(change.after.rmse, 3) + " " + change.unit + " (noise " + core::format_number(change.noise, 3) + ")";
+        text += "\nError of " + change.channel + horizon_text(change) + " on held-out data: " + core::format_number(change.before.rmse, 3) +
+                (missing ? " -> " + core::format_number(change.after.rmse, 3) : "") + " " + change.unit + " (noise " +
+                core::format_number(change.noise, 3) + ")";
     }
-    text += "\n\nNext experiment: " + found.next_experiment + "\nReport: " + (folder / "report.html").string() + "\n";
+    text += "\n\nNext experiment: " + found.next_experiment + "\n";
+    text += missing ? "New model: " + (folder / "model.toml").string() + " (simulate, predict, region and export take it)\n" : "";
+    text += "Report: " + (folder / "report.html").string() + "\n";
     shell.print(text);
 }
 
@@ -88,11 +111,9 @@ int reduce(Shell& shell, const Arguments& arguments) {
     shell.show(reduction.problems);
     core::write_csv(arguments.out, reduction.table);
     if (shell.json) {
-        shell.print_json({{"rows", reduction.table.rows()}, {"drift_rate", reduction.drift_rate}, {"friction", reduction.friction}, {"noise", reduction.noise}});
+        shell.print_json({{"rows", reduction.table.rows()}, {"drift_rate", std::isfinite(reduction.drift_rate) ? nlohmann::json(reduction.drift_rate) : nlohmann::json(nullptr)}, {"hysteresis", reduction.hysteresis}, {"friction", reduction.friction}, {"noise", reduction.noise}});
     }
-    shell.print(std::to_string(reduction.table.rows()) + " forces at set points in " + arguments.out + "; the zero drifts by " +
-                core::format_number(3600 * reduction.drift_rate, 3) + " an hour, friction between repeats " + core::format_number(reduction.friction, 3) +
-                ", noise of a reading " + core::format_number(reduction.noise, 3) + " (SI)");
+    shell.print(arguments.out + ": " + discovery::reduction_text(reduction));
     return static_cast<int>(ExitCode::done);
 }
 

@@ -20,10 +20,7 @@ dynamics::Measurements reduced(const dynamics::Measurements& raw) {
         if (data.kind == dynamics::MeasurementKind::steady && is_load_cell_log(run.table)) {
             LoadCellReduction reduction = reduce_load_cell(run.table);
             data.problems.push_back({core::Problem::Severity::note,
-                                     run.name + " is the log of a load cell: " + std::to_string(reduction.table.rows()) +
-                                         " set points by their pump-off blocks; the zero drifts by " + core::format_number(3600 * reduction.drift_rate, 2) +
-                                         " an hour, friction between repeats " + core::format_number(reduction.friction, 2) + ", noise of a reading " +
-                                         core::format_number(reduction.noise, 2) + " (SI)",
+                                     run.name + " is the log of a load cell: " + reduction_text(reduction),
                                      core::Place{run.file.string(), {}, {}, {}}});
             data.problems.insert(data.problems.end(), reduction.problems.begin(), reduction.problems.end());
             run.table = std::move(reduction.table);

@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/discovery/wording.h"
 #include "surrogates/dynamics/measurements.h"
 
 namespace underbody::discovery {
@@ -35,6 +36,8 @@ public:
         find_quantity();
         find_blocks();
         take_zeros();
+        find_drift();
+        find_hysteresis();
         find_friction();
         if (options_.without_thrust) {
             take_thrust_off();
@@ -127,8 +130,11 @@ private:
     [[nodiscard]] std::optional<Zero> zero_at(const Block& block, bool& held) const {
         const Block* before = nullptr;
         const Block* after = nullptr;
+        const bool own_side = std::any_of(blocks_.begin(), blocks_.end(), [&](const Block& other) {
+            return !other.on() && other.gap == block.gap && other.direction == block.direction;
+        });
         for (const Block& other : blocks_) {
-            if (!other.on() && other.gap == block.gap) {
+            if (!other.on() && other.gap == block.gap && (other.direction == block.direction || !own_side)) {
                 if (other.middle <= block.middle) {
                     before = &other;
                 } else if (after == nullptr) {
@@ -171,15 +177,18 @@ private:
         if (held_count > 0) {
             warn(std::to_string(held_count) + " blocks have a pump-off block on one side only: its value was held, a drift goes into their force");
         }
-        // slope of the zeros over time, each gap with its own level
-        std::map<double, std::vector<const Block*>> zeros;
+    }
+
+    /// Slope of the zeros over time, each gap and side of the slide with its own level.
+    void find_drift() {
+        std::map<std::pair<double, double>, std::vector<const Block*>> zeros;
         for (const Block& block : blocks_) {
             if (!block.on()) {
-                zeros[block.gap].push_back(&block);
+                zeros[{block.gap, block.direction}].push_back(&block);
             }
         }
         double above = 0, below = 0;
-        for (const auto& [gap, list] : zeros) {
+        for (const auto& [level, list] : zeros) {
             double time = 0, value = 0;
             for (const Block* block : list) {
                 time += block->middle / static_cast<double>(list.size());
@@ -190,10 +199,33 @@ private:
                 below += (block->middle - time) * (block->middle - time);
             }
         }
-        result_.drift_rate = below > 0 ? above / below : 0;
+        result_.drift_rate = below > 0 ? above / below : std::nan("");
     }
 
-    /// Blocks at one gap and voltage differ by more than their noise: the slide sticks.
+    /// The slide leaves another force when it comes from the other side.
+    void find_hysteresis() {
+        struct Side {
+            double sum = 0, count = 0;
+        };
+        std::map<std::pair<double, double>, std::map<double, Side>> points;
+        for (const Reading& reading : readings_) {
+            Side& side = points[{reading.block->gap, reading.block->voltage}][reading.block->direction];
+            side.sum += reading.force;
+            side.count += 1;
+        }
+        double sum = 0, count = 0;
+        for (const auto& [point, sides] : points) {
+            if (sides.size() == 2) {
+                const Side& low = sides.begin()->second;
+                const Side& high = sides.rbegin()->second;
+                sum += 0.5 * (high.sum / high.count - low.sum / low.count);
+                count += 1;
+            }
+        }
+        result_.hysteresis = count > 0 ? sum / count : 0;
+    }
+
+    /// Blocks at one gap and voltage differ by more than their noise: the slide sticks, from one side or the other.
     void find_friction() {
         std::map<std::pair<double, double>, std::vector<const Reading*>> points;
         for (const Reading& reading : readings_) {
@@ -292,6 +324,21 @@ bool is_load_cell_log(const core::Table& table) {
         }
     }
     return forces == 1 && off && lengths.size() >= 3 && median(lengths) >= 5;
+}
+
+std::string reduction_text(const LoadCellReduction& reduction) {
+    std::string unit;
+    for (const core::Column& column : reduction.table.columns()) {
+        if (reduction.table.find(column.name + "_sigma") != nullptr) {
+            unit = column.unit;
+        }
+    }
+    const auto with_unit = [&](double value) { return value_text({"", value, 0, unit}); };
+    return std::to_string(reduction.table.rows()) + " set points by their pump-off blocks; " +
+           (std::isfinite(reduction.drift_rate) ? "the zero drifts by " + with_unit(3600 * reduction.drift_rate) + " an hour"
+                                                : "the drift of the zero is not known (no gap has two pump-off blocks)") +
+           (reduction.hysteresis != 0 ? ", hysteresis of the slide +-" + with_unit(std::abs(reduction.hysteresis)) : "") +
+           ", friction between repeats " + with_unit(reduction.friction) + ", noise of a reading " + with_unit(reduction.noise);
 }
 
 LoadCellReduction reduce_load_cell(const core::Table& log, const LoadCellOptions& options) { return Reducer(log, options).run(); }

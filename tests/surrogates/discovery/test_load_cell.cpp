@@ -84,6 +84,8 @@ TEST(LoadCell, FindsTheFrictionOfTheSlideBetweenTheTwoWays) {
     const LoadCellReduction reduction = reduce_load_cell(measured(0, 1e-4, 2e-3, 4).table());
     // two readings at +f and -f: their standard deviation is f sqrt 2
     EXPECT_NEAR(reduction.friction, 2e-3 * std::sqrt(2.0), 2e-4);
+    EXPECT_NEAR(reduction.hysteresis, 2e-3, 1e-4);
+    EXPECT_NE(reduction_text(reduction).find("hysteresis of the slide +-2"), std::string::npos) << reduction_text(reduction);
     EXPECT_GT(reduction.table.numbers("lift_force_sigma")[0], 2e-3);
 }
 
