@@ -136,6 +136,23 @@ double FlexibleBasis::sum(const double* coefficients, const double* point, doubl
         }
     }
     double total = 0;
+    if (splines_.size() == 2) {
+        const std::size_t inner = splines_[0].columns() + 1;
+        const double* second = all + most_columns;
+        const double* second_slope = all_slope + most_columns;
+        for (std::size_t j = 0; j <= splines_[1].columns(); ++j) {
+            double value = 0;
+            double slope = 0;
+            for (std::size_t k = 0; k < inner; ++k) {
+                value += coefficients[j * inner + k] * all[k];
+                slope += coefficients[j * inner + k] * all_slope[k];
+            }
+            total += value * second[j];
+            slopes[0] += slope * second[j];
+            slopes[1] += value * second_slope[j];
+        }
+        return total;
+    }
     std::size_t digit[6] = {};
     for (std::size_t column = 0; column < columns_; ++column) {
         if (coefficients[column] != 0) {
@@ -184,6 +201,15 @@ DesignMatrix orthonormal(const DesignMatrix& matrix) {
     result.columns = static_cast<std::size_t>(rank);
     result.values.assign(q.data(), q.data() + q.size());
     return result;
+}
+
+std::vector<double> orthonormal_mix(const DesignMatrix& matrix) {
+    const Eigen::Map<const Eigen::MatrixXd> a(matrix.values.data(), static_cast<Eigen::Index>(matrix.rows),
+                                              static_cast<Eigen::Index>(matrix.columns));
+    Eigen::MatrixXd gram = a.transpose() * a / static_cast<double>(std::max<std::size_t>(matrix.rows, 1));
+    gram.diagonal().array() += 1e-9 * gram.diagonal().maxCoeff() + 1e-300;
+    const Eigen::MatrixXd mix = gram.llt().matrixU().solve(Eigen::MatrixXd::Identity(gram.rows(), gram.cols()));
+    return {mix.data(), mix.data() + mix.size()};
 }
 
 double explained_square(const DesignMatrix& orthonormal_columns, const std::vector<double>& y) {
@@ -239,23 +265,6 @@ std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobi
         moves.emplace_back(move.data(), move.data() + move.size());
     }
     return moves;
-}
-
-std::vector<double> leave_groups_out(const DesignMatrix& jacobian, const std::vector<double>& residuals,
-                                     const std::vector<std::size_t>& begin, const std::vector<double>& cost,
-                                     const std::vector<double>& numbers, double ridge) {
-    const std::vector<std::vector<double>> moves = moves_without_groups(jacobian, residuals, begin, numbers, ridge);
-    std::vector<double> result = cost;
-    for (std::size_t g = 0; g < cost.size(); ++g) {
-        for (std::size_t i = begin[g]; i < begin[g + 1]; ++i) {
-            double change = 0;
-            for (std::size_t k = 0; k < jacobian.columns; ++k) {
-                change += jacobian.values[k * jacobian.rows + i] * moves[g][k];
-            }
-            result[g] += change * (2 * residuals[i] + change);
-        }
-    }
-    return result;
 }
 
 std::vector<double> grouped_variances(const DesignMatrix& jacobian, const std::vector<double>& residuals,

@@ -60,6 +60,9 @@ struct DesignMatrix {
 
 /// An orthonormal basis of the columns (near-dependent ones dropped).
 DesignMatrix orthonormal(const DesignMatrix& matrix);
+/// Square matrix, column-major, that makes the columns orthonormal (mean square one, one after the other): columns * mix. Splines of one
+/// variable are nearly alike; as they stand a prior on their coefficients would forbid what bends often.
+std::vector<double> orthonormal_mix(const DesignMatrix& matrix);
 /// Sum of squares of `y` in the span of orthonormal columns.
 double explained_square(const DesignMatrix& orthonormal_columns, const std::vector<double>& y);
 
@@ -75,13 +78,6 @@ DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& m
 std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobian, const std::vector<double>& residuals,
                                                       const std::vector<std::size_t>& begin, const std::vector<double>& numbers = {},
                                                       double ridge = 0);
-
-/// Cost of each group of rows (begin[g] .. begin[g + 1]) with the numbers behind the columns fitted to the other groups alone, to first
-/// order about a fit of all groups whose residuals are `residuals` and whose cost by group is `cost`: cost[g] + |r + J d|^2 - |r|^2.
-/// With a ridge about zero of that weight on the numbers, which stand at `numbers` (empty: no ridge).
-std::vector<double> leave_groups_out(const DesignMatrix& jacobian, const std::vector<double>& residuals,
-                                     const std::vector<std::size_t>& begin, const std::vector<double>& cost,
-                                     const std::vector<double>& numbers = {}, double ridge = 0);
 
 /// Variances of the numbers behind the columns from how much groups of rows disagree (sandwich of Huber 1967, grouped), each at least
 /// that of white unit residuals; 0 for a column of zeros.

@@ -28,7 +28,7 @@ void HeaveLoop::measure_error() {
         change.channel = std::string("gap");
         change.unit = std::string("m");
         change.horizon = horizon;
-        change.noise = null_noise_.gap;
+        change.noise = std::hypot(null_noise_.gap, null_noise_.slow);
         std::vector<double> square, count;
         horizon_errors(test, {}, null_noise_, horizon, square, count);
         change.before = error_by_groups(square, count, options_.seed);
@@ -54,9 +54,10 @@ std::string HeaveLoop::evidence(const FittedHypothesis& one) {
 }
 
 void HeaveLoop::describe() {
-    result_.noise["gap"] = {null_noise_.gap, "m",
-                            experiment_->gap_noise_from() + (null_noise_.slow > 0 ? ", with coloured noise of " +
-                                core::format_number(null_noise_.slow, 3) + " m and " + core::format_number(null_noise_.slow_time, 2) + " s beside it" : ""),
+    const bool coloured = null_noise_.slow > 0;
+    result_.noise["gap"] = {std::hypot(null_noise_.gap, null_noise_.slow), "m",
+                            experiment_->gap_noise_from() + (coloured ? ", of which " + core::format_number(null_noise_.gap, 3) + " m white and " +
+                                core::format_number(null_noise_.slow, 3) + " m with a correlation time of " + core::format_number(null_noise_.slow_time, 2) + " s" : ""),
                             records_.gap_noise};
     if (records_.velocity_measured) {
         result_.noise["heave_velocity"] = {null_noise_.velocity, "m/s", experiment_->velocity_noise_from(), records_.velocity_noise};

@@ -17,7 +17,7 @@ Calibration heave_calibration() {
     Calibration c;
     c.gate = 0.002;
     c.form_share = 0.01;
-    c.unknown_share = 0.12;
+    c.unknown_share = 0.3;
     c.unknown_p = 1e-4;
     c.pair_share = 0.1;
     c.pair_gain = 40;

@@ -81,7 +81,7 @@ double estimator_error(const HeaveExperiment& experiment, const std::vector<dyna
 
 dynamics::EffectUse force_table(const FlexibleForce& force) {
     const std::size_t variables = force.variables.size();
-    const std::size_t each = variables == 1 ? 49 : 25;
+    const std::size_t each = variables == 1 ? 97 : 33;
     std::size_t count = 1;
     for (std::size_t v = 0; v < variables; ++v) {
         count *= each;

@@ -285,7 +285,13 @@ HeaveExperiment::Result HeaveExperiment::fit(const Hypothesis& hypothesis, const
     std::vector<double> innovations;
     evaluate(hypothesis.with(result.fitted.fit.parameters), nullptr, best_noise, innovations, &result.fitted.cost_of_group);
     const DesignMatrix columns = answers_inside(hypothesis, result.fitted.fit.parameters, best_noise, innovations);
-    result.fitted.held_out = held_out_cost(result.fitted, best_noise, std::max(begin.process, best_noise.process));
+    const std::vector<double>& numbers = result.fitted.fit.parameters;
+    const Left left{hypothesis.parameters, numbers, 0,
+                    [&](std::size_t record, const std::vector<double>& p, const HeaveNoise& n, std::vector<double>& r) {
+                        return cost_of(record, hypothesis.with(p), nullptr, n, r);
+                    },
+                    [&](const HeaveNoise& n, const std::vector<double>& r) { return answers_inside(hypothesis, numbers, n, r); }};
+    result.fitted.held_out = held_out_cost(left, best_noise, std::max(begin.process, best_noise.process));
     const std::vector<double> variances = grouped_variances(columns, innovations, begins());
     for (std::size_t j = 0; j < variances.size(); ++j) {
         if (variances[j] > 0) {
@@ -318,9 +324,8 @@ void HeaveExperiment::widen_for_friction(Result& result, const DesignMatrix& col
     }
 }
 
-FlexibleForce HeaveExperiment::flat_force(const std::vector<FlexibleForce::Variable>& variables,
-                                          const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
-                                          std::size_t columns_more) const {
+FlexibleForce HeaveExperiment::flat_force(const SmoothSet& set, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise) const {
+    const std::vector<FlexibleForce::Variable>& variables = set.variables;
     FlexibleForce force;
     force.variables = variables;
     std::vector<std::vector<double>> values(variables.size());
@@ -350,16 +355,33 @@ FlexibleForce HeaveExperiment::flat_force(const std::vector<FlexibleForce::Varia
         force.lower.push_back(low);
         force.upper.push_back(high);
     }
-    // beside another variable laws of the gap are the bent ones; those of velocity and input are nearly straight or square
-    std::vector<std::size_t> columns(variables.size(), 7);
-    for (std::size_t v = 0; v < variables.size() && variables.size() > 1; ++v) {
-        columns[v] = variables[v] == FlexibleForce::Variable::gap ? 6 : variables.front() == FlexibleForce::Variable::gap ? 2 : 3;
-    }
-    for (std::size_t& count : columns) {
-        count += columns_more;
-    }
-    force.basis = FlexibleBasis(values, columns);
+    force.basis = FlexibleBasis(values, set.columns);
     force.coefficients.assign(force.basis.columns(), 0);
+    DesignMatrix columns;
+    columns.rows = values.empty() ? 1 : values.front().size();
+    columns.columns = force.basis.columns();
+    columns.values.resize(columns.rows * columns.columns);
+    std::vector<double> point(values.size()), row(columns.columns);
+    for (std::size_t i = 0; i < columns.rows; ++i) {
+        for (std::size_t v = 0; v < values.size(); ++v) {
+            point[v] = values[v][i];
+        }
+        force.basis.evaluate(point.data(), row.data());
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            columns.at(i, k) = row[k];
+        }
+    }
+    force.mix = orthonormal_mix(columns);
+    // a law of the input goes on as a straight line where another controller asks for more, and so does a damping that the gap changes;
+    // the others nobody knows there
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        if (variables[v] == FlexibleForce::Variable::input_force ||
+            (variables[v] == FlexibleForce::Variable::heave_velocity && variables.front() == FlexibleForce::Variable::gap)) {
+            const double more = 0.5 * (force.upper[v] - force.lower[v]);
+            force.lower[v] -= more;
+            force.upper[v] += more;
+        }
+    }
     return force;
 }
 
@@ -371,9 +393,11 @@ DesignMatrix HeaveExperiment::answers(const FlexibleForce& force, const std::vec
     FlexibleForce moved = force;
     std::vector<double> there;
     for (std::size_t k = 0; k < force.coefficients.size(); ++k) {
-        moved.coefficients[k] += small;
+        for (std::size_t i = 0; i <= k; ++i) {
+            moved.coefficients[i] += small * force.mix[k * force.coefficients.size() + i];
+        }
         evaluate(uses, &moved, noise, there);
-        moved.coefficients[k] = force.coefficients[k];
+        moved.coefficients = force.coefficients;
         ++matrix.columns;
         for (std::size_t i = 0; i < matrix.rows; ++i) {
             matrix.values.push_back((there[i] - innovations[i]) * (small_force / small));
@@ -423,53 +447,65 @@ DesignMatrix HeaveExperiment::answers_inside(const Hypothesis& hypothesis, std::
     return columns;
 }
 
-std::vector<double> HeaveExperiment::held_out_cost(const FittedHypothesis& fitted, HeaveNoise noise, double most_process) const {
-    if (chosen_.size() < 2 || fitted.fit.parameters.empty()) {
-        return fitted.cost_of_group;
-    }
+std::vector<double> HeaveExperiment::held_out_cost(const Left& fit, HeaveNoise noise, double most_process) const {
     // A law whose form is not quite the true one needs more process noise on runs that it was not fitted to: with the little that suits the
     // fit every run would be lost to the runs' slow drift. So the process noise too is judged by the runs left out.
     std::vector<double> least;
     double sum = 1e300;
     for (;;) {
-        std::vector<double> costs = held_out_at(fitted, noise);
+        double inside = 0;
+        std::vector<double> costs = held_out_at(fit, noise, inside);
         const double own = std::accumulate(costs.begin(), costs.end(), 0.0);
         if (!(own < sum)) {
-            return least;
+            return least.empty() ? costs : least;
         }
         sum = own;
         least = std::move(costs);
-        if (noise.process >= most_process || sum - fitted.cost < 5 * static_cast<double>(fitted.fit.parameters.size())) {
+        if (noise.process >= most_process || sum - inside < 5 * static_cast<double>(fit.numbers.size())) {
             return least;
         }
         noise.process = std::min(most_process, 10 * noise.process);
     }
 }
 
-std::vector<double> HeaveExperiment::held_out_at(const FittedHypothesis& fitted, const HeaveNoise& noise) const {
+std::vector<double> HeaveExperiment::held_out_at(const Left& fit, const HeaveNoise& noise, double& inside) const {
     std::vector<double> innovations, result, scratch;
-    evaluate(fitted.hypothesis.with(fitted.fit.parameters), nullptr, noise, innovations, &result);
+    for (const std::size_t r : chosen_) {
+        result.push_back(fit.cost(r, fit.numbers, noise, innovations));
+    }
     const std::vector<double> by_record = result;
-    const double all = std::accumulate(by_record.begin(), by_record.end(), 0.0);
-    const std::vector<std::vector<double>> moves =
-        moves_without_groups(answers_inside(fitted.hypothesis, fitted.fit.parameters, noise, innovations), innovations, begins());
-    std::vector<double> numbers = fitted.fit.parameters;
+    inside = std::accumulate(by_record.begin(), by_record.end(), 0.0);
+    if (by_record.size() < 2 || fit.numbers.empty()) {
+        return result;
+    }
+    const auto ridge = [&](const std::vector<double>& numbers) {
+        double square = 0;
+        for (std::size_t j = 0; j < numbers.size(); ++j) {
+            square += std::pow(numbers[j] / fit.parameters[j].typical, 2);
+        }
+        return fit.ridge * square;
+    };
+    std::vector<double> scaled;
+    for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+        scaled.push_back(fit.numbers[j] / fit.parameters[j].typical);
+    }
+    const std::vector<std::vector<double>> moves = moves_without_groups(fit.answers(noise, innovations), innovations, begins(), scaled, fit.ridge);
+    std::vector<double> numbers = fit.numbers;
     for (std::size_t g = 0; g < by_record.size(); ++g) {
         // laws bend: a step that the other runs do not like is no fit to them
         for (double share = 1; share > 0.05; share /= 2) {
             for (std::size_t j = 0; j < numbers.size(); ++j) {
-                const FitParameter& p = fitted.hypothesis.parameters[j];
-                numbers[j] = std::clamp(fitted.fit.parameters[j] + share * moves[g][j] * p.typical, p.lower, p.upper);
+                const FitParameter& p = fit.parameters[j];
+                numbers[j] = std::clamp(fit.numbers[j] + share * moves[g][j] * p.typical, p.lower, p.upper);
             }
-            const std::vector<dynamics::EffectUse> uses = fitted.hypothesis.with(numbers);
-            double others = 0;
+            double others = ridge(numbers);
             scratch.clear();
             for (std::size_t k = 0; k < chosen_.size(); ++k) {
-                others += k == g ? 0 : cost_of(chosen_[k], uses, nullptr, noise, scratch);
+                others += k == g ? 0 : fit.cost(chosen_[k], numbers, noise, scratch);
             }
-            if (others < all - by_record[g] + 0.1) {
+            if (others < inside - by_record[g] + ridge(fit.numbers) + 0.1) {
                 scratch.clear();
-                result[g] = cost_of(chosen_[g], uses, nullptr, noise, scratch);
+                result[g] = fit.cost(chosen_[g], numbers, noise, scratch);
                 break;
             }
         }
@@ -477,13 +513,13 @@ std::vector<double> HeaveExperiment::held_out_at(const FittedHypothesis& fitted,
     return result;
 }
 
-HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
-                                                    const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin,
-                                                    double base_cost, std::size_t columns_more) const {
+HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const SmoothSet& set, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin,
+                                                    double base_cost) const {
     Smooth result;
+    result.set = set;
     FlexibleForce& force = result.force;
-    force = flat_force(variables, uses, begin, columns_more);
-    for (const FlexibleForce::Variable variable : variables) {
+    force = flat_force(set, uses, begin);
+    for (const FlexibleForce::Variable variable : set.variables) {
         result.fit.variables.emplace_back(variable_name(variable));
     }
     std::vector<FitParameter> parameters;
@@ -493,16 +529,16 @@ HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleFo
     HeaveNoise noise = begin;
     FlexibleForce trial = force;
     const WhitenedResiduals residuals = [&](std::span<const double> p, std::vector<double>& r) {
-        trial.coefficients.assign(p.begin(), p.end());
+        trial.set(p);
         return evaluate(uses, &trial, noise, r) - sum_of_squares(r);
     };
-    // the innovations are nearly linear in the coefficients: one step at a time, and between steps as little process noise as they allow
+    // the innovations are nearly linear in the coefficients: one step at a time, and between steps the process noise that they ask for
     Fit best;
     best.cost = 1e300;
     best.parameters.assign(parameters.size(), 0);
     HeaveNoise best_noise = noise;
     std::vector<double> scratch;
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < 12; ++round) {
         for (std::size_t k = 0; k < parameters.size(); ++k) {
             parameters[k].start = best.parameters[k];
         }
@@ -512,35 +548,35 @@ HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const std::vector<FlexibleFo
         if (fit.cost < best.cost) {
             best = std::move(fit);
         }
-        for (int misses = 0; noise.process > process_floor && misses < 2;) {
-            noise.process = std::max(process_floor, noise.process * 0.1);
-            const double cost = residuals(best.parameters, scratch) + sum_of_squares(scratch);
-            if (cost < best.cost) {
+        for (const double factor : {0.1, 10.0, 0.32, 3.2}) {
+            for (;;) {
+                noise.process = std::clamp(best_noise.process * factor, process_floor, process_ceiling);
+                const double cost = noise.process == best_noise.process ? best.cost : residuals(best.parameters, scratch) + sum_of_squares(scratch);
+                if (!(cost < best.cost)) {
+                    break;
+                }
                 best.cost = cost;
                 best_noise = noise;
-            } else {
-                ++misses;
             }
         }
         if (before - best.cost < 2) {
             break;
         }
     }
-    force.coefficients = best.parameters;
+    force.set(best.parameters);
     result.noise = best_noise;
     result.cost = best.cost;
     result.fit.gain = base_cost - best.cost;
     result.fit.degrees = static_cast<double>(force.coefficients.size());
     result.fit.p = chi_squared_tail(result.fit.gain, result.fit.degrees);
-    std::vector<double> by_record;
-    evaluate(uses, &force, best_noise, result.residuals, &by_record);
-    std::vector<double> numbers = best.parameters;
-    for (double& number : numbers) {
-        number /= small_force;
-    }
-    result.held_out = by_record.size() < 2 ? by_record
-                                           : leave_groups_out(answers(force, uses, best_noise, result.residuals), result.residuals, begins(),
-                                                              by_record, numbers, smooth_ridge);
+    evaluate(uses, &force, best_noise, result.residuals);
+    const Left left{parameters, best.parameters, smooth_ridge,
+                    [&](std::size_t record, const std::vector<double>& p, const HeaveNoise& n, std::vector<double>& r) {
+                        trial.set(p);
+                        return cost_of(record, uses, &trial, n, r);
+                    },
+                    [&](const HeaveNoise& n, const std::vector<double>& r) { return answers(force, uses, n, r); }};
+    result.held_out = held_out_cost(left, best_noise, std::max(begin.process, best_noise.process));
     return result;
 }
 

@@ -1,6 +1,7 @@
 // Heave runs against a model: likelihood of any hypothesis by the filter inside the loop, with the noise it needs.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,8 +55,14 @@ public:
     /// regression, the last as sharp as a simulation of the whole run.
     [[nodiscard]] Result fit(const Hypothesis& hypothesis, const HeaveNoise& begin) const;
 
+    /// What a smooth force depends on, and with how many columns of each.
+    struct SmoothSet {
+        std::vector<FlexibleForce::Variable> variables;
+        std::vector<std::size_t> columns;
+    };
     /// A smooth force over the variables on top of fixed effects; gain relative to `base_cost`.
     struct Smooth {
+        SmoothSet set;
         SmoothFit fit;
         FlexibleForce force;
         HeaveNoise noise;
@@ -63,16 +70,11 @@ public:
         std::vector<double> held_out;        ///< by run, with coefficients from the other runs
         std::vector<double> residuals;       ///< innovations with it
     };
-    [[nodiscard]] Smooth fit_smooth(const std::vector<FlexibleForce::Variable>& variables,
-                                    const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin, double base_cost,
-                                    std::size_t columns_more = 0) const;
+    [[nodiscard]] Smooth fit_smooth(const SmoothSet& set, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& begin, double base_cost) const;
 
-    /// The smooth force with its knots where the states of these effects are, all coefficients zero. Seven columns for one variable, fewer
-    /// each for several, and `columns_more` than that.
-    [[nodiscard]] FlexibleForce flat_force(const std::vector<FlexibleForce::Variable>& variables,
-                                           const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
-                                           std::size_t columns_more = 0) const;
-    /// What a small change of each coefficient does to the innovations, one column each.
+    /// The smooth force with its knots where the states of these effects are, all coefficients zero.
+    [[nodiscard]] FlexibleForce flat_force(const SmoothSet& set, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise) const;
+    /// What a small change of each of its numbers (FlexibleForce::set) does to the innovations, one column each.
     [[nodiscard]] DesignMatrix answers(const FlexibleForce& force, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
                                        const std::vector<double>& innovations) const;
     /// What a small change of each free number does, at these numbers.
@@ -99,11 +101,20 @@ private:
     /// answers(), with zeros for numbers at a bound: they will not move.
     [[nodiscard]] DesignMatrix answers_inside(const Hypothesis& hypothesis, std::span<const double> numbers, const HeaveNoise& noise,
                                               const std::vector<double>& innovations) const;
-    /// -2 log likelihood of each run with free numbers from the other runs alone: one step of Gauss and Newton from the numbers that fit all,
-    /// within the bounds and no longer than it serves the other runs, then the filter itself; with as much process noise, from `noise` up to
+    /// A fit whose runs are to be left out one by one.
+    struct Left {
+        const std::vector<FitParameter>& parameters;
+        const std::vector<double>& numbers;   ///< that fit all runs
+        double ridge = 0;                     ///< weight of (number/typical)^2
+        std::function<double(std::size_t record, const std::vector<double>& numbers, const HeaveNoise&, std::vector<double>& innovations)> cost;
+        std::function<DesignMatrix(const HeaveNoise&, const std::vector<double>& innovations)> answers;   ///< at `numbers`
+    };
+    /// -2 log likelihood of each run with numbers from the other runs alone: one step of Gauss and Newton from those that fit all, within the
+    /// bounds and no longer than it serves the other runs, then the filter itself; with as much process noise, from `noise` up to
     /// `most_process`, as serves the runs left out. With one run: its cost.
-    [[nodiscard]] std::vector<double> held_out_cost(const FittedHypothesis& fitted, HeaveNoise noise, double most_process) const;
-    [[nodiscard]] std::vector<double> held_out_at(const FittedHypothesis& fitted, const HeaveNoise& noise) const;
+    [[nodiscard]] std::vector<double> held_out_cost(const Left& fit, HeaveNoise noise, double most_process) const;
+    /// The same at this noise; `inside` is the cost of all runs with `numbers`.
+    [[nodiscard]] std::vector<double> held_out_at(const Left& fit, const HeaveNoise& noise, double& inside) const;
     /// A periodic force that is small: what it would explain, and with which numbers.
     struct Line {
         double frequency = 0, gain = 0, amplitude = 0, phase = 0;

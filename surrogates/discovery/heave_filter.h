@@ -26,7 +26,17 @@ struct FlexibleForce {
     std::vector<Variable> variables;
     FlexibleBasis basis;
     std::vector<double> coefficients;   ///< N, one per column
-    /// Holds the force constant beyond what was seen.
+    std::vector<double> mix;            ///< column-major: coefficients of forces that are orthonormal over the states seen
+    /// Numbers in N, root mean square over the states seen, of each of those forces.
+    void set(std::span<const double> numbers) {
+        coefficients.assign(coefficients.size(), 0);
+        for (std::size_t j = 0; j < numbers.size(); ++j) {
+            for (std::size_t k = 0; k <= j; ++k) {
+                coefficients[k] += mix[j * coefficients.size() + k] * numbers[j];
+            }
+        }
+    }
+    /// Holds the force constant beyond what was seen; of the input, and of the velocity beside the gap, beyond half as far again.
     std::vector<double> lower, upper;
     [[nodiscard]] double operator()(double h, double w, double t, double u) const {
         double slope_h = 0;

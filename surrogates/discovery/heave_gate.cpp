@@ -1,6 +1,7 @@
 // Is anything there, and is anything left? Linearised answers of named effects and smooth forces, judged against reordered innovations.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "surrogates/discovery/heave_loop.h"
@@ -24,16 +25,37 @@ double surprise(double gain, double count) {
     return tail > 1e-290 ? -std::log10(tail) : 290 + gain / 10;
 }
 
-const std::vector<std::vector<Variable>>& smooth_sets() {
-    static const std::vector<std::vector<Variable>> sets{{},
-                                                         {Variable::gap},
-                                                         {Variable::heave_velocity},
-                                                         {Variable::time},
-                                                         {Variable::input_force},
-                                                         {Variable::gap, Variable::heave_velocity},
-                                                         {Variable::gap, Variable::input_force},
-                                                         {Variable::heave_velocity, Variable::input_force}};
+/// Laws of the gap may bend often, beside another variable too; those of velocity, input and time bend less.
+const std::vector<HeaveExperiment::SmoothSet>& smooth_sets() {
+    static const std::vector<HeaveExperiment::SmoothSet> sets{{{}, {}},
+                                                              {{Variable::gap}, {7}},
+                                                              {{Variable::gap}, {15}},
+                                                              {{Variable::heave_velocity}, {7}},
+                                                              {{Variable::time}, {7}},
+                                                              {{Variable::input_force}, {7}},
+                                                              {{Variable::gap, Variable::heave_velocity}, {6, 2}},
+                                                              {{Variable::gap, Variable::heave_velocity}, {12, 2}},
+                                                              {{Variable::gap, Variable::input_force}, {6, 2}},
+                                                              {{Variable::heave_velocity, Variable::input_force}, {3, 3}}};
     return sets;
+}
+
+/// Finer ones than a set, for the correction that goes into a model.
+std::vector<HeaveExperiment::SmoothSet> finer_sets(const HeaveExperiment::SmoothSet& set) {
+    std::vector<HeaveExperiment::SmoothSet> list;
+    if (set.variables.size() == 1) {
+        for (const std::size_t columns : {7U, 11U, 15U}) {
+            list.push_back({set.variables, {columns}});
+        }
+    } else if (set.variables.size() == 2) {
+        const bool gap = set.variables.front() == Variable::gap;
+        for (const std::vector<std::size_t>& columns : gap ? std::vector<std::vector<std::size_t>>{{12, 1}, {12, 2}, {9, 4}, {6, 3}}
+                                                           : std::vector<std::vector<std::size_t>>{{5, 5}}) {
+            list.push_back({set.variables, columns});
+        }
+    }
+    std::erase_if(list, [&](const auto& one) { return one.columns == set.columns; });
+    return list;
 }
 
 /// Where a candidate is looked at when it is small: one set of numbers for each column.
@@ -75,13 +97,13 @@ std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experimen
             }
         }
     }
-    for (const Variables& variables : smooth_sets()) {
-        const bool possible = std::none_of(variables.begin(), variables.end(), [&](Variable v) {
+    for (const HeaveExperiment::SmoothSet& set : smooth_sets()) {
+        const bool possible = std::none_of(set.variables.begin(), set.variables.end(), [&](Variable v) {
             return v == Variable::input_force && !records_.input_recorded;
         });
         if (possible) {
             list.emplace_back();
-            list.back().smooth = &variables;
+            list.back().smooth = &set;
         }
     }
     core::parallel_for(list.size(), [&](std::size_t k) {
@@ -144,6 +166,7 @@ double HeaveLoop::chance_in_noise(const std::vector<Probe>& list, const std::vec
 }
 
 void HeaveLoop::open_gate() {
+    whole_list_.clear();
     const std::vector<Probe> list = probes(*experiment_, {}, null_noise_, {}, true);
     double observed = 0;
     for (std::size_t i = 0; i < singles_; ++i) {
@@ -153,7 +176,7 @@ void HeaveLoop::open_gate() {
         }
         observed = std::max(observed, own);
     }
-    gate_ = chance_in_noise(list, fitted_[best_single_].fit.residuals, observed, 0);
+    gate_ = named_gate_ = chance_in_noise(list, fitted_[best_single_].fit.residuals, observed, 0);
     if (gate_ < calibration_.gate) {
         return;
     }
@@ -166,9 +189,10 @@ void HeaveLoop::open_gate() {
     }
     std::sort(smooth.begin(), smooth.end(), [](const Probe* a, const Probe* b) { return a->surprise > b->surprise; });
     for (std::size_t k = 0; k < std::min<std::size_t>(2, smooth.size()) && smooth[k]->surprise > 2; ++k) {
-        const HeaveExperiment::Smooth fit = experiment_->fit_smooth(*smooth[k]->smooth, {}, null_noise_, null_cost_);
+        HeaveExperiment::Smooth fit = experiment_->fit_smooth(*smooth[k]->smooth, {}, null_noise_, null_cost_);
         const double gain = surprise(fit.fit.gain, fit.fit.degrees);
         gate_ = std::min(gate_, chance_in_noise(list, fit.residuals, gain, 0));
+        whole_list_.push_back(std::move(fit));
     }
 }
 
@@ -223,25 +247,26 @@ void HeaveLoop::smooth_corrections() {
     std::sort(order.begin(), order.end(), [](const Probe* a, const Probe* b) { return a->gain - 9.0 * static_cast<double>(a->columns.columns) >
                                                                                       b->gain - 9.0 * static_cast<double>(b->columns.columns); });
     order.resize(std::min<std::size_t>(order.size(), 4));
-    whole_list_.resize(order.size());
+    const std::size_t first = whole_list_.size();   // those that opened the gate stand before
+    whole_list_.resize(first + order.size());
     core::parallel_for(order.size(), [&](std::size_t i) {
-        whole_list_[i] = experiment_->fit_smooth(*order[i]->smooth, {}, null_noise_, null_cost_);
+        whole_list_[first + i] = experiment_->fit_smooth(*order[i]->smooth, {}, null_noise_, null_cost_);
     }, progress_);
     whole_ = best_smooth(whole_list_).fit;
     rest_ = rest_beside(fitted_[best_single_], noises_[best_single_]);
 }
 
-/// More columns as long as the data pay for them: what goes into a model should miss as little as it can.
+/// As fine as the runs left out ask for: what goes into a model should miss as little as it can.
 HeaveExperiment::Smooth HeaveLoop::refined(const HeaveExperiment::Smooth& begin) const {
-    HeaveExperiment::Smooth best = begin;
-    const bool one = begin.force.variables.size() < 2;
-    for (const std::size_t columns : one ? std::vector<std::size_t>{4, 8} : std::vector<std::size_t>{1}) {
-        HeaveExperiment::Smooth finer = experiment_->fit_smooth(begin.force.variables, {}, null_noise_, null_cost_, columns);
-        if (smooth_score(finer) < smooth_score(best)) {
-            best = std::move(finer);
-        }
+    const auto held_out = [](const HeaveExperiment::Smooth& one) { return std::accumulate(one.held_out.begin(), one.held_out.end(), 0.0); };
+    const std::vector<HeaveExperiment::SmoothSet> sets = finer_sets(begin.set);
+    std::vector<HeaveExperiment::Smooth> finer(sets.size());
+    core::parallel_for(sets.size(), [&](std::size_t k) { finer[k] = experiment_->fit_smooth(sets[k], {}, null_noise_, null_cost_); }, progress_);
+    const HeaveExperiment::Smooth* best = &begin;
+    for (const HeaveExperiment::Smooth& one : finer) {
+        best = held_out(one) < held_out(*best) ? &one : best;
     }
-    return best;
+    return *best;
 }
 
 }  // namespace underbody::discovery

@@ -21,7 +21,6 @@ public:
 
 private:
     using Variable = FlexibleForce::Variable;
-    using Variables = std::vector<Variable>;
 
     // heave_discovery.cpp: the null model and every effect alone
     void split();
@@ -40,7 +39,7 @@ private:
     /// Linearised answers of one thing that may be missing.
     struct Probe {
         std::size_t candidate = 0;     ///< index into candidates_, or:
-        const Variables* smooth = nullptr;
+        const HeaveExperiment::SmoothSet* smooth = nullptr;
         DesignMatrix columns;          ///< orthonormal, beside what the base can already do
         double gain = 0;               ///< of the base's own innovations
         double surprise = 0;           ///< -log10 of the chance of such a gain from white noise
@@ -103,6 +102,7 @@ private:
     SmoothFit whole_;
     Rest rest_;
     double gate_ = 1;
+    double named_gate_ = 1;                  ///< chance that noise alone would give as much to any named effect
     Attribution attribution_;
     std::vector<dynamics::EffectUse> uses_;
     Discovery result_;

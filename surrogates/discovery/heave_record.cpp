@@ -51,17 +51,26 @@ dynamics::Conditions held_conditions(const dynamics::MeasuredRun& run) {
 
 /// Readings far from the middle of their neighbours become missing.
 std::size_t drop_outliers(std::vector<double>& values, double sigma) {
-    constexpr std::size_t half = 3;
+    constexpr std::size_t half = 3, reach = 15;   // readings on either side, and how far to look for them across missing ones
     std::vector<std::size_t> bad;
     std::vector<double> window;
     for (std::size_t i = 0; i < values.size(); ++i) {
         window.clear();
-        for (std::size_t k = i >= half ? i - half : 0; k <= std::min(i + half, values.size() - 1); ++k) {
-            if (std::isfinite(values[k])) {
-                window.push_back(values[k]);
+        if (!std::isfinite(values[i])) {
+            continue;
+        }
+        window.push_back(values[i]);
+        for (const bool before : {true, false}) {
+            std::size_t found = 0;
+            for (std::size_t d = 1; d <= reach && found < half && (before ? d <= i : i + d < values.size()); ++d) {
+                const double other = values[before ? i - d : i + d];
+                if (std::isfinite(other)) {
+                    window.push_back(other);
+                    ++found;
+                }
             }
         }
-        if (window.size() >= 4 && std::isfinite(values[i])) {
+        if (window.size() >= 4) {
             const double spread = quantile(window, 0.8) - quantile(window, 0.2);
             if (std::abs(values[i] - median(window)) > 8 * sigma + 2 * spread) {
                 bad.push_back(i);
@@ -132,32 +141,37 @@ std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector
     return step_of;
 }
 
-/// Readings at the ends of a sensor's range: many at exactly the largest or smallest value, in one piece.
-std::size_t drop_saturated(std::vector<double>& values, double noise) {
+/// Readings at the ends of a sensor's range: many at exactly one value, several in one piece, and hardly any beyond (outliers may be).
+std::size_t drop_saturated(std::vector<double>& values) {
     std::size_t dropped = 0;
     const double step = reading_step(values);
     for (const bool upper : {true, false}) {
         double end = upper ? -1e300 : 1e300;
-        for (const double value : values) {
-            if (std::isfinite(value)) {
-                end = upper ? std::max(end, value) : std::min(end, value);
+        std::size_t same = 1;
+        for (std::size_t i = 1; i < values.size(); ++i) {
+            same = values[i] == values[i - 1] ? same + 1 : 1;
+            if (same == 5) {
+                end = upper ? std::max(end, values[i]) : std::min(end, values[i]);
             }
         }
         // a sensor without noise of its own repeats values by rounding; a saturated one repeats its end alone
+        std::vector<double> inside = values;
+        std::replace(inside.begin(), inside.end(), end, std::nan(""));
+        const double noise = noise_from_second_differences(inside);
         const auto at_end = static_cast<std::size_t>(std::count(values.begin(), values.end(), end));
-        std::size_t longest = 0;
-        std::size_t run = 0;
-        for (const double value : values) {
-            run = value == end ? run + 1 : 0;
-            longest = std::max(longest, run);
-        }
         // one that rounds repeats every value: its end counts only when it has far more readings than the value beside it
         const double beside = end + (upper ? -step : step);
         const auto at_next = static_cast<std::size_t>(
             step > 0 ? std::count_if(values.begin(), values.end(), [&](double v) { return std::abs(v - beside) < 0.1 * step; }) : 0);
-        if (at_end > std::max<std::size_t>(8, values.size() / 100) && longest >= 5 && noise > 0 && at_end > 10 * at_next) {
-            std::replace(values.begin(), values.end(), end, std::nan(""));
-            dropped += at_end;
+        const auto beyond = std::count_if(values.begin(), values.end(), [&](double x) { return upper ? x > end : x < end; });
+        if (at_end > std::max<std::size_t>(8, values.size() / 100) && 50 * static_cast<std::size_t>(beyond) < values.size() && noise > 0 && at_end > 10 * at_next) {
+            // beside the end only the readings whose noise points inward are left: they would look like a force
+            for (double& value : values) {
+                if (upper ? value > end - 5 * noise : value < end + 5 * noise) {
+                    value = std::nan("");
+                    ++dropped;
+                }
+            }
         }
     }
     return dropped;
@@ -360,8 +374,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         record.plant = plant;
         const std::vector<double>& time = run.table.numbers("time");
         std::vector<double> gap = run.table.numbers("gap");
-        const double noise = noise_from_second_differences(gap);
-        const std::size_t saturated = drop_saturated(gap, noise);
+        const std::size_t saturated = drop_saturated(gap);
+        const double noise = noise_from_second_differences(gap);   // a reading at the end of the range has none
         if (saturated > 0) {
             remark(result.problems, std::to_string(saturated) + " gap readings of " + run.name +
                                         " stand exactly at the end of the sensor's range (saturated): not used", file);

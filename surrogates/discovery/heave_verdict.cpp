@@ -139,10 +139,14 @@ void HeaveLoop::decide() {
         // or so much better on all runs, at Schwarz's price, that runs which alone visit a corner of its variables cannot spoil it
         const bool far_better = smooth_score(best_smooth(whole_list_)) < fitted_[chosen].cost + fitted_[chosen].occam - 100;
         // a law that does hardly more than a named one is that one in another form: a power of 1.9 instead of 2
-        const bool hardly_more = whole_.gain < 1.08 * fitted_[chosen].explained;
+        const bool hardly_more = whole_.gain < 1.35 * fitted_[chosen].explained;
         if ((smooth > named - 10 && !far_better) || hardly_more) {
             rest.p = 1;
         }
+    }
+    if (gate_ < calibration_.gate && named_gate_ >= calibration_.gate && !whole_list_.empty()) {
+        rest = whole_;   // something is there, and no name says more of it than noise would
+        rest.p = gate_;
     }
     attribution_ = attribute(fitted_, gate_, rest, calibration_);
     result_.verdict = attribution_.verdict;

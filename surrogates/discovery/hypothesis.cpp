@@ -359,6 +359,7 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
             list.push_back(std::move(bent));
         } else if (info.name == "surface_roughness") {
             start({{0.1, 0.1, 0.03}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.3}});
+            hypothesis.parameters[0].lower = hypothesis.parameters[1].lower = 0;   // deeper near, weaker far: not the other way round
         } else if (info.name == "tether_stiffness") {
             start({{0.03, 0.1}});
         } else if (info.name != "periodic_disturbance") {  // its starts come from a scan over frequency

@@ -65,7 +65,8 @@ std::string verdict_sentence(const Discovery& discovery) {
     const std::string error =
         discovery.error.empty() || discovery.verdict == "none"
             ? ""
-            : " On held-out data the error of " + discovery.error.front().channel + " falls from " +
+            : " On held-out data the error of " + discovery.error.front().channel +
+                  (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from " : " falls from ") +
                   core::format_number(discovery.error.front().before.rmse, 3) + " to " +
                   core::format_number(discovery.error.front().after.rmse, 3) + " " + discovery.error.front().unit + " (noise " +
                   core::format_number(discovery.error.front().noise, 3) + " " + discovery.error.front().unit + ").";
