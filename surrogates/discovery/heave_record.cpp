@@ -212,28 +212,41 @@ std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlan
     return "";
 }
 
-/// Slope of a measured velocity against the differences of the gap over a fifth of a second; NaN where nothing moves.
-double velocity_slope(const HeaveRecord& record, double gap_noise) {
+/// What the measured velocity says beside the gap's own changes over a second each; both NaN without enough motion.
+struct VelocityScale {
+    double slope = std::nan("");  ///< regression: a foreign channel gives about 0, a turned one -1
+    double ratio = std::nan("");  ///< root of the mean squares' ratio: a delay of one sensor leaves it at 1
+};
+
+VelocityScale velocity_scale(const HeaveRecord& record, double gap_noise) {
     double cross = 0;
-    double square = 0;
-    const std::size_t reach = 5;
-    for (std::size_t k = reach; k < record.time.size(); k += reach) {
+    double by_velocity = 0;
+    double by_gap = 0;
+    constexpr double window = 1;  // s: short beside a run, long enough that the noise of the gap hardly counts
+    for (std::size_t begin = 0, end = 1; end < record.time.size(); ++end) {
+        const double lasted = record.time[end] - record.time[begin];
+        if (lasted < window) {
+            continue;
+        }
         double sum = 0;
-        std::size_t count = 0;
-        for (std::size_t i = k - reach; i <= k; ++i) {
+        double weights = 0;
+        for (std::size_t i = begin; i <= end; ++i) {
             if (std::isfinite(record.velocity[i])) {
-                sum += record.velocity[i];
-                ++count;
+                const double weight = i == begin || i == end ? 0.5 : 1;
+                sum += weight * record.velocity[i];
+                weights += weight;
             }
         }
-        const double rate = (record.gap[k] - record.gap[k - reach]) / (record.time[k] - record.time[k - reach]);
-        if (std::isfinite(rate) && count > reach / 2) {
-            const double noise = gap_noise / (record.time[k] - record.time[k - reach]);
-            cross += rate * sum / static_cast<double>(count);
-            square += rate * rate - noise * noise;   // two averages of two readings
+        const double change = record.gap[end] - record.gap[begin];
+        if (std::isfinite(change) && weights > 0.5 * static_cast<double>(end - begin)) {
+            const double path = lasted * sum / weights;
+            cross += change * path;
+            by_velocity += path * path;
+            by_gap += change * change - 2 * gap_noise * gap_noise;
         }
+        begin = end;
     }
-    return square > 0 ? cross / square : std::nan("");
+    return by_gap > 0 ? VelocityScale{cross / by_gap, std::sqrt(by_velocity / by_gap)} : VelocityScale{};
 }
 
 bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
@@ -311,16 +324,23 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
         return;
     }
     std::vector<double> slopes;
+    std::vector<double> ratios;
     for (const HeaveRecord& record : result.records) {
-        if (record.velocity.empty()) {
-            continue;
-        }
-        const double slope = velocity_slope(record, result.gap_noise);
-        if (std::isfinite(slope)) {
-            slopes.push_back(slope);
+        const VelocityScale scale = record.velocity.empty() ? VelocityScale{} : velocity_scale(record, result.gap_noise);
+        if (std::isfinite(scale.slope)) {
+            slopes.push_back(scale.slope);
+            ratios.push_back(scale.ratio);
         }
     }
     const double slope = slopes.empty() ? 1 : median(slopes);
+    const double ratio = ratios.empty() ? 1 : median(ratios);
+    std::vector<double> apart;
+    for (const double one : ratios) {
+        apart.push_back(std::abs(one - ratio));
+    }
+    // five standard errors of the runs' median, and never for a few hundredths; one or two runs show no scatter
+    const double tolerance =
+        ratios.size() < 3 ? 0.25 : std::max(0.05, 5 * 1.25 * 1.4826 * median(apart) / std::sqrt(static_cast<double>(ratios.size())));
     std::string text;
     if (slope < -0.5 && slope > -2) {
         text = "heave_velocity has the opposite sign of the gap's changes (positive is up: it is turned round)";
@@ -328,6 +348,8 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
         const bool thousand = (slope > 500 && slope < 2000) || (slope > 5e-4 && slope < 2e-3);
         text = "heave_velocity is " + core::format_number(slope, 3) + " times what the gap's changes say" +
                (thousand ? ": a unit wrong by a thousand?" : ": another channel, another run, or swapped columns?") + " It is not used";
+    } else if (std::abs(ratio - 1) > tolerance) {
+        text = "heave_velocity is " + core::format_number(ratio, 3) + " times what the gap's changes say: is the scale of one of the two wrong? It is not used";
     }
     if (text.empty()) {
         return;

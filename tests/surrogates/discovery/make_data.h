@@ -31,15 +31,15 @@ inline dynamics::Model heave_model(const std::filesystem::path& folder) {
     return dynamics::read_model(folder / "model.toml");
 }
 
-/// Heave runs under a held controller force; `extra(t, h, w)` is what the model lacks, N.
+/// Heave runs under a held controller force; `extra(t, h, w)` is what the model lacks, N. The velocity, where it is wanted, has a noise of 1 mm/s.
 inline dynamics::Measurements heave_runs(const std::function<double(double, double, double)>& extra, int runs, double rate, std::uint64_t seed,
-                                         double seconds = 30) {
+                                         double seconds = 30, bool with_velocity = false) {
     dynamics::Measurements data;
     data.noise["gap"] = 2e-4;
     for (int r = 0; r < runs; ++r) {
         core::Random random(seed, static_cast<std::uint64_t>(r));
         double h = 0.06 + 0.1 * random.uniform(), w = 0, target = h, next = 3;
-        std::vector<double> time, gap, input;
+        std::vector<double> time, gap, velocity, input;
         const double dt = 1 / rate;
         const int sub = std::max(1, static_cast<int>(dt / 0.004 + 0.5));
         for (int k = 0; k < seconds * rate; ++k) {
@@ -51,6 +51,9 @@ inline dynamics::Measurements heave_runs(const std::function<double(double, doub
             const double u = 0.03 - lift_of(h) + 0.5 * (target - h) - 1.2 * w + 0.004 * std::sin(1.7 * t + r);
             time.push_back(t);
             gap.push_back(h + 2e-4 * random.normal());
+            if (with_velocity) {
+                velocity.push_back(w + 1e-3 * random.normal());
+            }
             input.push_back(u);
             for (int s = 0; s < sub; ++s) {
                 const double step = dt / sub;
@@ -69,6 +72,9 @@ inline dynamics::Measurements heave_runs(const std::function<double(double, doub
         run.table.add_numbers("time", "s", time);
         run.table.add_numbers("gap", "m", gap);
         run.table.add_numbers("input_force", "N", input);
+        if (with_velocity) {
+            run.table.add_numbers("heave_velocity", "m/s", velocity);
+        }
         data.runs.push_back(std::move(run));
     }
     return data;

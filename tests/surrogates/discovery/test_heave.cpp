@@ -231,10 +231,10 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
 namespace {
 
 /// Two short runs, changed by `change` before the loop sees them.
-Discovery found_on_changed(const std::function<void(dynamics::Measurements&)>& change, int runs = 4, double extra = 0.0) {
+Discovery found_on_changed(const std::function<void(dynamics::Measurements&)>& change, int runs = 4, double extra = 0.0, bool with_velocity = false) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
-    dynamics::Measurements data = test::heave_runs([extra](double, double, double) { return extra; }, runs, 50, 11);
+    dynamics::Measurements data = test::heave_runs([extra](double, double, double) { return extra; }, runs, 50, 11, 30, with_velocity);
     change(data);
     DiscoverOptions options;
     options.figures = options.consequence = false;
@@ -278,6 +278,51 @@ TEST(HeaveInput, AThousandfoldUnitIsSaid) {
     });
     EXPECT_TRUE(says(found.problems, "thousand")) << found.sentence;
     EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, AVelocityOfAnotherSignOrScaleIsSaidAndNamesNoEffect) {
+    const auto found_with_velocity_times = [](double factor) {
+        return found_on_changed(
+            [factor](dynamics::Measurements& data) {
+                for (auto& run : data.runs) {
+                    run.table = with_column(run.table, "heave_velocity", [factor](std::size_t, double w) { return factor * w; });
+                }
+            },
+            4, 0, true);
+    };
+    for (const auto& [factor, words] : {std::pair{-1.0, "opposite sign"}, {1000.0, "a unit wrong by a thousand"}, {1.3, "is the scale of one of the two wrong"}}) {
+        const Discovery found = found_with_velocity_times(factor);
+        EXPECT_TRUE(says(found.problems, words)) << factor << ": " << found.sentence;
+        EXPECT_EQ(found.verdict, "none") << factor << ": " << found.sentence;
+    }
+    EXPECT_FALSE(says(found_with_velocity_times(1).problems, "heave_velocity is"));
+}
+
+TEST(HeaveInput, AVelocityBesideADelayedGapIsKept) {
+    const Discovery found = found_on_changed(
+        [](dynamics::Measurements& data) {
+            for (auto& run : data.runs) {
+                const std::vector<double> gap = run.table.numbers("gap");
+                run.table = with_column(run.table, "gap", [&gap](std::size_t i, double) { return gap[i - std::min<std::size_t>(i, 5)]; });
+            }
+        },
+        4, 0, true);
+    EXPECT_FALSE(says(found.problems, "heave_velocity is")) << found.sentence;
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects.at(0).name, "gap_sensor_delay") << found.sentence;
+}
+
+TEST(HeaveInput, RunsOutsideTheDeclaredTablesAreRefusedWithTheirGaps) {
+    try {
+        found_on_changed([](dynamics::Measurements& data) {
+            for (auto& run : data.runs) {
+                run.table = with_column(run.table, "gap", [](std::size_t, double h) { return h + 2; });
+            }
+        });
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("lies outside the tables of the declared model"), std::string::npos) << error.what();
+    }
 }
 
 TEST(HeaveInput, AClockThatRunsBehindIsAligned) {
