@@ -31,9 +31,16 @@ inline dynamics::Model heave_model(const std::filesystem::path& folder) {
     return dynamics::read_model(folder / "model.toml");
 }
 
-/// Heave runs under a held controller force; `extra(t, h, w)` is what the model lacks, N. The velocity, where it is wanted, has a noise of 1 mm/s.
+/// What else the simulated rig of `heave_runs` is like.
+struct HeaveRig {
+    double seconds = 30;
+    bool velocity = false;    ///< measured too, with a noise of 1 mm/s
+    bool continuous = false;  ///< the controller follows motion and a waving set point between the samples instead of holding its force from step to step
+};
+
+/// Heave runs under a controller's force; `extra(t, h, w)` is what the model lacks, N.
 inline dynamics::Measurements heave_runs(const std::function<double(double, double, double)>& extra, int runs, double rate, std::uint64_t seed,
-                                         double seconds = 30, bool with_velocity = false) {
+                                         const HeaveRig& rig = {}) {
     dynamics::Measurements data;
     data.noise["gap"] = 2e-4;
     for (int r = 0; r < runs; ++r) {
@@ -42,23 +49,27 @@ inline dynamics::Measurements heave_runs(const std::function<double(double, doub
         std::vector<double> time, gap, velocity, input;
         const double dt = 1 / rate;
         const int sub = std::max(1, static_cast<int>(dt / 0.004 + 0.5));
-        for (int k = 0; k < seconds * rate; ++k) {
+        for (int k = 0; k < rig.seconds * rate; ++k) {
             const double t = k * dt;
             if (t >= next) {
                 target = 0.05 + 0.2 * random.uniform();
                 next = t + 3 + 5 * random.uniform();
             }
-            const double u = 0.03 - lift_of(h) + 0.5 * (target - h) - 1.2 * w + 0.004 * std::sin(1.7 * t + r);
+            const auto controlled = [&](double hh, double ww, double tt) {
+                const double wanted = rig.continuous ? 0.15 + 0.08 * std::sin(0.4 * tt + r) : target;
+                return 0.03 - lift_of(hh) + 0.5 * (wanted - hh) - 1.2 * ww + 0.004 * std::sin(1.7 * tt + r);
+            };
+            const double u = controlled(h, w, t);
             time.push_back(t);
             gap.push_back(h + 2e-4 * random.normal());
-            if (with_velocity) {
+            if (rig.velocity) {
                 velocity.push_back(w + 1e-3 * random.normal());
             }
             input.push_back(u);
             for (int s = 0; s < sub; ++s) {
                 const double step = dt / sub;
                 const auto a = [&](double hh, double ww, double tt) {
-                    return (lift_of(hh) - 0.03 + u - 0.02 * ww - 6 * ww * std::abs(ww) + extra(tt, hh, ww)) / 3.954;
+                    return (lift_of(hh) - 0.03 + (rig.continuous ? controlled(hh, ww, tt) : u) - 0.02 * ww - 6 * ww * std::abs(ww) + extra(tt, hh, ww)) / 3.954;
                 };
                 const double a1 = a(h, w, t + s * step);
                 const double hm = h + 0.5 * step * w, wm = w + 0.5 * step * a1;
@@ -72,7 +83,7 @@ inline dynamics::Measurements heave_runs(const std::function<double(double, doub
         run.table.add_numbers("time", "s", time);
         run.table.add_numbers("gap", "m", gap);
         run.table.add_numbers("input_force", "N", input);
-        if (with_velocity) {
+        if (rig.velocity) {
             run.table.add_numbers("heave_velocity", "m/s", velocity);
         }
         data.runs.push_back(std::move(run));

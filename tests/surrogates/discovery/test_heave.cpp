@@ -141,7 +141,7 @@ TEST(HeaveDiscovery, DoesNotTakeASlowChangeForAWave) {
 TEST(HeaveDiscovery, CannotSeeADelayOfTheGapWithoutARecordedInput) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
-    dynamics::Measurements data = test::heave_runs([](double, double, double) { return 0.0; }, 2, 50, 5, 10);
+    dynamics::Measurements data = test::heave_runs([](double, double, double) { return 0.0; }, 2, 50, 5, {.seconds = 10});
     for (dynamics::MeasuredRun& run : data.runs) {
         core::Table table;
         table.source = run.table.source;
@@ -234,7 +234,7 @@ namespace {
 Discovery found_on_changed(const std::function<void(dynamics::Measurements&)>& change, int runs = 4, double extra = 0.0, bool with_velocity = false) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
-    dynamics::Measurements data = test::heave_runs([extra](double, double, double) { return extra; }, runs, 50, 11, 30, with_velocity);
+    dynamics::Measurements data = test::heave_runs([extra](double, double, double) { return extra; }, runs, 50, 11, {.velocity = with_velocity});
     change(data);
     DiscoverOptions options;
     options.figures = options.consequence = false;
@@ -310,6 +310,22 @@ TEST(HeaveInput, AVelocityBesideADelayedGapIsKept) {
     EXPECT_FALSE(says(found.problems, "heave_velocity is")) << found.sentence;
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
     EXPECT_EQ(found.effects.at(0).name, "gap_sensor_delay") << found.sentence;
+}
+
+TEST(HeaveInput, OfAContinuousControllerIsNoDamping) {
+    // taken as held, it comes half a sample late, which damping makes up for
+    const core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    for (const double rate : {20.0, 50.0, 100.0}) {
+        const Discovery found = discover(model, test::heave_runs([](double, double, double) { return 0.0; }, 6, rate, 23, {.continuous = true}), options);
+        EXPECT_EQ(found.verdict, "none") << rate << ": " << found.sentence;
+    }
+    // and a damping of just that size under a controller that holds its force is one
+    const Discovery found = discover(model, test::heave_runs([](double, double, double w) { return -0.0078 * w; }, 6, 50, 23), options);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects.at(0).name, "linear_damping") << found.sentence;
 }
 
 TEST(HeaveInput, RunsOutsideTheDeclaredTablesAreRefusedWithTheirGaps) {
