@@ -169,7 +169,7 @@ public:
         if (names_.empty()) {
             return "sections of CFD-Post, no list of zones yet";
         }
-        std::string text = std::to_string(names_.size()) + " zones (" + listed(names_) + ")";
+        std::string text = std::to_string(names_.size()) + (names_.size() == 1 ? " zone (" : " zones (") + listed(names_) + ")";
         for (const auto& zone : field_.zones) {
             text += (&zone == &field_.zones.front() ? "; read " : ", ") + zone.name + " with " + std::to_string(zone.surface->GetNumberOfPoints()) + " nodes, " +
                     std::to_string(zone.surface->GetNumberOfPolys()) + " faces";

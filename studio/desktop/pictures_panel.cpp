@@ -1,6 +1,7 @@
 #include "studio/desktop/pictures_panel.h"
 
 #include <QBoxLayout>
+#include <QEvent>
 #include <QLabel>
 #include <QListWidget>
 #include <QScrollArea>
@@ -40,6 +41,7 @@ PicturesPanel::PicturesPanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent) 
     picture_ = new QLabel("Open a study");
     picture_->setAlignment(Qt::AlignCenter);
     area_->setWidget(picture_);
+    area_->viewport()->installEventFilter(this);
     column->addWidget(area_, 1);
     caption_ = new QLabel;
     caption_->setWordWrap(true);
@@ -98,9 +100,12 @@ void PicturesPanel::fit() {
     }
 }
 
-void PicturesPanel::resizeEvent(QResizeEvent* event) {
-    Panel::resizeEvent(event);
-    fit();
+/// The room for the picture changes after the panel itself has been resized, and first when its tab is shown.
+bool PicturesPanel::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::Resize) {
+        fit();
+    }
+    return Panel::eventFilter(watched, event);
 }
 
 bool PicturesPanel::has_picture() const { return !whole_.isNull(); }

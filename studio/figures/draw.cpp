@@ -314,7 +314,13 @@ private:
                 values << bars.values[i];
                 errors << (i < bars.errors.size() && std::isfinite(bars.errors[i]) ? bars.errors[i] : 0);
             }
-            plottable->setData(at, values);
+            const double base = figure_.y.logarithmic ? plot_.yAxis->range().lower : 0;
+            QVector<double> heights = values;  // a bar ends its value above its base
+            for (double& height : heights) {
+                height -= base;
+            }
+            plottable->setData(at, heights);
+            plottable->setBaseValue(base);
             plottable->setWidth(width * 0.94);
             plottable->setPen(Qt::NoPen);
             plottable->setBrush(to_qt(bars.colour));

@@ -156,6 +156,8 @@ core::Figure error_figure(const Discovery& result) {
     figure.title = "Error on held-out data";
     figure.y = {"RMSE over noise", "", 0, 0, false};
     figure.caption = "From " + result.held_out + ". One is the noise of a reading.";
+    double smallest = 1;
+    double largest = 1;
     for (const bool after : {false, true}) {
         core::FigureBars bars;
         bars.name = after ? "with what was found" : "as declared";
@@ -168,8 +170,16 @@ core::Figure error_figure(const Discovery& result) {
             bars.labels.push_back(change.channel + horizon);
             bars.values.push_back(estimate.rmse / std::max(change.noise, 1e-300));
             bars.errors.push_back(std::min(0.25 * (estimate.high - estimate.low), estimate.rmse) / std::max(change.noise, 1e-300));
+            smallest = std::min(smallest, bars.values.back());
+            largest = std::max(largest, bars.values.back() + bars.errors.back());
         }
         figure.bars.push_back(std::move(bars));
+    }
+    // a free run may err a thousand times more than the next two seconds: all of them are to be seen
+    if (smallest > 0 && std::isfinite(largest) && largest > 20 * smallest) {
+        figure.y.logarithmic = true;
+        figure.y.lower = 0.5 * smallest;
+        figure.y.upper = 1.5 * largest;
     }
     return figure;
 }
