@@ -15,7 +15,7 @@ struct SmoothFit {
     double gain = 0;       ///< fall of -2 log likelihood
     double degrees = 0;    ///< effective degrees of freedom
     double p = 1;          ///< chance of such a gain from noise, from simulation where it was made
-    std::vector<double> gain_of_row;  ///< of each reading; empty: not asked for
+    std::vector<double> gain_of_row;  ///< of each reading; static sets alone
 };
 
 /// Constants that the bench sets (tests/bench/discovery); they are the same for every data set of a kind.

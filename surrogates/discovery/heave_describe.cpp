@@ -106,10 +106,9 @@ void HeaveLoop::check_runs_agree() {
     const auto fitted_best = static_cast<std::size_t>(fits_best - fitted_.begin());
     const std::size_t chosen = result_.verdict == "effect" ? attribution_.chosen : best_single_;
     // what fits all runs best together may have lost because it fails from run to run
-    if (!runs_agree_on(chosen) || fitted_best == chosen) {
-        return;
+    if (runs_agree_on(chosen) && fitted_best != chosen) {
+        runs_agree_on(fitted_best);
     }
-    runs_agree_on(fitted_best);
 }
 
 /// The strength of an effect run by run: where runs disagree far beyond their errors, no one number is true of all of them. Warns.

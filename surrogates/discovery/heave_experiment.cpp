@@ -19,14 +19,6 @@ constexpr double two_pi = 6.283185307179586;
 constexpr double small_force = 0.003;     ///< N, of a smooth correction: scale of its coefficients
 constexpr double smooth_ridge = 0.5;      ///< their prior: a standard deviation of 1.4 times that scale
 
-double sum_of_squares(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values) {
-        sum += value * value;
-    }
-    return sum;
-}
-
 }  // namespace
 
 const char* variable_name(FlexibleForce::Variable variable) {
@@ -232,10 +224,7 @@ HeaveExperiment::Result HeaveExperiment::fit(const Hypothesis& hypothesis, const
     };
     std::vector<std::vector<double>> starts = hypothesis.starts;
     if (starts.empty()) {
-        starts.emplace_back();
-        for (const FitParameter& parameter : hypothesis.parameters) {
-            starts.back().push_back(parameter.start);
-        }
+        starts.push_back(hypothesis.start());
     }
     std::vector<FitParameter> parameters = hypothesis.parameters;
     const auto run = [&](const std::vector<double>& start, int iterations) {

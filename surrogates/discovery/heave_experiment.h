@@ -59,6 +59,7 @@ public:
     struct SmoothSet {
         std::vector<FlexibleForce::Variable> variables;
         std::vector<std::size_t> columns;
+        bool operator==(const SmoothSet&) const = default;
     };
     /// A smooth force over the variables on top of fixed effects; gain relative to `base_cost`.
     struct Smooth {

@@ -40,8 +40,8 @@ const std::vector<HeaveExperiment::SmoothSet>& smooth_sets() {
     return sets;
 }
 
-/// Finer ones than a set, for the correction that goes into a model.
-std::vector<HeaveExperiment::SmoothSet> finer_sets(const HeaveExperiment::SmoothSet& set) {
+/// The same variables with other columns, coarser and finer, for the correction that goes into a model.
+std::vector<HeaveExperiment::SmoothSet> other_sets(const HeaveExperiment::SmoothSet& set) {
     std::vector<HeaveExperiment::SmoothSet> list;
     if (set.variables.size() == 1) {
         for (const std::size_t columns : {7U, 11U, 15U}) {
@@ -60,10 +60,7 @@ std::vector<HeaveExperiment::SmoothSet> finer_sets(const HeaveExperiment::Smooth
 
 /// Where a candidate is looked at when it is small: one set of numbers for each column.
 std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
-    std::vector<double> start;
-    for (const FitParameter& p : h.parameters) {
-        start.push_back(p.start);
-    }
+    const std::vector<double> start = h.start();
     std::vector<std::vector<double>> steps;
     if (h.names.front() == "periodic_disturbance") {
         const double frequency = h.starts.empty() ? start[1] : h.starts.front()[1];
@@ -247,7 +244,10 @@ void HeaveLoop::smooth_corrections() {
     std::sort(order.begin(), order.end(), [](const Probe* a, const Probe* b) { return a->gain - 9.0 * static_cast<double>(a->columns.columns) >
                                                                                       b->gain - 9.0 * static_cast<double>(b->columns.columns); });
     order.resize(std::min<std::size_t>(order.size(), 4));
-    const std::size_t first = whole_list_.size();   // those that opened the gate stand before
+    std::erase_if(order, [&](const Probe* probe) {   // those that opened the gate are fitted
+        return std::any_of(whole_list_.begin(), whole_list_.end(), [&](const auto& one) { return one.set == *probe->smooth; });
+    });
+    const std::size_t first = whole_list_.size();
     whole_list_.resize(first + order.size());
     core::parallel_for(order.size(), [&](std::size_t i) {
         whole_list_[first + i] = experiment_->fit_smooth(*order[i]->smooth, {}, null_noise_, null_cost_);
@@ -259,9 +259,12 @@ void HeaveLoop::smooth_corrections() {
 /// As fine as the runs left out ask for: what goes into a model should miss as little as it can.
 HeaveExperiment::Smooth HeaveLoop::refined(const HeaveExperiment::Smooth& begin) const {
     const auto held_out = [](const HeaveExperiment::Smooth& one) { return std::accumulate(one.held_out.begin(), one.held_out.end(), 0.0); };
-    const std::vector<HeaveExperiment::SmoothSet> sets = finer_sets(begin.set);
+    const std::vector<HeaveExperiment::SmoothSet> sets = other_sets(begin.set);
     std::vector<HeaveExperiment::Smooth> finer(sets.size());
-    core::parallel_for(sets.size(), [&](std::size_t k) { finer[k] = experiment_->fit_smooth(sets[k], {}, null_noise_, null_cost_); }, progress_);
+    core::parallel_for(sets.size(), [&](std::size_t k) {
+        const auto known = std::find_if(whole_list_.begin(), whole_list_.end(), [&](const auto& one) { return one.set == sets[k]; });
+        finer[k] = known != whole_list_.end() ? *known : experiment_->fit_smooth(sets[k], {}, null_noise_, null_cost_);
+    }, progress_);
     const HeaveExperiment::Smooth* best = &begin;
     for (const HeaveExperiment::Smooth& one : finer) {
         best = held_out(one) < held_out(*best) ? &one : best;

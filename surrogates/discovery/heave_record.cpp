@@ -477,7 +477,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
     }
     if (swapped > 0 && 2 * swapped >= data.runs.size()) {
         // what looks right in the others is then chance
-        throw core::InputError("swapped", "gap and input_force look swapped in " + std::to_string(swapped) + " of " + std::to_string(data.runs.size()) + " runs: gap has no noise, and input_force has that of the gap sensor",
+        throw core::InputError("swapped",
+                               "gap and input_force look swapped in " + std::to_string(swapped) + " of " + std::to_string(data.runs.size()) + " runs: gap has no noise, and input_force has that of the gap sensor",
                                core::Place{data.folder.string(), {}, {}, {}}, "exchange the two names in the header lines");
     }
     if (result.records.empty()) {

@@ -29,14 +29,6 @@ Calibration static_calibration() {
     return c;
 }
 
-double sum_of_squares(const std::vector<double>& r) {
-    double sum = 0;
-    for (const double value : r) {
-        sum += value * value;
-    }
-    return sum;
-}
-
 }  // namespace
 
 StaticLoop::StaticLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,

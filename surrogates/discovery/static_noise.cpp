@@ -125,10 +125,7 @@ private:
         left_ = raw_;
         const std::size_t lost = repeats_ ? take_means_off(set_point_, columns, left_) : 1;
         const DesignMatrix basis = orthonormal(columns);
-        rest_ = -explained_square(basis, left_);
-        for (const double value : left_) {
-            rest_ += value * value;
-        }
+        rest_ = sum_of_squares(left_) - explained_square(basis, left_);
         degrees_ = static_cast<double>(own_.size()) - static_cast<double>(lost + basis.columns);
     }
 

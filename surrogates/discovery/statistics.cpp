@@ -109,6 +109,14 @@ double reading_step(std::span<const double> values) {
     return 100 * on_grid >= 98 * pairs ? step : 0;
 }
 
+double sum_of_squares(std::span<const double> values) {
+    double sum = 0;
+    for (const double value : values) {
+        sum += value * value;
+    }
+    return sum;
+}
+
 double noise_from_second_differences(std::span<const double> values) {
     std::vector<double> differences;
     for (std::size_t i = 2; i < values.size(); ++i) {

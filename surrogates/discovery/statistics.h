@@ -35,8 +35,11 @@ double chi_squared_limit(double tail, double dof);
 /// 0 when there is none.
 double reading_step(std::span<const double> values);
 
+double sum_of_squares(std::span<const double> values);
+
 /// Standard deviation of white noise on a smooth signal sampled at (nearly) equal steps, from second differences with a robust
-/// middle (so that outliers and kinks do not count); of a sensor that rounds at least that of its steps, step/sqrt(12). Missing values are skipped. NaN when there are fewer than eight values.
+/// middle (so that outliers and kinks do not count); of a sensor that rounds at least that of its steps, step/sqrt(12).
+/// Missing values are skipped. NaN when there are fewer than eight values.
 double noise_from_second_differences(std::span<const double> values);
 
 /// Autocorrelation of a series at a lag; 0 when it is constant.

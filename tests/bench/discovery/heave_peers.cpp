@@ -191,10 +191,7 @@ PeerAnswer HeavePeers::sparse_regression() const {
         terms.push_back({&h, start, j, 1 / column.norm()});
     };
     for (const Hypothesis& h : list) {
-        std::vector<double> start;
-        for (const discovery::FitParameter& p : h.parameters) {
-            start.push_back(p.start);
-        }
+        const std::vector<double> start = h.start();
         if (h.names.front() == "periodic_disturbance") {
             const double f = d.strongest_line();
             add(h, {0, f, 0}, 0, 1e-4);

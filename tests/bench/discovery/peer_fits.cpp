@@ -65,6 +65,23 @@ double twice_log_evidence(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, co
     return -z.squaredNorm() - 2 * factor.matrixLLT().diagonal().array().log().sum();
 }
 
+/// All products of the columns of `x` up to a degree.
+Eigen::MatrixXd monomials(const Eigen::MatrixXd& x, int degree) {
+    std::vector<Eigen::VectorXd> columns;
+    const std::function<void(Eigen::Index, int, Eigen::VectorXd)> grow = [&](Eigen::Index from, int left, const Eigen::VectorXd& product) {
+        columns.push_back(product);
+        for (Eigen::Index k = from; left > 0 && k < x.cols(); ++k) {
+            grow(k, left - 1, product.cwiseProduct(x.col(k)));
+        }
+    };
+    grow(0, degree, Eigen::VectorXd::Ones(x.rows()));
+    Eigen::MatrixXd matrix(x.rows(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+        matrix.col(static_cast<Eigen::Index>(k)) = columns[k];
+    }
+    return matrix;
+}
+
 }  // namespace
 
 Eigen::VectorXd thresholded_least_squares(const Eigen::MatrixXd& library, const Eigen::VectorXd& y) {
@@ -88,22 +105,6 @@ Eigen::VectorXd thresholded_least_squares(const Eigen::MatrixXd& library, const 
         }
     }
     return chosen;
-}
-
-Eigen::MatrixXd monomials(const Eigen::MatrixXd& x, int degree) {
-    std::vector<Eigen::VectorXd> columns;
-    const std::function<void(Eigen::Index, int, Eigen::VectorXd)> grow = [&](Eigen::Index from, int left, const Eigen::VectorXd& product) {
-        columns.push_back(product);
-        for (Eigen::Index k = from; left > 0 && k < x.cols(); ++k) {
-            grow(k, left - 1, product.cwiseProduct(x.col(k)));
-        }
-    };
-    grow(0, degree, Eigen::VectorXd::Ones(x.rows()));
-    Eigen::MatrixXd matrix(x.rows(), static_cast<Eigen::Index>(columns.size()));
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-        matrix.col(static_cast<Eigen::Index>(k)) = columns[k];
-    }
-    return matrix;
 }
 
 Eigen::VectorXd Polynomial::at(const Eigen::MatrixXd& x) const {

@@ -10,9 +10,6 @@ namespace underbody::bench {
 /// where dropped; threshold and ridge by the Bayesian information criterion. `y` in units of its noise.
 Eigen::VectorXd thresholded_least_squares(const Eigen::MatrixXd& unit_columns, const Eigen::VectorXd& y);
 
-/// All products of the columns of `x` up to a degree.
-Eigen::MatrixXd monomials(const Eigen::MatrixXd& x, int degree);
-
 struct Polynomial {
     int degree = -1;               ///< -1: nothing beats zero
     Eigen::VectorXd coefficients;
