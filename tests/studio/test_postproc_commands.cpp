@@ -172,7 +172,7 @@ TEST_F(PostprocCommands, ErrorsNameFileAndLine) {
     EXPECT_EQ(error["column"], 7);
     core::write_file(folder_.path() / "ragged.csv", box_csv.substr(0, box_csv.find("0,1,0,1")) + "0,1\n");
     const json ragged = json::parse(run({"info", "ragged.csv", "--json"}).output)["error"];
-    EXPECT_EQ(ragged["understood"], "1 zones (base)");
+    EXPECT_EQ(ragged["understood"], "1 zone (base)");
     EXPECT_EQ(run({"loads", "a-h5.csv", "--zones", "keel"}).exit_code, 3);
     EXPECT_EQ(run({"loads", "a-h5.csv", "--up", "q"}).exit_code, 2);
     EXPECT_EQ(run({"loads", "none.csv"}).exit_code, 3);
