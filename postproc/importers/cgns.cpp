@@ -622,13 +622,16 @@ ElementPart Reader::volume_of(const std::vector<Section>& all, std::int64_t /*no
     return volume;
 }
 
-/// Where the solution lies in the cells, a surface takes the pressure of those behind its faces.
+/// Where the pressure lies in the cells alone, a surface takes that of those behind its faces; its own nodes know better.
 std::vector<PartValues> pressure_beside(const ElementPart& surface, const std::vector<PartValues>& values,
                                         const BoundaryFaces& volume) {
     std::vector<PartValues> own;
     for (const auto& entry : values) {
         const std::string name = canonical_name(entry.variable).name;
-        if (entry.on_nodes || (name != "pressure" && name != "pressure_absolute")) {
+        const bool on_nodes = std::any_of(values.begin(), values.end(), [&](const PartValues& other) {
+            return other.on_nodes && canonical_name(other.variable).name == name;
+        });
+        if (on_nodes || (name != "pressure" && name != "pressure_absolute")) {
             continue;
         }
         PartValues part{entry.variable, false, 1, Buffer<double>(surface.elements())};

@@ -415,6 +415,46 @@ TEST(Cgns, BoundariesTakeThePressureOfTheCellsBehindThem) {
     EXPECT_EQ(test::range_of(*field.find("rest")->surface, "pressure").high, 40);
 }
 
+TEST(Cgns, BoundariesKeepThePressureOfTheirNodesWhereTheCellsHaveOneToo) {
+    for (const bool cells_first : {false, true}) {
+        SCOPED_TRACE(cells_first ? "cells first" : "nodes first");
+        const core::TemporaryFolder folder;
+        {
+            File file(folder.path() / "a.cgns", CG_FILE_HDF5, cells.size());
+            std::vector<std::pair<CGNS_ENUMT(ElementType_t), Nodes>> all;
+            for (const auto& cell : cells) {
+                all.emplace_back(cell.type, cell.nodes);
+            }
+            file.section("cells", CGNS_ENUMV(MIXED), all);
+            file.section("hull", CGNS_ENUMV(MIXED), faces_where(hull(cells), false));
+            file.section("floor", CGNS_ENUMV(MIXED), faces_where(hull(cells), true));
+            if (cells_first) {
+                file.pressure(CGNS_ENUMV(CellCenter), {10, 20, 30, 40});
+            }
+            file.pressure(CGNS_ENUMV(Vertex), linear());
+            if (!cells_first) {
+                file.pressure(CGNS_ENUMV(CellCenter), {10, 20, 30, 40});
+            }
+        }
+        const auto field = read_field(folder.path() / "a.cgns");
+        for (const char* name : {"hull", "floor"}) {
+            const auto* zone = field.find(name);
+            ASSERT_NE(zone, nullptr);
+            ASSERT_NE(zone->find("pressure"), nullptr);
+            EXPECT_EQ(zone->find("pressure")->on, postproc::Location::nodes);
+            EXPECT_EQ(zone->surface->GetCellData()->GetArray("pressure"), nullptr);
+            auto* pressure = zone->surface->GetPointData()->GetArray("pressure");
+            ASSERT_NE(pressure, nullptr);
+            for (vtkIdType i = 0; i < zone->surface->GetNumberOfPoints(); ++i) {
+                const double* p = zone->surface->GetPoint(i);
+                EXPECT_NEAR(pressure->GetTuple1(i), 1 + 2 * p[0] + 3 * p[1] + 4 * p[2], 1e-6);
+            }
+        }
+        expect_closed_with_gauss(field, volume);
+        EXPECT_EQ(test::range_of(*field.find("Domain 1")->volume, "pressure").high, 40);
+    }
+}
+
 TEST(Cgns, EveryValueIsInTheUnitsThatTheFileStates) {
     const core::TemporaryFolder folder;
     {
