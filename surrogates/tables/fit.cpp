@@ -29,16 +29,22 @@ double root_mean_square(const std::vector<double>& misses, const std::vector<dou
     return count == 0 ? std::nan("") : std::sqrt(sum / static_cast<double>(count));
 }
 
+constexpr const char* none_inside = "interpolated: no point lies inside the grid, so nothing can be left out";
+
 constexpr std::size_t many = 2500;  ///< more points than are worth the time of leaving each one out
 
 /// Many points of a full grid with errors. Interpolation that misses points left out by no more than their errors stays; else a process of their
 /// averages is tried at the points themselves, each of which is one of many that made it.
 std::shared_ptr<const ForceTable::Impl> of_many(const SetPoints& points, const std::shared_ptr<ForceTable::Impl>& interpolated) {
-    const auto known = interpolation_misses(points, 1 + points.x.size() / 5000);
+    const auto known = interpolation_misses(points, 5000);
     const double of_interpolation = root_mean_square(known, known);
     const double stated = root_mean_square(points.sigma, known);
     const auto say = [&](ForceTable::Impl& table, const std::string& text) { table.remarks.push_back({core::Problem::Severity::note, text, {points.table.source, {}, {}, {}}}); };
     const auto in_words = [&](double v) { return core::format_number(v, 3) + " " + points.unit; };
+    if (std::isnan(of_interpolation)) {
+        say(*interpolated, none_inside);
+        return interpolated;
+    }
     if (!(of_interpolation > 1.05 * stated)) {  // independent errors alone would make it 1.1 to 1.3 times as much
         say(*interpolated, "interpolated: left-out points are met within " + in_words(of_interpolation) + ", no worse than their stated errors");
         return interpolated;
@@ -92,7 +98,7 @@ std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, cons
     const auto known = interpolation_misses(points);
     const double of_interpolation = root_mean_square(known, known);
     if (std::isnan(of_interpolation)) {
-        say("interpolated: no point lies inside the grid, so nothing can be left out");
+        say(none_inside);
         return interpolated;
     }
     std::vector<double> misses;

@@ -24,10 +24,10 @@ core::Problems kinks(const SetPoints& points);
 ErrorModel::Growth end_growth(const CubicGrid& grid, std::size_t k);
 
 /// Leave-one-out errors of the monotone interpolation at the inner points of a full grid (along each axis the mean prediction of the
-/// lines through the point), in the order of the points; NaN at the ends of every axis, and but for every so many-th node.
-std::vector<double> interpolation_misses(const SetPoints& points, std::size_t every = 1);
+/// lines through the point), in the order of the points; NaN at the ends of every axis, and where more than `at_most` inner points are passed over.
+std::vector<double> interpolation_misses(const SetPoints& points, std::size_t at_most = SIZE_MAX);
 
-/// Gaussian process, any points. `score` (may be null) gets its leave-one-out errors, in the order of the points.
+/// Gaussian process, any points. `misses` (may be null) gets its leave-one-out errors, in the order of the points.
 std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& points, std::vector<double>* misses);
 
 /// Exact interpolation of a full grid.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -81,32 +82,44 @@ std::vector<double> cell_errors(SlopeRule rule, const CubicGrid& grid, const std
 
 }  // namespace
 
-std::vector<double> interpolation_misses(const SetPoints& points, std::size_t every) {
+std::vector<double> interpolation_misses(const SetPoints& points, std::size_t at_most) {
     const std::size_t n = points.axes.size();
     std::vector<double> misses(points.x.size(), std::nan(""));
-    for (std::size_t node = 0; node < points.order.size(); node += every) {
+    std::size_t inner = 1;
+    for (const auto& axis : points.axes) {
+        inner *= axis.points.size() - std::min<std::size_t>(axis.points.size(), 2);
+    }
+    // Steps without a common factor with the grid meet all its lines in turn, not one again and again.
+    std::size_t every = inner <= at_most ? 1 : (inner + at_most - 1) / at_most;
+    while (inner > 0 && std::gcd(every, inner) > 1) {
+        ++every;
+    }
+    for (std::size_t count = 0; count < inner; count += every) {
+        std::size_t index[CubicGrid::max_axes];
+        std::size_t rest = count, node = 0, stride = 1;
+        for (std::size_t k = n; k-- > 0;) {
+            const std::size_t size = points.axes[k].points.size();
+            index[k] = 1 + rest % (size - 2);
+            rest /= size - 2;
+            node += index[k] * stride;
+            stride *= size;
+        }
         double sum = 0;
-        bool inner = true;
-        std::size_t stride = 1;
-        for (std::size_t k = n; k-- > 0 && inner;) {
+        stride = 1;
+        for (std::size_t k = n; k-- > 0;) {
             const auto& x = points.axes[k].points;
-            const std::size_t i = node / stride % x.size();
-            inner = i > 0 && i + 1 < x.size();
-            if (inner) {
-                std::vector<double> rest_x, rest_y;
-                for (std::size_t j = i >= 5 ? i - 5 : 0; j < std::min(x.size(), i + 6); ++j) {
-                    if (j != i) {
-                        rest_x.push_back(x[j]);
-                        rest_y.push_back(points.value[points.order[node + j * stride - i * stride]]);
-                    }
+            const std::size_t i = index[k];
+            std::vector<double> rest_x, rest_y;
+            for (std::size_t j = i >= 5 ? i - 5 : 0; j < std::min(x.size(), i + 6); ++j) {
+                if (j != i) {
+                    rest_x.push_back(x[j]);
+                    rest_y.push_back(points.value[points.order[node + j * stride - i * stride]]);
                 }
-                sum += CubicGrid({rest_x}, rest_y, SlopeRule::monotone).value(&x[i], nullptr);
             }
+            sum += CubicGrid({rest_x}, rest_y, SlopeRule::monotone).value(&x[i], nullptr);
             stride *= x.size();
         }
-        if (inner) {
-            misses[points.order[node]] = sum / static_cast<double>(n) - points.value[points.order[node]];
-        }
+        misses[points.order[node]] = sum / static_cast<double>(n) - points.value[points.order[node]];
     }
     return misses;
 }

@@ -1,5 +1,6 @@
 // Points as people really have them: in clusters, dense along one line and sparse beside it, with errors over four decades, over four axes, with kinks,
 // steep films and two regimes. The truth must lie in the band about as often as the band says.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,11 +10,14 @@
 #include "core/random.h"
 #include "surrogates/tables/force_table.h"
 #include "surrogates/tables/many_points.h"
+#include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody {
 namespace {
 
 using tables::ForceTable;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 using Truth = std::function<double(const std::vector<double>&)>;
 
@@ -174,6 +178,41 @@ TEST(UnusualLayouts, ManyNoisyPointsOfOneAxisAreSmoothedCleanOnesKept) {
         EXPECT_EQ(table.kind(), noise > 0 ? "Gaussian process" : "monotone cubic");
         EXPECT_LT(worst, noise > 0 ? 0.02 : 1e-3) << "of forces of size 1";
     }
+}
+
+TEST(UnusualLayouts, ManyNoisyPointsOfALongNarrowGridAreJudgedOnAllItsInnerLines) {
+    // 4000 gaps times 5 pitches, the pitch fastest: steps of one size through the list would meet the ends of the pitch alone.
+    const auto force = [](double h, double p) { return std::sin(8 * h) + 2 * p; };
+    const auto noisy = [&](const std::vector<double>& pitch) {
+        std::vector<double> gap;
+        for (int i = 0; i < 4000; ++i) {
+            gap.push_back(0.01 + i * 2.5e-4);
+        }
+        core::Random random(99);
+        core::Table data = test::grid_table(gap, pitch, [&](double h, double p) { return force(h, p) + 0.05 * random.normal(); });
+        data.add_numbers("lift_force_sigma", "N", std::vector<double>(data.rows(), 0.02));
+        return ForceTable::fit(data, "lift_force");
+    };
+    const auto remarks_of = [](const ForceTable& table) {
+        std::string all;
+        for (const auto& remark : table.remarks()) {
+            all += remark.message + "\n";
+        }
+        return all;
+    };
+    const auto table = noisy({-0.1, -0.05, 0, 0.05, 0.1});
+    EXPECT_THAT(remarks_of(table), HasSubstr("Gaussian process chosen: points are missed by"));
+    EXPECT_THAT(remarks_of(table), Not(HasSubstr("nan")));
+    for (const double h : {0.2, 0.5, 0.8}) {
+        for (const double p : {-0.08, 0.0, 0.03}) {
+            const double at[2] = {h, p};
+            EXPECT_NEAR(table.value(at), force(h, p), 0.02) << h << " " << p;
+        }
+    }
+    // Between two pitches no point has neighbours on both sides.
+    const auto narrow = remarks_of(noisy({-0.1, 0.1}));
+    EXPECT_THAT(narrow, HasSubstr("no point lies inside the grid, so nothing can be left out"));
+    EXPECT_THAT(narrow, Not(HasSubstr("nan")));
 }
 
 TEST(UnusualLayouts, TwoPointsAreNotSureOfWhatLiesBetween) {
