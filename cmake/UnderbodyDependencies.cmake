@@ -17,7 +17,7 @@ find_package(CGAL QUIET REQUIRED)
 find_package(VTK 9.1 REQUIRED COMPONENTS
   CommonCore CommonDataModel CommonExecutionModel CommonMath CommonTransforms CommonSystem
   FiltersCore FiltersGeneral FiltersGeometry FiltersSources FiltersExtraction FiltersModeling FiltersFlowPaths FiltersVerdict
-  IOCore IOXML IOLegacy IOGeometry IOPLY IOEnSight IOCGNSReader IOImage IOParallel
+  IOCore IOXML IOLegacy IOGeometry IOEnSight IOCGNSReader IOImage IOParallel
   ImagingCore InteractionStyle InteractionWidgets RenderingAnnotation RenderingCore RenderingFreeType
   RenderingOpenGL2 RenderingContextOpenGL2 GUISupportQt)
 find_package(HDF5 REQUIRED COMPONENTS C)

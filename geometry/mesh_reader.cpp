@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/ply_file.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/mesh_file.h"
@@ -238,157 +239,37 @@ SurfaceMesh read_obj(std::string_view text, const std::string& file) {
 // PLY
 // ------------------------------------------------------------------------------------------------------------------
 
-struct PlyProperty {
-    std::string name, type, count_type;  // count_type: of a list
-};
-
-struct PlyElement {
-    std::string name;
-    std::size_t count = 0;
-    std::vector<PlyProperty> properties;
-};
-
-class PlyValues {
-public:
-    PlyValues(std::string_view bytes, std::size_t start, bool binary, std::string file)
-        : bytes_(bytes), at_(start), binary_(binary), words_(bytes.substr(start)), file_(std::move(file)) {}
-
-    double read(const std::string& type) {
-        if (!binary_) {
-            const std::string_view word = words_.next();
-            if (word.empty()) {
-                cut_short();
-            }
-            return number(word, {file_, {}, {}, {}});
-        }
-        if (type == "char" || type == "int8") return take<std::int8_t>();
-        if (type == "uchar" || type == "uint8") return take<std::uint8_t>();
-        if (type == "short" || type == "int16") return take<std::int16_t>();
-        if (type == "ushort" || type == "uint16") return take<std::uint16_t>();
-        if (type == "int" || type == "int32") return take<std::int32_t>();
-        if (type == "uint" || type == "uint32") return take<std::uint32_t>();
-        if (type == "float" || type == "float32") return take<float>();
-        if (type == "double" || type == "float64") return take<double>();
-        throw core::InputError("parse", "'" + type + "' is no type of a PLY property", {file_, {}, {}, {}});
-    }
-    [[nodiscard]] core::Place place() const { return at_byte(file_, at_); }
-    [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
-
-private:
-    template <class T>
-    double take() {
-        if (bytes_.size() - at_ < sizeof(T)) {
-            cut_short();
-        }
-        T value;
-        std::memcpy(&value, bytes_.data() + at_, sizeof(T));
-        at_ += sizeof(T);
-        return static_cast<double>(value);
-    }
-    [[noreturn]] void cut_short() const {
-        throw core::InputError("truncated", "the file ends before its elements do", at_byte(file_, bytes_.size()),
-                               "the file was cut short: write it again");
-    }
-    std::string_view bytes_;
-    std::size_t at_;
-    bool binary_;
-    Words words_;
-    std::string file_;
-};
-
-struct PlyHeader {
-    std::vector<PlyElement> elements;
-    std::vector<std::string> patch_names;
-    bool binary = false;
-    std::size_t end = 0;
-};
-
-PlyHeader ply_header(std::string_view bytes, const std::string& file) {
-    PlyHeader header;
-    const std::size_t end = bytes.find("end_header");
-    if (end == std::string_view::npos) {
-        throw core::InputError("parse", "the PLY has no end_header", at_byte(file, bytes.size()));
-    }
-    header.end = bytes.find('\n', end) + 1;
-    std::size_t line = 0;
-    for (const std::string_view raw : core::split(bytes.substr(0, end), '\n')) {
-        ++line;
-        Words words(raw);
-        const std::string_view kind = words.next();
-        if (kind == "format") {
-            const std::string format(words.next());
-            header.binary = format == "binary_little_endian";
-            if (format != "ascii" && !header.binary) {
-                throw core::InputError("format", "PLY of the format '" + format + "'", at_line(file, line),
-                                       "ascii and binary_little_endian are read");
-            }
-        } else if (kind == "element") {
-            PlyElement element;
-            element.name = words.next();
-            element.count = static_cast<std::size_t>(std::max(0.0, number(words.next(), at_line(file, line))));
-            header.elements.push_back(element);
-        } else if (kind == "property" && !header.elements.empty()) {
-            PlyProperty property;
-            property.type = words.next();
-            if (property.type == "list") {
-                property.count_type = words.next();
-                property.type = words.next();
-            }
-            property.name = words.next();
-            header.elements.back().properties.push_back(property);
-        } else if (kind == "comment" && words.next() == "patch") {
-            words.next();
-            header.patch_names.emplace_back(words.rest_of_line());
-        }
-    }
-    return header;
-}
-
 SurfaceMesh read_ply(std::string_view bytes, const std::string& file) {
-    const PlyHeader header = ply_header(bytes, file);
-    PlyValues values(bytes, header.end, header.binary, file);
+    const core::PlyFile ply = core::read_ply(bytes, file);
     SurfaceMesh mesh;
-    mesh.patch_names = header.patch_names;
-    for (const PlyElement& element : header.elements) {
-        if (element.count > values.left()) {
-            throw core::InputError("truncated",
-                                   "the file states " + std::to_string(element.count) + " of '" + element.name +
-                                       "' and is too short for them",
-                                   at_byte(file, bytes.size()));
+    for (const std::string& comment : ply.comments) {
+        Words words(comment);
+        if (words.next() == "patch") {
+            words.next();  // its number, which is its place in the order
+            mesh.patch_names.emplace_back(words.rest_of_line());
         }
-        for (std::size_t i = 0; i < element.count; ++i) {
-            Vec3 p;
-            std::vector<std::int32_t> corners;
-            std::int32_t patch = 0;
-            for (const PlyProperty& property : element.properties) {
-                if (!property.count_type.empty()) {
-                    const double length = values.read(property.count_type);
-                    for (double k = 0; k < length; ++k) {
-                        corners.push_back(static_cast<std::int32_t>(values.read(property.type)));
-                    }
-                    continue;
-                }
-                const double value = values.read(property.type);
-                if (property.name == "x") p.x = value;
-                if (property.name == "y") p.y = value;
-                if (property.name == "z") p.z = value;
-                if (property.name == "patch") patch = static_cast<std::int32_t>(value);
-            }
-            if (element.name == "vertex") {
-                if (!std::isfinite(p.x + p.y + p.z)) {
-                    not_finite(values.place());
-                }
-                mesh.points.push_back(p);
-            } else if (element.name == "face") {
-                if (patch < 0 || patch > 10000) {
-                    throw core::InputError("index", "a face of patch " + std::to_string(patch), values.place());
-                }
-                while (static_cast<std::size_t>(patch) >= mesh.patch_names.size()) {
-                    mesh.patch_names.push_back("patch_" + std::to_string(mesh.patch_names.size() + 1));
-                }
-                add_polygon(mesh, corners, patch, values.place());
-            }
+    }
+    const auto [x, y, z] = core::ply_points(ply, file);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        mesh.points.push_back({x[i], y[i], z[i]});
+    }
+    const core::PlyProperty* corners = core::ply_corners(ply, file);
+    if (corners == nullptr) {
+        return mesh;
+    }
+    const core::PlyElement& faces = *ply.find("face");
+    const core::PlyProperty* patches = faces.find("patch");
+    for (std::size_t i = 0; i < faces.count; ++i) {
+        const double patch = patches != nullptr && !patches->list ? patches->values[i] : 0;
+        if (!(patch >= 0 && patch <= 10000) || patch != std::floor(patch)) {
+            throw core::InputError("index", faces.item(i) + " is of patch " + core::format_number(patch), {file, {}, {}, {}});
         }
+        while (patch >= static_cast<double>(mesh.patch_names.size())) {
+            mesh.patch_names.push_back("patch_" + std::to_string(mesh.patch_names.size() + 1));
+        }
+        const std::vector<std::int32_t> polygon(corners->values.begin() + static_cast<std::ptrdiff_t>(corners->list_begin[i]),
+                                                corners->values.begin() + static_cast<std::ptrdiff_t>(corners->list_begin[i + 1]));
+        add_polygon(mesh, polygon, static_cast<std::int32_t>(patch), {file, {}, {}, {}});
     }
     return mesh;
 }

@@ -18,7 +18,6 @@
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkOBJReader.h>
-#include <vtkPLYReader.h>
 #include <vtkPointData.h>
 #include <vtkSTLReader.h>
 #include <vtkTecplotReader.h>
@@ -29,10 +28,11 @@
 #include <algorithm>
 #include <fstream>
 
+#include "core/file.h"
+#include "core/ply_file.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/importer.h"
-#include "postproc/importers/ply.h"
 #include "postproc/importers/trial.h"
 #include "postproc/importers/vtk_problems.h"
 
@@ -470,6 +470,48 @@ std::string head_of(const fs::path& path) {
     return head;
 }
 
+/// Points, faces and whatever numbers these carry. VTK's own reader writes past its memory on damaged files and leaves
+/// values on points and faces out.
+vtkSmartPointer<vtkPolyData> ply_surface(const fs::path& path) {
+    const core::MappedFile file(path);
+    const core::PlyFile ply = core::read_ply(file.bytes(), file.name());
+    const auto [x, y, z] = core::ply_points(ply, file.name());
+    const core::PlyProperty* corners = core::ply_corners(ply, file.name());
+    auto surface = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(static_cast<vtkIdType>(x.size()));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        points->SetPoint(static_cast<vtkIdType>(i), x[i], y[i], z[i]);
+    }
+    surface->SetPoints(points);
+    const auto add_numbers = [](const core::PlyElement& element, vtkDataSetAttributes& data) {
+        for (const auto& property : element.properties) {
+            if (property.list || property.name == "x" || property.name == "y" || property.name == "z") {
+                continue;
+            }
+            vtkNew<vtkDoubleArray> values;
+            values->SetName(property.name.c_str());
+            values->SetNumberOfTuples(static_cast<vtkIdType>(property.values.size()));
+            std::copy(property.values.begin(), property.values.end(), values->GetPointer(0));
+            data.AddArray(values);
+        }
+    };
+    add_numbers(*ply.find("vertex"), *surface->GetPointData());
+    vtkNew<vtkCellArray> faces;
+    if (corners != nullptr) {
+        for (std::size_t i = 0; i + 1 < corners->list_begin.size(); ++i) {
+            faces->InsertNextCell(static_cast<int>(corners->list_begin[i + 1] - corners->list_begin[i]));
+            for (std::size_t k = corners->list_begin[i]; k < corners->list_begin[i + 1]; ++k) {
+                faces->InsertCellPoint(static_cast<vtkIdType>(corners->values[k]));
+            }
+        }
+        add_numbers(*ply.find("face"), *surface->GetCellData());
+    }
+    surface->SetPolys(faces);
+    return surface;
+}
+
 bool is_surface(std::string_view head, const fs::path& path) {
     const std::string ending = core::lower_case(path.extension().string());
     if (head.starts_with("ply\n") || head.starts_with("ply\r\n")) {
@@ -491,8 +533,7 @@ Field read_surface(const fs::path& path, const ReadOptions& options, core::Progr
     const std::string ending = core::lower_case(path.extension().string());
     Field field;
     if (head_of(path).starts_with("ply")) {
-        check_ply(path);
-        field = read_one(path, "surface (PLY)", output_of<vtkPLYReader>(path), options);
+        field = read_one(path, "surface (PLY)", ply_surface(path), options);
     } else if (ending == ".obj") {
         field = read_one(path, "surface (OBJ)", output_of<vtkOBJReader>(path), options);
     } else {

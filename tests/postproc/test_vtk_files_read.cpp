@@ -131,6 +131,21 @@ TEST(VtkFiles, SurfacesInPlyObjAndBothKindsOfStlHaveTheirArea) {
     EXPECT_NE(test::refusal(written(folder, "b.stl", stl.substr(0, 120))), "");
 }
 
+TEST(VtkFiles, NumbersOnThePointsAndFacesOfAPlyAreArrays) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(written(
+        folder, "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float Pressure\n"
+        "element face 1\nproperty list uchar int vertex_index\nproperty float quality\nend_header\n0 0 0 7\n2 0 0 8\n0 2 0 9\n3 0 1 2 0.5\n"));
+    const auto& zone = field.zones.at(0);
+    EXPECT_NEAR(test::area_of(*zone.surface), 2, 1e-12);
+    ASSERT_NE(zone.find("pressure"), nullptr);
+    EXPECT_EQ(zone.find("pressure")->on, postproc::Location::nodes);
+    EXPECT_EQ(zone.surface->GetPointData()->GetArray("pressure")->GetComponent(2, 0), 9);
+    ASSERT_NE(zone.find("quality"), nullptr);
+    EXPECT_EQ(zone.find("quality")->on, postproc::Location::faces);
+}
+
 TEST(VtkFiles, WrongIndicesCountsAndOffsetsAreRefused) {
     const core::TemporaryFolder folder;
     const auto xml = [&](const std::string& what, const std::string& by) {
@@ -150,8 +165,8 @@ TEST(VtkFiles, WrongIndicesCountsAndOffsetsAreRefused) {
     };
     EXPECT_THAT(old("4 0 1 2 3", "4 0 1 2 77"), HasSubstr("names point 77 of 4"));
     EXPECT_NE(old("POINTS 4 double", "POINTS 400000000000 double"), "");
-    expect_safe(written(folder, "wrong.ply", replaced(ply, "3 0 2 3\n", "3 0 2 300\n")));
-    expect_safe(written(folder, "wrong2.ply", replaced(ply, "element vertex 4", "element vertex 400000000")));
+    EXPECT_THAT(test::refusal(written(folder, "wrong.ply", replaced(ply, "3 0 2 3\n", "3 0 2 300\n"))), HasSubstr("names vertex 300"));
+    EXPECT_NE(test::refusal(written(folder, "wrong2.ply", replaced(ply, "element vertex 4", "element vertex 400000000"))), "");
     EXPECT_NE(test::refusal(written(folder, "wrong.obj", "v 0 0 0\nv 1 0 0\nf 1 2 30\n")), "");
 }
 
