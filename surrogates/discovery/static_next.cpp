@@ -79,10 +79,8 @@ std::string where(const StaticExperiment& experiment, const Candidate& candidate
     std::string text;
     for (const Channel channel : experiment.varying()) {
         if (channel != Channel::time && channel != Channel::temperature) {
-            const std::string unit = dynamics::channel_unit(channel);
-            const bool small = unit == "m" && std::abs(candidate.at[channel]) < 1;
             text += (text.empty() ? "" : ", ") + std::string(dynamics::channel_name(channel)) + " " +
-                    core::format_number((small ? 1000 : 1) * candidate.at[channel], 3) + (unit == "1" ? "" : small ? " mm" : " " + unit);
+                    value_text({"", candidate.at[channel], 0, dynamics::channel_unit(channel)});
         }
     }
     return text;
