@@ -3,14 +3,24 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <memory>
+#include <new>
+#include <type_traits>
 #include <utility>
 
 namespace underbody::postproc {
 
-/// Numbers of trivial type; new elements are NOT initialised. `release` hands out memory that delete[] frees.
+/// Memory that free() gives back, not filled. Much of it comes in huge pages where the system has them: taking an array
+/// page by page costs several times what reading a file into it does. Throws std::bad_alloc.
+[[nodiscard]] void* take_memory(std::size_t bytes);
+
+/// Numbers of trivial type; new elements are NOT initialised. `release` hands out memory that free() gives back.
 template <typename T>
 class Buffer {
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
 public:
     Buffer() = default;
     explicit Buffer(std::size_t size) { grow_to(size); }
@@ -57,14 +67,22 @@ public:
     [[nodiscard]] const T* end() const { return data_.get() + size_; }
 
 private:
+    struct Free {
+        void operator()(T* memory) const { std::free(memory); }
+    };
+    using Memory = std::unique_ptr<T[], Free>;
+
     void move_to(std::size_t room) {
-        std::unique_ptr<T[]> larger(new T[room]);  // on purpose without (): no zeros are written
+        if (room > SIZE_MAX / sizeof(T)) {
+            throw std::bad_alloc();
+        }
+        Memory larger(static_cast<T*>(take_memory(room * sizeof(T))));
         std::copy_n(data_.get(), size_, larger.get());
         data_ = std::move(larger);
         room_ = room;
     }
 
-    std::unique_ptr<T[]> data_;
+    Memory data_;
     std::size_t size_ = 0;
     std::size_t room_ = 0;
 };

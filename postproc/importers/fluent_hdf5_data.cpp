@@ -5,6 +5,7 @@
 #include "postproc/importers/fluent_hdf5.h"
 #include "postproc/importers/fluent_variables.h"
 #include "postproc/importers/hdf5_file.h"
+#include "postproc/importers/hdf5_rows.h"
 
 namespace underbody::postproc {
 
@@ -18,7 +19,7 @@ std::string number(std::uint64_t value) { return std::to_string(value); }
 class DataReader {
 public:
     DataReader(const fs::path& path, const FaceMesh& mesh, const ReadOptions& options, core::Progress& progress)
-        : file_(path), mesh_(mesh), options_(options), progress_(progress) {}
+        : file_(path), rows_(file_), mesh_(mesh), options_(options), progress_(progress) {}
 
     std::vector<ValueBlock> read(FluentSettings& settings, core::Problems& problems);
     /// Of the first phase, the variables asked for.
@@ -26,6 +27,7 @@ public:
 
 private:
     void read_variable(const std::string& group, const std::string& variable, bool on_cells, int phase);
+    /// Notes what is wanted of it to be read.
     void keep(const std::string& path, ValueBlock&& whole);
     [[nodiscard]] std::uint64_t last_fluid_cell() const;
     [[noreturn]] void other_case(const std::string& what) const {
@@ -34,12 +36,12 @@ private:
     }
 
     Hdf5File file_;
+    Hdf5Rows rows_;
     const FaceMesh& mesh_;
     const ReadOptions& options_;
     core::Progress& progress_;
     std::vector<ValueBlock> values_;
     std::uint64_t most_cell_ = 0;
-    std::uint64_t most_face_ = 0;
     bool any_ = false;
 };
 
@@ -66,6 +68,7 @@ std::vector<ValueBlock> DataReader::read(FluentSettings& settings, core::Problem
     if (most_cell_ > 0 && most_cell_ < last_fluid_cell() && mesh_.hidden_cells.empty()) {
         other_case("its cells end at " + number(most_cell_) + ", the case has " + number(mesh_.cells));
     }
+    rows_.read(progress_);
     settings.variables += file_.text("/settings/Data Variables");
     const std::string named = file_name_in(file_.text("/settings/Case File"));
     const std::string ours = fs::path(mesh_.file).filename().string();
@@ -84,6 +87,7 @@ void DataReader::add_cells(std::vector<ValueBlock>& values) {
             read_variable(group + "/" + variable, variable, true, 1);
         }
     }
+    rows_.read(progress_);
     std::move(values_.begin(), values_.end(), std::back_inserter(values));
 }
 
@@ -114,8 +118,7 @@ void DataReader::read_variable(const std::string& group, const std::string& vari
             other_case(path + " has ids " + std::to_string(*first) + " to " + std::to_string(*last) +
                        ", the case has " + number(limit) + (on_cells ? " cells" : " faces"));
         }
-        auto& most = on_cells ? most_cell_ : most_face_;
-        most = std::max(most, static_cast<std::uint64_t>(*last));
+        most_cell_ = on_cells ? std::max(most_cell_, static_cast<std::uint64_t>(*last)) : most_cell_;
         if ((on_cells && options_.surfaces_only) || !wants_variable(options_, variable)) {
             continue;
         }
@@ -136,8 +139,10 @@ void DataReader::read_variable(const std::string& group, const std::string& vari
 /// On faces the inside of the mesh is by far the most and nobody looks at it: only the zones' shares are read.
 void DataReader::keep(const std::string& path, ValueBlock&& whole) {
     const auto n = static_cast<std::size_t>(whole.components);
+    (void)file_.backed_shape(path);
     if (whole.on_cells) {
-        whole.values = file_.reals(path);
+        whole.values.grow_to(whole.count * n);
+        rows_.add(path, 0, whole.count, whole.values.data());
         values_.push_back(std::move(whole));
         return;
     }
@@ -155,7 +160,7 @@ void DataReader::keep(const std::string& path, ValueBlock&& whole) {
         part.count = to - from;
         part.components = whole.components;
         part.values.grow_to(part.count * n);
-        file_.reals(path, from - whole.first, part.count, part.values.data());
+        rows_.add(path, from - whole.first, part.count, part.values.data());
         values_.push_back(std::move(part));
     }
 }

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/text.h"
 #include "postproc/importers/fluent_hdf5.h"
 #include "postproc/importers/hdf5_file.h"
+#include "postproc/importers/hdf5_rows.h"
 #include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
@@ -24,7 +26,7 @@ struct Part {
 class Reader {
 public:
     Reader(const fs::path& path, const ReadOptions& options, core::Progress& progress)
-        : file_(path), options_(options), progress_(progress) {
+        : file_(path), rows_(file_), options_(options), progress_(progress) {
         mesh_.file = path.string();
     }
 
@@ -43,19 +45,37 @@ private:
         throw core::InputError("format", path + ": " + what, {file_.name(), {}, {}, {}},
                                "the file is damaged or incomplete");
     }
+    /// The corners of the faces of one zone, as far as their numbers are known, and where in the file they lie.
+    struct Corners {
+        struct Piece {
+            std::string path;
+            std::uint64_t first = 0, count = 0;
+            std::uint64_t place = 0;  ///< among the zone's
+        };
+        std::uint64_t faces = 0, count = 0;
+        std::vector<Piece> pieces;
+
+        void note(const std::string& path, std::uint64_t first, std::uint64_t some) {
+            if (pieces.empty() || pieces.back().path != path) {
+                pieces.push_back({path, first, 0, count});
+            }
+            pieces.back().count += some;
+        }
+        void add(FaceBlock& block, const std::uint32_t* sizes, std::size_t some);
+    };
     [[nodiscard]] std::uint64_t count(const std::string& name) const;
     [[nodiscard]] std::vector<Part> parts(const std::string& path) const;
     void read_nodes();
     [[nodiscard]] std::vector<std::uint32_t> places_of_used_nodes();
     void read_cells();
     void read_faces();
-    void cut_faces(const Part& part);
-    static void note_equal_sizes(FaceBlock& block);
+    void cut_faces(const Part& part, std::vector<Corners>& corners);
     void read_beside(const std::string& side);
     void read_labels();
     void read_trees();
 
     Hdf5File file_;
+    Hdf5Rows rows_;
     const ReadOptions& options_;
     core::Progress& progress_;
     FaceMesh mesh_;
@@ -111,7 +131,7 @@ void Reader::read_nodes() {
     std::uint64_t found = 0;
     std::uint64_t last = 0;
     for (const auto& part : pieces) {
-        const auto shape = file_.shape(part.path);
+        const auto shape = file_.backed_shape(part.path);
         if (shape.size() != 2 || shape[0] != part.count || (shape[1] != 2 && shape[1] != 3)) {
             refuse(part.path, "its size does not fit its ids");
         }
@@ -122,33 +142,33 @@ void Reader::read_nodes() {
         refuse(root_ + "/nodes", "the mesh has " + number(mesh_.nodes) + " nodes, " + number(found) + " are there, up to " +
                                      number(last));
     }
-    const std::vector<std::uint32_t> places = options_.surfaces_only ? places_of_used_nodes() : std::vector<std::uint32_t>();
+    std::vector<std::uint32_t> places;
+    if (options_.surfaces_only) {
+        rows_.read(progress_);  // the faces
+        places = places_of_used_nodes();
+    }
     mesh_.points.grow_to(3 * mesh_.nodes);
-    constexpr std::uint64_t at_once = std::uint64_t{1} << 16;
-    Buffer<double> raw;
     for (const auto& part : pieces) {
         const std::size_t width = file_.shape(part.path)[1];
         if (width == 3 && places.empty()) {
-            file_.reals(part.path, 0, part.count, mesh_.points.data() + 3 * (part.first - 1));
+            rows_.add(part.path, 0, part.count, mesh_.points.data() + 3 * (part.first - 1));
             continue;
         }
-        for (std::uint64_t done = 0; done < part.count; done += at_once) {
-            progress_.check();
-            const std::uint64_t some = std::min(at_once, part.count - done);
-            raw.grow_to(some * width);
-            file_.reals(part.path, done, some, raw.data());
-            for (std::uint64_t i = 0; i < some; ++i) {
-                const std::uint64_t node = part.first - 1 + done + i;
+        std::uint64_t node = part.first - 1;
+        each_row(file_, part.path, progress_, [&](const double* coordinates, std::size_t nodes) {
+            for (std::size_t i = 0; i < nodes; ++i, ++node) {
                 const std::uint64_t place = places.empty() ? node : places[node];
                 if (place >= mesh_.nodes) {
                     continue;
                 }
                 double* out = mesh_.points.data() + 3 * place;
-                std::copy_n(raw.data() + i * width, width, out);
+                std::copy_n(coordinates + i * width, width, out);
                 out[2] = width == 2 ? 0 : out[2];
             }
-        }
+            return true;
+        });
     }
+    rows_.read(progress_);
     for (const double x : mesh_.points) {
         if (!std::isfinite(x)) {
             refuse(root_ + "/nodes", "a coordinate that is not a number");
@@ -285,103 +305,114 @@ void Reader::read_faces() {
     std::sort(mesh_.face_blocks.begin(), mesh_.face_blocks.end(),
               [](const FaceBlock& a, const FaceBlock& b) { return a.first < b.first; });
     progress_.report(0.2, "reading faces");
-    for (const auto& part : parts(root_ + "/faces/nodes")) {
-        progress_.check();
-        cut_faces(part);
-    }
+    const auto cuts = parts(root_ + "/faces/nodes");
     for (const auto& block : mesh_.face_blocks) {
-        if (block.offsets.size() != block.count + 1) {
+        std::uint64_t there = 0;
+        for (const auto& part : cuts) {
+            const std::uint64_t from = std::max(block.first, part.first);
+            const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
+            there += from < to ? to - from : 0;
+        }
+        if (there < block.count) {
             refuse(root_ + "/faces/nodes", "the faces of zone " + std::to_string(block.zone) + " are missing");
         }
     }
-    for (auto& block : mesh_.face_blocks) {
-        note_equal_sizes(block);
+    for (const auto& part : cuts) {
+        (void)file_.backed_shape(part.path + "/nnodes");
+    }
+    std::vector<Corners> corners(mesh_.face_blocks.size());
+    for (const auto& part : cuts) {
+        cut_faces(part, corners);
+    }
+    for (std::size_t b = 0; b < corners.size(); ++b) {
+        Buffer<std::uint32_t>& nodes = mesh_.face_blocks[b].nodes;
+        nodes.grow_to(corners[b].count);
+        for (const auto& piece : corners[b].pieces) {
+            rows_.add(piece.path, piece.first, piece.count, nodes.data() + piece.place);
+        }
     }
     read_beside("c0");
     read_beside("c1");
 }
 
-/// Gives each zone its share of a part of the faces; faces that nobody wants are not read. A zone may lie in several
-/// parts.
-void Reader::cut_faces(const Part& part) {
-    const auto shape = file_.shape(part.path + "/nnodes");
-    const auto nodes = file_.shape(part.path + "/nodes");
-    if (shape.size() != 1 || shape[0] != part.count || nodes.size() != 1) {
-        refuse(part.path, "its size does not fit its ids");
+/// The sizes of some more faces of a zone. If all its faces have so many corners, no list of where each begins is made.
+void Reader::Corners::add(FaceBlock& block, const std::uint32_t* sizes, std::size_t some) {
+    std::uint64_t sum = 0;
+    std::uint32_t differs = 0;
+    block.per_face = faces == 0 ? sizes[0] : block.per_face;
+    for (std::size_t i = 0; i < some; ++i) {
+        sum += sizes[i];
+        differs |= sizes[i] ^ block.per_face;
     }
-    std::uint64_t at = 0;
-    std::uint64_t id = part.first;
-    std::vector<std::uint32_t> sizes;
-    // The corners of the faces from `from` on, with what came before them in `sum`.
-    const auto corners_of = [&](std::uint64_t from, std::uint64_t count, std::uint64_t sum) {
-        sizes.resize(count);
-        file_.numbers(part.path + "/nnodes", from - part.first, count, sizes.data());
-        for (const std::uint32_t size : sizes) {
-            sum += size;
+    if (block.offsets.empty() && differs == 0 && block.per_face > 0) {
+        faces += some;
+        count += sum;
+        return;
+    }
+    if (block.offsets.empty()) {
+        block.offsets.grow_to(block.count + 1);
+        for (std::uint64_t face = 0; face <= faces; ++face) {
+            block.offsets[face] = static_cast<std::uint32_t>(face * block.per_face);
         }
-        if (sum > nodes[0] - std::min(at, nodes[0])) {
-            refuse(part.path, "faces up to " + number(from + count - 1) + " want more nodes than there are");
-        }
-        return sum;
-    };
-    constexpr std::uint64_t at_once = std::uint64_t{1} << 18;
-    for (auto& block : mesh_.face_blocks) {
-        const std::uint64_t end = std::min(block.first + block.count, part.first + part.count);
-        if (end <= id || block.first >= part.first + part.count) {
-            continue;
-        }
-        while (id < block.first) {
-            const std::uint64_t some = std::min(at_once, block.first - id);
-            at += corners_of(id, some, 0);
-            id += some;
-        }
-        if (block.offsets.empty()) {
-            block.offsets.push(0);
-        }
-        if (block.offsets.size() != id - block.first + 1) {
-            refuse(part.path, "the faces of zone " + std::to_string(block.zone) + " are not in order");
-        }
-        const std::size_t before = block.nodes.size();
-        std::uint64_t corners = 0;
-        std::size_t next = block.offsets.size();
-        block.offsets.grow_to(next + (end - id));
-        for (std::uint64_t from = id; from < end; from += at_once) {
-            const std::uint64_t sum = corners_of(from, std::min(at_once, end - from), corners);
-            if (before + sum > 0xffffffffULL) {
-                refuse(part.path, "too many corners");
-            }
-            std::uint64_t place = before + corners;
-            for (const std::uint32_t size : sizes) {
-                place += size;
-                block.offsets[next++] = static_cast<std::uint32_t>(place);
-            }
-            corners = sum;
-        }
-        block.nodes.grow_to(before + corners);
-        file_.numbers(part.path + "/nodes", at, corners, block.nodes.data() + before);
-        at += corners;
-        id = end;
+    }
+    block.per_face = 0;
+    for (std::size_t i = 0; i < some; ++i) {
+        count += sizes[i];
+        block.offsets[++faces] = static_cast<std::uint32_t>(count);
     }
 }
 
-/// Zones whose faces all have so many corners need no list of where each begins.
-void Reader::note_equal_sizes(FaceBlock& block) {
-    const std::uint32_t size = block.count > 0 ? block.offsets[1] : 0;
-    std::uint32_t differs = 0;
-    for (std::size_t face = 0; face < block.count; ++face) {
-        differs |= (block.offsets[face + 1] - block.offsets[face]) ^ size;
+/// Finds each zone's share of a part of the faces; the nodes of faces that nobody wants are not read. A zone may lie in
+/// several parts.
+void Reader::cut_faces(const Part& part, std::vector<Corners>& corners) {
+    const auto shape = file_.shape(part.path + "/nnodes");
+    const auto nodes = file_.backed_shape(part.path + "/nodes");
+    if (shape.size() != 1 || shape[0] != part.count || nodes.size() != 1) {
+        refuse(part.path, "its size does not fit its ids");
     }
-    if (differs == 0 && size > 0) {
-        block.per_face = size;
-        block.offsets.clear();
-    }
+    std::uint64_t id = part.first;
+    std::uint64_t at = 0;  // of the corners of the next face among the part's nodes
+    std::size_t b = 0;
+    const auto take = [&](const std::uint32_t* sizes, std::size_t count) {
+        for (std::size_t i = 0; i < count;) {
+            while (b < corners.size() && mesh_.face_blocks[b].first + mesh_.face_blocks[b].count <= id) {
+                ++b;
+            }
+            if (b == corners.size()) {
+                return false;
+            }
+            FaceBlock& block = mesh_.face_blocks[b];
+            const bool wanted = block.first <= id;
+            const std::uint64_t left = wanted ? block.first + block.count - id : block.first - id;
+            const std::size_t some = std::min<std::uint64_t>(count - i, left);
+            const std::uint64_t sum = std::accumulate(sizes + i, sizes + i + some, std::uint64_t{0});
+            if (sum > nodes[0] - at) {
+                refuse(part.path, "faces up to " + number(id + some - 1) + " want more nodes than there are");
+            }
+            if (wanted) {
+                if (corners[b].faces != id - block.first) {
+                    refuse(part.path, "the faces of zone " + std::to_string(block.zone) + " are not in order");
+                }
+                if (corners[b].count + sum > 0xffffffffULL) {
+                    refuse(part.path, "too many corners");
+                }
+                corners[b].note(part.path + "/nodes", at, sum);
+                corners[b].add(block, sizes + i, some);
+            }
+            at += sum;
+            id += some;
+            i += some;
+        }
+        return true;
+    };
+    each_row(file_, part.path + "/nnodes", progress_, take);
 }
 
 void Reader::read_beside(const std::string& side) {
     std::uint64_t found = 0;
     for (const auto& part : parts(root_ + "/faces/" + side)) {
         progress_.check();
-        const auto shape = file_.shape(part.path);
+        const auto shape = file_.backed_shape(part.path);
         if (shape.size() != 1 || shape[0] != part.count) {
             refuse(part.path, "its size does not fit its ids");
         }
@@ -397,7 +428,7 @@ void Reader::read_beside(const std::string& side) {
                         target.fill(0);
                     }
                 }
-                file_.numbers(part.path, from - part.first, to - from, target.data() + (from - block.first));
+                rows_.add(part.path, from - part.first, to - from, target.data() + (from - block.first));
             }
         }
     }

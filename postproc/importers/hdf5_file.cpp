@@ -1,36 +1,17 @@
 #include "postproc/importers/hdf5_file.h"
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <mutex>
 
 #include "core/error.h"
 #include "core/text.h"
+#include "postproc/importers/hdf5_handle.h"
+#include "postproc/importers/hdf5_rows.h"
 #include "postproc/importers/trial.h"
 
 namespace underbody::postproc {
 
 namespace {
-
-/// Closes an HDF5 handle of any kind.
-class Handle {
-public:
-    explicit Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-    ~Handle() {
-        if (id_ >= 0) {
-            close_(id_);
-        }
-    }
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    [[nodiscard]] hid_t get() const { return id_; }
-    [[nodiscard]] bool good() const { return id_ >= 0; }
-
-private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
 
 void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
@@ -44,12 +25,6 @@ herr_t note_child(hid_t /*group*/, const char* name, const H5L_info_t* /*info*/,
     }
     names.emplace_back(name);
     return 0;
-}
-
-/// Into 32 bits: negative numbers of up to 4 bytes become larger than any id and fail the checks that follow; wider ones
-/// are cut to the largest and the smallest.
-hid_t memory_type(hid_t stored) {
-    return H5Tget_sign(stored) == H5T_SGN_2 && H5Tget_size(stored) <= 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_UINT32;
 }
 
 std::string string_of(hid_t type, const std::vector<char>& raw) {
@@ -66,8 +41,8 @@ std::string string_of(hid_t type, const std::vector<char>& raw) {
 constexpr std::size_t longest_attribute = 1 << 16;
 
 herr_t read_attribute(hid_t object, const char* name, const H5A_info_t* info, void* /*unused*/) {
-    const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-    const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+    const Hdf5Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
     if (attribute.good() && type.good() && info->data_size <= longest_attribute && H5Tis_variable_str(type.get()) <= 0) {
         std::vector<char> memory(2 * longest_attribute);
         H5Aread(attribute.get(), type.get(), memory.data());
@@ -76,13 +51,13 @@ herr_t read_attribute(hid_t object, const char* name, const H5A_info_t* info, vo
 }
 
 herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void* /*unused*/) {
-    const Handle object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
+    const Hdf5Handle object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
     if (object.good()) {
         H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
     }
     if (object.good() && info->type == H5O_TYPE_DATASET) {
-        const Handle space(H5Dget_space(object.get()), H5Sclose);
-        const Handle type(H5Dget_type(object.get()), H5Tclose);
+        const Hdf5Handle space(H5Dget_space(object.get()), H5Sclose);
+        const Hdf5Handle type(H5Dget_type(object.get()), H5Tclose);
         hsize_t chunks = 0;
         H5Dget_num_chunks(object.get(), space.get(), &chunks);  // walks the index of the chunks
     }
@@ -91,7 +66,7 @@ herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void* /*unu
 
 /// Everything about the file but the values: what damage makes the library stumble over lies there.
 void look_through(const std::filesystem::path& path) {
-    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (file.good()) {
         H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, look_at, nullptr);
     }
@@ -123,7 +98,7 @@ Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
     try_once(path);
     std::error_code error;
     bytes_ = std::filesystem::file_size(path, error);
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
     file_ = H5Fopen(name_.c_str(), H5F_ACC_RDONLY, access.get());
     if (file_ < 0) {
@@ -163,7 +138,7 @@ std::vector<std::string> Hdf5File::children(const std::string& path) const {
     if (!has(path)) {
         return names;
     }
-    const Handle group(H5Gopen2(file_, path.c_str(), H5P_DEFAULT), H5Gclose);
+    const Hdf5Handle group(H5Gopen2(file_, path.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.good()) {
         return names;
     }
@@ -182,12 +157,12 @@ std::optional<std::int64_t> Hdf5File::attribute(const std::string& path, const s
     if (!has(path) || H5Aexists_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) {
         return {};
     }
-    const Handle attribute(H5Aopen_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Hdf5Handle attribute(H5Aopen_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     if (!attribute.good()) {
         return {};
     }
-    const Handle space(H5Aget_space(attribute.get()), H5Sclose);
-    const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+    const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
+    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
     std::int64_t value = 0;
     if (!space.good() || H5Sget_simple_extent_npoints(space.get()) != 1 || H5Tget_class(type.get()) != H5T_INTEGER ||
         H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) {
@@ -200,12 +175,12 @@ std::optional<std::string> Hdf5File::text_attribute(const std::string& path, con
     if (!has(path) || H5Aexists_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) {
         return {};
     }
-    const Handle attribute(H5Aopen_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Hdf5Handle attribute(H5Aopen_by_name(file_, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     if (!attribute.good()) {
         return {};
     }
-    const Handle type(H5Aget_type(attribute.get()), H5Tclose);
-    const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
+    const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
     const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : 0;
     if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 || count != 1 ||
         H5Tget_size(type.get()) > 65536) {
@@ -222,11 +197,11 @@ std::vector<std::uint64_t> Hdf5File::shape(const std::string& path) const {
     if (!has(path)) {
         return {};
     }
-    const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
     if (!set.good()) {
         return {};
     }
-    const Handle space(H5Dget_space(set.get()), H5Sclose);
+    const Hdf5Handle space(H5Dget_space(set.get()), H5Sclose);
     const int rank = H5Sget_simple_extent_ndims(space.get());
     if (rank < 1 || rank > 2) {
         return {};
@@ -236,9 +211,17 @@ std::vector<std::uint64_t> Hdf5File::shape(const std::string& path) const {
     return {lengths, lengths + rank};
 }
 
-/// How many numbers a dataset holds, if the bytes that it has in the file can hold them.
-std::uint64_t Hdf5File::checked_size(std::int64_t dataset, const std::string& path, std::size_t bytes_each) const {
-    const Handle space(H5Dget_space(dataset), H5Sclose);
+std::vector<std::uint64_t> Hdf5File::backed_shape(const std::string& path) const {
+    const auto lengths = shape(path);
+    if (!lengths.empty()) {
+        const Hdf5Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
+        (void)backed_size(set.get(), path);
+    }
+    return lengths;
+}
+
+std::uint64_t Hdf5File::backed_size(std::int64_t dataset, const std::string& path) const {
+    const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
     const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : -1;
     if (count < 0) {
         fail(path, "its size cannot be read");
@@ -249,94 +232,32 @@ std::uint64_t Hdf5File::checked_size(std::int64_t dataset, const std::string& pa
         fail(path,
              "it claims " + std::to_string(size) + " values but has " + std::to_string(stored) + " bytes in the file");
     }
-    if (size > (std::uint64_t{1} << 60) / std::max<std::size_t>(1, bytes_each)) {
-        fail(path, "it is too large");
-    }
     return size;
 }
 
-Buffer<double> Hdf5File::reals(const std::string& path) const {
-    const Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
-    if (!set.good()) {
-        fail(path, "there is no such data set");
-    }
-    const Handle type(H5Dget_type(set.get()), H5Tclose);
-    const H5T_class_t kind = H5Tget_class(type.get());
-    if (kind != H5T_FLOAT && kind != H5T_INTEGER) {
-        fail(path, "its values are not numbers");
-    }
-    Buffer<double> values(checked_size(set.get(), path, sizeof(double)));
-    if (!values.empty() && H5Dread(set.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-        fail(path, "its values cannot be read");
-    }
-    return values;
-}
-
 Buffer<std::uint32_t> Hdf5File::numbers(const std::string& path) const {
-    const Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
-    if (!set.good()) {
-        fail(path, "there is no such data set");
+    const auto lengths = backed_shape(path);
+    if (lengths.size() != 1) {
+        fail(path, lengths.empty() ? "there is no such data set" : "it is not one list");
     }
-    const Handle type(H5Dget_type(set.get()), H5Tclose);
-    if (H5Tget_class(type.get()) != H5T_INTEGER) {
-        fail(path, "its values are not whole numbers");
-    }
-    Buffer<std::uint32_t> values(checked_size(set.get(), path, sizeof(std::uint32_t)));
-    if (!values.empty() && H5Dread(set.get(), memory_type(type.get()), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-        fail(path, "its values cannot be read");
-    }
+    Buffer<std::uint32_t> values(lengths[0]);
+    Hdf5Rows rows(*this);
+    rows.add(path, 0, lengths[0], values.data());
+    rows.read(core::Progress::none());
     return values;
-}
-
-void Hdf5File::read_rows(const std::string& path, std::uint64_t first, std::uint64_t rows, bool whole, void* out) const {
-    const Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
-    if (!set.good()) {
-        fail(path, "there is no such data set");
-    }
-    const Handle type(H5Dget_type(set.get()), H5Tclose);
-    const H5T_class_t kind = H5Tget_class(type.get());
-    if (kind != H5T_INTEGER && (whole || kind != H5T_FLOAT)) {
-        fail(path, whole ? "its values are not whole numbers" : "its values are not numbers");
-    }
-    checked_size(set.get(), path, 8);
-    const Handle space(H5Dget_space(set.get()), H5Sclose);
-    const int rank = H5Sget_simple_extent_ndims(space.get());
-    hsize_t lengths[2] = {1, 1};
-    if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space.get(), lengths, nullptr) < 0 || first > lengths[0] ||
-        rows > lengths[0] - first) {
-        fail(path, "it has no rows " + std::to_string(first) + " to " + std::to_string(first + rows));
-    }
-    if (rows == 0) {
-        return;
-    }
-    const hsize_t from[2] = {first, 0};
-    const hsize_t count[2] = {rows, lengths[1]};
-    const Handle target(H5Screate_simple(rank, count, nullptr), H5Sclose);
-    if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, from, nullptr, count, nullptr) < 0 ||
-        H5Dread(set.get(), whole ? memory_type(type.get()) : H5T_NATIVE_DOUBLE, target.get(), space.get(), H5P_DEFAULT, out) < 0) {
-        fail(path, "its values cannot be read");
-    }
-}
-
-void Hdf5File::reals(const std::string& path, std::uint64_t first, std::uint64_t rows, double* out) const {
-    read_rows(path, first, rows, false, out);
-}
-
-void Hdf5File::numbers(const std::string& path, std::uint64_t first, std::uint64_t rows, std::uint32_t* out) const {
-    read_rows(path, first, rows, true, out);
 }
 
 std::string Hdf5File::text(const std::string& path) const {
-    const Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    const Hdf5Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
     if (!set.good()) {
         return {};
     }
-    const Handle type(H5Dget_type(set.get()), H5Tclose);
+    const Hdf5Handle type(H5Dget_type(set.get()), H5Tclose);
     if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0) {
         return {};
     }
     const std::size_t width = H5Tget_size(type.get());
-    const Handle space(H5Dget_space(set.get()), H5Sclose);
+    const Hdf5Handle space(H5Dget_space(set.get()), H5Sclose);
     const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : 0;
     const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(set.get()), bytes_);
     if (count <= 0 || width == 0 || static_cast<std::uint64_t>(count) > stored || width / largest_ratio > stored ||

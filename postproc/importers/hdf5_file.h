@@ -1,4 +1,5 @@
 // HDF5 behind a door: no header of it in ours, numbers come out as Buffers, sizes are checked before memory is taken.
+// Rows of many data sets at once: hdf5_rows.h.
 #pragma once
 
 #include <cstdint>
@@ -30,19 +31,22 @@ public:
     /// Lengths along the dimensions of a dataset (at most 2); empty if it is not one.
     [[nodiscard]] std::vector<std::uint64_t> shape(const std::string& path) const;
 
-    [[nodiscard]] Buffer<double> reals(const std::string& path) const;
+    /// The same, once it is sure that the file has bytes for so many numbers: memory may be taken for them.
+    [[nodiscard]] std::vector<std::uint64_t> backed_shape(const std::string& path) const;
+
+    /// A list of whole numbers, as `Hdf5Rows` gives them.
     [[nodiscard]] Buffer<std::uint32_t> numbers(const std::string& path) const;
-    /// `rows` rows from `first` on (from 0), without reading the others. `out` has room for the rows' numbers.
-    void reals(const std::string& path, std::uint64_t first, std::uint64_t rows, double* out) const;
-    void numbers(const std::string& path, std::uint64_t first, std::uint64_t rows, std::uint32_t* out) const;
     /// All strings of a dataset joined; "" if it is not there.
     [[nodiscard]] std::string text(const std::string& path) const;
 
-private:
+    // For what reads values of this file.
+    [[nodiscard]] std::int64_t id() const { return file_; }
+    [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
     [[noreturn]] void fail(const std::string& path, const std::string& what) const;
-    void read_rows(const std::string& path, std::uint64_t first, std::uint64_t rows, bool whole, void* out) const;
-    std::uint64_t checked_size(std::int64_t dataset, const std::string& path, std::size_t bytes_each) const;
+    /// How many numbers a dataset holds, if the bytes that it has in the file can hold them.
+    [[nodiscard]] std::uint64_t backed_size(std::int64_t dataset, const std::string& path) const;
 
+private:
     std::string name_;
     std::int64_t file_ = -1;
     std::uint64_t bytes_ = 0;

@@ -25,7 +25,7 @@ vtkSmartPointer<Array> given_to_vtk(Buffer<T>&& buffer, int components = 1) {
     auto array = vtkSmartPointer<Array>::New();
     array->SetNumberOfComponents(components);
     const auto size = static_cast<vtkIdType>(buffer.size());
-    array->SetArray(reinterpret_cast<Value*>(buffer.release()), size, 0, Array::VTK_DATA_ARRAY_DELETE);
+    array->SetArray(reinterpret_cast<Value*>(buffer.release()), size, 0, Array::VTK_DATA_ARRAY_FREE);
     return array;
 }
 
