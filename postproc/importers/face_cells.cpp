@@ -1,11 +1,11 @@
-// Cells out of faces.
+#include "postproc/importers/face_cells.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 
 #include "core/parallel.h"
 #include "postproc/importers/cell_shapes.h"
-#include "postproc/importers/face_mesh.h"
 
 namespace underbody::postproc {
 
@@ -48,13 +48,8 @@ std::vector<IdRange> touching(const std::vector<IdRange>& ranges, const FaceBloc
 
 }  // namespace
 
-CellBuilder::CellBuilder(const FaceMesh& mesh, core::Progress& progress) : mesh_(mesh) {
-    for (const auto& range : mesh.hidden_cells) {
-        hidden_cells_.resize(mesh.cells + 1);
-        for (std::uint64_t id = range.first; id <= std::min(range.last, mesh.cells); ++id) {
-            hidden_cells_[id] = true;
-        }
-    }
+void gather_cell_faces(FaceMesh& mesh, core::Progress& progress) {
+    check_cells_beside(mesh, progress);
     // Children of a mesh interface are seen by the flux only; the cells end at the faces the mesh was made with.
     std::vector<IdRange> left_out = mesh.hidden_faces;
     left_out.insert(left_out.end(), mesh.interface_children.begin(), mesh.interface_children.end());
@@ -76,29 +71,45 @@ CellBuilder::CellBuilder(const FaceMesh& mesh, core::Progress& progress) : mesh_
             slot += static_cast<std::uint32_t>(block.count);
         }
     };
+    // Counting sort: cell 0 ("none") collects what belongs to nobody.
+    Buffer<std::uint32_t> starts(mesh.cells + 2);
+    starts.fill(0);
+    each([&](std::uint32_t cell, std::uint32_t) { ++starts[cell + 1]; });
+    starts[1] = 0;
+    for (std::size_t cell = 2; cell < starts.size(); ++cell) {
+        starts[cell] += starts[cell - 1];
+    }
+    Buffer<std::uint32_t> uses(starts[mesh.cells + 1]);
+    each([&](std::uint32_t cell, std::uint32_t use) {
+        if (cell != 0) {
+            uses[starts[cell]++] = use;
+        }
+    });
+    for (std::size_t cell = starts.size() - 1; cell > 0; --cell) {
+        starts[cell] = starts[cell - 1];
+    }
+    starts[0] = 0;
+    mesh.cell_faces = {std::move(starts), std::move(uses)};
+    for (auto& block : mesh.face_blocks) {
+        if (is_inner_code(block.kind)) {
+            block.c0.clear();
+            block.c1.clear();
+        }
+    }
+}
+
+CellBuilder::CellBuilder(const FaceMesh& mesh) : mesh_(mesh) {
+    for (const auto& range : mesh.hidden_cells) {
+        hidden_cells_.resize(mesh.cells + 1);
+        for (std::uint64_t id = range.first; id <= std::min(range.last, mesh.cells); ++id) {
+            hidden_cells_[id] = true;
+        }
+    }
     std::uint32_t slot = 0;
     for (const auto& block : mesh.face_blocks) {
         slots_.push_back(slot);
         slot += static_cast<std::uint32_t>(block.count);
     }
-    // Counting sort: cell 0 ("none") collects what belongs to nobody.
-    starts_.grow_to(mesh.cells + 2);
-    starts_.fill(0);
-    each([&](std::uint32_t cell, std::uint32_t) { ++starts_[cell + 1]; });
-    starts_[1] = 0;
-    for (std::size_t cell = 2; cell < starts_.size(); ++cell) {
-        starts_[cell] += starts_[cell - 1];
-    }
-    uses_.grow_to(starts_[mesh.cells + 1]);
-    each([&](std::uint32_t cell, std::uint32_t use) {
-        if (cell != 0) {
-            uses_[starts_[cell]++] = use;
-        }
-    });
-    for (std::size_t cell = starts_.size() - 1; cell > 0; --cell) {
-        starts_[cell] = starts_[cell - 1];
-    }
-    starts_[0] = 0;
 }
 
 /// The faces of one cell; none for a hidden one.
@@ -108,14 +119,15 @@ void CellBuilder::gather(std::uint64_t cell, CellShape& shape) const {
         return;
     }
     std::size_t block = 0;
-    for (std::uint32_t k = starts_[cell]; k < starts_[cell + 1]; ++k) {
-        const std::uint32_t slot = uses_[k] / 2;
+    const auto& [starts, uses] = mesh_.cell_faces;
+    for (std::uint32_t k = starts[cell]; k < starts[cell + 1]; ++k) {
+        const std::uint32_t slot = uses[k] / 2;
         if (slot < slots_[block] || (block + 1 < slots_.size() && slot >= slots_[block + 1])) {
             block = static_cast<std::size_t>(std::upper_bound(slots_.begin(), slots_.end(), slot) - slots_.begin()) - 1;
         }
         const FaceBlock& faces = mesh_.face_blocks[block];
         const std::size_t face = slot - slots_[block];
-        shape.faces.push_back({faces.nodes.data() + faces.begin_of(face), faces.size_of(face), uses_[k] % 2 == 0});
+        shape.faces.push_back({faces.nodes.data() + faces.begin_of(face), faces.size_of(face), uses[k] % 2 == 0});
     }
 }
 
@@ -141,21 +153,40 @@ struct CellBuilder::Tally {
 };
 
 CellArrays CellBuilder::build(const CellBlock& cells, core::Progress& progress) const {
-    const std::uint32_t corners = cells.elements.empty() && hidden_cells_.empty() ? corners_of(cells.element) : 0;
     CellArrays out;
+    const std::uint32_t corners = common_corners(cells);
     if (corners == 0 || !build_alike(cells, corners, out, progress)) {
         out = build_any(cells, progress);
     }
     return out;
 }
 
+/// How many corners each cell of the zone has, by what the file says or by some of them; 0: they differ, or some are
+/// polyhedra or hidden.
+std::uint32_t CellBuilder::common_corners(const CellBlock& cells) const {
+    if (!cells.elements.empty() || !hidden_cells_.empty() || cells.element != 0 || cells.count == 0) {
+        return cells.elements.empty() && hidden_cells_.empty() ? corners_of(cells.element) : 0;
+    }
+    constexpr std::uint64_t samples = 64;
+    CellShape cell;
+    std::size_t corners = 0;
+    for (std::uint64_t i = 0; i < samples; ++i) {
+        gather(cells.first + i * (cells.count - 1) / (samples - 1), cell);
+        recognise(cell, mesh_.dimension, false);
+        corners = i == 0 ? cell.nodes.size() : corners;
+        if (cell.type == vtk_empty || cell.type == vtk_polyhedron || cell.nodes.size() != corners) {
+            return 0;
+        }
+    }
+    return static_cast<std::uint32_t>(corners);
+}
+
 /// Cells that all have so many corners find their place at once. False: some are of another kind.
 bool CellBuilder::build_alike(const CellBlock& cells, std::uint32_t corners, CellArrays& out, core::Progress& progress) const {
     const std::size_t count = cells.count;
     check_corners(count * corners);
-    const bool plane = mesh_.dimension == 2;
     out.types.grow_to(count);
-    out.ids.grow_to(count);
+    out.ids = Ids(cells.first, count);
     out.offsets.grow_to(count + 1);
     out.connectivity.grow_to(count * corners);
     out.offsets[count] = static_cast<std::int32_t>(count * corners);
@@ -167,10 +198,10 @@ bool CellBuilder::build_alike(const CellBlock& cells, std::uint32_t corners, Cel
             CellShape cell;
             Tally tally;
             std::int32_t* nodes = out.connectivity.data() + begin * corners;
-            for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t i = begin; i < end && alike; ++i) {
                 gather(cells.first + i, cell);
                 recognise(cell, mesh_.dimension, false);
-                if (cell.nodes.size() != corners || cell.type == vtk_empty || cell.type == vtk_polyhedron || (plane && cell.type == vtk_polygon)) {
+                if (cell.nodes.size() != corners || cell.type == vtk_empty || cell.type == vtk_polyhedron) {
                     alike = false;
                     return;
                 }
@@ -179,18 +210,18 @@ bool CellBuilder::build_alike(const CellBlock& cells, std::uint32_t corners, Cel
                     *nodes++ = static_cast<std::int32_t>(node) - 1;
                 }
                 out.types[i] = cell.type;
-                out.ids[i] = cells.first + i;
                 out.offsets[i] = static_cast<std::int32_t>(i * corners);
             }
             tallies[begin / block_of_cells] = tally;
         },
         progress);
-    if (alike) {
-        for (const auto& tally : tallies) {
-            tally.into(out);
-        }
+    if (!alike) {
+        return false;
     }
-    return alike;
+    for (const auto& tally : tallies) {
+        tally.into(out);
+    }
+    return true;
 }
 
 void CellBuilder::check_corners(std::uint64_t corners) const {
@@ -257,7 +288,8 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
     }
     check_corners(total.connectivity);
     out.types.grow_to(total.cells);
-    out.ids.grow_to(total.cells);
+    Buffer<std::uint64_t> listed;
+    listed.grow_to(total.cells < count ? total.cells : 0);
     out.offsets.grow_to(total.cells + 1);
     out.connectivity.grow_to(total.connectivity);
     out.face_stream.grow_to(total.stream);
@@ -278,7 +310,9 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
                     continue;
                 }
                 out.types[cell] = types[i];
-                out.ids[cell] = cells.first + i;
+                if (!listed.empty()) {
+                    listed[cell] = cells.first + i;
+                }
                 out.offsets[cell] = static_cast<std::int32_t>(connectivity);
                 connectivity += lengths[i];
                 if (!out.face_locations.empty()) {
@@ -295,6 +329,7 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
             part = Part{};
         },
         progress);
+    out.ids = listed.empty() ? Ids(cells.first, total.cells) : Ids(std::move(listed));
     return out;
 }
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <string_view>
+
+#include "core/parallel.h"
 
 namespace underbody::postproc {
 
@@ -60,37 +63,93 @@ std::string zone_words(const FaceMesh& mesh, int zone) {
     return "zone " + std::to_string(zone) + (label != nullptr ? " (" + label->name + ")" : "");
 }
 
-void check_faces(const FaceMesh& mesh, const FaceBlock& block, bool need_cells) {
-    const bool has_c1 = !block.c1.empty();
-    // Nearly every mesh is sound: one look at all numbers tells, and only a bad one is looked for face by face.
-    const auto within = [](const Buffer<std::uint32_t>& numbers, std::uint32_t least, std::uint64_t most) {
-        std::uint32_t low = 0xffffffffU;
-        std::uint32_t high = 0;
-        for (const std::uint32_t number : numbers) {
-            low = std::min(low, number);
-            high = std::max(high, number);
-        }
-        return numbers.empty() || (low >= least && high <= most);
-    };
-    if (within(block.nodes, 1, mesh.nodes) &&
-        (!need_cells || (within(block.c0, 0, mesh.cells) && within(block.c1, 0, mesh.cells)))) {
+/// Nearly every mesh is sound: one look at all numbers tells, and only a bad one is looked for face by face.
+bool within(const Buffer<std::uint32_t>& numbers, std::uint32_t least, std::uint64_t most, core::Progress& progress) {
+    constexpr std::size_t at_once = std::size_t{1} << 18;
+    std::atomic<bool> all = true;
+    core::parallel_blocks(
+        numbers.size(), at_once,
+        [&](std::size_t begin, std::size_t end) {
+            std::uint32_t low = 0xffffffffU;
+            std::uint32_t high = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                low = std::min(low, numbers[i]);
+                high = std::max(high, numbers[i]);
+            }
+            if (low < least || high > most) {
+                all = false;
+            }
+        },
+        progress);
+    return all;
+}
+
+void check_nodes(const FaceMesh& mesh, const FaceBlock& block, core::Progress& progress) {
+    if (within(block.nodes, 1, mesh.nodes, progress)) {
         return;
     }
     for (std::size_t face = 0; face < block.count; ++face) {
         const std::uint32_t begin = block.begin_of(face);
-        const std::uint32_t size = block.size_of(face);
-        for (std::uint32_t k = begin; k < begin + size; ++k) {
+        for (std::uint32_t k = begin; k < begin + block.size_of(face); ++k) {
             if (block.nodes[k] == 0 || block.nodes[k] > mesh.nodes) {
                 refuse(mesh, "face " + text(block.first + face) + " of " + zone_words(mesh, block.zone) +
                                  " names node " + text(block.nodes[k]) + ", but there are " + text(mesh.nodes));
             }
         }
-        const std::uint32_t c0 = block.c0[face];
-        const std::uint32_t c1 = has_c1 ? block.c1[face] : 0;
-        if (need_cells && (c0 > mesh.cells || c1 > mesh.cells)) {
-            refuse(mesh, "face " + text(block.first + face) + " of " + zone_words(mesh, block.zone) + " names cell " +
-                             text(std::max(c0, c1)) + ", but there are " + text(mesh.cells));
+    }
+}
+
+void check_beside(const FaceMesh& mesh, const FaceBlock& block, core::Progress& progress) {
+    for (const auto* beside : {&block.c0, &block.c1}) {
+        if (within(*beside, 0, mesh.cells, progress)) {
+            continue;
         }
+        for (std::size_t face = 0; face < beside->size(); ++face) {
+            if ((*beside)[face] > mesh.cells) {
+                refuse(mesh, "face " + text(block.first + face) + " of " + zone_words(mesh, block.zone) +
+                                 " names cell " + text((*beside)[face]) + ", but there are " + text(mesh.cells));
+            }
+        }
+    }
+}
+
+/// Do the ranges of the zones fit the numbers that the file declares?
+void check_ranges(const FaceMesh& mesh, bool surfaces_only) {
+    constexpr std::uint64_t most = 0x7fffffffULL;
+    if (mesh.dimension != 2 && mesh.dimension != 3) {
+        refuse(mesh, "the file does not say whether the mesh is 2-D or 3-D");
+    }
+    if (mesh.nodes > most || mesh.faces > most || mesh.cells > most) {
+        refuse(mesh, "more than 2^31 nodes, faces or cells: " + text(mesh.nodes) + ", " + text(mesh.faces) + ", " +
+                         text(mesh.cells));
+    }
+    if (mesh.nodes == 0 || mesh.faces == 0) {
+        refuse(mesh,
+               "the mesh has " + text(mesh.nodes) + " nodes and " + text(mesh.faces) + " faces: is it cut short?");
+    }
+    std::uint64_t faces = 0;
+    for (const auto& block : mesh.face_blocks) {
+        faces += block.count;
+        if (block.first == 0 || block.first + block.count - 1 > mesh.faces) {
+            refuse(mesh, "the faces " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
+                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.faces) +
+                             " that the file declares");
+        }
+    }
+    if (!surfaces_only && faces != mesh.faces) {
+        refuse(mesh, "the file declares " + text(mesh.faces) + " faces but its zones hold " + text(faces));
+    }
+    std::uint64_t cells = 0;
+    for (const auto& block : mesh.cell_blocks) {
+        cells += block.count;
+        if (block.first == 0 || block.first + block.count - 1 > mesh.cells) {
+            refuse(mesh, "the cells " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
+                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.cells) +
+                             " that the file declares");
+        }
+    }
+    if (cells != mesh.cells) {
+        refuse(mesh, "the file declares " + text(mesh.cells) + " cells but its zones hold " + text(cells));
     }
 }
 
@@ -136,46 +195,18 @@ void hide_generated_faces(FaceMesh& mesh) {
     }
 }
 
+void check_cells_beside(const FaceMesh& mesh, core::Progress& progress) {
+    check_ranges(mesh, false);
+    for (const auto& block : mesh.face_blocks) {
+        check_beside(mesh, block, progress);
+    }
+}
+
 void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress) {
-    constexpr std::uint64_t most = 0x7fffffffULL;
-    if (mesh.dimension != 2 && mesh.dimension != 3) {
-        refuse(mesh, "the file does not say whether the mesh is 2-D or 3-D");
-    }
-    if (mesh.nodes > most || mesh.faces > most || mesh.cells > most) {
-        refuse(mesh, "more than 2^31 nodes, faces or cells: " + text(mesh.nodes) + ", " + text(mesh.faces) + ", " +
-                         text(mesh.cells));
-    }
-    if (mesh.nodes == 0 || mesh.faces == 0) {
-        refuse(mesh,
-               "the mesh has " + text(mesh.nodes) + " nodes and " + text(mesh.faces) + " faces: is it cut short?");
-    }
-    std::uint64_t faces = 0;
+    check_ranges(mesh, surfaces_only);
     for (const auto& block : mesh.face_blocks) {
-        faces += block.count;
-        if (block.first == 0 || block.first + block.count - 1 > mesh.faces) {
-            refuse(mesh, "the faces " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
-                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.faces) +
-                             " that the file declares");
-        }
-    }
-    if (!surfaces_only && faces != mesh.faces) {
-        refuse(mesh, "the file declares " + text(mesh.faces) + " faces but its zones hold " + text(faces));
-    }
-    std::uint64_t cells = 0;
-    for (const auto& block : mesh.cell_blocks) {
-        cells += block.count;
-        if (block.first == 0 || block.first + block.count - 1 > mesh.cells) {
-            refuse(mesh, "the cells " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
-                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.cells) +
-                             " that the file declares");
-        }
-    }
-    if (cells != mesh.cells) {
-        refuse(mesh, "the file declares " + text(mesh.cells) + " cells but its zones hold " + text(cells));
-    }
-    for (const auto& block : mesh.face_blocks) {
-        progress.check();
-        check_faces(mesh, block, true);
+        check_beside(mesh, block, progress);
+        check_nodes(mesh, block, progress);
     }
 }
 

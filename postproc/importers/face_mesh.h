@@ -67,6 +67,12 @@ struct IdRange {
     std::uint64_t last = 0;
 };
 
+/// Which faces each cell has: `uses[starts[id]]` up to `uses[starts[id + 1]]`.
+struct CellFaces {
+    Buffer<std::uint32_t> starts;  ///< cells + 2: id 0 has none
+    Buffer<std::uint32_t> uses;    ///< 2 * place of the face among those of all blocks, + 1 for the cell in c1
+};
+
 struct FaceMesh {
     std::string file;
     int dimension = 0;
@@ -85,6 +91,7 @@ struct FaceMesh {
     /// Faces of mesh interfaces (id ranges) that stand in for the parents they were cut from.
     std::vector<IdRange> interface_children;
     std::vector<std::uint32_t> interface_parents;
+    CellFaces cell_faces;  ///< made by `gather_cell_faces`
 
     [[nodiscard]] const ZoneLabel* label(int zone) const;
 };
@@ -101,48 +108,18 @@ bool is_hidden_code(int code);
 /// them.
 void hide_generated_faces(FaceMesh& mesh);
 
+/// Finds the faces of every cell. Nodes need not be there yet. c0 and c1 of the faces inside the mesh are given up: nobody
+/// needs them after that. Throws InputError where ranges or cell ids are not consistent.
+void gather_cell_faces(FaceMesh& mesh, core::Progress& progress);
+
+/// Checks that ranges and the cells beside faces are consistent, of all zones; throws InputError that names zone and face.
+void check_cells_beside(const FaceMesh& mesh, core::Progress& progress);
+
 /// Checks that ranges, node ids and cell ids are consistent; throws InputError that names zone and face.
 void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress);
 
 /// Is there a wall without a pressure on its own faces? It then takes that of the cells beside it, if these have one.
 bool walls_lack_pressure(const FaceMesh& mesh, const std::vector<ValueBlock>& values);
-
-/// One unstructured block of VTK arrays that cells are built from.
-struct CellArrays {
-    Buffer<unsigned char> types;
-    Buffer<std::int32_t> offsets;         ///< cells + 1
-    Buffer<std::int32_t> connectivity;    ///< node ids from 0
-    Buffer<std::int64_t> face_locations;  ///< per cell, -1 but for polyhedra; empty when there are none
-    Buffer<std::int64_t> face_stream;
-    Buffer<std::uint64_t> ids;   ///< cell id (from 1) of each cell that was built
-    double volume = 0;           ///< by the divergence theorem over the faces (2-D: area)
-    std::uint64_t inverted = 0;  ///< cells whose volume is not positive
-    std::uint64_t open = 0;      ///< cells whose faces do not close
-};
-
-struct CellShape;
-
-/// The faces of every cell. Built once, used for each zone.
-class CellBuilder {
-public:
-    /// The mesh must have passed `check_mesh` and must outlive this.
-    CellBuilder(const FaceMesh& mesh, core::Progress& progress);
-    /// The cells of one zone; hidden ones and those without faces are left out.
-    [[nodiscard]] CellArrays build(const CellBlock& block, core::Progress& progress) const;
-
-private:
-    struct Tally;
-    void gather(std::uint64_t cell, CellShape& shape) const;
-    bool build_alike(const CellBlock& cells, std::uint32_t corners, CellArrays& out, core::Progress& progress) const;
-    [[nodiscard]] CellArrays build_any(const CellBlock& cells, core::Progress& progress) const;
-    void check_corners(std::uint64_t corners) const;
-
-    const FaceMesh& mesh_;
-    Buffer<std::uint32_t> starts_;      ///< per cell id, into uses_
-    Buffer<std::uint32_t> uses_;        ///< 2 * slot of the face + side
-    std::vector<std::uint32_t> slots_;  ///< slot of the first face of each block
-    std::vector<bool> hidden_cells_;    ///< empty: none
-};
 
 /// Zones with VTK data: one volume per cell zone, one surface per boundary zone (normals into the fluid, also where the
 /// file has them otherwise). Values become canonical: SV_WALL_SHEAR (the wall's force on the fluid) becomes

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/text.h"
+#include "postproc/importers/face_cells.h"
 #include "postproc/importers/face_mesh.h"
 #include "postproc/importers/fluent_settings.h"
 #include "postproc/importers/vtk_arrays.h"
@@ -22,9 +23,6 @@ namespace {
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 const std::string pressure_variable = "SV_P";
 
-/// The faces or cells of a zone: which ids they have, in order.
-using Ids = Buffer<std::uint64_t>;
-
 /// From where to where the ids of a zone go. Its blocks may come in any order: the ends of the list do not tell.
 struct Span {
     std::uint64_t first = 1, last = 0;
@@ -35,9 +33,10 @@ Span span_of(const Ids& ids) {
     if (ids.empty()) {
         return span;
     }
-    span.first = span.last = ids[0];
+    span.first = ids[0];
+    span.last = ids[ids.size() - 1];
     span.gapless = true;
-    for (std::size_t i = 1; i < ids.size(); ++i) {
+    for (std::size_t i = 1; i < ids.size() && ids.listed(); ++i) {
         span.gapless = span.gapless && ids[i] == ids[i - 1] + 1;
         span.first = std::min(span.first, ids[i]);
         span.last = std::max(span.last, ids[i]);
@@ -423,13 +422,16 @@ void Assembly::add_volumes(Field& field) {
     if (wanted.empty()) {
         return;
     }
-    auto builder = std::make_unique<CellBuilder>(mesh_, progress_);
+    if (mesh_.cell_faces.starts.empty()) {
+        gather_cell_faces(mesh_, progress_);
+    }
+    const CellBuilder builder(mesh_);
     const core::Place place{mesh_.file, {}, {}, {}};
     for (const CellBlock* block : wanted) {
         const bool last = block == wanted.back();
         Zone zone = named_zone(block->zone, 0, true);
         progress_.report(0.7, "building " + zone.name);
-        CellArrays cells = builder->build(*block, progress_);
+        CellArrays cells = builder.build(*block, progress_);
         const auto note = [&](std::uint64_t count, const char* what) {
             if (count > 0) {
                 field.problems.push_back({core::Problem::Severity::warning,
@@ -442,8 +444,8 @@ void Assembly::add_volumes(Field& field) {
         field.metadata.emplace_back((mesh_.dimension == 2 ? "area of " : "volume of ") + zone.name,
                                     core::format_number(cells.volume));
         if (last) {
-            builder.reset();
             mesh_.face_blocks.clear();
+            mesh_.cell_faces = {};
         }
         const Ids ids = std::move(cells.ids);
         auto coordinates = picked_points(cells.connectivity, cells.face_stream, last);
@@ -468,7 +470,7 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
     for (const auto& element : elements) {
         corners += mesh_.face_blocks[element.block].size_of(element.face);
     }
-    Ids ids(elements.size());
+    Buffer<std::uint64_t> listed(elements.size());
     Buffer<std::int32_t> offsets(elements.size() + 1);
     Buffer<std::int32_t> connectivity(corners);
     std::vector<double> areas(elements.size());
@@ -478,7 +480,7 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
         const FaceBlock& block = mesh_.face_blocks[b];
         const std::uint32_t* nodes = block.nodes.data() + block.begin_of(face);
         const std::uint32_t size = block.size_of(face);
-        ids[i] = block.first + face;
+        listed[i] = block.first + face;
         areas[i] = face_area(elements[i]);
         offsets[i] = static_cast<std::int32_t>(at);
         for (std::uint32_t k = 0; k < size; ++k) {
@@ -486,6 +488,7 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
         }
     }
     offsets[elements.size()] = static_cast<std::int32_t>(at);
+    const Ids ids(std::move(listed));
     Buffer<std::int64_t> no_stream;
     zone.surface = vtkSmartPointer<vtkPolyData>::New();
     zone.surface->SetPoints(points_from(picked_points(connectivity, no_stream, false)));

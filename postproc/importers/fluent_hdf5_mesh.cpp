@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel.h"
 #include "core/text.h"
 #include "postproc/importers/fluent_hdf5.h"
 #include "postproc/importers/hdf5_file.h"
@@ -68,7 +69,7 @@ private:
     void read_nodes();
     [[nodiscard]] std::vector<std::uint32_t> places_of_used_nodes();
     void read_cells();
-    void read_faces();
+    void read_faces();  ///< but for their nodes: these are noted to be read
     void cut_faces(const Part& part, std::vector<Corners>& corners);
     void read_beside(const std::string& side);
     void read_labels();
@@ -117,10 +118,15 @@ FaceMesh Reader::read_mesh() {
     mesh_.cells = count("cellCount");
     read_cells();
     read_faces();
-    read_nodes();
     read_trees();
     read_labels();
     hide_generated_faces(mesh_);
+    if (options_.surfaces_only) {
+        read_nodes();
+    } else {
+        // Cells are put together from what lies beside the faces: no need to wait for the nodes.
+        core::parallel_for(2, [&](std::size_t part) { part == 0 ? read_nodes() : gather_cell_faces(mesh_, progress_); }, progress_);
+    }
     check_mesh(mesh_, options_.surfaces_only, progress_);
     return std::move(mesh_);
 }
@@ -324,6 +330,9 @@ void Reader::read_faces() {
     for (const auto& part : cuts) {
         cut_faces(part, corners);
     }
+    read_beside("c0");
+    read_beside("c1");
+    rows_.read(progress_);
     for (std::size_t b = 0; b < corners.size(); ++b) {
         Buffer<std::uint32_t>& nodes = mesh_.face_blocks[b].nodes;
         nodes.grow_to(corners[b].count);
@@ -331,8 +340,6 @@ void Reader::read_faces() {
             rows_.add(piece.path, piece.first, piece.count, nodes.data() + piece.place);
         }
     }
-    read_beside("c0");
-    read_beside("c1");
 }
 
 /// The sizes of some more faces of a zone. If all its faces have so many corners, no list of where each begins is made.

@@ -1,11 +1,9 @@
 #include "postproc/importers/hdf5_rows.h"
 
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cstring>
 #include <deque>
 #include <limits>
@@ -258,74 +256,6 @@ hsize_t end_of_wanted(const std::vector<Hdf5Rows::Share>& shares, hsize_t begin,
     return last;
 }
 
-/// Where the values of a data set that is in one piece lie in the file.
-struct PlainLayout {
-    int descriptor = -1;
-    std::uint64_t offset = 0;
-    std::size_t width = 1;
-    std::size_t wanted_width = 1;
-    Convert convert = nullptr;  ///< null: they are as they are wanted, byte by byte
-};
-
-/// Nothing if they are not numbers of a known kind in one piece, all of them in the file.
-std::optional<PlainLayout> plain_layout_of(const Hdf5File& file, hid_t set, hid_t type, bool whole) {
-    const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose);
-    const Hdf5Handle space(H5Dget_space(set), H5Sclose);
-    void* descriptor = nullptr;
-    if (std::endian::native != std::endian::little || !properties.good() || H5Pget_layout(properties.get()) != H5D_CONTIGUOUS ||
-        H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &descriptor) < 0 || descriptor == nullptr) {
-        return {};
-    }
-    PlainLayout layout;
-    layout.descriptor = *static_cast<int*>(descriptor);  // that of the library's default driver
-    layout.width = H5Tget_size(type);
-    layout.wanted_width = whole ? sizeof(std::uint32_t) : sizeof(double);
-    layout.convert = whole ? convert_to<std::uint32_t>(type) : convert_to<double>(type);
-    const haddr_t offset = H5Dget_offset(set);
-    const std::uint64_t bytes = H5Dget_storage_size(set);
-    if (layout.convert == nullptr || offset == HADDR_UNDEF || offset > file.bytes() || bytes > file.bytes() - offset ||
-        bytes / layout.width != static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space.get()))) {
-        return {};
-    }
-    layout.offset = offset;
-    const bool same = whole ? H5Tequal(type, H5T_STD_U32LE) > 0 || H5Tequal(type, H5T_STD_I32LE) > 0 : H5Tequal(type, H5T_IEEE_F64LE) > 0;
-    layout.convert = same ? nullptr : layout.convert;
-    return layout;
-}
-
-bool read_bytes(int descriptor, std::uint64_t offset, std::size_t bytes, unsigned char* out) {
-    while (bytes > 0) {
-        const ssize_t got = ::pread(descriptor, out, bytes, static_cast<off_t>(offset));
-        if (got < 0 && errno == EINTR) {
-            continue;
-        }
-        if (got <= 0) {
-            return false;
-        }
-        out += got;
-        offset += static_cast<std::uint64_t>(got);
-        bytes -= static_cast<std::size_t>(got);
-    }
-    return true;
-}
-
-/// `count` values from `first` on. False: they are not there.
-bool read_values(const PlainLayout& layout, std::uint64_t first, std::size_t count, unsigned char* out) {
-    if (layout.convert == nullptr) {
-        return read_bytes(layout.descriptor, layout.offset + first * layout.width, count * layout.width, out);
-    }
-    constexpr std::size_t at_once = std::size_t{1} << 15;  // stays near the processor
-    std::vector<unsigned char> stored(std::min(count, at_once) * layout.width);
-    for (std::size_t done = 0; done < count; done += at_once) {
-        const std::size_t some = std::min(at_once, count - done);
-        if (!read_bytes(layout.descriptor, layout.offset + (first + done) * layout.width, some * layout.width, stored.data())) {
-            return false;
-        }
-        layout.convert(stored.data(), some, out + done * layout.wanted_width);
-    }
-    return true;
-}
-
 /// A data set of numbers, opened.
 class DataSet {
 public:
@@ -335,8 +265,8 @@ public:
     [[nodiscard]] hsize_t rows() const { return lengths_[0]; }
     [[nodiscard]] hsize_t columns() const { return lengths_[1]; }
     void check_rows(std::uint64_t first, std::uint64_t rows) const;
-    /// Straight from the file by all cores if it is in one piece, by the library otherwise.
-    void read(const Hdf5Rows::Share& share, core::Progress& progress) const;
+    /// By the library.
+    void read(const Hdf5Rows::Share& share) const;
     /// The chunks of which `shares` want something; nothing if not all of them are in the file.
     [[nodiscard]] std::optional<std::vector<Chunk>> chunks(const std::vector<Hdf5Rows::Share>& shares) const;
     void load(Chunk& chunk) const;
@@ -354,7 +284,6 @@ private:
     int rank_ = 0;
     hsize_t lengths_[2] = {1, 1};
     std::optional<ChunkLayout> layout_;
-    std::optional<PlainLayout> plain_;
 };
 
 DataSet::DataSet(const Hdf5File& file, const std::string& path, bool whole)
@@ -375,7 +304,6 @@ DataSet::DataSet(const Hdf5File& file, const std::string& path, bool whole)
     rank_ = H5Sget_simple_extent_ndims(space_.get());
     if (rank_ >= 1 && rank_ <= 2 && H5Sget_simple_extent_dims(space_.get(), lengths_, nullptr) >= 0) {
         layout_ = layout_of(set_.get(), type_.get(), space_.get(), whole_);
-        plain_ = plain_layout_of(file_, set_.get(), type_.get(), whole_);
     } else {
         rank_ = 0;
     }
@@ -387,21 +315,8 @@ void DataSet::check_rows(std::uint64_t first, std::uint64_t rows) const {
     }
 }
 
-void DataSet::read(const Hdf5Rows::Share& share, core::Progress& progress) const {
+void DataSet::read(const Hdf5Rows::Share& share) const {
     if (share.rows == 0 || lengths_[1] == 0) {
-        return;
-    }
-    if (plain_) {
-        // To get memory for the values and to copy them takes longer than the disk's cache does to find them.
-        constexpr std::size_t block = std::size_t{1} << 19;
-        core::parallel_blocks(
-            share.rows * lengths_[1], block,
-            [&](std::size_t begin, std::size_t end) {
-                if (!read_values(*plain_, share.first * lengths_[1] + begin, end - begin, static_cast<unsigned char*>(share.out) + begin * plain_->wanted_width)) {
-                    damaged();
-                }
-            },
-            progress);
         return;
     }
     const hsize_t from[2] = {share.first, 0};
@@ -543,7 +458,7 @@ void each_row_of(const Hdf5File& file, const std::string& path, core::Progress& 
         progress.check();
         const hsize_t some = std::min(at_once, set.rows() - row);
         numbers.resize(some * columns);
-        set.read({row, some, numbers.data()}, progress);
+        set.read({row, some, numbers.data()});
         more = take(numbers.data(), some);
     }
 }
@@ -569,7 +484,7 @@ void Hdf5Rows::read(core::Progress& progress) {
         }
         auto chunks = set.layout() ? set.chunks(request.shares) : std::nullopt;
         if (!chunks) {
-            std::for_each(request.shares.begin(), request.shares.end(), [&](const Share& share) { set.read(share, progress); });
+            std::for_each(request.shares.begin(), request.shares.end(), [&](const Share& share) { set.read(share); });
             continue;
         }
         for (auto& chunk : *chunks) {
