@@ -1,7 +1,6 @@
 #include "postproc/probe.h"
 
 #include <vtkCellData.h>
-#include <vtkCellDataToPointData.h>
 #include <vtkDataArray.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
@@ -14,6 +13,7 @@
 #include <limits>
 #include <memory>
 
+#include "postproc/node_values.h"
 #include "postproc/view_parts.h"
 
 namespace underbody::postproc {
@@ -119,23 +119,14 @@ vtkSmartPointer<vtkPolyData> surface_with_point_values(const Zone& zone, const s
     auto result = vtkSmartPointer<vtkPolyData>::New();
     result->SetPoints(zone.surface->GetPoints());
     result->SetPolys(zone.surface->GetPolys());
-    vtkNew<vtkCellDataToPointData> to_points;
-    vtkNew<vtkPolyData> polygons;
-    polygons->SetPoints(zone.surface->GetPoints());
-    polygons->SetPolys(zone.surface->GetPolys());
+    std::unique_ptr<NodeValues> carried;
     const bool only_polygons = zone.surface->GetNumberOfPolys() == zone.surface->GetNumberOfCells();
     for (const auto& name : arrays) {
         if (auto* on_points = zone.surface->GetPointData()->GetArray(name.c_str())) {
             result->GetPointData()->AddArray(on_points);
-        } else if (auto* on_faces = zone.surface->GetCellData()->GetArray(name.c_str()); on_faces != nullptr && only_polygons) {
-            polygons->GetCellData()->AddArray(on_faces);
-        }
-    }
-    to_points->SetInputData(polygons);
-    to_points->Update();
-    for (const auto& name : arrays) {
-        if (auto* moved = to_points->GetOutput()->GetPointData()->GetArray(name.c_str())) {
-            result->GetPointData()->AddArray(moved);
+        } else if (only_polygons && zone.surface->GetCellData()->GetArray(name.c_str()) != nullptr) {
+            carried = carried == nullptr ? std::make_unique<NodeValues>(*zone.surface) : std::move(carried);
+            result->GetPointData()->AddArray(carried->of(name));
         }
     }
     return result;

@@ -22,8 +22,9 @@ struct ProbeOptions {
 
 /// Columns x, y, z [m], then each array (vectors as NAME_x, NAME_y, NAME_z), in SI.
 ///
-/// In a volume: linear within the cell that holds the point (cell values are first averaged to the nodes); a point
-/// outside has missing values. On surfaces: the nearest face, and a column `distance_to_surface [m]`.
+/// In a volume: between the nodes of the cell that holds the point; values that lie in cells are first carried to the
+/// nodes along their gradients (`NodeValues`: a linear field comes out as it is, and a wall's own values hold at the
+/// wall). A point outside has missing values. On surfaces: the nearest face, and a column `distance_to_surface [m]`.
 /// Throws core::InputError: an array that nobody knows, a field without cells.
 core::Table probe_points(const Field& field, const std::vector<std::array<double, 3>>& points, const ProbeOptions& options = {},
                          core::Progress& progress = core::Progress::none());

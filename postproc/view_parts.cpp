@@ -3,7 +3,6 @@
 #include <vtkAppendFilter.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCellDataToPointData.h>
 #include <vtkCutter.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
@@ -19,6 +18,7 @@
 #include <cmath>
 #include <limits>
 
+#include "postproc/node_values.h"
 #include "postproc/surface_arrays.h"
 
 namespace underbody::postproc {
@@ -173,6 +173,26 @@ DrawnLine mirrored(const DrawnLine& line, const ViewMirror& mirror) {
     return other;
 }
 
+namespace {
+
+/// Zones on the boundary that have one of the arrays on their faces.
+std::vector<const Zone*> with_face_values(const Field& field, const std::vector<std::string>& arrays) {
+    std::vector<const Zone*> zones;
+    for (const auto& zone : field.zones) {
+        if (zone.volume != nullptr || zone.surface == nullptr || zone.surface->GetNumberOfCells() == 0) {
+            continue;
+        }
+        vtkPolyData& surface = *zone.surface;
+        const bool faces = surface.GetNumberOfPolys() == surface.GetNumberOfCells() || (field.dimension == 2 && surface.GetNumberOfLines() == surface.GetNumberOfCells());
+        if (faces && std::any_of(arrays.begin(), arrays.end(), [&](const std::string& name) { return surface.GetCellData()->HasArray(name.c_str()) != 0; })) {
+            zones.push_back(&zone);
+        }
+    }
+    return zones;
+}
+
+}  // namespace
+
 vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::vector<std::string>& arrays) {
     vtkNew<vtkAppendFilter> append;
     bool some = false;
@@ -195,17 +215,19 @@ vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::
     if (!some) {
         return nullptr;
     }
-    vtkNew<vtkCellDataToPointData> to_points;
-    to_points->SetInputConnection(append->GetOutputPort());
-    to_points->PassCellDataOn();
-    to_points->Update();
+    append->Update();
     auto result = vtkSmartPointer<vtkUnstructuredGrid>::New();
-    result->ShallowCopy(to_points->GetOutput());
-    // What was on points already passes through as point data.
+    result->ShallowCopy(append->GetOutput());
+    std::vector<std::string> in_cells;
     for (const auto& name : arrays) {
-        auto* passed = vtkDataSet::SafeDownCast(append->GetOutputDataObject(0))->GetPointData()->GetArray(name.c_str());
-        if (passed != nullptr && result->GetPointData()->GetArray(name.c_str()) == nullptr) {
-            result->GetPointData()->AddArray(passed);
+        if (result->GetPointData()->GetArray(name.c_str()) == nullptr && result->GetCellData()->GetArray(name.c_str()) != nullptr) {
+            in_cells.push_back(name);
+        }
+    }
+    if (!in_cells.empty()) {
+        const NodeValues carried(*result, with_face_values(field, in_cells));
+        for (const auto& name : in_cells) {
+            result->GetPointData()->AddArray(carried.of(name));
         }
     }
     return result;
