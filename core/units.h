@@ -24,6 +24,7 @@ struct Conversion {
     double scale = 1;
     double offset = 0;
     [[nodiscard]] double operator()(double value) const { return scale * value + offset; }
+    [[nodiscard]] bool is_identity() const { return scale == 1 && offset == 0; }
 };
 Conversion conversion(std::string_view from, std::string_view to, const Place& place = {});
 

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/report_words.h"
+#include "postproc/importers/residual_history.h"
 
 namespace underbody::postproc {
 
@@ -39,60 +38,6 @@ std::optional<long long> number_behind(std::string_view line, std::string_view w
     const auto rest = core::trimmed(line.substr(words.size()));
     return core::parse_integer(rest.substr(0, rest.find_first_of(" \t(")));
 }
-
-/// Residuals by iteration, whatever equations turn up.
-class Iterations {
-public:
-    explicit Iterations(std::string file) { monitor_.file = std::move(file); }
-
-    void begin(long long number) {
-        at_ = static_cast<double>(number);
-        rows_[at_];
-    }
-    [[nodiscard]] bool begun() const { return !rows_.empty(); }
-
-    void add(const std::string& name, const std::string& word) {
-        auto [column, is_new] = columns_.try_emplace(name, columns_.size());
-        if (is_new) {
-            monitor_.columns.push_back(name);
-        }
-        const auto value = number_of(word);
-        odd_ += value && std::isfinite(*value) ? 0 : 1;
-        rows_[at_][column->second] = value.value_or(std::nan(""));
-    }
-
-    Monitor finish(const std::string& first_column) {
-        monitor_.title = "residuals";
-        monitor_.values.assign(columns_.size() + 1, {});
-        for (const auto& [number, row] : rows_) {
-            if (row.empty()) {
-                continue;  // cut short before its table
-            }
-            monitor_.values[0].push_back(number);
-            for (std::size_t c = 0; c < columns_.size(); ++c) {
-                const auto found = row.find(c);
-                monitor_.values[c + 1].push_back(found == row.end() ? std::nan("") : found->second);
-            }
-        }
-        monitor_.columns.insert(monitor_.columns.begin(), first_column);
-        if (monitor_.values[0].empty()) {
-            throw core::InputError("format", "the solver's output holds no residuals", {monitor_.file, {}, {}, {}});
-        }
-        if (odd_ > 0) {
-            monitor_.problems.push_back({core::Problem::Severity::warning,
-                                         std::to_string(odd_) + " residuals are not finite: the solution has diverged",
-                                         {monitor_.file, {}, {}, {}}});
-        }
-        return std::move(monitor_);
-    }
-
-private:
-    Monitor monitor_;
-    std::map<std::string, std::size_t> columns_;
-    std::map<double, std::map<std::size_t, double>> rows_;
-    double at_ = 0;
-    std::size_t odd_ = 0;
-};
 
 using Triple = std::array<double, 3>;
 
@@ -309,28 +254,29 @@ bool has_cfx_forces(std::string_view text) {
 }
 
 Monitor read_cfx_iterations(const std::string& file, std::string_view text) {
-    Iterations iterations(file);
+    ResidualHistory residuals(file);
     bool transient = false;
     bool in_table = false;
     each_line(text, [&](std::string_view line, std::int64_t) {
         if (const auto step = number_behind(line, time_step)) {
             transient = true;
-            iterations.begin(*step);
+            residuals.begin(static_cast<double>(*step));
         } else if (const auto outer = number_behind(line, outer_loop)) {
-            iterations.begin(*outer);
+            residuals.begin(static_cast<double>(*outer));
         }
         const auto cells = cells_of(line);
         if (cells.size() > 2 && cells[0] == "Equation" && cells[2].starts_with("RMS")) {
-            in_table = iterations.begun();
+            in_table = residuals.at().has_value();
         } else if (cells.size() < 4) {
-            // Rules stand between groups of equations; anything else, a box with a notice too, ends the table.
-            in_table = in_table && line.starts_with("+-");
+            // Rules stand between groups of equations, and boxes with notices may; anything else ends the table.
+            in_table = in_table && (line.starts_with("+-") || cells.size() == 1);
         } else if (in_table) {
-            iterations.add(cells[0], cells[2]);
-            iterations.add(cells[0] + " max", cells[3]);
+            const double missing = std::nan("");
+            residuals.add(cells[0], number_of(cells[2]).value_or(missing));
+            residuals.add(cells[0] + " max", number_of(cells[3]).value_or(missing));
         }
     });
-    return iterations.finish(transient ? "Time Step" : "Iteration");
+    return residuals.finish(transient ? "Time Step" : "Iteration");
 }
 
 std::vector<ForceReport> read_cfx_forces(const std::string& file, std::string_view text) {

@@ -8,7 +8,7 @@
 #include <array>
 #include <limits>
 
-#include "core/units.h"
+#include "postproc/importers/variable_reading.h"
 #include "postproc/importers/vtk_arrays.h"
 
 namespace underbody::postproc {
@@ -153,16 +153,6 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_of(ElementPart& part, const std::vecto
     return grid;
 }
 
-/// The unit that the user states for a variable.
-const std::string* stated_unit(const ReadOptions& options, const std::string& variable) {
-    for (const auto& [name, unit] : options.units) {
-        if (name == variable) {
-            return &unit;
-        }
-    }
-    return nullptr;
-}
-
 struct Named {
     ArrayInfo info;
     Buffer<double> values;
@@ -174,12 +164,13 @@ std::vector<Named> named_values(std::vector<PartValues>&& values, const ReadOpti
                                 const std::string& file) {
     std::vector<Named> arrays;
     for (auto& entry : values) {
-        const CanonicalName canonical = canonical_name(entry.variable);
-        const auto component = entry.components == 1 ? vector_component(canonical.name) : std::nullopt;
+        const VariableReading reading = read_variable_name(entry.variable, options, {file, {}, {}, {}});
+        const auto component = entry.components == 1 ? vector_component(reading.name) : std::nullopt;
         Named named;
-        named.info.name = component ? component->vector : canonical.name;
-        named.info.unit = canonical.unit;
+        named.info.name = component ? component->vector : reading.name;
+        named.info.unit = reading.unit;
         named.info.original_name = entry.variable;
+        named.info.original_unit = reading.original_unit;
         named.info.components = entry.components;
         named.info.on = entry.on_nodes ? Location::nodes : cells ? Location::cells : Location::faces;
         named.on_nodes = entry.on_nodes;
@@ -187,21 +178,10 @@ std::vector<Named> named_values(std::vector<PartValues>&& values, const ReadOpti
             !matches_any(options.arrays, entry.variable)) {
             continue;
         }
-        if (const std::string* unit = stated_unit(options, entry.variable)) {
-            const std::string si = canonical.unit.empty() || !core::same_dimension(*unit, canonical.unit)
-                                       ? core::si_unit(*unit)
-                                       : canonical.unit;
-            const auto convert = core::conversion(*unit, si, {file, {}, {}, {}});
+        if (!reading.convert.is_identity()) {
             for (double& value : entry.values) {
-                value = convert(value);
+                value = reading.convert(value);
             }
-            if (!canonical.unit.empty() && si != canonical.unit) {
-                // Another quantity than its name says: OpenFOAM's p over density.
-                named.info.name =
-                    si == "m^2/s^2" && canonical.name == "pressure" ? "kinematic_pressure" : entry.variable;
-            }
-            named.info.unit = si;
-            named.info.original_unit = *unit;
         }
         if (component) {
             auto joined = std::find_if(arrays.begin(), arrays.end(), [&](const Named& n) {

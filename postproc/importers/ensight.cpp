@@ -11,6 +11,7 @@
 #include "postproc/importers/ensight_geometry.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/understood.h"
+#include "postproc/importers/variable_reading.h"
 
 namespace underbody::postproc {
 
@@ -197,23 +198,12 @@ void mind_unused_nodes(const EnsightPart& whole, const std::string& file, core::
     }
 }
 
-/// OpenFOAM writes p over density in incompressible cases and pressure in compressible ones, both as "p".
-void mind_openfoam(const EnsightGeometry& geometry, const ReadOptions& options, std::vector<EnsightVariable>& variables,
-                   Field& field) {
-    if (geometry.description.find("OpenFOAM") == std::string::npos) {
-        return;
-    }
-    field.writer = geometry.description;
+/// Variables whose meaning hangs on a unit that nobody states go by another name.
+void ask_for_units(const ReadOptions& options, std::vector<EnsightVariable>& variables, Field& field) {
     for (auto& variable : variables) {
-        const bool stated =
-            std::any_of(options.units.begin(), options.units.end(), [](const auto& unit) { return unit.first == "p"; });
-        if (variable.name == "p" && !stated) {
-            variable.name = "p (unit not stated)";
-            field.problems.push_back(
-                {core::Problem::Severity::warning,
-                 "OpenFOAM's p is pressure [Pa] or pressure over density [m^2/s^2]; the file does not say which. "
-                 "State the unit of 'p' to use it",
-                 {variable.file.path.string(), {}, {}, {}}});
+        if (unit_must_be_stated(variable.name, options)) {
+            field.problems.push_back(unit_is_asked_for(variable.name, {variable.file.path.string(), {}, {}, {}}));
+            variable.name = unstated_name(variable.name);
         }
     }
 }
@@ -341,7 +331,7 @@ Field Reader::read() {
     }
     field_.writer = geometry_->description;
     field_.dimension = volume_dimension(*geometry_);
-    mind_openfoam(*geometry_, options_, files.variables, field_);
+    ask_for_units(options_, files.variables, field_);
     for (const auto& variable : files.variables) {
         read_variable(variable);
     }

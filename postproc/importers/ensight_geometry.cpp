@@ -307,12 +307,13 @@ void EnsightGeometry::block(EnsightPart& part, const std::string& line) {
             left_out[i] = left_out[i] || flags[i] != 0;
         }
     }
-    if (node_ids_) {
-        in_.line();  // "node_ids"
+    // A header may promise ids and blocks hold none.
+    if (node_ids_ && in_.line_begins_with("node_ids")) {
+        in_.line();
         in_.integers(flags, nodes);
     }
-    if (element_ids_) {
-        in_.line();  // "element_ids"
+    if (element_ids_ && in_.line_begins_with("element_ids")) {
+        in_.line();
         in_.integers(flags, cells(0) * cells(1) * cells(2));
     }
     block_cells(part, size, left_out);

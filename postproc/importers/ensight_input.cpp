@@ -95,6 +95,11 @@ std::string EnsightInput::line() {
     return std::string(core::trimmed(std::string_view(text).substr(0, text.find('\0'))));
 }
 
+bool EnsightInput::line_begins_with(std::string_view word) {
+    const std::size_t before = coding_ == EnsightCoding::fortran_binary ? 4 : 0;  // the record's length
+    return !at_end() && in_.ensure(before + word.size()) && std::string_view(in_.here() + before, word.size()) == word;
+}
+
 std::string EnsightInput::line_as_it_is() {
     if (coding_ != EnsightCoding::text) {
         return line();

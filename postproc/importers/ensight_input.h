@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "postproc/importers/buffer.h"
@@ -24,7 +25,9 @@ public:
     [[nodiscard]] bool at_end();
     /// One line (80 characters in binary), without blanks at its ends.
     std::string line();
-    /// The same, but a blank line of text counts: names and descriptions may be empty.
+    /// Does the next line begin with that word? It is not taken.
+    [[nodiscard]] bool line_begins_with(std::string_view word);
+    /// As line(), but a blank line of text counts: names and descriptions may be empty.
     std::string line_as_it_is();
     /// Behind the mark that begins step `step` (from 0) of a file that holds several.
     void to_step(int step);

@@ -64,13 +64,16 @@ FoamFields::PatchValues FoamFields::patch_values(FoamInput& in, std::size_t comp
                 values.uniform = in.value(components);
                 in.expect(";");
             } else if (how == "nonuniform") {
-                in.token();  // List<...>
+                in.skip_list_type();
                 values.list = in.reals(components);
+                values.one_a_face = true;
                 in.expect(";");
             } else if (how != ";") {
                 in.skip_entry();  // "$internalField"
             }
-        } else if (!key.starts_with("#")) {
+        } else if (key.starts_with("#")) {
+            in.skip_directive();
+        } else {
             in.skip_entry();
         }
     }
@@ -95,7 +98,7 @@ void FoamFields::add_patch(const FoamPiece& piece, std::size_t patch, const Valu
     block.count = faces.count;
     block.components = like.components;
     block.values.grow_to(faces.count * n);
-    if (given != nullptr && !given->list.empty()) {
+    if (given != nullptr && given->one_a_face) {
         if (given->list.size() != block.values.size()) {
             refuse(file, "patch '" + piece.patches[patch].name + "' has " + std::to_string(given->list.size() / n) +
                        " values for " + std::to_string(faces.count) + " faces");
@@ -126,7 +129,7 @@ Buffer<double> FoamFields::inner_values(FoamInput& in, std::size_t components, s
     Buffer<double> values;
     const std::string how = in.token();
     if (how == "nonuniform") {
-        in.token();  // List<...>
+        in.skip_list_type();
         values = in.reals(components);
     } else if (how == "uniform") {
         const auto one = in.value(components);
@@ -189,10 +192,16 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
                 if (name.empty()) {
                     in.fail("the file ends within the boundary field");
                 }
-                patches[name] = patch_values(in, components);
+                if (name.starts_with("#")) {
+                    in.skip_directive();  // boundary conditions of "setConstraintTypes" state no values
+                } else {
+                    patches[name] = patch_values(in, components);
+                }
             }
             closed = true;
-        } else if (!key.starts_with("#")) {
+        } else if (key.starts_with("#")) {
+            in.skip_directive();
+        } else {
             in.skip_entry();
         }
     }

@@ -50,6 +50,7 @@ private:
         std::string type;
         std::vector<double> uniform;
         Buffer<double> list;
+        bool one_a_face = false;  ///< `list` is what the file states, even when it is empty
     };
 
     void read_field(const FoamPiece& piece, const std::filesystem::path& file);

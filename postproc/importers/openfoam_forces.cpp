@@ -153,28 +153,47 @@ std::vector<fs::path> times_in(const fs::path& folder) {
     return result;
 }
 
-/// Forces of one start, with the moments that stand in a file of their own.
-Part read_start(const fs::path& folder, ForceHistory& history) {
-    const bool apart = fs::is_regular_file(folder / "force.dat");
-    const fs::path forces = folder / (apart ? "force.dat" : "forces.dat");
-    if (!fs::is_regular_file(forces)) {
-        return {};
-    }
-    Part part = read_part(forces);
-    history.files.push_back(forces.string());
-    if (apart && fs::is_regular_file(folder / "moment.dat")) {
-        const Part moments = read_part(folder / "moment.dat");
-        history.files.push_back((folder / "moment.dat").string());
-        part.centre = moments.centre;
-        part.moments = true;
-        std::erase_if(part.rows, [&](const auto& entry) { return !moments.rows.contains(entry.first); });
-        for (auto& [time, row] : part.rows) {
-            const Row& moment = moments.rows.at(time);
-            row.pressure_moment = moment.pressure;
-            row.viscous_moment = moment.viscous;
+/// "force.dat" and what later runs from the same start wrote beside it, "force_0.dat", oldest first: the endings behind the
+/// stem, ".dat" or "_0.dat".
+std::vector<std::string> endings_of(const fs::path& folder, const std::string& stem) {
+    std::vector<std::string> endings;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (entry.is_regular_file() && name.starts_with(stem) && name.ends_with(".dat") && (name.size() == stem.size() + 4 || name[stem.size()] == '_')) {
+            endings.push_back(name.substr(stem.size()));
         }
     }
-    return part;
+    // '.' stands before '_', and of several runs the number says which came later.
+    std::sort(endings.begin(), endings.end(), [](const std::string& a, const std::string& b) {
+        return std::pair(a.size(), a) < std::pair(b.size(), b);
+    });
+    return endings;
+}
+
+/// Forces of one start, with the moments that stand in a file of their own; one part a run.
+std::vector<Part> read_start(const fs::path& folder, ForceHistory& history) {
+    std::vector<Part> parts;
+    for (const std::string stem : {"forces", "force"}) {
+        for (const auto& ending : endings_of(folder, stem)) {
+            Part part = read_part(folder / (stem + ending));
+            history.files.push_back((folder / (stem + ending)).string());
+            const fs::path apart = folder / ("moment" + ending);
+            if (stem == "force" && fs::is_regular_file(apart)) {
+                const Part moments = read_part(apart);
+                history.files.push_back(apart.string());
+                part.centre = moments.centre;
+                part.moments = true;
+                std::erase_if(part.rows, [&](const auto& entry) { return !moments.rows.contains(entry.first); });
+                for (auto& [time, row] : part.rows) {
+                    const Row& moment = moments.rows.at(time);
+                    row.pressure_moment = moment.pressure;
+                    row.viscous_moment = moment.viscous;
+                }
+            }
+            parts.push_back(std::move(part));
+        }
+    }
+    return parts;
 }
 
 }  // namespace
@@ -199,14 +218,15 @@ std::vector<ForceHistory> read_openfoam_forces(const fs::path& case_folder) {
         std::map<double, Row> rows;
         bool moments = true;
         for (const auto& start : times_in(object)) {
-            Part part = read_start(start, history);
-            if (part.rows.empty()) {
-                continue;
+            for (Part& part : read_start(start, history)) {
+                if (part.rows.empty()) {
+                    continue;
+                }
+                rows.erase(rows.lower_bound(part.rows.begin()->first), rows.end());
+                rows.merge(part.rows);
+                history.centre = part.centre;
+                moments = moments && part.moments;
             }
-            rows.erase(rows.lower_bound(part.rows.begin()->first), rows.end());
-            rows.merge(part.rows);
-            history.centre = part.centre;
-            moments = moments && part.moments;
         }
         if (rows.empty()) {
             continue;

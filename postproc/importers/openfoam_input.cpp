@@ -108,6 +108,12 @@ bool FoamInput::accept(char c) {
     return true;
 }
 
+void FoamInput::skip_list_type() {
+    if (const int c = next(); c < '0' || c > '9') {
+        token();
+    }
+}
+
 double FoamInput::number() {
     next();
     in_.ensure(64);

@@ -32,6 +32,11 @@ public:
     double number();
     std::uint64_t count();
 
+    /// "List<scalar>" before a list, which OpenFOAM leaves out where the list is empty: "nonuniform 0()".
+    void skip_list_type();
+    /// What follows a word like "#include": its file is not read.
+    void skip_directive() { token(); }
+
     /// "3 (0 1 2)", "3{0}", or the same in binary.
     Buffer<std::uint32_t> labels();
     /// A list of scalars, or of vectors and tensors in brackets: `components` numbers each.

@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "postproc/importers/cfx_output.h"
 #include "postproc/importers/report_words.h"
+#include "postproc/importers/residual_history.h"
 
 namespace underbody::postproc {
 
@@ -73,6 +74,12 @@ constexpr std::size_t most_columns = 4096;
 
 std::string_view without_mark(std::string_view text) { return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text; }
 
+core::Problem repetition(std::size_t rows, const std::string& file) {
+    return {core::Problem::Severity::note,
+            std::to_string(rows) + " rows repeat or go back, as after a restart: the last ones count",
+            {file, {}, {}, {}}};
+}
+
 /// Rows by the first column; the last one of a number counts.
 class Rows {
 public:
@@ -93,10 +100,7 @@ public:
             }
         }
         if (repeated_ > 0) {
-            monitor.problems.push_back(
-                {core::Problem::Severity::note,
-                 std::to_string(repeated_) + " rows repeat or go back, as after a restart: the last ones count",
-                 {monitor.file, {}, {}, {}}});
+            monitor.problems.push_back(repetition(repeated_, monitor.file));
         }
         if (odd > 0) {
             monitor.problems.push_back({core::Problem::Severity::warning,
@@ -115,38 +119,39 @@ bool is_residual_header(const std::vector<std::string>& words) {
     return words.size() > 2 && words[0] == "iter" && words[1] == "continuity";
 }
 
-/// The table of residuals that a transcript interrupts with messages.
+/// The table of residuals that a transcript interrupts with messages. A header of other names (the energy switched on, a
+/// report added) goes on with these.
 Monitor read_transcript(const std::string& file, std::string_view bytes) {
-    Monitor monitor;
-    monitor.file = file;
-    monitor.title = "residuals";
-    Rows rows;
-    bool in_table = false;
+    ResidualHistory residuals(file);
+    std::vector<std::string> columns;
+    std::size_t repeated = 0;
     for (const auto line : core::split(bytes, '\n')) {
         auto words = words_of(line);
         if (is_residual_header(words)) {
             if (words.back() == "time/iter") {
                 words.pop_back();
             }
-            if (monitor.columns.empty()) {
-                monitor.columns = words;
-            }
-            in_table = words == monitor.columns;
+            columns = std::move(words);
             continue;
         }
-        if (!in_table || words.size() < monitor.columns.size()) {
+        if (columns.empty() || words.size() < columns.size()) {
             continue;
         }
-        words.resize(monitor.columns.size());
-        auto row = numbers_of(words);
-        if (row && core::parse_integer(words[0])) {
-            rows.add(std::move(*row));
+        words.resize(columns.size());
+        const auto row = numbers_of(words);
+        if (!row || !core::parse_integer(words[0])) {
+            continue;
+        }
+        repeated += residuals.at() && (*row)[0] <= *residuals.at() ? 1 : 0;
+        residuals.begin((*row)[0]);
+        for (std::size_t c = 1; c < columns.size(); ++c) {
+            residuals.add(columns[c], (*row)[c]);
         }
     }
-    if (rows.empty()) {
-        throw core::InputError("format", "the transcript holds no residuals", {file, {}, {}, {}});
+    Monitor monitor = residuals.finish("iter");
+    if (repeated > 0) {
+        monitor.problems.insert(monitor.problems.begin(), repetition(repeated, file));
     }
-    rows.into(monitor);
     return monitor;
 }
 

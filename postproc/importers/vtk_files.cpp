@@ -34,6 +34,7 @@
 #include "core/units.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/trial.h"
+#include "postproc/importers/variable_reading.h"
 #include "postproc/importers/vtk_problems.h"
 
 namespace underbody::postproc {
@@ -80,8 +81,17 @@ void join_components(Zone& zone, vtkDataSetAttributes& data, Location on) {
     zone.arrays.insert(zone.arrays.end(), joined.begin(), joined.end());
 }
 
+/// Once a file, whatever the number of its zones.
+void ask_for_unit(Field& field, const std::string& variable) {
+    core::Problem problem = unit_is_asked_for(variable, {field.files.front(), {}, {}, {}});
+    const bool known = std::any_of(field.problems.begin(), field.problems.end(), [&](const auto& p) { return p.message == problem.message; });
+    if (!known) {
+        field.problems.push_back(std::move(problem));
+    }
+}
+
 /// Turns the arrays of one attribute set into canonical ones.
-void add_arrays(Zone& zone, vtkDataSetAttributes& data, Location on, const ReadOptions& options) {
+void add_arrays(Field& field, Zone& zone, vtkDataSetAttributes& data, Location on, const ReadOptions& options) {
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
         if (vtkDataArray* array = data.GetArray(i); array != nullptr && array->GetName() != nullptr) {
@@ -90,29 +100,19 @@ void add_arrays(Zone& zone, vtkDataSetAttributes& data, Location on, const ReadO
     }
     for (auto& array : arrays) {
         const std::string original = array->GetName();
-        const CanonicalName canonical = canonical_name(original);
+        const bool asked = unit_must_be_stated(original, options);
+        const VariableReading reading = read_variable_name(asked ? unstated_name(original) : original, options, {});
         data.RemoveArray(original.c_str());
-        if (!options.arrays.empty() && !matches_any(options.arrays, original) &&
-            !matches_any(options.arrays, canonical.name)) {
+        if (asked) {
+            ask_for_unit(field, original);
+        }
+        if (!options.arrays.empty() && !matches_any(options.arrays, original) && !matches_any(options.arrays, reading.name)) {
             continue;
         }
-        ArrayInfo info{canonical.name, canonical.unit, original, "", on, array->GetNumberOfComponents()};
-        for (const auto& [name, unit] : options.units) {
-            if (name == original) {
-                info.original_unit = unit;
-                info.unit = core::si_unit(unit);
-                const auto convert = core::conversion(unit, info.unit);
-                for (vtkIdType t = 0; t < array->GetNumberOfTuples() && (convert.scale != 1 || convert.offset != 0);
-                     ++t) {
-                    for (int c = 0; c < array->GetNumberOfComponents(); ++c) {
-                        array->SetComponent(t, c, convert(array->GetComponent(t, c)));
-                    }
-                }
-                if (!canonical.unit.empty() && !core::same_dimension(info.unit, canonical.unit)) {
-                    info.name = canonical.name == "pressure" && core::same_dimension(info.unit, "m^2/s^2")
-                                    ? "kinematic_pressure"
-                                    : original;
-                }
+        ArrayInfo info{reading.name, reading.unit, original, reading.original_unit, on, array->GetNumberOfComponents()};
+        for (vtkIdType t = 0; t < array->GetNumberOfTuples() && !reading.convert.is_identity(); ++t) {
+            for (int c = 0; c < array->GetNumberOfComponents(); ++c) {
+                array->SetComponent(t, c, reading.convert(array->GetComponent(t, c)));
             }
         }
         array->SetName(info.name.c_str());
@@ -258,11 +258,11 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool
     if (zone.volume != nullptr) {
         go_round_corners(*zone.volume);
     }
-    add_arrays(zone, *data->GetPointData(), Location::nodes, options);
+    add_arrays(field, zone, *data->GetPointData(), Location::nodes, options);
     vtkDataSet* own =
         zone.surface != nullptr ? static_cast<vtkDataSet*>(zone.surface) : static_cast<vtkDataSet*>(zone.volume);
     own->GetPointData()->ShallowCopy(data->GetPointData());
-    add_arrays(zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, options);
+    add_arrays(field, zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, options);
     own->GetCellData()->ShallowCopy(data->GetCellData());
     if (!options.length_unit.empty()) {
         const double scale = core::conversion(options.length_unit, "m").scale;

@@ -182,6 +182,29 @@ TEST(EnsightBlocks, BlankedCellsAndGhostsAreLeftOutWithTheirValues) {
     EXPECT_EQ(grid.GetCellData()->GetArray("pressure")->GetTuple1(3), 4);
 }
 
+TEST(EnsightBlocks, MayHoldTheIdsThatTheHeaderPromisesOrNot) {
+    const core::TemporaryFolder folder;
+    for (const auto& coding : codings) {
+        for (const bool there : {true, false}) {
+            Writer geometry(coding);
+            geometry.line("a title").line("a second one").line("node id given").line("element id given");
+            geometry.line("part").ints({1}).line("tank").line("block uniform").ints({2, 2, 2}).reals({0, 0, 0, 1, 1, 1});
+            if (there) {
+                geometry.line("node_ids").ints({1, 2, 3, 4, 5, 6, 7, 8}).line("element_ids").ints({1});
+            }
+            geometry.line("part").ints({2}).line("pool").line("block uniform").ints({3, 2, 2}).reals({5, 0, 0, 1, 1, 1});
+            if (there) {
+                geometry.line("node_ids").ints({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}).line("element_ids").ints({1, 2});
+            }
+            geometry.to(folder.path() / "a.geo");
+            write_case(folder.path() / "a.case", "GEOMETRY\nmodel: a.geo\n");
+            const auto field = read_field(folder.path() / "a.case");
+            ASSERT_EQ(field.zones.size(), 2U) << coding << there;
+            EXPECT_EQ(field.zones[1].volume->GetNumberOfCells(), 2) << coding << there;
+        }
+    }
+}
+
 TEST(EnsightBlocks, ABlockOneNodeThickIsASurfaceAndUndefinedValuesAreMissing) {
     const core::TemporaryFolder folder;
     Writer geometry("text");

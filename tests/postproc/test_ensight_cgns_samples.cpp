@@ -37,7 +37,7 @@ TEST(EnsightSamples, OpenFoamsPressureWaitsForItsUnit) {
     ASSERT_NE(field.find("hull"), nullptr);
     EXPECT_EQ(field.find("hull")->find("pressure"), nullptr);
     EXPECT_EQ(field.find("hull")->surface->GetNumberOfCells(), 1360);
-    EXPECT_THAT(field.problems.front().message, HasSubstr("pressure over density"));
+    EXPECT_THAT(field.problems.front().message, HasSubstr("--unit p=m^2/s^2"));
     ReadOptions options;
     options.units = {{"p", "m^2/s^2"}};
     const auto stated = read_field(path, options);

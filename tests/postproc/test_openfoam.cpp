@@ -7,7 +7,9 @@
 #include <fstream>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "import_support.h"
+#include "postproc/importers/openfoam_forces.h"
 #include "postproc/loads.h"
 #include "tests/support/support.h"
 
@@ -135,6 +137,78 @@ TEST(OpenFoam, FilesCutAnywhereAreRefusedWithTheirPlace) {
         }
         EXPECT_EQ(test::cells_of(read_field(box)), 32);
     }
+}
+
+/// Puts `text` before the last occurrence of `mark`.
+void insert_before_last(const fs::path& path, const std::string& mark, const std::string& text) {
+    std::string whole = core::read_file(path);
+    const std::size_t at = whole.rfind(mark);
+    ASSERT_NE(at, std::string::npos) << path;
+    std::ofstream(path, std::ios::binary) << whole.insert(at, text);
+}
+
+TEST(OpenFoam, APatchWithoutFacesOnAProcessorStatesAnEmptyListWithoutItsType) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("decomposed"), box);
+    for (const char* processor : {"processor0", "processor1"}) {
+        const fs::path boundary = box / processor / "constant/polyMesh/boundary";
+        insert_before_last(boundary, ")\n", "    sensor\n    {\n        type wall;\n        nFaces 0;\n        startFace 68;\n    }\n");
+        std::string text = core::read_file(boundary);
+        std::ofstream(boundary, std::ios::binary) << text.replace(text.find("\n4\n"), 3, "\n5\n");
+        for (const char* field : {"p", "U"}) {
+            insert_before_last(box / processor / "0.005" / field, "}\n", "    sensor { type fixedValue; value nonuniform 0(); }\n");
+        }
+    }
+    const auto field = read_field(box);
+    EXPECT_EQ(test::cells_of(field), 32);
+    EXPECT_EQ(field.find("movingWall")->surface->GetNumberOfCells(), 8);
+    // A patch that has faces needs its values.
+    const fs::path pressure = box / "processor0/0.005/p";
+    std::string text = core::read_file(pressure);
+    const std::string stated = "type            zeroGradient;";
+    std::ofstream(pressure, std::ios::binary) << text.replace(text.find(stated), stated.size(), "type fixedValue; value nonuniform 0();");
+    EXPECT_THAT(test::refusal(box), HasSubstr("'movingWall' has 0 values for 4 faces"));
+}
+
+TEST(OpenFoam, FilesThatAFieldIncludesArePassedOver) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const fs::path pressure = box / "0.005/p";
+    std::string text = core::read_file(pressure);
+    text.insert(text.find("dimensions"), "#include \"initialConditions\"\n");
+    const std::string begin = "boundaryField\n{\n";
+    text.insert(text.find(begin) + begin.size(), "    #includeEtc \"caseDicts/setConstraintTypes\"\n");
+    std::ofstream(pressure, std::ios::binary) << text;
+    const auto plain = read_field(data("ascii"));
+    const auto field = read_field(box);
+    const char* name = "kinematic_pressure";
+    EXPECT_EQ(field.find("movingWall")->surface->GetCellData()->GetArray(name)->GetComponent(3, 0),
+              plain.find("movingWall")->surface->GetCellData()->GetArray(name)->GetComponent(3, 0));
+}
+
+TEST(OpenFoam, ForcesOfARunThatBeganAgainReplaceThoseOfTheFirst) {
+    const core::TemporaryFolder folder;
+    const fs::path start = folder.path() / "postProcessing/forces/0";
+    const auto write = [&](const std::string& name, double scale) {
+        std::string text = "# Force\n# CofR : (0 0 0)\n#\n# Time total_x total_y total_z pressure_x pressure_y pressure_z viscous_x viscous_y viscous_z\n";
+        for (int time = 1; time <= 3; ++time) {
+            const std::string force = core::format_number(scale * time);
+            text += std::to_string(time) + " " + force + " 0 0 " + force + " 0 0 0 0 0\n";
+        }
+        core::write_file(start / name, text);
+    };
+    for (const std::string what : {"force", "moment"}) {
+        write(what + ".dat", 1);
+        write(what + "_0.dat", 10);  // as OpenFOAM names the second file of one start
+    }
+    const auto histories = postproc::read_openfoam_forces(folder.path());
+    ASSERT_EQ(histories.size(), 1U);
+    EXPECT_THAT(histories[0].time, testing::ElementsAre(1, 2, 3));
+    EXPECT_EQ(histories[0].pressure_force.back()[0], 30);
+    EXPECT_EQ(histories[0].pressure_moment.front()[0], 10);
+    EXPECT_EQ(histories[0].files.size(), 4U);
 }
 
 TEST(OpenFoam, WrongCountsAndLabelsAreRefused) {

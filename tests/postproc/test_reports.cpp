@@ -101,6 +101,25 @@ TEST(ForceReports, BothLayoutsAreRead) {
     EXPECT_EQ(triples[2].net()->total, 3.3);
 }
 
+TEST(Monitors, ATranscriptGoesOnWithTheEquationsThatJoin) {
+    const core::TemporaryFolder folder;
+    const auto residuals = read_monitor(written(folder,
+                                                "  iter  continuity  x-velocity     time/iter\n"
+                                                "     1  1.0000e+00  1.5543e-03  0:01:02   99\n"
+                                                "     2  5.0000e-01  1.0e-03     0:01:01   98\n"
+                                                "!    2 solution is converged\n"
+                                                "     2  5.0000e-01  1.0e-03     0:01:01   98\n"
+                                                "> /define/models/energy yes no no no yes\n"
+                                                "  iter  continuity  energy  x-velocity     time/iter\n"
+                                                "     3  4.0000e-01  1e-6    2.0e-03     0:01:01   98\n"));
+    EXPECT_THAT(residuals.columns, ElementsAre("iter", "continuity", "x-velocity", "energy"));
+    EXPECT_THAT(residuals.values[0], ElementsAre(1, 2, 3));
+    EXPECT_THAT(*residuals.find("x-velocity"), ElementsAre(1.5543e-3, 1e-3, 2e-3));
+    EXPECT_THAT(*residuals.find("energy"), ElementsAre(testing::IsNan(), testing::IsNan(), 1e-6));
+    ASSERT_EQ(residuals.problems.size(), 1U);
+    EXPECT_THAT(residuals.problems[0].message, HasSubstr("1 rows repeat"));
+}
+
 TEST(ForceReports, ATranscriptWithSeveralReportsGivesThemAll) {
     const core::TemporaryFolder folder;
     const auto reports = read_force_reports(written(
@@ -188,7 +207,7 @@ std::string reason_against(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST(OutputOfCfx, GivesTheResidualsOfEveryIterationThroughNoticesBetween) {
+TEST(OutputOfCfx, GivesTheResidualsOfEveryIterationThroughNoticesBetweenAndWithin) {
     const core::TemporaryFolder folder;
     const auto residuals = read_monitor(written(folder, cfx_output()));
     EXPECT_THAT(residuals.columns, ElementsAre("Iteration", "U-Mom", "U-Mom max", "P-Mass", "P-Mass max", "K-TurbKE", "K-TurbKE max"));

@@ -3,6 +3,7 @@
 #include <vtkCellData.h>
 #include <vtkPointData.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
@@ -42,7 +43,7 @@ const std::string ply =
 
 const std::string legacy =
     "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
-    "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\nSCALARS p double 1\nLOOKUP_TABLE default\n1 2 3 4\n";
+    "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\nSCALARS pressure double 1\nLOOKUP_TABLE default\n1 2 3 4\n";
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
     const std::size_t at = text.find(what);
@@ -68,7 +69,7 @@ void expect_safe(const fs::path& path) {
 /// The faces of a tetrahedron as a grid, with a pressure of 1 + 2x + 3y + 4z at its corners.
 const std::string hull =
     "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
-    "CELLS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\nCELL_TYPES 4\n5 5 5 5\nPOINT_DATA 4\nSCALARS p double 1\nLOOKUP_TABLE default\n"
+    "CELLS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\nCELL_TYPES 4\n5 5 5 5\nPOINT_DATA 4\nSCALARS pressure double 1\nLOOKUP_TABLE default\n"
     "1 3 4 5\n";
 
 }  // namespace
@@ -98,7 +99,7 @@ TEST(VtkFiles, XmlLegacyAndStructuredGridsHaveTheirCellsAndArrays) {
     const auto grid = read_field(written(folder, "b.vtk",
                                          "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
                                          "X_COORDINATES 3 double\n0 1 3\nY_COORDINATES 2 double\n0 1\nZ_COORDINATES 2 double\n0 2\n"
-                                         "CELL_DATA 2\nSCALARS p double 1\nLOOKUP_TABLE default\n1 2\n"));
+                                         "CELL_DATA 2\nSCALARS pressure double 1\nLOOKUP_TABLE default\n1 2\n"));
     EXPECT_EQ(test::cells_of(grid), 2);
     EXPECT_NEAR(test::volume_of(grid), 6, 1e-12);
     EXPECT_EQ(grid.zones.at(0).volume->GetCellData()->GetArray("pressure")->GetTuple1(1), 2);
@@ -129,6 +130,30 @@ TEST(VtkFiles, SurfacesInPlyObjAndBothKindsOfStlHaveTheirArea) {
     std::memcpy(stl.data() + 84, corners, sizeof corners);
     EXPECT_NEAR(test::area_of(*read_field(written(folder, "a.stl", stl)).zones.at(0).surface), 0.5, 1e-6);
     EXPECT_NE(test::refusal(written(folder, "b.stl", stl.substr(0, 120))), "");
+}
+
+TEST(VtkFiles, PAndWallShearStressOfOpenFoamWaitForTheirUnit) {
+    const core::TemporaryFolder folder;
+    const auto path = written(folder, "a.vtk",
+                              "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+                              "CELL_DATA 1\nFIELD attributes 2\np 1 1 double\n7\nwallShearStress 3 1 double\n1 2 3\n");
+    const auto plain = read_field(path);
+    EXPECT_EQ(plain.zones.at(0).find("pressure"), nullptr);
+    EXPECT_EQ(plain.zones.at(0).find("wall_shear"), nullptr);
+    EXPECT_NE(plain.zones.at(0).find("p (unit not stated)"), nullptr);
+    EXPECT_THAT(plain.problems.front().message, HasSubstr("--unit p=m^2/s^2"));
+    const auto value = [&](const char* unit, const char* array, int component) {
+        postproc::ReadOptions options;
+        options.units = {{"p", unit}};
+        const auto field = read_field(path, options);
+        auto* data = field.zones.at(0).surface->GetCellData()->GetArray(array);
+        return data != nullptr ? data->GetComponent(0, component) : std::nan("");
+    };
+    EXPECT_EQ(value("Pa", "pressure", 0), 7);
+    EXPECT_EQ(value("m^2/s^2", "kinematic_pressure", 0), 7);
+    // The traction that OpenFOAM states acts on the fluid.
+    EXPECT_EQ(value("Pa", "wall_shear", 2), -3);
+    EXPECT_EQ(value("m^2/s^2", "kinematic_wall_shear", 1), -2);
 }
 
 TEST(VtkFiles, NumbersOnThePointsAndFacesOfAPlyAreArrays) {

@@ -1,0 +1,31 @@
+// What a variable is that a file names without its unit, with what the caller states.
+#pragma once
+
+#include <string>
+
+#include "core/units.h"
+#include "postproc/field.h"
+
+namespace underbody::postproc {
+
+struct VariableReading {
+    std::string name;           ///< canonical, or the file's own
+    std::string unit;           ///< SI; empty when nobody says
+    std::string original_unit;  ///< as stated by the caller
+    core::Conversion convert;   ///< from the file's numbers to SI, and to our sign
+};
+
+/// SI is taken, or the unit in `options.units`, which may make another quantity of it: pressure in m^2/s^2 is
+/// kinematic_pressure. OpenFOAM's `wallShearStress` follows the unit stated for `p`, and is turned round: it acts on the
+/// fluid there, on the body here. Throws core::InputError for a unit that is none.
+VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place);
+
+/// OpenFOAM's `p` and `wallShearStress` are Pa in compressible cases and m^2/s^2 in incompressible ones, under the same
+/// names. EnSight, VTK and Tecplot files do not say which: true for such a name while `options` does not either.
+bool unit_must_be_stated(const std::string& original, const ReadOptions& options);
+/// The name that such a variable goes by, so that nobody takes it for a pressure: "p (unit not stated)".
+std::string unstated_name(const std::string& original);
+/// The warning that goes with it.
+core::Problem unit_is_asked_for(const std::string& original, const core::Place& place);
+
+}  // namespace underbody::postproc
