@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/text.h"
+#include "postproc/face_integral.h"
+#include "postproc/vector_math.h"
 
 namespace underbody::postproc {
 
 namespace {
 
-using Vector = std::array<double, 3>;
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double norm(const Vector& a) { return std::sqrt(dot(a, a)); }
 double diagonal(const WallShape& wall) {
     return std::hypot(wall.upper[0] - wall.lower[0], wall.upper[1] - wall.lower[1], wall.upper[2] - wall.lower[2]);
 }
@@ -76,6 +75,26 @@ std::vector<Group> groups_of(const std::vector<WallShape>& walls) {
     return groups;
 }
 
+const WallShape& shape(const WallShape& wall) { return wall; }
+const WallShape& shape(const Group& group) { return group.shape; }
+
+/// The box around those that are `wanted`; nothing when none is.
+template <typename Walls, typename Wanted>
+std::optional<WallShape> box_around(const Walls& walls, Wanted&& wanted) {
+    std::optional<WallShape> box;
+    for (const auto& wall : walls) {
+        if (!wanted(wall)) {
+            continue;
+        }
+        if (box) {
+            widen(*box, shape(wall));
+        } else {
+            box = shape(wall);
+        }
+    }
+    return box;
+}
+
 /// Larger by so much cannot be a matter of rounding or of a rim.
 constexpr double clearly = 1.05;
 
@@ -85,44 +104,23 @@ bool too_large_to_be_balanced(const Group& group, const std::vector<Group>& grou
     if (own < one_sided * group.shape.area) {
         return false;
     }
-    WallShape rest;
-    bool any = false;
-    for (const auto& other : groups) {
+    const auto rest = box_around(groups, [&](const Group& other) {
         // What is as large (the ceiling over a floor) might balance it in a closed box, but not around a body.
         const bool as_large = norm(other.shape.area_vector) > own / clearly;
-        if (&other == &group || as_large) {
-            continue;
-        }
-        if (any) {
-            widen(rest, other.shape);
-        } else {
-            rest = other.shape;
-            any = true;
-        }
-    }
-    return any && own > clearly * shadow(rest, group.shape.area_vector);
+        return &other != &group && !as_large;
+    });
+    return rest && own > clearly * shadow(*rest, group.shape.area_vector);
 }
 
 bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
     if (!wall.normals_into_fluid || !(wall.volume < 0)) {
         return false;
     }
-    WallShape rest;
-    bool any = false;
-    for (const auto& other : walls) {
-        if (&other != &wall) {
-            if (any) {
-                widen(rest, other);
-            } else {
-                rest = other;
-                any = true;
-            }
-        }
-    }
+    const auto rest = box_around(walls, [&](const WallShape& other) { return &other != &wall; });
     int axes = 0;
-    for (std::size_t k = 0; any && k < 3; ++k) {
+    for (std::size_t k = 0; rest && k < 3; ++k) {
         const double room = 0.02 * (wall.upper[k] - wall.lower[k]);
-        axes += wall.lower[k] < rest.lower[k] - room && wall.upper[k] > rest.upper[k] + room ? 1 : 0;
+        axes += wall.lower[k] < rest->lower[k] - room && wall.upper[k] > rest->upper[k] + room ? 1 : 0;
     }
     return axes >= 2;
 }
@@ -144,32 +142,15 @@ WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool n
     for (std::size_t k = 0; k < 3; ++k) {
         centre[k] = 0.5 * (wall.lower[k] + wall.upper[k]);
     }
-    const auto offsets = surface.offsets();
-    const auto nodes = surface.connectivity();
-    for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
-        const auto at = [&](Index i) { return points.data() + 3 * nodes[static_cast<std::size_t>(i)]; };
-        const double* a = at(offsets[f]);
-        Vector face{};
-        for (Index i = offsets[f] + 1; i + 1 < offsets[f + 1]; ++i) {
-            const double* b = at(i);
-            const double* c = at(i + 1);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::size_t m = (k + 1) % 3;
-                const std::size_t n = (k + 2) % 3;
-                face[k] += 0.5 * ((b[m] - a[m]) * (c[n] - a[n]) - (b[n] - a[n]) * (c[m] - a[m]));
-            }
-        }
-        wall.area += norm(face);
-        for (std::size_t k = 0; k < 3; ++k) {
-            wall.area_vector[k] += face[k];
-            wall.volume += face[k] * (a[k] - centre[k]) / 3;
-        }
-    }
+    const FaceSums sums = integrate_faces(surface, {}, centre);
+    wall.area = sums.area;
+    wall.area_vector = sums.area_vector;
+    wall.volume = (sums.flux_of_place[0] + sums.flux_of_place[1] + sums.flux_of_place[2]) / 3;
     return wall;
 }
 
-std::vector<OtherWall> walls_beside_body(const std::vector<WallShape>& walls) {
-    std::vector<OtherWall> others;
+std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls) {
+    std::vector<LeftOutZone> others;
     const auto groups = groups_of(walls);
     for (const auto& group : groups) {
         if (too_large_to_be_balanced(group, groups)) {
@@ -180,12 +161,12 @@ std::vector<OtherWall> walls_beside_body(const std::vector<WallShape>& walls) {
         }
     }
     for (const auto& wall : walls) {
-        const bool named = std::any_of(others.begin(), others.end(), [&](const OtherWall& other) { return other.name == wall.name; });
+        const bool named = std::any_of(others.begin(), others.end(), [&](const LeftOutZone& other) { return other.name == wall.name; });
         if (!named && surrounds_the_others(wall, walls)) {
             others.push_back({wall.name, "it surrounds the others, with the fluid inside"});
         }
     }
-    return others.size() < walls.size() ? others : std::vector<OtherWall>{};
+    return others.size() < walls.size() ? others : std::vector<LeftOutZone>{};
 }
 
 std::vector<std::string> separate_bodies(const std::vector<WallShape>& walls) {

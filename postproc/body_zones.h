@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "postproc/loads.h"
 #include "postproc/surface_arrays.h"
 
 namespace underbody::postproc {
@@ -15,23 +16,17 @@ struct WallShape {
     std::array<double, 3> lower{}, upper{};  ///< m, bounding box
     double area = 0;                         ///< m^2
     std::array<double, 3> area_vector{};     ///< m^2, by the node order of the file
-    double volume = 0;                       ///< m^3, of the cone from its faces to the centre of the box, by the node order
+    double volume = 0;                       ///< m^3, of the cones from its faces to the centre of the box, by the node order
     bool normals_into_fluid = false;         ///< the node order is known to look into the fluid
 };
 WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool normals_into_fluid);
-
-/// A wall that is no part of a body, and how that is known.
-struct OtherWall {
-    std::string name;
-    std::string why;
-};
 
 /// Walls that cannot be part of one body with the others:
 /// 1. that look one way (within 5 % of their area) and whose area vector is larger than anything in the box around the
 ///    smaller walls can balance (a ground, a tunnel's floor, a lid; flat walls in one plane count as one);
 /// 2. that surround all others with the fluid inside (a tunnel, a tank).
 /// None when that would leave no wall. An internal flow (a room, a pipe with one wall) has none either.
-std::vector<OtherWall> walls_beside_body(const std::vector<WallShape>& walls);
+std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls);
 
 /// Names of walls that are closed bodies of their own and lie apart from each other; fewer than two: empty.
 std::vector<std::string> separate_bodies(const std::vector<WallShape>& walls);

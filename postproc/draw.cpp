@@ -37,6 +37,7 @@
 #include "core/text.h"
 #include "core/virtual_display.h"
 #include "postproc/colours.h"
+#include "postproc/vector_math.h"
 
 namespace underbody::postproc {
 
@@ -44,8 +45,6 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
 Point unit(const Point& a) {
     const double size = std::sqrt(dot(a, a));
     return size > 0 ? Point{a[0] / size, a[1] / size, a[2] / size} : Point{0, 0, 1};

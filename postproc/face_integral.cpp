@@ -37,8 +37,9 @@ struct Sums {
     UNDERBODY_INLINE void place(const V3& x, const V3& a) { flux_of_place.v += x.v * a.v; }
 };
 
-/// Reads what belongs to a face. `node_pressure`, `node_shear`: values by node, else one for the face.
-template <bool node_pressure, bool node_shear, bool has_shear>
+/// Reads what belongs to a face. `node_pressure`, `node_shear`: values by node, else one for the face; without a
+/// pressure the shape alone is summed.
+template <bool has_pressure, bool node_pressure, bool node_shear, bool has_shear>
 class Kernel {
 public:
     Kernel(const SurfaceArrays& surface, const FaceValues& values, const std::array<double, 3>& origin)
@@ -64,7 +65,12 @@ private:
         const double* x = points_ + 3 * n;
         return make(x[0], x[1], x[2]) - origin_;
     }
-    [[nodiscard]] UNDERBODY_INLINE double p(std::size_t face, Index n) const { return (node_pressure ? pressure_[n] : pressure_[face]) - reference_; }
+    [[nodiscard]] UNDERBODY_INLINE double p(std::size_t face, Index n) const {
+        if constexpr (!has_pressure) {
+            return 0;
+        }
+        return (node_pressure ? pressure_[n] : pressure_[face]) - reference_;
+    }
     [[nodiscard]] UNDERBODY_INLINE V3 t(std::size_t face, Index n) const {
         if constexpr (!has_shear) {
             return {};
@@ -120,7 +126,7 @@ private:
             const V3 qu = (1.0 / 3) * (p0 * b + pu * a) + (1.0 / 9) * (pv * d + pd * c);
             const V3 qv = (1.0 / 3) * (p0 * c + pv * a) + (1.0 / 9) * (pu * d + pd * b);
             sums.pressure_moment = sums.pressure_moment - 4.0 * (cross(q0, n0) + cross(qu, n1) + cross(qv, n2));
-        } else {
+        } else if constexpr (has_pressure) {
             const double p0 = 4.0 * (pressure_[face] - reference_);
             sums.pressure_force = sums.pressure_force - p0 * n0;
             sums.pressure_moment = sums.pressure_moment - p0 * (cross(a, n0) + (1.0 / 3) * (cross(b, n1) + cross(c, n2)));
@@ -196,9 +202,9 @@ FaceSums plain(const Sums& sums) {
             plain(sums.shear_force), plain(sums.shear_moment), plain(sums.flux_of_place)};
 }
 
-template <bool node_pressure, bool node_shear, bool has_shear>
+template <bool has_pressure, bool node_pressure, bool node_shear, bool has_shear>
 UNDERBODY_INLINE FaceSums sum_of(const SurfaceArrays& surface, const FaceValues& values, const std::array<double, 3>& origin, std::size_t from, std::size_t to) {
-    const Kernel<node_pressure, node_shear, has_shear> kernel(surface, values, origin);
+    const Kernel<has_pressure, node_pressure, node_shear, has_shear> kernel(surface, values, origin);
     Sums sums;
     for (std::size_t f = from; f < to; ++f) {
         kernel.add(f, sums);
@@ -209,37 +215,40 @@ UNDERBODY_INLINE FaceSums sum_of(const SurfaceArrays& surface, const FaceValues&
 using Range = FaceSums (*)(const SurfaceArrays&, const FaceValues&, const std::array<double, 3>&, std::size_t, std::size_t);
 
 // The same code twice: for every processor, and for those with AVX2.
-template <bool node_pressure, bool node_shear, bool has_shear>
+template <bool has_pressure, bool node_pressure, bool node_shear, bool has_shear>
 FaceSums sum_range(const SurfaceArrays& surface, const FaceValues& values, const std::array<double, 3>& origin, std::size_t from, std::size_t to) {
-    return sum_of<node_pressure, node_shear, has_shear>(surface, values, origin, from, to);
+    return sum_of<has_pressure, node_pressure, node_shear, has_shear>(surface, values, origin, from, to);
 }
 
 #if defined(__x86_64__)
-template <bool node_pressure, bool node_shear, bool has_shear>
+template <bool has_pressure, bool node_pressure, bool node_shear, bool has_shear>
 [[gnu::target("avx2,fma")]] FaceSums sum_range_avx2(const SurfaceArrays& surface, const FaceValues& values, const std::array<double, 3>& origin, std::size_t from, std::size_t to) {
-    return sum_of<node_pressure, node_shear, has_shear>(surface, values, origin, from, to);
+    return sum_of<has_pressure, node_pressure, node_shear, has_shear>(surface, values, origin, from, to);
 }
 
-template <bool node_pressure, bool node_shear, bool has_shear>
+template <bool has_pressure, bool node_pressure, bool node_shear, bool has_shear>
 Range pick() {
     static const bool wide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-    return wide ? sum_range_avx2<node_pressure, node_shear, has_shear> : sum_range<node_pressure, node_shear, has_shear>;
+    return wide ? sum_range_avx2<has_pressure, node_pressure, node_shear, has_shear> : sum_range<has_pressure, node_pressure, node_shear, has_shear>;
 }
 #else
-template <bool node_pressure, bool node_shear, bool has_shear>
+template <bool has_pressure, bool node_pressure, bool node_shear, bool has_shear>
 Range pick() {
-    return sum_range<node_pressure, node_shear, has_shear>;
+    return sum_range<has_pressure, node_pressure, node_shear, has_shear>;
 }
 #endif
 
 Range range_for(const FaceValues& values) {
+    if (values.pressure.empty()) {
+        return pick<false, false, false, false>();
+    }
     if (values.shear.empty()) {
-        return values.pressure_on_nodes ? pick<true, false, false>() : pick<false, false, false>();
+        return values.pressure_on_nodes ? pick<true, true, false, false>() : pick<true, false, false, false>();
     }
     if (values.pressure_on_nodes) {
-        return values.shear_on_nodes ? pick<true, true, true>() : pick<true, false, true>();
+        return values.shear_on_nodes ? pick<true, true, true, true>() : pick<true, true, false, true>();
     }
-    return values.shear_on_nodes ? pick<false, true, true>() : pick<false, false, true>();
+    return values.shear_on_nodes ? pick<true, false, true, true>() : pick<true, false, false, true>();
 }
 
 }  // namespace

@@ -9,7 +9,8 @@
 
 namespace underbody::postproc {
 
-/// Values to integrate: one per node or one per face; shear has three components and may be empty.
+/// Values to integrate: one per node or one per face; shear has three components and may be empty. Without a pressure
+/// only the shape is summed: area, area vector, flux of place.
 struct FaceValues {
     std::span<const double> pressure;
     bool pressure_on_nodes = true;

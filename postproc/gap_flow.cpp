@@ -15,17 +15,15 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "postproc/mirror_plane.h"
 #include "postproc/probe.h"
 #include "postproc/surface_arrays.h"
+#include "postproc/vector_math.h"
 #include "postproc/view_parts.h"
 
 namespace underbody::postproc {
 
 namespace {
-
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
-Point plus(const Point& a, const Point& b, double s = 1) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
 
 core::Place place_of(const Field& field) { return {field.files.empty() ? "" : field.files.front(), {}, {}, {}}; }
 
@@ -226,7 +224,7 @@ core::Table gap_flow(const Field& field, const GapOptions& options, core::Progre
         throw core::UsageError("usage", "one station at least");
     }
     const Gap gap(field, options);
-    const double halves = options.symmetry.empty() || options.symmetry == "none" ? 1 : 2;
+    const double halves = mirror_plane_from(options.symmetry).is_half() ? 2 : 1;
     const auto density = options.density ? options.density : field.density;
     std::vector<double> position, width, area, flow, mass, bulk, speed, pressure, bulk_pressure;
     for (int i = 0; i < options.stations; ++i) {
@@ -286,7 +284,7 @@ core::Figure gap_profile_figure(const Field& field, const GapOptions& options, c
             continue;
         }
         // Just beside the middle plane: a half model ends there.
-        const bool half = !options.symmetry.empty() && options.symmetry != "none";
+        const bool half = mirror_plane_from(options.symmetry).is_half();
         const double reach = std::max(std::abs(section.left), std::abs(section.right));
         const double side = half ? (section.right > -section.left ? 1.0 : -1.0) * 1e-3 * reach : 0.5 * (section.left + section.right);
         Point foot = plus(gap.centre(), options.forward, at);

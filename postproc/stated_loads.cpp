@@ -11,6 +11,7 @@
 #include "postproc/importers/cfx_output.h"
 #include "postproc/importers/openfoam_forces.h"
 #include "postproc/importers/reports.h"
+#include "postproc/vector_math.h"
 
 namespace underbody::postproc {
 
@@ -19,10 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using core::InputError;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double norm(const Vector& a) { return std::sqrt(dot(a, a)); }
-Vector plus(const Vector& a, const Vector& b, double scale = 1) { return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]}; }
-Vector cross(const Vector& a, const Vector& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
 std::string shown(const Vector& v) {
     return "(" + core::format_number(v[0], 4) + ", " + core::format_number(v[1], 4) + ", " + core::format_number(v[2], 4) + ")";
 }
@@ -216,6 +213,19 @@ StatedLoad from_history(const ForceHistory& history, const NamedAxis& axis, Load
     return load;
 }
 
+/// Line by line, without blanks at its ends, until `fits` says yes.
+template <typename Fits>
+bool any_line(std::string_view text, Fits&& fits) {
+    while (!text.empty()) {
+        const auto end = std::min(text.find('\n'), text.size());
+        if (fits(core::trimmed(text.substr(0, end)))) {
+            return true;
+        }
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return false;
+}
+
 /// A text beside a CFD file that holds a force report.
 bool holds_report(const fs::path& path) {
     std::error_code ignored;
@@ -232,13 +242,7 @@ bool holds_report(const fs::path& path) {
     if (has_cfx_forces(text)) {
         return true;
     }
-    for (const auto line : core::split(text, '\n')) {
-        const auto bare = core::trimmed(line);
-        if (bare.starts_with("Forces - ") || bare.starts_with("Moments - ")) {
-            return true;
-        }
-    }
-    return false;
+    return any_line(text, [](std::string_view line) { return line.starts_with("Forces - ") || line.starts_with("Moments - "); });
 }
 
 std::vector<fs::path> reports_beside(const fs::path& file) {

@@ -18,16 +18,14 @@
 #include "core/text.h"
 #include "postproc/colours.h"
 #include "postproc/loads.h"
+#include "postproc/mirror_plane.h"
 #include "postproc/stated_loads.h"
+#include "postproc/vector_math.h"
 #include "postproc/view_parts.h"
 
 namespace underbody::postproc {
 
 namespace {
-
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
-Point plus(const Point& a, const Point& b, double s = 1) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
 
 /// A scene with what is said about it.
 struct Composed {
@@ -130,18 +128,11 @@ public:
 
 private:
     void find_mirror() {
-        if (options_.symmetry.empty() || options_.symmetry == "none") {
-            return;
-        }
-        const auto equals = options_.symmetry.find('=');
-        const char axis = static_cast<char>(std::tolower(static_cast<unsigned char>(options_.symmetry[0])));
-        if (axis < 'x' || axis > 'z') {
-            throw core::UsageError("usage", "'" + options_.symmetry + "' is no symmetry plane", {}, "give its normal axis: y, or y=0.1");
-        }
-        mirror_.axis = axis - 'x';
-        if (equals != std::string::npos) {
-            mirror_.at = core::parse_number(options_.symmetry.substr(equals + 1)).value_or(0);
-        } else if (!zones_.empty()) {
+        const MirrorPlane plane = mirror_plane_from(options_.symmetry);
+        mirror_.axis = plane.axis;
+        if (plane.at) {
+            mirror_.at = *plane.at;
+        } else if (plane.is_half() && !zones_.empty()) {
             const double low = body_[static_cast<std::size_t>(2 * mirror_.axis)];
             const double high = body_[static_cast<std::size_t>(2 * mirror_.axis + 1)];
             mirror_.at = std::abs(low) < std::abs(high) ? low : high;

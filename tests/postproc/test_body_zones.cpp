@@ -81,7 +81,7 @@ std::vector<WallShape> box(double size, bool inward) {
     return walls;
 }
 
-std::vector<std::string> names_of(const std::vector<OtherWall>& walls) {
+std::vector<std::string> names_of(const std::vector<LeftOutZone>& walls) {
     std::vector<std::string> names;
     for (const auto& wall : walls) {
         names.push_back(wall.name);
