@@ -7,7 +7,8 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/facing.h"
-#include "postproc/loads_parts.h"
+#include "postproc/loads_reference.h"
+#include "postproc/mirror_plane.h"
 
 namespace underbody::postproc {
 
@@ -17,40 +18,8 @@ using core::InputError;
 using core::Problem;
 using Severity = Problem::Severity;
 
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double norm(const Vector& a) { return std::sqrt(dot(a, a)); }
-Vector plus(const Vector& a, const Vector& b, double scale = 1) { return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]}; }
-
 std::string shown(const Vector& v) {
     return "(" + core::format_number(v[0], 4) + ", " + core::format_number(v[1], 4) + ", " + core::format_number(v[2], 4) + ")";
-}
-
-/// A half model's plane.
-struct Mirror {
-    int axis = -1;
-    double at = 0;
-    bool stated = false;
-};
-
-Mirror mirror_from(const std::string& text) {
-    Mirror mirror;
-    if (text.empty() || text == "none") {
-        return mirror;
-    }
-    const auto equals = text.find('=');
-    const std::string axis = core::lower_case(core::trimmed(std::string_view(text).substr(0, equals)));
-    if (axis.size() != 1 || axis[0] < 'x' || axis[0] > 'z') {
-        throw core::UsageError("usage", "'" + text + "' is no symmetry plane", {}, "give its normal axis: --symmetry y, or --symmetry y=0.1");
-    }
-    mirror.axis = axis[0] - 'x';
-    if (equals != std::string::npos) {
-        mirror.at = core::parse_in(text.substr(equals + 1), "m");
-        mirror.stated = true;
-    }
-    return mirror;
 }
 
 using Part = SummedZone;
@@ -62,8 +31,9 @@ struct Axes {
 class Integrator {
 public:
     Integrator(const Field& field, const LoadsOptions& options, core::Progress& progress)
-        : field_(field), options_(options), progress_(progress), mirror_(mirror_from(options.symmetry)) {
+        : field_(field), options_(options), progress_(progress), revolved_(is_body_of_revolution(field, options)), plane_(mirror_plane_from(options.symmetry)) {
         result_.file = field.files.empty() ? "" : field.files.front();
+        mirror_.axis = plane_.axis;
         set_axes();
     }
 
@@ -101,8 +71,13 @@ private:
         };
         axes_.forward = unit(options_.forward, "forward");
         axes_.up = unit(options_.up, "up");
+        if (revolved_ && mirror_.axis >= 0) {
+            throw core::UsageError("usage", "an axisymmetric case is whole already", {}, "leave --symmetry away");
+        }
         if (field_.dimension == 2) {
-            note("two-dimensional: forces and moments are per metre depth");
+            result_.depth = revolved_ ? "of the whole body of revolution" : "per metre depth";
+            note(revolved_ ? "axisymmetric: forces are those on the whole body of revolution about the x axis; across it they cancel"
+                           : "two-dimensional: forces and moments are per metre depth");
             if (std::abs(axes_.up[2]) > 0.5) {
                 axes_.up = {0, 1, 0};
                 note("two-dimensional: up is +y");
@@ -110,6 +85,9 @@ private:
         }
         if (std::abs(dot(axes_.forward, axes_.up)) > 1e-6) {
             throw core::UsageError("usage", "forward and up are not perpendicular", {}, "for instance --forward +x --up +z");
+        }
+        if (revolved_ && std::abs(axes_.forward[0]) < 1 - 1e-6) {
+            throw core::UsageError("usage", "an axisymmetric case has its axis along x: forward lies along it", {}, "--forward +x or --forward -x");
         }
         axes_.starboard = cross(axes_.forward, axes_.up);
         result_.forward = axes_.forward;
@@ -154,20 +132,11 @@ private:
     // ---- where ----
 
     void find_extent() {
-        lower_.fill(std::numeric_limits<double>::infinity());
-        upper_.fill(-std::numeric_limits<double>::infinity());
-        for (const auto& part : parts_) {
-            widen(part, lower_, upper_);
-        }
-    }
-
-    static void widen(const Part& part, Vector& lower, Vector& upper) {
-        const auto points = part.surface->points();
-        for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                lower[k] = std::min(lower[k], points[i + k]);
-                upper[k] = std::max(upper[k], points[i + k]);
-            }
+        extent_ = extent_of(parts_);
+        if (revolved_) {  // the strips lie flat, see `zones_to_sum`
+            const double radius = extent_.upper[1];
+            extent_.lower = {extent_.lower[0], -radius, -radius};
+            extent_.upper = {extent_.upper[0], radius, radius};
         }
     }
 
@@ -176,20 +145,23 @@ private:
             return;
         }
         const auto k = static_cast<std::size_t>(mirror_.axis);
-        const double size = norm(plus(upper_, lower_, -1));
-        if (!mirror_.stated && lower_[k] < -1e-3 * size && upper_[k] > 1e-3 * size) {
-            mirror_.at = 0;  // on both sides: refused below
-        } else if (!mirror_.stated) {
-            mirror_.at = std::abs(lower_[k]) <= std::abs(upper_[k]) ? lower_[k] : upper_[k];
-            if (std::abs(mirror_.at) <= 1e-3 * size) {
+        const double low = extent_.lower[k];
+        const double high = extent_.upper[k];
+        const double slack = 1e-3 * norm(plus(extent_.upper, extent_.lower, -1));
+        const std::string axis(1, "xyz"[k]);
+        if (plane_.at) {
+            mirror_.at = *plane_.at;
+        } else if (low >= -slack || high <= slack) {  // else on both sides of 0: refused below
+            mirror_.at = std::abs(low) <= std::abs(high) ? low : high;
+            if (std::abs(mirror_.at) <= slack) {
                 mirror_.at = 0;
             } else {
-                warn(std::string("the symmetry plane is taken at ") + "xyz"[k] + " = " + core::format_number(mirror_.at, 4) + " m, where the surface ends");
+                warn("the symmetry plane is taken at " + axis + " = " + core::format_number(mirror_.at, 4) + " m, where the surface ends");
             }
         }
-        if (lower_[k] < mirror_.at - 1e-3 * size && upper_[k] > mirror_.at + 1e-3 * size) {
-            throw InputError("range", std::string("the surface lies on both sides of ") + "xyz"[k] + " = " + core::format_number(mirror_.at, 4) + " m: it is no half model",
-                             place(), "leave --symmetry away");
+        if (low < mirror_.at - slack && high > mirror_.at + slack) {
+            throw InputError("range", "the surface lies on both sides of " + axis + " = " + core::format_number(mirror_.at, 4) + " m: it is no half model", place(),
+                             "leave --symmetry away");
         }
     }
 
@@ -197,118 +169,24 @@ private:
         if (options_.reference) {
             result_.reference = *options_.reference;
             result_.reference_from = "given";
+        } else if (revolved_) {
+            result_.reference = {0.5 * (extent_.lower[0] + extent_.upper[0]), 0, 0};
+            result_.reference_from = "middle of the body on its axis";
         } else {
-            reference_from_base();
+            const MomentReference reference = reference_from_base(parts_, options_.base, axes_.up, mirror_);
+            result_.reference = reference.point;
+            result_.reference_from = reference.from;
+            if (!reference.base_found) {
+                warn("no zone is called '" + options_.base + "': moments are taken about the " + reference.from);
+            }
         }
         half_reference_ = result_.reference;
         if (mirror_.axis >= 0) {
             half_reference_[static_cast<std::size_t>(mirror_.axis)] = mirror_.at;  // mirroring is about the plane
         }
-    }
-
-    /// Mid-length, mid-width, in the plane of the flat base (most of its area lies in it; a protrusion does not move it).
-    void reference_from_base() {
-        std::vector<const Part*> base;
-        std::string names;
-        for (const auto& part : parts_) {
-            if (matches(options_.base, part.zone->name)) {
-                base.push_back(&part);
-                names += (names.empty() ? "'" : ", '") + part.zone->name + "'";
-            }
+        if (revolved_) {
+            half_reference_[1] = half_reference_[2] = 0;  // and turning about the axis
         }
-        Vector lower = lower_;
-        Vector upper = upper_;
-        if (!base.empty()) {
-            lower.fill(std::numeric_limits<double>::infinity());
-            upper.fill(-std::numeric_limits<double>::infinity());
-            for (const Part* part : base) {
-                widen(*part, lower, upper);
-            }
-        }
-        Vector& r = result_.reference;
-        for (std::size_t k = 0; k < 3; ++k) {
-            r[k] = 0.5 * (lower[k] + upper[k]);
-        }
-        if (mirror_.axis >= 0) {
-            r[static_cast<std::size_t>(mirror_.axis)] = mirror_.at;
-        }
-        if (base.empty()) {
-            r = plus(r, axes_.up, lowest_along_up() - dot(r, axes_.up));
-            result_.reference_from = "lowest point under the centre of the bounding box (no zone fits '" + options_.base + "')";
-            warn("no zone is called '" + options_.base + "': moments are taken about the " + result_.reference_from);
-            return;
-        }
-        result_.reference_from = "centre of the base (zone " + names + ")";
-        const auto [normal, offset] = plane_of(base);
-        if (std::abs(dot(normal, axes_.up)) > 0.5) {  // straight up or down, so that mid-length stays mid-length
-            r = plus(r, axes_.up, (offset - dot(r, normal)) / dot(normal, axes_.up));
-        }
-    }
-
-    /// Mean normal and the offset below which half of the area lies.
-    [[nodiscard]] std::pair<Vector, double> plane_of(const std::vector<const Part*>& base) const {
-        struct Face {
-            double offset, area;
-        };
-        std::vector<Face> faces;
-        Vector normal{};
-        std::vector<std::pair<Vector, double>> centres;
-        double area = 0;
-        for (const Part* part : base) {
-            for (std::size_t f = 0; f < part->surface->faces(); ++f) {
-                const Vector a = area_of(*part, f);
-                normal = plus(normal, a, dot(a, axes_.up) > 0 ? 1.0 : -1.0);
-                centres.emplace_back(centre_of(*part, f), norm(a));
-                area += norm(a);
-            }
-        }
-        const double size = norm(normal);
-        if (!(size > 0)) {
-            return {axes_.up, 0};
-        }
-        normal = {normal[0] / size, normal[1] / size, normal[2] / size};
-        if (mirror_.axis >= 0) {  // the other half's normals make the mean one lie in the plane
-            normal[static_cast<std::size_t>(mirror_.axis)] = 0;
-        }
-        faces.reserve(centres.size());
-        for (const auto& [centre, a] : centres) {
-            faces.push_back({dot(centre, normal), a});
-        }
-        std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.offset < b.offset; });
-        double below = 0;
-        for (const auto& face : faces) {
-            below += face.area;
-            if (below >= 0.5 * area) {
-                return {normal, face.offset};
-            }
-        }
-        return {normal, faces.back().offset};
-    }
-
-    static Vector area_of(const Part& part, std::size_t face) {
-        const auto first = part.surface->offsets()[face];
-        const auto last = part.surface->offsets()[face + 1];
-        const auto point = [&](Index i) {
-            const double* x = part.surface->points().data() + 3 * part.surface->connectivity()[static_cast<std::size_t>(i)];
-            return Vector{x[0], x[1], x[2]};
-        };
-        const Vector origin = point(first);
-        Vector sum{};
-        for (Index i = first + 1; i + 1 < last; ++i) {
-            sum = plus(sum, cross(plus(point(i), origin, -1), plus(point(i + 1), origin, -1)), 0.5);
-        }
-        return sum;
-    }
-
-    [[nodiscard]] double lowest_along_up() const {
-        double lowest = std::numeric_limits<double>::infinity();
-        for (const auto& part : parts_) {
-            const auto points = part.surface->points();
-            for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
-                lowest = std::min(lowest, dot({points[i], points[i + 1], points[i + 2]}, axes_.up));
-            }
-        }
-        return lowest;
     }
 
     // ---- sums ----
@@ -325,7 +203,7 @@ private:
         for (const auto& part : parts_) {
             zones.push_back({part.zone->name, part.surface.get(), part.sums, part.zone->normals_into_fluid});
         }
-        const Facing facing = settle_facing(zones, mirror_.axis < 0 && field_.dimension == 2 ? 2 : mirror_.axis, half_reference_);
+        const Facing facing = settle_facing(zones, revolved_ ? 1 : mirror_.axis < 0 && field_.dimension == 2 ? 2 : mirror_.axis, half_reference_);
         result_.orientation = facing.how;
         result_.problems.insert(result_.problems.end(), facing.problems.begin(), facing.problems.end());
         for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -333,7 +211,7 @@ private:
         }
     }
 
-    /// Both halves, and the moment moved from the mirror plane to the reference point.
+    /// Both halves (or all the way round the axis), and the moment moved from there to the reference point.
     [[nodiscard]] Wrench whole(const Vector& force, const Vector& moment) const {
         Wrench wrench{force, moment};
         if (mirror_.axis >= 0) {
@@ -342,6 +220,10 @@ private:
                 wrench.force[i] *= k == mirror_.axis ? 0 : 2;
                 wrench.moment[i] *= k == mirror_.axis ? 2 : 0;  // a moment is a pseudo-vector
             }
+        }
+        if (revolved_) {
+            wrench.force[1] = wrench.force[2] = 0;
+            wrench.moment[1] = wrench.moment[2] = 0;
         }
         wrench.moment = plus(wrench.moment, cross(plus(half_reference_, result_.reference, -1), wrench.force));
         return wrench;
@@ -391,15 +273,33 @@ private:
         if (!result_.left_out.empty()) {
             tell_what_was_left_out();
         }
-        const double by_kilopascal = 1000 * norm(result_.force_per_reference_pascal);
-        const double force = norm(result_.total.force);
-        if (by_kilopascal > 0.01 * force && result_.closure > 1e-9) {
+        if (!(result_.closure > 1e-9)) {
+            return;
+        }
+        // An absolute pressure on an open surface is a large force of no meaning: measured against that, a kilopascal
+        // would look harmless. So the mean pressure does not count as force.
+        const Vector& per_pascal = result_.force_per_reference_pascal;
+        const double force = std::min(norm(result_.total.force), norm(plus(result_.total.force, per_pascal, -mean_pressure())));
+        if (1000 * norm(per_pascal) > 0.01 * force) {
             std::string text = "the surface is not closed (closure " + core::format_number(result_.closure, 3) + "): 1 kPa of reference pressure would change the force by " +
                                shown({1000 * result_.force_per_reference_pascal[0], 1000 * result_.force_per_reference_pascal[1], 1000 * result_.force_per_reference_pascal[2]}) + " N";
             const std::string half = half_model_hint();
             const std::string one = opening_zone();
             warn(text + (!one.empty() ? "; it closes without zone '" + one + "' (a ground?): name the zones of the body with --zones" : half.empty() ? "" : "; " + half));
         }
+    }
+
+    /// Of all values, whatever area they stand for.
+    [[nodiscard]] double mean_pressure() const {
+        double sum = 0;
+        std::size_t count = 0;
+        for (const auto& part : parts_) {
+            for (const double p : part.values.pressure) {
+                sum += std::isfinite(p) ? p - part.values.reference_pressure : 0;
+            }
+            count += part.values.pressure.size();
+        }
+        return count > 0 ? sum / static_cast<double>(count) : 0;
     }
 
     /// The one zone without which the surface closes; empty when there is none.
@@ -419,13 +319,13 @@ private:
 
     /// An opening that looks along one axis where the surface ends: a half model whose plane was not named.
     [[nodiscard]] std::string half_model_hint() const {
-        if (mirror_.axis >= 0) {
+        if (mirror_.axis >= 0 || revolved_) {
             return {};
         }
         const Vector& open = result_.force_per_reference_pascal;
-        const double size = norm(plus(upper_, lower_, -1));
+        const double size = norm(plus(extent_.upper, extent_.lower, -1));
         for (std::size_t k = 0; k < 3; ++k) {
-            const bool ends_at_zero = std::abs(lower_[k]) < 1e-3 * size || std::abs(upper_[k]) < 1e-3 * size;
+            const bool ends_at_zero = std::abs(extent_.lower[k]) < 1e-3 * size || std::abs(extent_.upper[k]) < 1e-3 * size;
             if (std::abs(open[k]) > 0.99 * norm(open) && ends_at_zero) {
                 return std::string("a half model? then --symmetry ") + "xyz"[k];
             }
@@ -440,8 +340,8 @@ private:
             return;
         }
         const auto steps = static_cast<std::size_t>(options_.stations);
-        const double from = std::min(dot(lower_, axes_.forward), dot(upper_, axes_.forward));
-        const double to = std::max(dot(lower_, axes_.forward), dot(upper_, axes_.forward));
+        const double from = std::min(dot(extent_.lower, axes_.forward), dot(extent_.upper, axes_.forward));
+        const double to = std::max(dot(extent_.lower, axes_.forward), dot(extent_.upper, axes_.forward));
         std::vector<Wrench> slices(steps);
         for (const auto& part : parts_) {
             for (std::size_t f = 0; f < part.surface->faces(); ++f) {
@@ -462,17 +362,6 @@ private:
         }
     }
 
-    static Vector centre_of(const Part& part, std::size_t face) {
-        Vector sum{};
-        const auto first = part.surface->offsets()[face];
-        const auto last = part.surface->offsets()[face + 1];
-        for (auto i = first; i < last; ++i) {
-            const double* x = part.surface->points().data() + 3 * part.surface->connectivity()[static_cast<std::size_t>(i)];
-            sum = plus(sum, {x[0], x[1], x[2]}, 1.0 / static_cast<double>(last - first));
-        }
-        return sum;
-    }
-
     void coefficients() {
         const LoadsReferences& given = options_.references;
         const auto density = given.density ? given.density : field_.density;
@@ -483,7 +372,7 @@ private:
             double size = 0;
             for (std::size_t k = 0; k < 3; ++k) {
                 const bool doubled = static_cast<int>(k) == mirror_.axis;
-                size += std::abs(axis[k]) * (upper_[k] - lower_[k]) * (doubled ? 2 : 1);
+                size += std::abs(axis[k]) * (extent_.upper[k] - extent_.lower[k]) * (doubled ? 2 : 1);
             }
             return size;
         };
@@ -494,9 +383,10 @@ private:
         c.width = given.width.value_or(extent(axes_.starboard));
         c.height = given.height.value_or(extent(axes_.up));
         c.lengths_from = given.length && given.width && given.height ? "given" : given.length || given.width || given.height ? "given, others from the bounding box" : "bounding box";
-        const double quarter_pi = std::atan(1.0);
-        const double plan = 0.5 * c.density * c.speed * c.speed * quarter_pi * c.length * c.width;
-        const double front = 0.5 * c.density * c.speed * c.speed * quarter_pi * c.width * c.height;
+        const bool strip = field_.dimension == 2 && !revolved_;  // one metre of it: a rectangle
+        const double share = strip ? 1 : std::atan(1.0);
+        const double plan = 0.5 * c.density * c.speed * c.speed * share * c.length * c.width;
+        const double front = 0.5 * c.density * c.speed * c.speed * share * c.width * c.height;
         c.lift = result_.named.lift_force / plan;
         c.drag = result_.named.drag_force / front;
         c.pitch_moment = result_.named.pitch_moment / (plan * c.length);
@@ -506,10 +396,12 @@ private:
     const Field& field_;
     const LoadsOptions& options_;
     core::Progress& progress_;
+    bool revolved_;
+    MirrorPlane plane_;
     Mirror mirror_;
     Axes axes_;
     std::vector<Part> parts_;
-    Vector lower_{}, upper_{};
+    Extent extent_;
     Vector half_reference_{};
     LoadsResult result_;
 };

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "postproc/field.h"
+#include "postproc/vector_math.h"
 
 namespace underbody::postproc {
-
-using Vector = std::array<double, 3>;
 
 /// How the axes of a file lie to the vehicle: unit vectors of the file's frame.
 /// "+x", "-z", "x": an axis of the file. Throws core::UsageError for anything else.
@@ -46,6 +45,9 @@ struct LoadsOptions {
     FluidSide fluid = FluidSide::automatic;
     double reference_pressure = 0;          ///< Pa, taken from all pressures
     LoadsReferences references;
+    /// A two-dimensional case is half the section of a body of revolution about the x axis; files of Fluent that say so
+    /// themselves need no telling.
+    bool axisymmetric = false;
     int stations = 0;                       ///< more than 0: running integral along the body in so many steps
     bool accept_problems = false;           ///< go on although the importer found errors (zero-area faces ...)
 };
@@ -87,6 +89,7 @@ struct LoadsCoefficients {
     double lift = 0;          ///< lift / (1/2 rho v^2 pi/4 length width)
     double drag = 0;          ///< drag / (1/2 rho v^2 pi/4 width height)
     double pitch_moment = 0;  ///< moment / (1/2 rho v^2 pi/4 length width length)
+    // Of a plane case, per metre depth: without the pi/4 of an ellipse, and the width is the metre.
     double density = 0, speed = 0, length = 0, width = 0, height = 0;
     std::string lengths_from;  ///< "given" or "bounding box"
 };
@@ -114,6 +117,7 @@ struct LoadsResult {
     double area = 0;                     ///< m^2
     double closure = 0;                  ///< size of the summed area vector over the area: 0 for a closed surface
     Vector force_per_reference_pascal{}; ///< N/Pa: what 1 Pa added to every pressure would add to the force
+    std::string depth;                   ///< of a plane case: "per metre depth", "of the whole body of revolution"; else empty
     std::string values_from;             ///< "faces", "nodes", "cells", or "faces, nodes" when zones differ
     std::string orientation;             ///< how it is known which way the faces look
     std::optional<Vector> centre_of_pressure;  ///< m, on the forward line through the reference; none without lift
@@ -124,9 +128,11 @@ struct LoadsResult {
 
 /// Integrates pressure and wall shear. Node values are taken bilinear over quads and linear over triangles and the
 /// fans of larger polygons, and integrated exactly (force and moment); face values are constant over their face.
+/// A plane case gives forces per metre depth, an axisymmetric one those on the whole body of revolution.
 /// Deterministic whatever the number of threads. Where no zones are named and some wall cannot be part of a body with
 /// the others (a ground), it is left out if the others close without it; if they do not, nobody can tell what the body
-/// is, and that is an error. Throws core::InputError: no zone fits, a zone without faces or pressure, a value that is missing, an importer's error (unless accepted), a half model on both sides of its plane.
+/// is, and that is an error. Throws core::InputError: no zone fits, a zone without faces or pressure, a value that is missing, an
+/// importer's error (unless accepted), a half model on both sides of its plane, gauge and absolute pressures side by side.
 LoadsResult loads(const Field& field, const LoadsOptions& options = {}, core::Progress& progress = core::Progress::none());
 
 /// Keys of interfaces.md section 7.

@@ -50,6 +50,9 @@ void to_json(nlohmann::json& json, const LoadsResult& result) {
     json["area"] = result.area;
     json["closure"] = result.closure;
     json["force_per_reference_pascal"] = result.force_per_reference_pascal;
+    if (!result.depth.empty()) {
+        json["depth"] = result.depth;
+    }
     json["values_from"] = result.values_from;
     json["orientation"] = result.orientation;
     json["zones"] = nlohmann::json::array();

@@ -22,9 +22,12 @@ using core::InputError;
 using Severity = core::Problem::Severity;
 using Part = SummedZone;
 
+const double pi = 4 * std::atan(1.0);
+
 class Chooser {
 public:
-    Chooser(const Field& field, const LoadsOptions& options, LoadsResult& result) : field_(field), options_(options), result_(result) {}
+    Chooser(const Field& field, const LoadsOptions& options, LoadsResult& result)
+        : field_(field), options_(options), revolved_(is_body_of_revolution(field, options)), result_(result) {}
 
     std::vector<Part> choose() {
         choose_zones();
@@ -40,18 +43,30 @@ private:
         return zone.surface != nullptr && (has_polygons(zone) || (field_.dimension == 2 && zone.surface->GetNumberOfLines() > 0));
     }
 
-    /// The lines of a plane case as a strip of one metre depth: sums over it are forces per metre. The normal of a line
-    /// n0 -> n1 that looks into the fluid is z x t.
-    static vtkSmartPointer<vtkPolyData> extruded(const Zone& zone) {
+    /// Half the width of the strip that stands for a place of a plane case.
+    [[nodiscard]] double half_width(const Zone& zone, double y) const {
+        if (!revolved_) {
+            return 0.5;
+        }
+        double bounds[6];
+        zone.surface->GetBounds(bounds);
+        if (y < -1e-9 * (bounds[1] - bounds[0] + bounds[3] - bounds[2])) {
+            throw InputError("range", "zone '" + zone.name + "' lies at y = " + core::format_number(y, 4) + " m, beyond the axis of an axisymmetric case", place());
+        }
+        return pi * std::max(y, 0.0);
+    }
+
+    /// The lines of a plane case as a strip. The normal of a line n0 -> n1 that looks into the fluid is z x t.
+    [[nodiscard]] vtkSmartPointer<vtkPolyData> extruded(const Zone& zone) const {
         vtkPolyData& lines = *zone.surface;
         const vtkIdType nodes = lines.GetNumberOfPoints();
         vtkNew<vtkPoints> points;
         points->SetDataTypeToDouble();
-        for (const double z : {-0.5, 0.5}) {
+        for (const double side : {-1.0, 1.0}) {
             for (vtkIdType i = 0; i < nodes; ++i) {
                 double x[3];
                 lines.GetPoint(i, x);
-                points->InsertNextPoint(x[0], x[1], z);
+                points->InsertNextPoint(x[0], x[1], side * half_width(zone, x[1]));
             }
         }
         vtkNew<vtkCellArray> quads;
@@ -133,6 +148,7 @@ private:
             take_pressure(part);
             take_shear(part);
         }
+        bring_to_one_reference();
         std::vector<std::string> from;
         for (const auto& part : parts_) {
             std::string word = part.values.pressure_on_nodes ? "nodes" : "faces";
@@ -158,15 +174,39 @@ private:
         const auto is_other = [&](const std::string& name) {
             return std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& zone) { return zone.name == name; });
         };
-        for (auto& other : walls_beside_body(walls)) {
-            result_.left_out.push_back({std::move(other.name), std::move(other.why)});
-        }
+        result_.left_out = walls_beside_body(walls);
         std::erase_if(parts_, [&](const Part& part) { return is_other(part.zone->name); });
         std::erase_if(walls, [&](const WallShape& wall) { return is_other(wall.name); });
         const auto bodies = separate_bodies(walls);
         if (!bodies.empty()) {
             warn("zones " + quoted(bodies) + " are bodies of their own that lie apart: the loads are the sum over all; name those that are meant with --zones");
         }
+    }
+
+    /// Absolute pressures among gauge ones would push with the atmosphere on their zones alone.
+    void bring_to_one_reference() {
+        const auto absolute = std::count_if(parts_.begin(), parts_.end(), [](const Part& part) { return part.absolute; });
+        if (absolute == 0 || absolute == static_cast<std::ptrdiff_t>(parts_.size())) {
+            return;
+        }
+        const auto& reference = field_.pressure;
+        for (auto& part : parts_) {
+            if (!part.absolute) {
+                continue;
+            }
+            if (reference.kind != PressureReference::Kind::gauge || !(reference.operating_pressure > 0)) {
+                throw InputError("reference", "zone '" + part.zone->name + "' has an absolute pressure and others have a gauge pressure, and the file does not say what lies between", place(),
+                                 "sum them apart: --zones");
+            }
+            part.values.reference_pressure += reference.operating_pressure;
+            warn("zone '" + part.zone->name + "' has only an absolute pressure: " + core::format_number(reference.operating_pressure) + " Pa, the file's operating pressure, was taken from it");
+        }
+    }
+
+    /// The values of an array, those on faces without what lines and vertices before them have.
+    static std::span<const double> summed_values(const Part& part, vtkDataArray& array, bool on_nodes, std::vector<double>& own) {
+        const auto before = on_nodes ? 0 : static_cast<std::size_t>(part.polygons->GetNumberOfVerts() + part.polygons->GetNumberOfLines());
+        return values_of(array, own).subspan(before * static_cast<std::size_t>(array.GetNumberOfComponents()));
     }
 
     static vtkDataArray* array_of(const Part& part, const char* name, bool& on_nodes) {
@@ -193,6 +233,7 @@ private:
         }
         if (array == nullptr) {
             array = array_of(part, "pressure_absolute", on_nodes);
+            part.absolute = array != nullptr;
         }
         if (array == nullptr) {
             std::vector<std::string> names;
@@ -201,7 +242,7 @@ private:
             }
             throw InputError("missing", "zone '" + part.zone->name + "' has no pressure", place(), core::did_you_mean("pressure", names));
         }
-        part.values.pressure = values_of(*array, part.own_pressure);
+        part.values.pressure = summed_values(part, *array, on_nodes, part.own_pressure);
         if (scale != 1) {
             std::vector<double> scaled(part.values.pressure.begin(), part.values.pressure.end());
             std::for_each(scaled.begin(), scaled.end(), [&](double& p) { p *= scale; });
@@ -228,7 +269,7 @@ private:
             warn("zone '" + part.zone->name + "' has no wall shear vector: its viscous part is left out");
             return;
         }
-        part.values.shear = values_of(*array, part.own_shear);
+        part.values.shear = summed_values(part, *array, on_nodes, part.own_shear);
         if (scale != 1) {
             std::vector<double> scaled(part.values.shear.begin(), part.values.shear.end());
             std::for_each(scaled.begin(), scaled.end(), [&](double& t) { t *= scale; });
@@ -240,6 +281,7 @@ private:
 
     const Field& field_;
     const LoadsOptions& options_;
+    bool revolved_;
     LoadsResult& result_;
     std::vector<Part> parts_;
 };
@@ -260,6 +302,11 @@ private:
 }
 
 }  // namespace
+
+bool is_body_of_revolution(const Field& field, const LoadsOptions& options) {
+    const auto told = std::find(field.metadata.begin(), field.metadata.end(), std::pair<std::string, std::string>{"axisymmetric", "true"});
+    return field.dimension == 2 && (options.axisymmetric || told != field.metadata.end());
+}
 
 std::vector<SummedZone> zones_to_sum(const Field& field, const LoadsOptions& options, LoadsResult& result) { return Chooser(field, options, result).choose(); }
 

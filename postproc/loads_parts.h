@@ -16,17 +16,25 @@ namespace underbody::postproc {
 /// One zone, ready to be summed.
 struct SummedZone {
     const Zone* zone = nullptr;
-    vtkSmartPointer<vtkPolyData> polygons;  ///< of the zone; a plane case's lines as a strip of one metre depth
+    vtkSmartPointer<vtkPolyData> polygons;  ///< of the zone; a plane case's lines as a strip, see `zones_to_sum`
     std::unique_ptr<SurfaceArrays> surface;
     FaceValues values;
     std::vector<double> own_pressure;  ///< what `values` look into, unless that is VTK's
     std::vector<double> own_shear;
+    bool absolute = false;             ///< its pressure is not relative to anything
     FaceSums sums;
     double sign = 1;
 };
 
+/// Is the plane case half the section of a body of revolution about the x axis?
+bool is_body_of_revolution(const Field& field, const LoadsOptions& options);
+
 /// The zones asked for, or those of the body; sets `values_from` and `left_out` of the result and adds to its problems.
-/// Throws InputError: no zone fits, a zone without faces or without pressure, a density that is missing.
+/// The lines of a plane case become strips across the plane: of one metre, or, of a body of revolution, as wide as
+/// the circle that each place runs through (flat and still of the right area and slope, so that along the axis, and for
+/// the moment about it, the sums are those of the whole body).
+/// Throws InputError: no zone fits, a zone without faces or without pressure, a density that is missing, gauge and
+/// absolute pressures without a known difference, a body of revolution on both sides of its axis.
 std::vector<SummedZone> zones_to_sum(const Field& field, const LoadsOptions& options, LoadsResult& result);
 
 /// Throws InputError that names the first value that is missing, if the zone's sums are not finite.
