@@ -102,7 +102,10 @@ LoadsCase study_of(std::vector<const LoadsCase*> group, const std::string& colum
             for (const LoadsCase* one : group) {
                 values.push_back({mesh_size_of(*one, column), six(one->loads)[i].value});
             }
-            result.meshes.emplace_back(names[i].name, mesh_uncertainty(values));
+            const Vector& force = finest->loads.total.force;
+            const double scale = std::hypot(force[0], force[1], force[2]) * (names[i].unit == "N m" ? std::sqrt(std::max(finest->loads.area, 0.0)) : 1);
+            constexpr double rounding = 1e-9;
+            result.meshes.emplace_back(names[i].name, mesh_uncertainty(values, 2, rounding * scale));
             mesh = result.meshes.back().second.standard_uncertainty;
         }
         const double sigma = combined(std::vector<double>{mesh, scatter_of(*finest, names[i].name)});

@@ -59,6 +59,11 @@ void set_interval(MeshUncertainty& result, double half_width, const std::string&
     result.text = text;
 }
 
+/// In words; of a value of nothing there is no share.
+std::string gci_of(const MeshUncertainty& result) {
+    return std::isfinite(result.gci_fine) ? "GCI " + percent(result.gci_fine) : "uncertainty " + core::format_number(result.expanded_uncertainty, 3) + " about 0";
+}
+
 double range_of(const std::vector<MeshValue>& values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end(), [](const MeshValue& a, const MeshValue& b) { return a.value < b.value; });
     return high->value - low->value;
@@ -73,7 +78,7 @@ void two_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncert
     result.expanded_uncertainty = 3 * std::abs(v[0].value - v[1].value) / factor;
     result.standard_uncertainty = result.expanded_uncertainty / 2;
     result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
-    result.text = "two meshes: order " + core::format_number(formal_order, 3) + " assumed, safety factor 3, GCI " + percent(result.gci_fine);
+    result.text = "two meshes: order " + core::format_number(formal_order, 3) + " assumed, safety factor 3, " + gci_of(result);
 }
 
 void three_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
@@ -103,17 +108,22 @@ void three_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUnce
     result.verdict = MeshVerdict::monotone;
     const double p = e21 == 0 ? nan : celik_order(e21, e32, r21, r32);
     result.observed_order = p;
-    result.used_order = std::isfinite(p) ? std::clamp(p, 0.1, formal_order) : formal_order;
+    const bool too_good = !(p <= formal_order);
+    result.used_order = too_good ? formal_order : std::max(p, 0.1);
     const double factor21 = std::pow(r21, result.used_order) - 1;
     const double factor32 = std::pow(r32, result.used_order) - 1;
     result.extrapolated = v[0].value - e21 / factor21;
-    result.expanded_uncertainty = 1.25 * std::abs(e21) / factor21;
+    const double error = std::abs(e21) / factor21;
+    // Two meshes that agree better than their order allows agree by luck: then the coarser pair's difference counts.
+    const double by_coarser = std::abs(e32) / factor32 / (factor21 + 1);
+    result.expanded_uncertainty = 1.25 * (too_good ? std::max(error, by_coarser) : error);
     result.standard_uncertainty = result.expanded_uncertainty / 2;
     result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
     result.gci_coarse = v[1].value != 0 ? 1.25 * std::abs(e32 / v[1].value) / factor32 : nan;
-    result.asymptotic_ratio = result.gci_fine > 0 ? result.gci_coarse / ((factor21 + 1) * result.gci_fine) : nan;
-    result.text = "monotone convergence, observed order " + core::format_number(p, 3) +
-                  (result.used_order < p || !std::isfinite(p) ? " (order " + core::format_number(result.used_order, 3) + " used)" : "") + ", GCI " + percent(result.gci_fine);
+    const double finer_alone = v[0].value != 0 ? 1.25 * error / std::abs(v[0].value) : nan;
+    result.asymptotic_ratio = finer_alone > 0 ? result.gci_coarse / ((factor21 + 1) * finer_alone) : nan;
+    result.text = "monotone convergence, " + (std::isfinite(p) ? "observed order " + core::format_number(p, 3) : std::string("the finest two meshes agree")) +
+                  (too_good ? " (order " + core::format_number(formal_order, 3) + " and the coarser pair used)" : "") + ", " + gci_of(result);
 }
 
 /// phi = phi0 + alpha size^p by weighted least squares for a given p; weights 1/size (finer meshes count more).
@@ -189,7 +199,7 @@ void many_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncer
     result.standard_uncertainty = result.expanded_uncertainty / 2;
     result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
     result.text = std::to_string(v.size()) + " meshes, least squares: " + to_string(result.verdict) + ", observed order " + core::format_number(p, 3) +
-                  (plausible ? "" : " (not plausible: order " + core::format_number(result.used_order, 3) + " and factor 3 used)") + ", uncertainty " + percent(result.gci_fine);
+                  (plausible ? "" : " (not plausible: order " + core::format_number(result.used_order, 3) + " and factor 3 used)") + ", " + gci_of(result);
 }
 
 }  // namespace
@@ -212,7 +222,7 @@ std::string to_string(MeshVerdict verdict) {
     return "diverging";
 }
 
-MeshUncertainty mesh_uncertainty(std::span<const MeshValue> given, double formal_order) {
+MeshUncertainty mesh_uncertainty(std::span<const MeshValue> given, double formal_order, double nothing) {
     std::vector<MeshValue> values(given.begin(), given.end());
     check(values);
     MeshUncertainty result;
@@ -226,7 +236,7 @@ MeshUncertainty mesh_uncertainty(std::span<const MeshValue> given, double formal
     for (const auto& value : values) {
         largest = std::max(largest, std::abs(value.value));
     }
-    if (range_of(values) <= 1e-13 * largest) {
+    if (range_of(values) <= std::max(1e-13 * largest, nothing)) {
         result.verdict = MeshVerdict::same;
         result.observed_order = nan;
         result.used_order = nan;
@@ -237,6 +247,10 @@ MeshUncertainty mesh_uncertainty(std::span<const MeshValue> given, double formal
         three_meshes(values, formal_order, result);
     } else {
         many_meshes(values, formal_order, result);
+    }
+    const double refinement = values[1].size / values[0].size;
+    if (result.verdict != MeshVerdict::same && refinement < 1.1) {
+        result.text += "; the finest two meshes differ by a factor of " + core::format_number(refinement, 3) + " only, 1.3 is advised: what they differ by may be chance";
     }
     return result;
 }
@@ -356,7 +370,7 @@ IterationScatter iteration_scatter(std::span<const double> history) {
     result.period = cycle_of(tail, m);
     const bool small = std::abs(result.drift) + m.deviation < 1e-3 * std::abs(m.mean);
     // Without a trend the line's change over n correlated values is of the size of the error of the mean times sqrt(12).
-    result.settled = small || std::abs(result.drift) < 2 * std::sqrt(12.0) * result.error_of_mean * 0.5 + 1e-12 * std::abs(m.mean) ||
+    result.settled = small || std::abs(result.drift) <= std::sqrt(12.0) * result.error_of_mean + 1e-12 * std::abs(m.mean) ||
                      std::abs(result.drift) < 0.5 * m.deviation;
     result.standard_uncertainty = result.settled ? m.deviation : std::hypot(m.deviation, result.drift);
     result.text = (result.settled ? "settled" : "still drifting") + std::string(" over the last ") + std::to_string(result.count) + " values: mean " +

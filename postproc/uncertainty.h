@@ -29,7 +29,8 @@ std::string to_string(MeshVerdict verdict);
 /// Values of one quantity over two meshes or more.
 ///
 /// Three meshes: Celik, Ghia, Roache, Freitas, Coleman, Raad (J. Fluids Eng. 130, 078001, 2008), safety factor 1.25,
-/// orders above `formal_order` are not believed in the GCI. Two: Roache's factor 3 at the formal order. More than
+/// orders above `formal_order` are not believed in the GCI: then that order is used, and the difference of the coarser
+/// pair where it makes the larger error (two meshes that agree by luck are no proof). Two: Roache's factor 3 at the formal order. More than
 /// three: least squares after Eça and Hoekstra (J. Comput. Phys. 262, 2014, section 3), on all meshes.
 /// Oscillating: the half range of the values is the interval (Stern et al. 2001); diverging: their whole range. Both
 /// are taken as evenly distributed.
@@ -49,8 +50,9 @@ struct MeshUncertainty {
     std::string text;                  ///< one sentence for people
 };
 
-/// `values` in any order. Throws core::InputError: fewer than two meshes, equal sizes, values that are not finite.
-MeshUncertainty mesh_uncertainty(std::span<const MeshValue> values, double formal_order = 2);
+/// `values` in any order; values that differ by no more than `nothing` are the same (what symmetry makes nought leaves
+/// rounding behind). Throws core::InputError: fewer than two meshes, equal sizes, values that are not finite.
+MeshUncertainty mesh_uncertainty(std::span<const MeshValue> values, double formal_order = 2, double nothing = 0);
 
 /// What the end of a monitor says.
 struct IterationScatter {

@@ -93,6 +93,48 @@ TEST(MeshUncertainty, TakesTwoMeshesWithAnAssumedOrderAndEqualValues) {
     EXPECT_EQ(mesh_uncertainty(same).standard_uncertainty, 0);
 }
 
+TEST(MeshUncertainty, DoesNotTrustTwoMeshesThatAgreeByLuck) {
+    // The finest two agree, the third does not: at the second order the coarser pair's difference of 0.3 leaves
+    // 0.3 / 3 / 4 on the finest mesh.
+    for (const double luck : {0.0, 1e-6}) {
+        const auto result = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {2, 1.0 + luck}, {4, 1.3}});
+        EXPECT_EQ(result.verdict, MeshVerdict::monotone);
+        EXPECT_NEAR(result.expanded_uncertainty, 1.25 * 0.3 / 12, 1e-6);
+        EXPECT_THAT(result.text, testing::HasSubstr("coarser pair used"));
+    }
+    // The coarser two agree, the finest leaves them.
+    const auto leaving = mesh_uncertainty(std::vector<MeshValue>{{1, 1.3}, {2, 1.0}, {4, 1.0}});
+    EXPECT_EQ(leaving.verdict, MeshVerdict::diverging);
+    EXPECT_NEAR(leaving.expanded_uncertainty, 0.3, 1e-12);
+}
+
+TEST(MeshUncertainty, SaysWhenMeshesHardlyDiffer) {
+    const auto result = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {1.05, 1.01}, {1.1, 1.0225}});
+    EXPECT_THAT(result.text, testing::HasSubstr("factor of 1.05 only"));
+    EXPECT_GT(result.expanded_uncertainty, 0.05);  // and the error is not taken for small because the step was
+    EXPECT_THAT(mesh_uncertainty(power_law({1, 1.3, 1.7}, 1, 0.1, 2)).text, testing::Not(testing::HasSubstr("only")));
+}
+
+TEST(MeshUncertainty, OfValuesAboutNothingIsAbsolute) {
+    const auto zero = mesh_uncertainty(std::vector<MeshValue>{{1, 0.0}, {2, 0.3}});
+    EXPECT_NEAR(zero.expanded_uncertainty, 0.3, 1e-12);
+    EXPECT_TRUE(std::isnan(zero.gci_fine));
+    EXPECT_THAT(zero.text, testing::HasSubstr("uncertainty 0.3 about 0"));
+    const std::vector<MeshValue> rounding = {{1, 1e-17}, {2, -3e-17}, {4, 2e-16}};
+    EXPECT_EQ(mesh_uncertainty(rounding).verdict, MeshVerdict::oscillating);
+    EXPECT_EQ(mesh_uncertainty(rounding, 2, 1e-12).verdict, MeshVerdict::same);
+    EXPECT_EQ(mesh_uncertainty(rounding, 2, 1e-12).standard_uncertainty, 0);
+}
+
+TEST(MeshUncertainty, NamesFourMeshesThatDoNotConverge) {
+    const auto growing = mesh_uncertainty(std::vector<MeshValue>{{1, 2.0}, {2, 1.3}, {4, 1.1}, {8, 1.0}});
+    EXPECT_EQ(growing.verdict, MeshVerdict::diverging);
+    EXPECT_GT(growing.expanded_uncertainty, 1.0);
+    const auto swinging = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {2, 1.1}, {4, 0.95}, {8, 1.12}});
+    EXPECT_EQ(swinging.verdict, MeshVerdict::oscillating);
+    EXPECT_GT(swinging.expanded_uncertainty, 0.08);
+}
+
 TEST(MeshUncertainty, RefusesWhatIsNoStudy) {
     EXPECT_THROW(mesh_uncertainty(std::vector<MeshValue>{{1, 1}}), core::InputError);
     EXPECT_THROW(mesh_uncertainty(std::vector<MeshValue>{{1, 1}, {1, 2}}), core::InputError);
@@ -130,6 +172,34 @@ TEST(IterationScatter, NamesADriftAndACycle) {
     EXPECT_NEAR(cycle.period, 50, 1);
     EXPECT_NEAR(cycle.deviation, 0.1 / std::sqrt(2), 0.003);
     EXPECT_THROW(iteration_scatter(std::vector<double>{1, 2, 3}), core::InputError);
+}
+
+TEST(IterationScatter, OfAForceThatIsNoughtIsSettled) {
+    const auto nought = iteration_scatter(std::vector<double>(40, 0.0));
+    EXPECT_TRUE(nought.settled);
+    EXPECT_EQ(nought.standard_uncertainty, 0);
+}
+
+TEST(IterationScatter, TellsASlowApproachFromNoiseOfTheSameSize) {
+    core::Random random(11);
+    std::vector<double> slow, noise, jump;
+    for (int i = 0; i < 400; ++i) {
+        slow.push_back(1 + 0.2 * std::exp(-i / 400.0));
+        noise.push_back(1 + 0.02 * random.normal());
+        jump.push_back(i < 100 ? 0.5 : 1.0);
+    }
+    const auto approach = iteration_scatter(slow);
+    EXPECT_FALSE(approach.settled);
+    // It still has 0.2 / e = 0.074 to go: the drift of what is left stands for that.
+    EXPECT_GT(approach.standard_uncertainty, 0.04);
+    const auto still = iteration_scatter(noise);
+    EXPECT_TRUE(still.settled);
+    EXPECT_NEAR(still.standard_uncertainty, 0.02, 0.004);
+    const auto after = iteration_scatter(jump);
+    EXPECT_TRUE(after.settled);
+    EXPECT_GE(after.first, 100U);
+    EXPECT_EQ(after.mean, 1);
+    EXPECT_EQ(after.standard_uncertainty, 0);
 }
 
 TEST(IterationScatter, WritesJson) {
