@@ -29,7 +29,7 @@ struct Options {
     std::string mesh_study, check;
     std::vector<std::string> reports, monitors;
     int stations = 0;
-    bool accept_problems = false;
+    bool accept_problems = false, axisymmetric = false, keep_going = false;
     FieldOptions field;
 };
 
@@ -88,6 +88,7 @@ postproc::LoadsOptions loads_options(const Options& given) {
                           optional_quantity(given.width, "m"), optional_quantity(given.height, "m")};
     options.stations = given.stations;
     options.accept_problems = given.accept_problems;
+    options.axisymmetric = given.axisymmetric;
     return options;
 }
 
@@ -108,6 +109,9 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     };
     shell.print(result.file);
     shell.print(std::string("                        total     pressure      viscous") + (one.sigmas.empty() ? "" : "        sigma"));
+    if (!result.depth.empty()) {
+        shell.print(result.depth + ":");
+    }
     line("lift_force", &postproc::NamedLoads::lift_force, "N, up");
     line("drag_force", &postproc::NamedLoads::drag_force, "N, against the motion");
     line("side_force", &postproc::NamedLoads::side_force, "N, to starboard");
@@ -254,19 +258,44 @@ void show_studies(Shell& shell, const std::vector<postproc::LoadsCase>& cases) {
     }
 }
 
-int run(Shell& shell, const Options& given) {
-    const Batch batch = find_files(given.files, given.manifest);
-    if (batch.files.empty()) {
-        throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");
-    }
+struct Failure {
+    std::string file, message;
+};
+
+/// The loads of every file that can be used. All files are tried, so that one run names all that is wrong; unless
+/// asked to keep going, one that is wrong is an error then.
+std::vector<postproc::LoadsCase> cases_of(Shell& shell, const Options& given, const Batch& batch, std::vector<Failure>& failures) {
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
     for (std::size_t i = 0; i < batch.files.size(); ++i) {
         shell.progress().check();
         shell.progress().report(static_cast<double>(i) / static_cast<double>(batch.files.size()), batch.files[i].path);
-        cases.push_back(case_of(shell, given, batch.files[i], options));
+        try {
+            cases.push_back(case_of(shell, given, batch.files[i], options));
+        } catch (const core::InputError& error) {
+            if (batch.files.size() == 1) {
+                throw;
+            }
+            const bool named = std::string(error.what()).find(batch.files[i].path) != std::string::npos;
+            failures.push_back({batch.files[i].path, (named ? "" : batch.files[i].path + ": ") + error.what()});
+            shell.warn(failures.back().message);
+        }
     }
-    const int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
+    if (!failures.empty() && (cases.empty() || !given.keep_going)) {
+        throw core::InputError("file", std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) + " files cannot be used (the first: '" + failures.front().file + "'); nothing was written", {},
+                               cases.empty() ? "" : "mend them, or take the others alone with --keep-going");
+    }
+    return cases;
+}
+
+int run(Shell& shell, const Options& given) {
+    const Batch batch = find_files(given.files, given.manifest);
+    if (batch.files.empty()) {
+        throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");
+    }
+    std::vector<Failure> failures;
+    std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
+    int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
     cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study);
     show_studies(shell, cases);
     const bool table = batch.files.size() > 1 || !given.manifest.empty() || !given.out.empty();
@@ -275,7 +304,10 @@ int run(Shell& shell, const Options& given) {
         shell.info("wrote " + given.out);
     }
     if (shell.json) {
-        const nlohmann::json all = postproc::loads_table_json(cases);
+        nlohmann::json all = postproc::loads_table_json(cases);
+        for (const auto& failure : failures) {
+            all["failed"].push_back({{"file", failure.file}, {"message", failure.message}});
+        }
         shell.print_json(table ? all : all["files"].front());
     } else if (!table) {
         print(shell, cases.front());
@@ -283,6 +315,10 @@ int run(Shell& shell, const Options& given) {
         std::string text = core::write_csv(postproc::loads_table(cases, batch.number_units));
         text.pop_back();
         shell.print(text);
+    }
+    if (!failures.empty()) {
+        shell.warn("without " + std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) + " files, which cannot be used");
+        verdict = wrong_input;
     }
     return verdict;
 }
@@ -311,8 +347,10 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("--report", o->reports, "the solver's force report (Fluent's text, CFX's .out), or the OpenFOAM case, to compare with ({stem}: the file's name without ending); found by itself when it lies beside the file");
     command->add_option("--monitor", o->monitors, "history of a load, QUANTITY=FILE:COLUMN or \"QUANTITY [UNIT]=FILE\": its last value is compared, its scatter becomes NAME_sigma");
     command->add_option("--check", o->check, "exit code 4 when the loads are further from those stated (report, monitor, manifest) than this share of the force (0.01, \"1 %\")");
+    command->add_flag("--axisymmetric", o->axisymmetric, "a plane case is half the section of a body of revolution about x (Fluent cases say so themselves)");
     command->add_option("--stations", o->stations, "running integral along the body in so many steps")->check(CLI::Range(0, 10000));
     command->add_flag("--accept-problems", o->accept_problems, "go on although the file has errors such as faces without area");
+    command->add_flag("--keep-going", o->keep_going, "of several files, give the table of those that can be used; exit code 3 all the same");
     o->field.add_to(*command);
     command->footer(
         "Without --zones the walls of the body are summed. A wall that cannot be part of it (a ground, a tunnel) is left out, and said to be,\n"

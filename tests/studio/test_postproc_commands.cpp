@@ -65,6 +65,30 @@ TEST_F(PostprocCommands, LoadsGiveOneResultOrATable) {
     EXPECT_EQ(both["files"].size(), 2U);
 }
 
+TEST_F(PostprocCommands, LoadsOfABatchNameEveryFileThatCannotBeUsed) {
+    std::string cut = box_csv;
+    cut.resize(cut.size() - 12);
+    core::write_file(folder_.path() / "c-h20.csv", cut + "4,5,6,99\n");
+    core::write_file(folder_.path() / "list.csv", "gap [mm], file\n5, a-h5.csv\n7, nowhere.csv\n10, b-h10.csv\n20, c-h20.csv\n");
+    const auto refused = run({"loads", "--manifest", "list.csv", "--out", "loads.csv"});
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.errors, testing::HasSubstr("nowhere.csv"));
+    EXPECT_THAT(refused.errors, testing::HasSubstr("c-h20.csv:"));
+    EXPECT_THAT(refused.errors, testing::HasSubstr("2 of 4 files cannot be used"));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "loads.csv"));
+    const auto kept = run({"loads", "--manifest", "list.csv", "--out", "loads.csv", "--keep-going"});
+    EXPECT_EQ(kept.exit_code, 3);
+    const core::Table table = core::read_csv(folder_.path() / "loads.csv");
+    ASSERT_EQ(table.rows(), 2U);
+    EXPECT_NEAR(table.numbers("gap")[1], 0.01, 1e-12);
+    const auto as_json = run({"loads", "a-h5.csv", "nowhere.csv", "--keep-going", "--json"});
+    EXPECT_EQ(as_json.exit_code, 3);
+    const json document = json::parse(as_json.output);
+    EXPECT_EQ(document["files"].size(), 1U);
+    EXPECT_EQ(document["failed"][0]["file"], "nowhere.csv");
+    EXPECT_EQ(run({"loads", "nowhere.csv", "nor-here.csv", "--keep-going"}).exit_code, 3);
+}
+
 TEST_F(PostprocCommands, LoadsAreCheckedAgainstAManifest) {
     core::write_file(folder_.path() / "stated.csv", "gap [mm], lift_force [N], drag_force [N], file\n5, -1.001, 0, a-h5.csv\n10, -1.2, 0, b-h10.csv\n");
     const auto wrong = run({"loads", "--manifest", "stated.csv", "--check", "0.01"});
