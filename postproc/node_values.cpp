@@ -191,14 +191,11 @@ public:
 
     void find_centres(vtkUnstructuredGrid& grid) {
         centres_.resize(cells_.count());
-        // VTK hands the stream of a polyhedron's faces out of one place: not for two threads at once.
-        const bool polyhedra = grid.GetFaces() != nullptr;
-        const auto range = [&](std::size_t from, std::size_t to) {
-            for (std::size_t c = from; c < to; ++c) {
-                centres_[c] = centre_of(grid, c);
-            }
-        };
-        polyhedra ? range(0, cells_.count()) : core::parallel_blocks(cells_.count(), block, range);
+        opening_.assign(around_.count(), Vector3d::Zero());
+        size_.assign(around_.count(), 0);
+        for (std::size_t c = 0; c < cells_.count(); ++c) {
+            centres_[c] = centre_of(grid, c);
+        }
     }
 
     void find_centres() {
@@ -246,7 +243,7 @@ public:
         }
         std::vector<double> own;
         const Values values{values_of(*in_cells, own), in_cells->GetNumberOfComponents()};
-        const Slopes slopes = slopes_of(name, values);
+        const Slopes slopes = slopes_of(values);
         auto result = vtkSmartPointer<vtkDoubleArray>::New();
         result->SetName(name.c_str());
         result->SetNumberOfComponents(values.components);
@@ -300,12 +297,26 @@ private:
         return centre.place(mean);
     }
 
+    /// A side of a cell, for the nodes on it: around a node with cells on all sides these sum to nothing.
+    void note_side(std::span<const Index> nodes, const Vector3d& outward) {
+        for (const Index node : nodes) {
+            opening_[static_cast<std::size_t>(node)] += outward;
+            size_[static_cast<std::size_t>(node)] += outward.norm();
+        }
+    }
+
     /// Of a cell that can be seen whole from the mean of its nodes.
-    [[nodiscard]] Vector3d centre_of(vtkUnstructuredGrid& grid, std::size_t cell) const {
+    [[nodiscard]] Vector3d centre_of(vtkUnstructuredGrid& grid, std::size_t cell) {
         const auto nodes = cells_[cell];
         const int type = grid.GetCellType(static_cast<vtkIdType>(cell));
         if (type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON) {
-            return centre_of_polygon(nodes, [&](Index node) { return point(node); });
+            const Vector3d centre = centre_of_polygon(nodes, [&](Index node) { return point(node); });
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                const std::array<Index, 2> edge = {nodes[i], nodes[(i + 1) % nodes.size()]};
+                const Vector3d along = point(edge[1]) - point(edge[0]);
+                note_side(edge, (point(edge[0]) - centre).cross(along)[2] < 0 ? Vector3d(-along) : along);
+            }
+            return centre;
         }
         Vector3d mean = Vector3d::Zero();
         for (const Index node : nodes) {
@@ -317,11 +328,14 @@ private:
             for (const Index node : face) {
                 middle += point(node) / static_cast<double>(face.size());
             }
+            Vector3d area = Vector3d::Zero();
             for (std::size_t i = 0; i < face.size(); ++i) {
                 const Vector3d a = point(face[i]);
                 const Vector3d b = point(face[(i + 1) % face.size()]);
                 centre.add((mean + middle + a + b) / 4, std::abs((middle - mean).dot((a - mean).cross(b - mean))));
+                area += (a - middle).cross(b - middle);
             }
+            note_side(face, area.dot(middle - mean) < 0 ? Vector3d(-area) : area);
         };
         if (type == VTK_POLYHEDRON) {
             vtkIdType faces = 0;
@@ -332,7 +346,7 @@ private:
                 add_face(face);
                 stream += 1 + *stream;
             }
-        } else if (type != VTK_TETRA) {  // whose mean it is
+        } else {
             for (const auto& local : faces_of(type)) {
                 std::array<Index, 4> face{};
                 std::size_t count = 0;
@@ -374,25 +388,7 @@ private:
         return Values{values_of(*array, own), components};
     }
 
-    [[nodiscard]] Slopes slopes_of(const std::string& name, const Values& values) const {
-        struct Sample {
-            Index cell;
-            Vector3d at;
-            std::size_t face;
-            std::size_t boundary;
-        };
-        std::vector<Sample> samples;
-        std::vector<std::vector<double>> own(boundaries_.size());
-        std::vector<std::optional<Values>> known(boundaries_.size());
-        for (std::size_t b = 0; b < boundaries_.size(); ++b) {
-            known[b] = on_faces(boundaries_[b], name, values.components, own[b]);
-            for (std::size_t f = 0; known[b] && f < boundaries_[b].owner.size(); ++f) {
-                if (boundaries_[b].owner[f] >= 0) {
-                    samples.push_back({boundaries_[b].owner[f], boundaries_[b].centre[f], f, b});
-                }
-            }
-        }
-        std::stable_sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.cell < b.cell; });
+    [[nodiscard]] Slopes slopes_of(const Values& values) const {
         Slopes slopes(cells_.count() * static_cast<std::size_t>(values.components));
         core::parallel_blocks(cells_.count(), block, [&](std::size_t from, std::size_t to) {
             for (std::size_t c = from; c < to; ++c) {
@@ -414,15 +410,6 @@ private:
                         }
                     }
                 }
-                for (auto s = std::lower_bound(samples.begin(), samples.end(), cell, [](const Sample& sample, Index at) { return sample.cell < at; }); s != samples.end() && s->cell == cell; ++s) {
-                    const Values& on_face = *known[s->boundary];
-                    if (std::isfinite(on_face(static_cast<Index>(s->face), 0))) {
-                        // As much as a neighbour across a face with four nodes.
-                        for (int often = 0; often < 4; ++often) {
-                            fit.add(s->at - centres_[c], [&](int k) { return on_face(static_cast<Index>(s->face), k) - values(cell, k); });
-                        }
-                    }
-                }
                 const Eigen::Matrix3Xd gradient = fit.gradients();
                 std::copy_n(gradient.data(), gradient.size(), slopes.gradients.data() + 3 * values.at(cell, 0));
             }
@@ -435,7 +422,7 @@ private:
         return g[0] * step[0] + g[1] * step[1] + g[2] * step[2];
     }
 
-    /// No further outside the cells around the node than these and the next ones differ among themselves.
+    /// At the boundary no further outside the cells around the node than these and the next ones differ among themselves.
     [[nodiscard]] double mean_around(std::size_t node, const Values& values, const Slopes& slopes, int k) const {
         constexpr double far = std::numeric_limits<double>::infinity();
         double sum = 0;
@@ -452,7 +439,9 @@ private:
             near = {std::min(near[0], value), std::max(near[1], value)};
             wide = {std::min(wide[0], slopes.low[values.at(cell, k)]), std::max(wide[1], slopes.high[values.at(cell, k)])};
         }
-        const double room = wide[1] - wide[0];
+        // With cells on all sides the node lies among their middles, and its value among theirs.
+        const bool inside = !size_.empty() && opening_[node].norm() < 1e-9 * size_[node];
+        const double room = inside ? 0 : wide[1] - wide[0];
         return count == 0 ? nan : std::clamp(sum / count, near[0] - room, near[1] + room);
     }
 
@@ -510,6 +499,8 @@ private:
     std::span<const double> points_;
     std::vector<double> own_points_;
     std::vector<Vector3d> centres_;
+    std::vector<Vector3d> opening_;  ///< of a grid, by node, see `note_side`
+    std::vector<double> size_;
     std::vector<Boundary> boundaries_;
 };
 

@@ -16,9 +16,9 @@ namespace underbody::postproc {
 struct Zone;
 
 /// Carries values from cells to nodes so that a linear field comes out exactly, at the boundary too: each cell extends
-/// its value along its own gradient (least squares over the cells that share a node with it and over the boundary faces
-/// that have the value), and a node takes the mean of the cells around it. A plain mean of the cells would be off by
-/// half a cell's change at every wall.
+/// its value along its own gradient (least squares over the cells that share a node with it), and a node takes the mean of
+/// the cells around it; with cells on all sides it stays among their values. A plain mean of the cells would be off by half
+/// a cell's change at every wall.
 ///
 /// Where a boundary zone has the array on its faces, its nodes take the value from there; a wall's velocity (no slip,
 /// or a belt that moves) as it stands.
