@@ -1,9 +1,7 @@
-// A scene as a PNG file: VTK draws the surfaces, everything written on the picture is laid out here in pixels.
+// A scene as a PNG file: VTK draws the surfaces and lines, `draw_overlay.cpp` what is written beside them.
 #include <vtkActor.h>
-#include <vtkActor2D.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
-#include <vtkCellData.h>
 #include <vtkContourFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkLight.h>
@@ -15,14 +13,10 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataMapper2D.h>
 #include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
-#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkTextActor.h>
-#include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
@@ -37,6 +31,7 @@
 #include "core/text.h"
 #include "core/virtual_display.h"
 #include "postproc/colours.h"
+#include "postproc/draw_overlay.h"
 #include "postproc/vector_math.h"
 
 namespace underbody::postproc {
@@ -97,9 +92,8 @@ struct ViewAxes {
 
 class Painter {
 public:
-    explicit Painter(const Scene& scene) : scene_(scene), axes_(scene.camera) {
-        range_ = drawn_range(scene.range.value_or(range_of_values()), scene.colours);
-        unit_ = std::min(scene.height / 800.0, scene.width / 1100.0);
+    explicit Painter(const Scene& scene) : scene_(scene), axes_(scene.camera), layout_(scene), values_(range_of_values()) {
+        range_ = drawn_range(scene.range.value_or(values_), scene.colours);
     }
 
     std::string paint() {
@@ -110,12 +104,10 @@ public:
         if (window_->SupportsOpenGL() == 0) {
             throw core::SystemError("display", "the display cannot draw (no OpenGL)", {}, "install the Debian package libgl1-mesa-dri, or unset DISPLAY so that Xvfb is used");
         }
-        const double right = has_bar() ? 1 - bar_space * unit_ / scene_.width : 1;
-        const double top = 1 - (scene_.title.empty() ? 0 : title_space * unit_ / scene_.height);
-        main_->SetViewport(0, 0, right, top);
+        const double right = layout_.width / scene_.width;
+        const double low = layout_.bottom / scene_.height;
+        main_->SetViewport(0, low, right, low + layout_.height / scene_.height);
         main_->SetBackground(1, 1, 1);
-        width_ = right * scene_.width;
-        height_ = top * scene_.height;
         main_->SetLayer(0);
         over_->SetLayer(1);
         over_->InteractiveOff();
@@ -134,19 +126,15 @@ public:
             add(line);
         }
         place_camera();
-        write_words();
+        Overlay overlay(*over_, scene_, layout_);
+        overlay.add_title();
+        overlay.add_bar(range_, values_);
+        overlay.add_scale(layout_.height / (2 * scale_));
+        overlay.add_axes({axes_.right, axes_.up});
         return png();
     }
 
 private:
-    // Measures in units of 1/800 of the height: words stay readable when the picture is shown small.
-    static constexpr double bar_space = 196;
-    static constexpr double title_space = 108;
-    static constexpr double title_size = 36;
-    static constexpr double number_size = 25;
-
-    [[nodiscard]] bool has_bar() const { return !scene_.value_name.empty(); }
-
     [[nodiscard]] std::pair<double, double> range_of_values() const {
         std::pair<double, double> range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
         const auto widen = [&](const std::vector<double>& values) {
@@ -360,8 +348,8 @@ private:
         for (std::size_t i = 0; i < 3; ++i) {
             centre[i] = middle(0) * axes_.right[i] + middle(1) * axes_.up[i] + middle(2) * axes_.back[i];
         }
-        constexpr double margin = 1.16;  // room below for the scale bar and the axes
-        scale_ = margin * std::max({half(1), half(0) * height_ / width_, 1e-12}) / scene_.camera.zoom;
+        constexpr double margin = 1.06;
+        scale_ = margin * std::max({half(1), half(0) * layout_.height / layout_.width, 1e-12}) / scene_.camera.zoom;
         const double distance = scene_.camera.parallel ? 4 * (half(2) + scale_) : scale_ / std::tan(15 * std::atan(1.0) / 45) + half(2);
         auto* camera = main_->GetActiveCamera();
         camera->SetFocalPoint(centre.data());
@@ -371,148 +359,6 @@ private:
         camera->SetParallelScale(scale_);
         camera->SetViewAngle(30);
         main_->ResetCameraClippingRange();
-    }
-
-    // ---- words and scales, in pixels from the lower left ----
-
-    /// `x`, `y` in pixels, `size` in units; `align`: -1 left, 0 centred, 1 right.
-    void text(const std::string& words, double x, double y, double size, bool bold, double grey, int align) {
-        vtkNew<vtkTextActor> actor;
-        actor->SetInput(words.c_str());
-        actor->SetPosition(x, y);
-        auto* property = actor->GetTextProperty();
-        property->SetFontFamilyToArial();
-        property->SetFontSize(std::max(6, static_cast<int>(std::lround(size * unit_))));
-        property->SetBold(bold ? 1 : 0);
-        property->SetColor(grey, grey, grey);
-        property->SetJustification(align < 0 ? VTK_TEXT_LEFT : align > 0 ? VTK_TEXT_RIGHT : VTK_TEXT_CENTERED);
-        property->SetVerticalJustificationToCentered();
-        over_->AddViewProp(actor);
-    }
-
-    void shapes(const std::vector<Point>& points, const std::vector<std::vector<vtkIdType>>& polygons, const std::vector<std::vector<vtkIdType>>& lines,
-                const std::vector<std::array<double, 3>>& colours, double width) {
-        vtkNew<vtkPolyData> data;
-        data->SetPoints(points_of(points));
-        vtkNew<vtkUnsignedCharArray> rgb;
-        rgb->SetNumberOfComponents(3);
-        vtkNew<vtkCellArray> line_cells;
-        vtkNew<vtkCellArray> polygon_cells;
-        for (const auto& line : lines) {
-            line_cells->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
-        }
-        for (const auto& polygon : polygons) {
-            polygon_cells->InsertNextCell(static_cast<vtkIdType>(polygon.size()), polygon.data());
-        }
-        for (const auto& c : colours) {
-            rgb->InsertNextTuple3(255 * c[0], 255 * c[1], 255 * c[2]);
-        }
-        data->SetLines(line_cells);
-        data->SetPolys(polygon_cells);
-        data->GetCellData()->SetScalars(rgb);
-        vtkNew<vtkPolyDataMapper2D> mapper;
-        mapper->SetInputData(data);
-        vtkNew<vtkActor2D> actor;
-        actor->SetMapper(mapper);
-        actor->GetProperty()->SetLineWidth(static_cast<float>(std::max(1.0, width * unit_)));
-        over_->AddViewProp(actor);
-    }
-
-    void write_words() {
-        if (!scene_.title.empty()) {
-            text(scene_.title, 24 * unit_, scene_.height - 34 * unit_, title_size, true, 0.1, -1);
-            text(scene_.subtitle, 24 * unit_, scene_.height - 78 * unit_, number_size, false, 0.35, -1);
-        }
-        if (has_bar()) {
-            draw_bar();
-        }
-        if (scene_.scale_bar && scene_.camera.parallel) {
-            draw_scale();
-        }
-        if (scene_.axes) {
-            draw_axes();
-        }
-    }
-
-    void draw_bar() {
-        const double left = scene_.width - (bar_space - 30) * unit_;
-        const double wide = 30 * unit_;
-        const double bottom = 0.12 * scene_.height;
-        const double top = scene_.height - (title_space + 76) * unit_;
-        constexpr int steps = 128;
-        std::vector<Point> points;
-        std::vector<std::vector<vtkIdType>> polygons;
-        std::vector<std::array<double, 3>> colours;
-        for (int i = 0; i < steps; ++i) {
-            const double y0 = bottom + (top - bottom) * i / steps;
-            const double y1 = bottom + (top - bottom) * (i + 1) / steps;
-            const auto first = static_cast<vtkIdType>(points.size());
-            points.insert(points.end(), {{left, y0, 0}, {left + wide, y0, 0}, {left + wide, y1, 0}, {left, y1, 0}});
-            polygons.push_back({first, first + 1, first + 2, first + 3});
-            colours.push_back(colour_at(scene_.colours, (i + 0.5) / steps));
-        }
-        shapes(points, polygons, {}, colours, 1);
-        std::vector<Point> frame = {{left, bottom, 0}, {left + wide, bottom, 0}, {left + wide, top, 0}, {left, top, 0}};
-        std::vector<std::vector<vtkIdType>> lines = {{0, 1, 2, 3, 0}};
-        std::vector<std::array<double, 3>> greys = {{0.3, 0.3, 0.3}};
-        for (const double tick : round_ticks(range_.first, range_.second, 6)) {
-            const double y = bottom + (top - bottom) * (tick - range_.first) / (range_.second - range_.first);
-            const auto first = static_cast<vtkIdType>(frame.size());
-            frame.insert(frame.end(), {{left + wide, y, 0}, {left + wide + 8 * unit_, y, 0}});
-            lines.push_back({first, first + 1});
-            greys.push_back({0.3, 0.3, 0.3});
-            const bool zero = std::abs(tick) < 1e-12 * (range_.second - range_.first);
-            text(core::format_number(zero ? 0.0 : tick, 5), left + wide + 14 * unit_, y, number_size, false, 0.15, -1);
-        }
-        shapes(frame, {}, lines, greys, 1.2);
-        const double right = scene_.width - 16 * unit_;
-        text(scene_.value_name, right, top + 58 * unit_, number_size, true, 0.15, 1);
-        if (!scene_.value_unit.empty() && scene_.value_unit != "1") {
-            text("[" + scene_.value_unit + "]", right, top + 28 * unit_, number_size, false, 0.15, 1);
-        }
-    }
-
-    void draw_scale() {
-        const double pixels_per_metre = height_ / (2 * scale_);
-        const double length = round_below(0.24 * width_ / pixels_per_metre);
-        const double pixels = length * pixels_per_metre;
-        const double x = 28 * unit_;
-        const double y = 30 * unit_;
-        const double tick = 7 * unit_;
-        const std::array<double, 3> black = {0.1, 0.1, 0.1};
-        shapes({{x, y, 0}, {x + pixels, y, 0}, {x, y - tick, 0}, {x, y + tick, 0}, {x + pixels, y - tick, 0}, {x + pixels, y + tick, 0}}, {}, {{0, 1}, {2, 3}, {4, 5}},
-               {black, black, black}, 2.5);
-        const std::string label = length < 0.9995e-3 ? core::format_number(length * 1e6, 3) + " um"
-                                  : length < 0.9995  ? core::format_number(length * 1e3, 3) + " mm"
-                                  : length < 999.5   ? core::format_number(length, 3) + " m"
-                                                     : core::format_number(length * 1e-3, 3) + " km";
-        text(label, x + pixels + 14 * unit_, y, number_size, false, 0.1, -1);
-    }
-
-    void draw_axes() {
-        const double x = width_ - 88 * unit_;
-        const double y = 92 * unit_;
-        const double length = 50 * unit_;
-        std::vector<Point> points = {{x, y, 0}};
-        std::vector<std::vector<vtkIdType>> lines;
-        std::vector<std::array<double, 3>> colours;
-        static constexpr std::array<std::array<double, 3>, 3> tints = {{{0.80, 0.20, 0.20}, {0.10, 0.55, 0.25}, {0.15, 0.35, 0.80}}};
-        for (std::size_t k = 0; k < 3; ++k) {
-            Point axis{};
-            axis[k] = 1;
-            const double dx = dot(axis, axes_.right);
-            const double dy = dot(axis, axes_.up);
-            const double seen = std::hypot(dx, dy);
-            if (seen < 0.12) {
-                continue;  // it looks at the viewer
-            }
-            points.push_back({x + length * dx, y + length * dy, 0});
-            lines.push_back({0, static_cast<vtkIdType>(points.size() - 1)});
-            colours.push_back(tints[k]);
-            const double reach = length + 16 * unit_ / seen;
-            text(scene_.axis_names[k], x + reach * dx, y + reach * dy, 22, false, 0.2, 0);
-        }
-        shapes(points, {}, lines, colours, 2.6);
     }
 
     std::string png() {
@@ -536,8 +382,10 @@ private:
 
     const Scene& scene_;
     ViewAxes axes_;
-    std::pair<double, double> range_;
-    double width_ = 0, height_ = 0, scale_ = 1, unit_ = 1;
+    PictureLayout layout_;
+    std::pair<double, double> values_;  ///< of all that is drawn
+    std::pair<double, double> range_;   ///< of the colours
+    double scale_ = 1;                  ///< half the height of the scene, m
     Point middle_{};  ///< of what is drawn
     vtkNew<vtkRenderWindow> window_;
     vtkNew<vtkRenderer> back_;

@@ -271,7 +271,7 @@ core::Figure gap_profile_figure(const Field& field, const GapOptions& options, c
         ground = std::min(ground, dot({all[corner & 1], all[2 + ((corner >> 1) & 1)], all[4 + ((corner >> 2) & 1)]}, options.up));
     }
     core::Figure figure;
-    figure.title = "velocity across the gap";
+    figure.title = "velocity across the gap along the base (0: its middle, +: forward)";
     figure.x = {"velocity of the stream", "m/s"};
     figure.y = {"height over the ground", "mm"};
     figure.caption = "Velocity against the forward axis between ground and base, in the middle plane, at stations along the base (position from its centre, forward positive).";
@@ -296,7 +296,7 @@ core::Figure gap_profile_figure(const Field& field, const GapOptions& options, c
         const double gap_height = section.height - ground;
         const core::Table line = probe_line(field, plus(foot, options.up, 1e-4 * gap_height), plus(foot, options.up, (1 - 1e-4) * gap_height), count, arrays, progress);
         core::FigureCurve curve;
-        curve.name = core::format_number(1000 * at, 3) + " mm";
+        curve.name = (at > 0 ? "+" : "") + core::format_number(1000 * at, 3) + " mm";
         curve.colour = core::palette(colour++);
         for (std::size_t i = 0; i < count; ++i) {
             const Point v = {line.numbers("velocity_x")[i], line.numbers("velocity_y")[i], line.numbers("velocity_z")[i]};

@@ -87,7 +87,8 @@ struct ViewOptions {
     double speed = 0;                        ///< m/s, for pressure coefficients in subtitles; 0: unknown
     int width = 1200;
     int height = 800;
-    /// Colour ranges to share between cases, SI, by the view's name ("pressure-underbody") or the array's ("pressure").
+    /// Colour ranges to share between cases, SI, by the view's name ("pressure-underbody") or by what it shows (see
+    /// range_keys; also "speed" and "shear"); a view's own counts over that of all. Other keys are refused.
     std::vector<std::pair<std::string, std::pair<double, double>>> ranges;
     /// Box to fit, file axes, to share between cases (see Camera::box).
     std::optional<std::array<double, 6>> box;
@@ -101,8 +102,18 @@ struct View {
     std::pair<double, double> range;  ///< of the colours, SI
 };
 
-/// Everything that this field allows. Two-dimensional cases: pressure and speed over their plane. Else pressure on the underbody (seen from below) and on the hull; with a volume also
-/// pressure and speed in the symmetry plane, streamlines in the gap, and the profile across the gap.
+/// What a colour range may be given for: every view's name, and the arrays pressure, wall_shear, velocity; the unit that
+/// its ends have ("" for a difference, which has that of its array).
+struct RangeKey {
+    std::string name;
+    std::string unit;
+};
+std::vector<RangeKey> range_keys();
+
+/// Everything that this field allows. Two-dimensional cases: pressure and speed over their plane. Else pressure and wall
+/// shear on the underbody (seen from below; without a base on the hull), pressure on the hull; with a volume also pressure
+/// and speed in the symmetry plane (that of a half model or of the one flat symmetry boundary, else the middle of the
+/// body) and streamlines in the gap.
 /// Throws core::InputError when the field has nothing of these.
 std::vector<View> views(const Field& field, const ViewOptions& options = {}, core::Progress& progress = core::Progress::none());
 

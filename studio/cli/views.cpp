@@ -36,6 +36,16 @@ struct Options {
     FieldOptions field;
 };
 
+/// Unit of a range's ends; empty: any (a key that nobody knows is refused with the views).
+std::string range_unit(const std::string& key) {
+    for (const auto& known : postproc::range_keys()) {
+        if (known.name == key || (key == "speed" && known.name == "velocity") || (key == "shear" && known.name == "wall_shear")) {
+            return known.unit;
+        }
+    }
+    return {};
+}
+
 postproc::ViewOptions view_options(const Options& given) {
     postproc::ViewOptions options;
     options.forward = postproc::axis_from(given.forward);
@@ -51,10 +61,13 @@ postproc::ViewOptions view_options(const Options& given) {
         if (equals == std::string::npos || colon == std::string::npos) {
             throw core::UsageError("usage", "--range '" + text + "' is no NAME=LOW:HIGH", {}, "for instance --range pressure=-200:100");
         }
-        const auto low = core::parse_quantity(text.substr(equals + 1, colon - equals - 1));
-        const auto high = core::parse_quantity(text.substr(colon + 1));
-        const auto si = [](const core::Quantity& q) { return q.unit.empty() ? q.value : core::convert(q.value, q.unit, core::si_unit(q.unit)); };
-        options.ranges.emplace_back(text.substr(0, equals), std::pair{si(low), si(high)});
+        const std::string key = text.substr(0, equals);
+        const std::string unit = range_unit(key);
+        const auto si = [&](const std::string& end) {
+            const auto quantity = core::parse_quantity(end);
+            return quantity.unit.empty() ? quantity.value : core::convert(quantity.value, quantity.unit, unit.empty() ? core::si_unit(quantity.unit) : unit);
+        };
+        options.ranges.emplace_back(key, std::pair{si(text.substr(equals + 1, colon - equals - 1)), si(text.substr(colon + 1))});
     }
     return options;
 }
@@ -177,7 +190,7 @@ void add_views_command(CLI::App& app, Shell& shell) {
     command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',');
     command->add_flag("--list", o->list, "only say which views the file allows");
     command->add_option("--difference", o->difference, "draw the second file less the first one: pressure, wall_shear");
-    command->add_option("--range", o->ranges, "colour range: pressure=-200:100");
+    command->add_option("--range", o->ranges, "colour range, in SI or with units: pressure=-200:100, shear=\"0 Pa:5 Pa\", speed=0:1, speed-symmetry=0:0.7, difference=-20:20");
     command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane");
     command->add_option("--base", o->base, "zone that is the base")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();

@@ -74,6 +74,81 @@ TEST(ViewsOfAVolume, LeaveAGroundOutThatWouldHideTheBody) {
     EXPECT_EQ(view(field, "pressure-underbody", half_model()).png, view(field, "pressure-underbody", named).png);
 }
 
+/// Half a box from y = 0 to `width`, 2 m long, over z = 0.1; pressure `level` + 3 x, wall shear of size 2 + y. `base`: its
+/// lower side is a zone of its own.
+Field half_box(double width, double level, bool base = true) {
+    const auto rows = [&](std::initializer_list<std::array<double, 3>> places) {
+        std::string text = "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa ]\n";
+        for (const auto& [x, share, z] : places) {
+            text += std::to_string(x) + "," + std::to_string(share * width) + "," + std::to_string(z) + "," + std::to_string(level + 3 * x) + "," + std::to_string(2 + share * width) + ",0,0\n";
+        }
+        return text;
+    };
+    std::string csv;
+    if (base) {
+        csv += "[Name]\nbase\n\n[Data]\n" + rows({{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}}) + "\n[Faces]\n0,3,2,1\n\n";
+    }
+    csv += "[Name]\nhull\n\n[Data]\n" + rows({{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}, {0, 0, 0.6}, {2, 0, 0.6}, {2, 1, 0.6}, {0, 1, 0.6}}) +
+           "\n[Faces]\n1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,6,7\n";
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "box.csv", csv);
+    return read_field(folder.path() / "box.csv");
+}
+
+TEST(ViewsWithARange, TakeItByTheirNameOrByWhatTheyShow) {
+    const Field field = half_box(0.5, 0);
+    ViewOptions options;
+    options.symmetry = "y";
+    const auto range_of_shear = [&](std::vector<std::pair<std::string, std::pair<double, double>>> ranges) {
+        options.ranges = std::move(ranges);
+        return view(field, "shear-underbody", options).range;
+    };
+    EXPECT_EQ(range_of_shear({{"wall_shear", {0, 4}}}), std::pair(0.0, 4.0));
+    EXPECT_EQ(range_of_shear({{"shear", {0, 5}}, {"pressure", {0, 1}}}), std::pair(0.0, 5.0));
+    EXPECT_EQ(range_of_shear({{"shear-underbody", {1, 3}}, {"wall_shear", {0, 4}}}), std::pair(1.0, 3.0));
+    EXPECT_NEAR(range_of_shear({{"pressure", {0, 1}}}).second, 2.5, 1e-12);
+    try {
+        range_of_shear({{"wal_shear", {0, 1}}});
+        FAIL() << "accepted";
+    } catch (const core::UsageError& error) {
+        EXPECT_THAT(error.hint(), testing::HasSubstr("wall_shear"));
+    }
+    EXPECT_THROW(range_of_shear({{"shear", {2, 1}}}), core::UsageError);
+}
+
+TEST(ViewsOfASurface, ShowTheShearOfABodyWithoutABaseOnItsHull) {
+    EXPECT_THAT(possible_views(half_box(0.5, 0, false)), testing::ElementsAre("pressure-hull", "shear-hull"));
+}
+
+TEST(ViewsOfAHalfModel, TakeTheirPlaneWithItsUnit) {
+    const Field field = half_box(0.5, 0);
+    ViewOptions metres;
+    metres.symmetry = "y=-0.1";
+    ViewOptions millimetres;
+    millimetres.symmetry = "y=-100 mm";
+    ViewOptions zero;
+    zero.symmetry = "y";
+    const std::string png = view(field, "pressure-underbody", metres).png;
+    EXPECT_EQ(png, view(field, "pressure-underbody", millimetres).png);
+    EXPECT_NE(png, view(field, "pressure-underbody", zero).png);
+    ViewOptions none;
+    none.symmetry = "q";
+    EXPECT_THROW(view(field, "pressure-underbody", none), core::UsageError);
+}
+
+TEST(ViewsOfTwoCases, CompareWhereTheBodiesMeet) {
+    ViewOptions options;
+    options.symmetry = "y";
+    // As wide: 2 Pa everywhere. Twice as wide: the planes of symmetry lie on each other all the same.
+    const View same = difference_view(half_box(0.5, 1), half_box(0.5, 3), "pressure", options);
+    EXPECT_THAT(same.caption, testing::Not(testing::HasSubstr("grey where")));
+    EXPECT_NEAR(same.range.second, 2, 1e-6);
+    const View wider = difference_view(half_box(0.25, 1), half_box(0.5, 3), "pressure", options);
+    EXPECT_THAT(wider.caption, testing::HasSubstr("moved by (0, 0, 0) mm"));
+    EXPECT_THAT(wider.caption, testing::HasSubstr("grey where"));
+    EXPECT_NEAR(wider.range.second, 2, 1e-6);
+}
+
 TEST(ViewsOfTwoCases, ShareRangesAndShowTheirDifference) {
     UNDERBODY_NEEDS_SHARED("cfd/fields/ellipse-h5-p0-coarse.csv");
     const auto folder = test::shared_folder() / "cfd/fields";

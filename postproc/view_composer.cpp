@@ -1,0 +1,265 @@
+// Which views a case has, from where they are seen, what is said of them; `view_scenes.cpp` composes each.
+#include "postproc/view_composer.h"
+
+#include <vtkCellData.h>
+#include <vtkPointData.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/text.h"
+#include "postproc/colours.h"
+#include "postproc/mirror_plane.h"
+#include "postproc/stated_loads.h"
+#include "postproc/vector_math.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+Box box_of(const Zone& zone) {
+    Box box{};
+    zone.surface->GetBounds(box.data());
+    return box;
+}
+
+}  // namespace
+
+std::string view_label(const std::string& array) { return array == "wall_shear" ? "wall shear" : array == "velocity" ? "speed" : array; }
+
+std::string view_unit(const std::string& array) { return array == "velocity" ? "m/s" : "Pa"; }
+
+const std::vector<ViewComposer::Kind>& ViewComposer::kinds() {
+    using C = ViewComposer;
+    static const std::vector<Kind> all = {
+        {"pressure-underbody", "pressure", &C::underbody_view, &C::on_underbody},
+        {"pressure-hull", "pressure", &C::hull_view, &C::on_hull},
+        {"shear-underbody", "wall_shear", &C::underbody_view, &C::on_underbody},
+        {"shear-hull", "wall_shear", &C::hull_view, &C::on_hull_alone},
+        {"pressure-symmetry", "pressure", &C::symmetry_view, &C::in_volume},
+        {"speed-symmetry", "velocity", &C::symmetry_view, &C::in_volume},
+        {"streamlines-gap", "velocity", &C::gap_view, &C::in_gap},
+        {"pressure-plane", "pressure", &C::plane_view, &C::in_plane},
+        {"speed-plane", "velocity", &C::plane_view, &C::in_plane},
+    };
+    return all;
+}
+
+std::string array_of_view(const std::string& name) {
+    for (const auto& key : ViewComposer::kinds()) {
+        if (key.name == name) {
+            return key.array;
+        }
+    }
+    return {};
+}
+
+std::vector<RangeKey> range_keys() {
+    std::vector<RangeKey> keys = {{"pressure", "Pa"}, {"wall_shear", "Pa"}, {"velocity", "m/s"}, {"difference", ""}};
+    for (const auto& kind : ViewComposer::kinds()) {
+        keys.push_back({kind.name, view_unit(kind.array)});
+    }
+    return keys;
+}
+
+ViewComposer::ViewComposer(const Field& field, const ViewOptions& options)
+    : field_(field), options_(options), zones_(body_zones(field, options.zones)), starboard_(cross(options.forward, options.up)) {
+    for (const Zone* zone : zones_) {
+        if (matches(options.base, zone->name)) {
+            widen(base_box_, box_of(*zone));
+            has_base_ = true;
+        }
+    }
+    if (options.zones.empty()) {  // a ground is a wall too, but it would hide the body
+        std::erase_if(zones_, [&](const Zone* zone) { return !near_body(*zone); });
+    }
+    for (const Zone* zone : zones_) {
+        widen(body_, box_of(*zone));
+    }
+    find_mirror();
+    if (mirror_.axis < 0) {
+        find_symmetry_zone();
+    }
+    check_ranges(options);
+    name_ = options.case_name;
+    if (name_.empty() && !field.files.empty()) {
+        name_ = case_stem(field.files.front());
+    }
+}
+
+std::vector<std::string> ViewComposer::possible() const {
+    std::vector<std::string> names;
+    for (const auto& kind : kinds()) {
+        if ((this->*kind.possible)(kind.array)) {
+            names.emplace_back(kind.name);
+        }
+    }
+    return names;
+}
+
+ComposedView ViewComposer::compose(const std::string& name) const {
+    const auto names = possible();
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+        throw core::InputError("view", "there is no view '" + name + "' of this field", {file(), {}, {}, {}}, core::did_you_mean(name, names));
+    }
+    const Kind& kind = *std::find_if(kinds().begin(), kinds().end(), [&](const Kind& k) { return k.name == name; });
+    ComposedView composed = (this->*kind.compose)(kind.array);
+    finish(composed, kind);
+    return composed;
+}
+
+bool ViewComposer::on_underbody(const std::string& array) const { return on_hull(array) && has_base_; }
+
+bool ViewComposer::on_hull(const std::string& array) const { return field_.dimension == 3 && !zones_.empty() && has_array(array); }
+
+bool ViewComposer::on_hull_alone(const std::string& array) const { return on_hull(array) && !has_base_; }
+
+bool ViewComposer::in_volume(const std::string& array) const { return field_.dimension == 3 && !zones_.empty() && volume_has(array); }
+
+bool ViewComposer::in_gap(const std::string& array) const { return in_volume(array) && has_base_; }
+
+bool ViewComposer::in_plane(const std::string& array) const { return field_.dimension == 2 && volume_has(array); }
+
+bool ViewComposer::has_array(const std::string& array) const {
+    return std::any_of(zones_.begin(), zones_.end(), [&](const Zone* z) {
+        return z->surface->GetPointData()->HasArray(array.c_str()) != 0 || z->surface->GetCellData()->HasArray(array.c_str()) != 0;
+    });
+}
+
+bool ViewComposer::volume_has(const std::string& array) const {
+    return std::any_of(field_.zones.begin(), field_.zones.end(), [&](const Zone& z) {
+        return z.volume != nullptr && (z.volume->GetPointData()->HasArray(array.c_str()) != 0 || z.volume->GetCellData()->HasArray(array.c_str()) != 0);
+    });
+}
+
+void ViewComposer::find_mirror() {
+    const MirrorPlane plane = mirror_plane_from(options_.symmetry);
+    mirror_.axis = plane.axis;
+    if (plane.at) {
+        mirror_.at = *plane.at;
+    } else if (plane.is_half() && !zones_.empty()) {
+        const double low = body_[static_cast<std::size_t>(2 * mirror_.axis)];
+        const double high = body_[static_cast<std::size_t>(2 * mirror_.axis + 1)];
+        mirror_.at = std::abs(low) < std::abs(high) ? low : high;
+    }
+}
+
+void ViewComposer::find_symmetry_zone() {
+    int found = 0;
+    for (const auto& zone : field_.zones) {
+        if (zone.kind != ZoneKind::symmetry || zone.surface == nullptr || zone.surface->GetNumberOfPolys() == 0) {
+            continue;
+        }
+        const Box box = box_of(zone);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (box[2 * k + 1] - box[2 * k] < 1e-6 * diagonal(box)) {
+                symmetry_zone_ = {static_cast<int>(k), 0.5 * (box[2 * k] + box[2 * k + 1])};
+                ++found;
+            }
+        }
+    }
+    if (found != 1) {  // several: nobody can tell which one is meant
+        symmetry_zone_ = {};
+    }
+}
+
+bool ViewComposer::near_body(const Zone& zone) const { return !has_base_ || diagonal(box_of(zone)) < 4 * diagonal(base_box_); }
+
+Point ViewComposer::base_centre() const {
+    const Box& b = has_base_ ? base_box_ : body_;
+    return {0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5])};
+}
+
+Box ViewComposer::whole_body() const {
+    Box box = empty_box();
+    for (const Zone* zone : zones_) {
+        if (near_body(*zone)) {
+            widen(box, box_of(*zone));
+        }
+    }
+    if (mirror_.axis >= 0) {
+        const auto k = static_cast<std::size_t>(mirror_.axis);
+        const double reach = std::max(std::abs(box[2 * k] - mirror_.at), std::abs(box[2 * k + 1] - mirror_.at));
+        box[2 * k] = mirror_.at - reach;
+        box[2 * k + 1] = mirror_.at + reach;
+    }
+    return box;
+}
+
+Camera ViewComposer::from_below() const {
+    Camera camera;
+    camera.towards = options_.up;
+    camera.up = starboard_;
+    camera.box = options_.box;
+    return camera;
+}
+
+void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {
+    Scene& scene = composed.scene;
+    scene.subtitle = name_;
+    scene.width = options_.width;
+    scene.height = options_.height;
+    scene.value_name = view_label(kind.array);
+    scene.value_unit = view_unit(kind.array);
+    const auto given = [&](const std::string& key) {
+        return std::find_if(options_.ranges.rbegin(), options_.ranges.rend(), [&](const auto& entry) { return range_key(entry.first) == key; });
+    };
+    auto range = given(kind.name);  // its own counts over its array's
+    range = range == options_.ranges.rend() ? given(kind.array) : range;
+    if (range != options_.ranges.rend() && scene.range != range->second) {
+        if (const auto at = composed.caption.find(" Colours end at"); at != std::string::npos) {
+            composed.caption.resize(at);  // what was said of a range of its own holds no more
+        }
+        composed.caption += " Colours over the range given.";
+        scene.range = range->second;
+    }
+    if (scene.range) {
+        scene.range = drawn_range(*scene.range, scene.colours);
+    }
+}
+
+std::pair<double, double> telling_range(std::vector<double> values, std::string& extremes, const std::string& unit) {
+    if (values.empty()) {
+        return {0, 1};
+    }
+    std::sort(values.begin(), values.end());
+    const auto at = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
+    const double core_span = at(0.99) - at(0.01);
+    double low = values.front();
+    double high = values.back();
+    if (at(0.01) - low > 0.25 * core_span) {
+        low = at(0.01);
+    }
+    if (high - at(0.99) > 0.25 * core_span) {
+        high = at(0.99);
+    }
+    if (low != values.front() || high != values.back()) {
+        extremes = " Colours end at the 1st and 99th percentile; the extremes are " + core::format_number(values.front(), 4) + " and " + core::format_number(values.back(), 4) + " " +
+                   unit + ".";
+    }
+    return {low, high};
+}
+
+std::pair<double, double> range_of(const Scene& scene) {
+    if (scene.range) {
+        return *scene.range;
+    }
+    std::pair<double, double> range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    const auto take = [&](const std::vector<double>& values) {
+        for (const double v : values) {
+            if (std::isfinite(v)) {
+                range = {std::min(range.first, v), std::max(range.second, v)};
+            }
+        }
+    };
+    for (const auto& surface : scene.surfaces) {
+        take(surface.values);
+    }
+    for (const auto& line : scene.lines) {
+        take(line.values);
+    }
+    return range;
+}
+
+}  // namespace underbody::postproc
