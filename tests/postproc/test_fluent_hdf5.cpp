@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <hdf5.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <array>
 #include <fstream>
@@ -302,6 +304,80 @@ TEST(FluentHdf5, AMeshIsInTheUnitThatItStates) {
     }
     const auto field = read_field(folder.path() / "tank.msh.h5");
     EXPECT_NEAR(test::volume_of(field), 2 * 0.0254 * 0.0254 * 0.0254, 1e-14);
+}
+
+TEST(FluentHdf5, CellsOfAnotherKindAmongManyAlikeAreFoundWhereTheFileDoesNotSayWhatTheyAre) {
+    // A row of squares, one of them cut into two triangles whose ids lie far from it.
+    constexpr int columns = 100;
+    constexpr int cut = 2;
+    const core::TemporaryFolder folder;
+    const auto path = folder.path() / "row.msh.h5";
+    const auto bottom = [](int i) { return 1 + i; };
+    const auto top = [](int i) { return 2 + columns + i; };
+    std::array<int, columns> cell_of{};
+    int next = 1;
+    for (int c = 0; c < columns; ++c) {
+        next += next == 3 || next == 6 ? 1 : 0;
+        cell_of[static_cast<std::size_t>(c)] = c == cut ? 0 : next++;
+    }
+    const auto cell = [&](int column, bool upper) { return column == cut ? (upper ? 6 : 3) : cell_of[static_cast<std::size_t>(column)]; };
+    std::vector<std::int32_t> nodes, c0, c1;
+    const auto face = [&](int a, int b, int left, int right = 0) {
+        nodes.insert(nodes.end(), {a, b});
+        c0.push_back(left);
+        c1.push_back(right);
+    };
+    for (int c = 1; c < columns; ++c) {
+        face(bottom(c), top(c), cell(c - 1, false), cell(c, true));
+    }
+    face(bottom(cut), top(cut + 1), 6, 3);
+    const auto inside = static_cast<int>(c0.size());
+    face(top(0), bottom(0), cell(0, true));
+    face(bottom(columns), top(columns), cell(columns - 1, false));
+    for (int c = 0; c < columns; ++c) {
+        face(bottom(c), bottom(c + 1), cell(c, false));
+        face(top(c + 1), top(c), cell(c, true));
+    }
+    {
+        Writer out(path);
+        const std::string root = "/meshes/1";
+        const auto faces = static_cast<int>(c0.size());
+        out.group(root);
+        out.attribute(root, "dimension", 2);
+        out.attribute(root, "nodeCount", 2 * (columns + 1));
+        out.attribute(root, "cellCount", columns + 1);
+        out.attribute(root, "faceCount", faces);
+        std::vector<double> points;
+        for (const double y : {0.0, 1.0}) {
+            for (int i = 0; i <= columns; ++i) {
+                points.insert(points.end(), {static_cast<double>(i), y});
+            }
+        }
+        out.reals(root + "/nodes/coords/1", points, 2);
+        out.ids(root + "/nodes/coords/1", 1, 2 * (columns + 1));
+        const auto zones = [&](const std::string& where, const std::vector<std::vector<std::int32_t>>& lists) {
+            for (std::size_t i = 0; i < lists.size(); ++i) {
+                out.ints(root + where + "/zoneTopology/" + std::array{"id", "minId", "maxId", "zoneType"}[i], lists[i]);
+            }
+        };
+        zones("/cells", {{2}, {1}, {columns + 1}, {1}});
+        zones("/faces", {{3, 4}, {1, inside + 1}, {inside, faces}, {2, 3}});
+        out.ints(root + "/faces/nodes/1/nnodes", std::vector<std::int32_t>(c0.size(), 2));
+        out.ints(root + "/faces/nodes/1/nodes", nodes);
+        out.ids(root + "/faces/nodes/1", 1, faces);
+        out.ints(root + "/faces/c0/1", c0);
+        out.ids(root + "/faces/c0/1", 1, faces);
+        out.ints(root + "/faces/c1/1", {c1.begin(), c1.begin() + inside});
+        out.ids(root + "/faces/c1/1", 1, inside);
+    }
+    const auto field = read_field(path);
+    ASSERT_EQ(test::cells_of(field), columns + 1);
+    vtkUnstructuredGrid& grid = *field.find("fluid-2")->volume;
+    EXPECT_EQ(test::count_cells(grid, VTK_TRIANGLE), 2);
+    EXPECT_EQ(test::count_cells(grid, VTK_QUAD), columns - 1);
+    EXPECT_EQ(grid.GetCellType(2), VTK_TRIANGLE);
+    EXPECT_EQ(grid.GetCellType(5), VTK_TRIANGLE);
+    EXPECT_NEAR(test::volume_of(field), columns, 1e-12);
 }
 
 TEST(FluentHdf5, AFileCutAnywhereIsRefusedOrWhole) {
