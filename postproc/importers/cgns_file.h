@@ -1,0 +1,120 @@
+// CGNS files behind a door: none of libcgns's headers in ours, what a zone holds comes out as plain structs. Sizes are
+// checked against the file before memory is taken, lengths and values come in SI by the units that the file states.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "postproc/field.h"
+#include "postproc/importers/buffer.h"
+#include "postproc/importers/element_zone.h"
+
+namespace underbody::postproc {
+
+struct CgnsZone {
+    int index = 1;  ///< from 1
+    std::string name;
+    bool structured = false;
+    std::array<std::int64_t, 3> nodes = {1, 1, 1};  ///< along each index; unstructured: in the first
+    std::array<std::int64_t, 3> cells = {1, 1, 1};
+
+    [[nodiscard]] double all_cells() const { return static_cast<double>(cells[0]) * static_cast<double>(cells[1]) * static_cast<double>(cells[2]); }
+};
+
+/// The elements of an unstructured zone that carry the numbers `first` to `last`.
+struct CgnsSection {
+    struct Element {
+        unsigned char type = 0;  ///< VTK's
+        std::size_t first = 0;   ///< of its corners in `nodes`
+        std::size_t count = 0;
+    };
+    std::string name;
+    std::int64_t first = 1;
+    std::int64_t last = 0;
+    bool polygons = false;   ///< NGON
+    bool polyhedra = false;  ///< NFACE
+    std::vector<Element> elements;
+    std::vector<std::int64_t> nodes;  ///< from 0; NFACE: signed element numbers of faces
+
+    /// The most of its elements: 0 vertices, 1 lines, 2 faces, 3 cells.
+    [[nodiscard]] int dimension() const;
+};
+
+/// A boundary condition that names faces.
+struct CgnsCondition {
+    std::string name;
+    std::string type;  ///< "BCWall", of its family where it leaves it to that
+    ZoneKind kind = ZoneKind::unknown;
+    std::vector<std::int64_t> elements;  ///< unstructured: element numbers, from 1; none where it names vertices
+    std::vector<std::int64_t> range;     ///< structured: low and high corner, node numbers from 1; else empty
+};
+
+/// A file opened for reading, its last base. Every failure is an InputError with file and zone.
+class CgnsFile {
+public:
+    explicit CgnsFile(const std::filesystem::path& path);
+    ~CgnsFile();
+    CgnsFile(const CgnsFile&) = delete;
+    CgnsFile& operator=(const CgnsFile&) = delete;
+
+    [[nodiscard]] int bases() const { return bases_; }
+    [[nodiscard]] int cell_dimension() const { return cell_dimension_; }
+    [[nodiscard]] int physical_dimension() const { return physical_dimension_; }
+    [[nodiscard]] int zones() const { return zones_; }
+    /// Zone 1 to `zones()`.
+    [[nodiscard]] CgnsZone zone(int index) const;
+
+    /// Three coordinates a node, in m; what the file does not have is 0.
+    [[nodiscard]] Buffer<double> points(const CgnsZone& zone);
+    /// In order of their element numbers; structured zones have none.
+    [[nodiscard]] std::vector<CgnsSection> sections(const CgnsZone& zone, core::Progress& progress) const;
+    [[nodiscard]] std::vector<CgnsCondition> conditions(const CgnsZone& zone) const;
+    /// Solutions at vertices and cells, only the arrays asked for.
+    [[nodiscard]] std::vector<PartValues> solutions(const CgnsZone& zone, const ReadOptions& options, core::Progress& progress);
+
+    /// m per unit of length of the base.
+    [[nodiscard]] double base_length() const { return of_base_.length; }
+    /// So far, at any node that was read.
+    [[nodiscard]] bool units_stated() const { return units_stated_; }
+    /// The file's word for values without dimensions, "" for all others.
+    [[nodiscard]] std::string dimensionless_class() const;
+    /// Variables that were not SI -> what 1 of the file's units is.
+    [[nodiscard]] const std::map<std::string, std::string>& converted() const { return converted_; }
+
+    [[noreturn]] void fail(const CgnsZone& zone, const std::string& what) const { fail("zone '" + zone.name + "': " + what); }
+
+private:
+    /// What makes SI of the file's units of mass and length (CGNS knows no time but the second).
+    struct Scales {
+        double mass = 1;
+        double length = 1;
+        [[nodiscard]] double to_si(std::string_view unit) const;
+    };
+    [[noreturn]] void fail(const std::string& what) const;
+    void ok(const CgnsZone& zone, int result, const char* what) const;
+    void check_room(const CgnsZone& zone, double count) const;
+    template <typename... Node>
+    Scales scales_at(const Scales& above, Node... node);
+    Scales scales_of(const CgnsZone& zone, const char* parent, int index, int array);
+    [[nodiscard]] CgnsSection section(const CgnsZone& zone, int index) const;
+    [[nodiscard]] int family_type(const CgnsZone& zone, int condition) const;
+
+    std::string name_;
+    std::uint64_t bytes_ = 0;
+    std::uint64_t most_values_ = 0;
+    int file_ = -1;
+    int bases_ = 0;
+    int base_ = 1;
+    int zones_ = 0;
+    int cell_dimension_ = 3;
+    int physical_dimension_ = 3;
+    Scales of_base_;
+    bool units_stated_ = false;
+    std::map<std::string, std::string> converted_;
+};
+
+}  // namespace underbody::postproc
