@@ -108,7 +108,7 @@ private:
         }
     }
 
-    void tell_what_was_left_out() {
+    void settle_what_was_left_out() {
         std::vector<std::string> body;
         std::string list;
         for (const auto& part : parts_) {
@@ -271,7 +271,7 @@ private:
 
     void audit() {
         if (!result_.left_out.empty()) {
-            tell_what_was_left_out();
+            settle_what_was_left_out();
         }
         if (!(result_.closure > 1e-9)) {
             return;

@@ -135,11 +135,9 @@ public:
 
 private:
     void row(std::string_view text, std::int64_t number) {
-        if (text.front() == '-') {
-            if (text.find_first_not_of("- \t") == std::string_view::npos) {
-                ruled_ = true;  // a total follows
-                return;
-            }
+        if (text.front() == '-' && text.find_first_not_of("- \t") == std::string_view::npos) {
+            ruled_ = true;  // a total follows
+            return;
         }
         auto words = words_of(text);
         const auto numbers = words.size() < 3 ? std::nullopt : numbers_of({words.end() - 3, words.end()});

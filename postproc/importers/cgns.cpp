@@ -138,7 +138,8 @@ ElementPart Reader::volume_of(const CgnsZone& zone, const std::vector<CgnsSectio
     return volume;
 }
 
-/// Where the pressure lies in the cells alone, a surface takes that of those behind its faces; its own nodes know better.
+/// Where the pressure lies in the cells alone, a surface takes that of those behind its faces; its own nodes know
+/// better.
 std::vector<PartValues> pressure_beside(const ElementPart& surface, const std::vector<PartValues>& values,
                                         const BoundaryFaces& volume) {
     std::vector<PartValues> own;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/parallel.h"
+#include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
 
@@ -193,6 +194,14 @@ void hide_generated_faces(FaceMesh& mesh) {
             mesh.interface_children.push_back({block.first, block.first + block.count - 1});
         }
     }
+}
+
+std::string listed_zones(const FaceMesh& mesh) {
+    std::vector<std::string> names;
+    for (const auto& label : mesh.labels) {
+        names.push_back(label.name);
+    }
+    return names.empty() ? "" : ", zones " + listed(names);
 }
 
 void check_cells_beside(const FaceMesh& mesh, core::Progress& progress) {

@@ -108,18 +108,19 @@ bool is_hidden_code(int code);
 /// them.
 void hide_generated_faces(FaceMesh& mesh);
 
-/// Finds the faces of every cell. Nodes need not be there yet. c0 and c1 of the faces inside the mesh are given up: nobody
-/// needs them after that. Throws InputError where ranges or cell ids are not consistent.
+/// Finds the faces of every cell. Nodes need not be there yet. c0 and c1 of the faces inside the mesh are given up:
+/// nobody needs them after that. Throws InputError where ranges or cell ids are not consistent.
 void gather_cell_faces(FaceMesh& mesh, core::Progress& progress);
 
-/// Checks that ranges and the cells beside faces are consistent, of all zones; throws InputError that names zone and face.
+/// Checks that ranges and the cells beside faces are consistent, of all zones; throws InputError that names zone and
+/// face.
 void check_cells_beside(const FaceMesh& mesh, core::Progress& progress);
+
+/// What an importer understood before it failed: ", zones inlet, hull, ..."; "" while none is known.
+std::string listed_zones(const FaceMesh& mesh);
 
 /// Checks that ranges, node ids and cell ids are consistent; throws InputError that names zone and face.
 void check_mesh(const FaceMesh& mesh, bool surfaces_only, core::Progress& progress);
-
-/// Is there a wall without a pressure on its own faces? It then takes that of the cells beside it, if these have one.
-bool walls_lack_pressure(const FaceMesh& mesh, const std::vector<ValueBlock>& values);
 
 /// Zones with VTK data: one volume per cell zone, one surface per boundary zone (normals into the fluid, also where the
 /// file has them otherwise). Values become canonical: SV_WALL_SHEAR (the wall's force on the fluid) becomes

@@ -14,6 +14,7 @@
 #include "postproc/importers/face_cells.h"
 #include "postproc/importers/face_mesh.h"
 #include "postproc/importers/fluent_settings.h"
+#include "postproc/importers/fluent_variables.h"
 #include "postproc/importers/vtk_arrays.h"
 
 namespace underbody::postproc {
@@ -21,7 +22,6 @@ namespace underbody::postproc {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-const std::string pressure_variable = "SV_P";
 
 /// From where to where the ids of a zone go. Its blocks may come in any order: the ends of the list do not tell.
 struct Span {
@@ -570,18 +570,6 @@ std::uint64_t Assembly::hidden_within(const CellBlock& block) const {
 }
 
 }  // namespace
-
-bool walls_lack_pressure(const FaceMesh& mesh, const std::vector<ValueBlock>& values) {
-    return std::any_of(mesh.face_blocks.begin(), mesh.face_blocks.end(), [&](const FaceBlock& faces) {
-        const ZoneLabel* label = mesh.label(faces.zone);
-        const std::string type = label != nullptr && !label->type.empty() ? label->type : type_of_code(faces.kind);
-        return faces.count > 0 && kind_of_type(type) == ZoneKind::wall &&
-               std::none_of(values.begin(), values.end(), [&](const ValueBlock& block) {
-                   return !block.on_cells && block.variable == pressure_variable && block.phase == 1 &&
-                          block.first < faces.first + faces.count && faces.first < block.first + block.count;
-               });
-    });
-}
 
 Field field_from(FaceMesh&& mesh, std::vector<ValueBlock>&& values, const ReadOptions& options,
                  core::Progress& progress) {

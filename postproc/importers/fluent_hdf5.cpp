@@ -70,7 +70,7 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         progress.report(0.4, "reading " + data_path.filename().string());
         try {
             values = read_hdf5_data(data_path, mesh, options, settings, problems, progress);
-            if (options.surfaces_only && wants_variable(options, "SV_P") && walls_lack_pressure(mesh, values)) {
+            if (needs_pressure_of_cells(mesh, values, options)) {
                 const ReadOptions again = for_pressure_of_cells(options);
                 add_hdf5_cells(data_path, mesh, again, values, progress);
             }

@@ -34,11 +34,7 @@ public:
     FaceMesh read_mesh();
     FluentSettings read_settings() const;
     [[nodiscard]] std::string understood() const {
-        std::string text = number(mesh_.nodes) + " nodes, " + number(mesh_.faces) + " faces, " + number(mesh_.cells) + " cells";
-        for (std::size_t i = 0; i < std::min<std::size_t>(mesh_.labels.size(), 12); ++i) {
-            text += (i == 0 ? ", zones " : ", ") + mesh_.labels[i].name;
-        }
-        return text;
+        return number(mesh_.nodes) + " nodes, " + number(mesh_.faces) + " faces, " + number(mesh_.cells) + " cells" + listed_zones(mesh_);
     }
 
 private:

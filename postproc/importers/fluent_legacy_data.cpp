@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "core/text.h"
@@ -93,9 +92,8 @@ public:
                                  {in_.name(), {}, {}, {}}});
         }
         mind_missing_pressure();
-        for (const auto& [index, times] : skipped_) {
-            settings_.skipped.push_back(std::to_string(index) + " of the data" +
-                                        (times > 1 ? " (" + std::to_string(times) + " times)" : ""));
+        for (const auto& section : listed_sections(skipped_)) {
+            settings_.skipped.push_back(section + " of the data");
         }
         return std::move(values_);
     }
@@ -135,18 +133,17 @@ private:
     std::uint64_t sections_ = 0;
     std::uint64_t odd_values_ = 0;
     bool sized_ = false;
-    bool swap_ = false;
 };
 
 /// Data cut off between two sections look whole: boundary zones without pressure give them away.
 void DataReader::mind_missing_pressure() {
-    if (!wants_variable(options_, "SV_P")) {
+    if (!wants_variable(options_, pressure_variable)) {
         return;
     }
     std::string without;
     for (const auto& [id, zone] : zones_) {
         const bool found = std::any_of(values_.begin(), values_.end(), [&, zone_id = id](const ValueBlock& block) {
-            return block.zone == zone_id && block.variable == "SV_P";
+            return block.zone == zone_id && block.variable == pressure_variable;
         });
         const ZoneLabel* label = mesh_.label(id);
         const bool solid = label != nullptr && (label->type == "solid" || label->type == "interface");
@@ -171,12 +168,8 @@ void DataReader::section() {
         case 0:
             comment_ = text_.comment();
             return;
-        case 4: {
-            const auto numbers = text_.numbers(10);
-            text_.expect(')');
-            swap_ = !numbers.empty() && numbers[0] != 60;
-            return;
-        }
+        case 4:
+            return text_.machine();
         case 33:
             return grid_size();
         case 37:
@@ -232,10 +225,7 @@ void DataReader::check_zone(const ValueBlock& block, const ZoneRanges& zone, std
 }
 
 void DataReader::solution(std::uint64_t index, std::size_t size) {
-    const auto header = text_.numbers(10);
-    if (header.size() < 7) {
-        text_.fail("a header with too few numbers");
-    }
+    const auto header = text_.header(10, 7);
     const Announced said = announced(comment_);
     ValueBlock block;
     const auto small = [](std::uint64_t v) {
@@ -298,29 +288,8 @@ void DataReader::values(ValueBlock& block, std::size_t size) {
     const std::size_t count = block.values.size();
     if (size == 0) {
         text_.reals(out, count);
-    } else if (size == 8) {
-        in_.read(out, count * 8);
-        if (swap_) {
-            for (std::size_t i = 0; i < count; ++i) {
-                std::uint64_t bits = 0;
-                std::memcpy(&bits, out + i, 8);
-                bits = __builtin_bswap64(bits);
-                std::memcpy(out + i, &bits, 8);
-            }
-        }
     } else {
-        std::vector<std::uint32_t> raw(std::min<std::size_t>(count, 65536));
-        for (std::size_t done = 0; done < count;) {
-            const std::size_t part = std::min(raw.size(), count - done);
-            in_.read(raw.data(), part * 4);
-            for (std::size_t i = 0; i < part; ++i) {
-                const std::uint32_t bits = swap_ ? __builtin_bswap32(raw[i]) : raw[i];
-                float single = 0;
-                std::memcpy(&single, &bits, 4);
-                out[done + i] = single;
-            }
-            done += part;
-        }
+        text_.binary_reals(out, count, size);
     }
     for (std::size_t i = 0; i < count; ++i) {
         odd_values_ += std::isfinite(out[i]) ? 0 : 1;
@@ -332,11 +301,7 @@ void DataReader::unknown(std::uint64_t index, bool binary) {
     if (index % 1000 != residuals && index != 301) {
         ++skipped_[index];
     }
-    if (!binary) {
-        text_.inside(0);
-        return;
-    }
-    text_.skip_binary_section(index);
+    text_.skip_section(index, binary);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         try {
             ByteStream stream(files.data);
             values = read_legacy_data(stream, legacy.mesh, options, legacy.settings, problems, progress);
-            if (options.surfaces_only && wants_variable(options, "SV_P") && walls_lack_pressure(legacy.mesh, values)) {
+            if (needs_pressure_of_cells(legacy.mesh, values, options)) {
                 FluentSettings known;
                 core::Problems told;
                 const ReadOptions again = for_pressure_of_cells(options);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "postproc/importers/fluent_legacy.h"
@@ -13,9 +12,6 @@ namespace {
 constexpr std::size_t most_settings_text = std::size_t{64} << 20;
 
 enum class Coding { ascii, single_precision, double_precision };
-
-std::uint32_t swapped(std::uint32_t v) { return __builtin_bswap32(v); }
-std::uint64_t swapped(std::uint64_t v) { return __builtin_bswap64(v); }
 
 class MeshReader {
 public:
@@ -53,12 +49,9 @@ private:
     void tree(std::uint64_t index, Coding coding, std::vector<IdRange>& hidden);
     void interface_faces(std::uint64_t index, Coding coding);
     void unknown(std::uint64_t index, Coding coding);
-    void machine();
     void finish();
     [[nodiscard]] std::string understood() const;
 
-    void integers(std::uint32_t* out, std::size_t count);
-    std::uint32_t integer();
     /// `count` items of at least `least` bytes each must fit into what is left of the file.
     void check_room(std::uint64_t count, std::uint64_t least);
     void close(std::uint64_t index, Coding coding) {
@@ -75,7 +68,6 @@ private:
     core::Progress& progress_;
     std::uint64_t mesh_bytes_;  ///< of the whole file, at most
     LegacyMesh result_;
-    bool swap_ = false;
     bool nodes_declared_ = false, faces_declared_ = false, cells_declared_ = false;
     std::uint64_t nodes_read_ = 0, faces_read_ = 0, cells_read_ = 0;
     std::vector<IdRange> node_ranges_;
@@ -92,39 +84,13 @@ std::string MeshReader::understood() const {
     add("nodes", nodes_read_, mesh.nodes);
     add("faces", faces_read_, mesh.faces);
     add("cells", cells_read_, mesh.cells);
-    if (!mesh.labels.empty()) {
-        std::vector<std::string> names;
-        for (const auto& label : mesh.labels) {
-            names.push_back(label.name);
-        }
-        text += ", zones " + listed(names);
-    }
-    return text;
+    return text + listed_zones(mesh);
 }
 
 void MeshReader::check_room(std::uint64_t count, std::uint64_t least) {
     if (count > in_.most_left() / std::max<std::uint64_t>(1, least)) {
         text_.fail("the header announces " + std::to_string(count) + " items of at least " + std::to_string(least) +
                    " bytes, but at most " + std::to_string(in_.most_left()) + " bytes are left");
-    }
-}
-
-std::uint32_t MeshReader::integer() {
-    std::uint32_t value = 0;
-    in_.ensure(4);
-    if (static_cast<std::size_t>(in_.end() - in_.here()) >= 4) {
-        std::memcpy(&value, in_.here(), 4);
-        in_.move_to(in_.here() + 4);
-    } else {
-        in_.read(&value, 4);
-    }
-    return swap_ ? swapped(value) : value;
-}
-
-void MeshReader::integers(std::uint32_t* out, std::size_t count) {
-    in_.read(out, count * 4);
-    if (swap_) {
-        std::transform(out, out + count, out, [](std::uint32_t v) { return swapped(v); });
     }
 }
 
@@ -176,7 +142,7 @@ void MeshReader::known_section(std::uint64_t index, std::uint64_t base, Coding c
             return;
         }
         case 4:
-            return machine();
+            return text_.machine();
         case 10:
             return nodes(index, coding);
         case 12:
@@ -203,19 +169,9 @@ void MeshReader::known_section(std::uint64_t index, std::uint64_t base, Coding c
     }
 }
 
-void MeshReader::machine() {
-    const auto numbers = text_.numbers(10);
-    text_.expect(')');
-    constexpr std::uint64_t little_endian = 60;
-    swap_ = !numbers.empty() && numbers[0] != little_endian;
-}
-
 void MeshReader::nodes(std::uint64_t index, Coding coding) {
     auto& mesh = result_.mesh;
-    const auto header = text_.numbers(16);
-    if (header.size() < 3) {
-        text_.fail("a header with too few numbers");
-    }
+    const auto header = text_.header(16, 3);
     const std::uint64_t first = header[1];
     const std::uint64_t last = header[2];
     if (header[0] == 0) {
@@ -255,45 +211,13 @@ void MeshReader::nodes(std::uint64_t index, Coding coding) {
     double* out = mesh.points.data() + 3 * (first - 1);
     if (coding == Coding::ascii) {
         text_.reals(out, count * components);
-        for (std::uint64_t i = count; components == 2 && i-- > 0;) {  // pairs become triples in place
-            out[3 * i + 2] = 0;
-            out[3 * i + 1] = out[2 * i + 1];
-            out[3 * i] = out[2 * i];
-        }
     } else {
-        constexpr std::uint64_t at_once = 1024;
-        std::vector<char> raw(at_once * components * size);
-        for (std::uint64_t done = 0; done < count;) {
-            const std::uint64_t part = std::min(at_once, count - done);
-            if (components == 3 && size == 8 && !swap_) {
-                in_.read(out, (count - done) * 24);
-                done = count;
-                continue;
-            }
-            in_.read(raw.data(), part * components * size);
-            for (std::uint64_t i = 0; i < part * components; ++i) {
-                double value = 0;
-                if (size == 8) {
-                    std::uint64_t bits = 0;
-                    std::memcpy(&bits, raw.data() + 8 * i, 8);
-                    bits = swap_ ? swapped(bits) : bits;
-                    std::memcpy(&value, &bits, 8);
-                } else {
-                    std::uint32_t bits = 0;
-                    float single = 0;
-                    std::memcpy(&bits, raw.data() + 4 * i, 4);
-                    bits = swap_ ? swapped(bits) : bits;
-                    std::memcpy(&single, &bits, 4);
-                    value = single;
-                }
-                out[i / components * 3 + i % components] = value;
-                if (components == 2) {
-                    out[i / 2 * 3 + 2] = 0;
-                }
-            }
-            out += 3 * part;
-            done += part;
-        }
+        text_.binary_reals(out, count * components, size);
+    }
+    for (std::uint64_t i = count; components == 2 && i-- > 0;) {  // pairs become triples in place
+        out[3 * i + 2] = 0;
+        out[3 * i + 1] = out[2 * i + 1];
+        out[3 * i] = out[2 * i];
     }
     nodes_read_ += count;
     close(index, coding);
@@ -301,10 +225,7 @@ void MeshReader::nodes(std::uint64_t index, Coding coding) {
 
 void MeshReader::cells(std::uint64_t index, Coding coding) {
     auto& mesh = result_.mesh;
-    const auto header = text_.numbers(16);
-    if (header.size() < 4) {
-        text_.fail("a header with too few numbers");
-    }
+    const auto header = text_.header(16, 4);
     if (header[0] == 0) {
         mesh.cells = std::max(mesh.cells, header[2]);
         cells_declared_ = true;
@@ -341,7 +262,7 @@ void MeshReader::elements(CellBlock& block, std::uint64_t index, Coding coding) 
     check_room(coding == Coding::ascii ? block.count / 2 : block.count, coding == Coding::ascii ? 1 : 4);
     block.elements.grow_to(block.count);
     for (std::size_t i = 0; i < block.count; ++i) {
-        const std::uint32_t code = coding == Coding::ascii ? text_.hexadecimal() : integer();
+        const std::uint32_t code = coding == Coding::ascii ? text_.hexadecimal() : text_.binary_integer();
         block.elements[i] = static_cast<unsigned char>(std::min<std::uint32_t>(code, 255));
     }
     close(index, coding);
@@ -349,10 +270,7 @@ void MeshReader::elements(CellBlock& block, std::uint64_t index, Coding coding) 
 
 void MeshReader::faces(std::uint64_t index, Coding coding) {
     auto& mesh = result_.mesh;
-    const auto header = text_.numbers(16);
-    if (header.size() < 3) {
-        text_.fail("a header with too few numbers");
-    }
+    const auto header = text_.header(16, 3);
     if (header[0] == 0) {
         mesh.faces = std::max(mesh.faces, header[2]);
         faces_declared_ = true;
@@ -432,7 +350,7 @@ void MeshReader::fixed_faces(FaceBlock& block, Coding coding) {
     std::vector<std::uint32_t> raw(at_once * (n + 2));
     for (std::size_t done = 0; done < block.count;) {
         const std::size_t part = std::min<std::size_t>(at_once, block.count - done);
-        integers(raw.data(), part * (n + 2));
+        text_.binary_integers(raw.data(), part * (n + 2));
         const std::uint32_t* in = raw.data();
         for (std::size_t face = done; face < done + part; ++face) {
             nodes = std::copy_n(in, n, nodes);
@@ -451,7 +369,7 @@ void MeshReader::mixed_faces(FaceBlock& block, Coding coding) {
         mixed_faces_of(block, 2, [&] { return words.next(); });
         words.finish();
     } else {
-        mixed_faces_of(block, 4, [&] { return integer(); });
+        mixed_faces_of(block, 4, [&] { return text_.binary_integer(); });
     }
 }
 
@@ -476,7 +394,7 @@ void MeshReader::mixed_faces_of(FaceBlock& block, std::uint64_t bytes, Next&& ne
 
 void MeshReader::skip_mixed_binary(std::uint64_t count) {
     for (std::uint64_t face = 0; face < count; ++face) {
-        in_.skip(4 * (static_cast<std::uint64_t>(integer()) + 2));
+        in_.skip(4 * (static_cast<std::uint64_t>(text_.binary_integer()) + 2));
     }
 }
 
@@ -513,7 +431,7 @@ void MeshReader::tree(std::uint64_t index, Coding coding, std::vector<IdRange>& 
     } else {
         check_room(count, 4);
         for (std::uint64_t i = 0; i < count; ++i) {
-            in_.skip(4 * static_cast<std::uint64_t>(integer()));
+            in_.skip(4 * static_cast<std::uint64_t>(text_.binary_integer()));
         }
         text_.close_binary_body(index);
     }
@@ -540,11 +458,7 @@ void MeshReader::interface_faces(std::uint64_t index, Coding coding) {
 
 void MeshReader::unknown(std::uint64_t index, Coding coding) {
     ++skipped_[index];
-    if (coding == Coding::ascii) {
-        text_.inside(0);
-        return;
-    }
-    text_.skip_binary_section(index);
+    text_.skip_section(index, coding != Coding::ascii);
 }
 
 void MeshReader::finish() {
@@ -576,10 +490,7 @@ void MeshReader::finish() {
         }
     }
     hide_generated_faces(mesh);
-    for (const auto& [index, times] : skipped_) {
-        result_.settings.skipped.push_back(std::to_string(index) +
-                                           (times > 1 ? " (" + std::to_string(times) + " times)" : ""));
-    }
+    result_.settings.skipped = listed_sections(skipped_);
     check_mesh(mesh, surfaces_only_, progress_);
 }
 

@@ -20,7 +20,8 @@ struct FluentSettings {
 /// The value of `(name value)` or `(name . value)` in Lisp text: "101325", "\"si\"", "#f"; nothing if it is not there.
 std::optional<std::string> lisp_value(std::string_view text, std::string_view name);
 
-/// Writer, operating pressure, reference values, axisymmetry and the density of a constant-density fluid into the field.
+/// Writer, operating pressure, reference values, axisymmetry and the density of a constant-density fluid into the
+/// field.
 void apply_settings(const FluentSettings& settings, bool with_values, Field& field);
 
 /// A case is in metres; a mesh says nothing, or its unit: scales by `options.length_unit` or the file's unit, and says

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "core/parallel.h"
@@ -165,42 +166,27 @@ std::vector<std::string_view> FluentText::pieces(bool& bracket) {
 
 namespace {
 
-/// The numbers of one piece; where it fails, if it does.
-const char* hexadecimals_of(std::string_view piece, Buffer<std::uint32_t>& out) {
-    out.grow_to(piece.size() / 2 + 1);
-    std::uint32_t* to = out.data();
-    const char* p = piece.data();
-    const char* const end = p + piece.size();
-    const char* failed = nullptr;
-    for (;;) {
-        while (p != end && is_space(*p)) {
-            ++p;
-        }
-        if (p == end) {
-            break;
-        }
-        if (end - p > 8 && parse_hex(p, *to)) {
-            ++to;
-            continue;
-        }
-        const char* const start = p;
-        std::uint64_t value = 0;
-        for (; p != end && digits[static_cast<unsigned char>(*p)] < 16 && value <= 0xffffffffULL; ++p) {
-            value = value << 4 | digits[static_cast<unsigned char>(*p)];
-        }
-        if (p == start || (p != end && !is_space(*p)) || value > 0xffffffffULL) {
-            failed = start;
-            break;
-        }
-        *to++ = static_cast<std::uint32_t>(value);
+/// The hexadecimal number at `p`, up to a blank or `end`; where it ends, nullptr: it is none of 32 bits.
+const char* parse_word(const char* p, const char* end, std::uint32_t& out) {
+    if (end - p > 8 && parse_hex(p, out)) {
+        return p;
     }
-    out.grow_to(static_cast<std::size_t>(to - out.data()));
-    return failed;
+    const char* const start = p;
+    std::uint64_t value = 0;
+    for (; p != end && digits[static_cast<unsigned char>(*p)] < 16 && value <= 0xffffffffULL; ++p) {
+        value = value << 4 | digits[static_cast<unsigned char>(*p)];
+    }
+    out = static_cast<std::uint32_t>(value);
+    return p == start || value > 0xffffffffULL ? nullptr : p;
 }
 
-const char* reals_of(std::string_view piece, Buffer<double>& out) {
+const char* parse_word(const char* p, const char* end, double& out) { return parse_number(p, end, out); }
+
+/// The numbers of one piece; where it fails, if it does.
+template <typename Number>
+const char* numbers_of(std::string_view piece, Buffer<Number>& out) {
     out.grow_to(piece.size() / 2 + 1);
-    double* to = out.data();
+    Number* to = out.data();
     const char* p = piece.data();
     const char* const end = p + piece.size();
     const char* failed = nullptr;
@@ -211,7 +197,7 @@ const char* reals_of(std::string_view piece, Buffer<double>& out) {
         if (p == end) {
             break;
         }
-        const char* const next = parse_number(p, end, *to);
+        const char* const next = parse_word(p, end, *to);
         if (next == nullptr || (next != end && !is_space(*next))) {
             failed = p;
             break;
@@ -223,12 +209,12 @@ const char* reals_of(std::string_view piece, Buffer<double>& out) {
     return failed;
 }
 
-/// Every piece by its function, on all threads; the first place that failed, or nullptr.
-template <typename Number, typename Parse>
-const char* parse_all(const std::vector<std::string_view>& pieces, std::vector<Buffer<Number>>& lists, Parse&& parse) {
+/// Every piece, on all threads; the first place that failed, or nullptr.
+template <typename Number>
+const char* parse_all(const std::vector<std::string_view>& pieces, std::vector<Buffer<Number>>& lists) {
     lists.resize(std::max(lists.size(), pieces.size()));
     std::vector<const char*> failed(pieces.size());
-    core::parallel_for(pieces.size(), [&](std::size_t i) { failed[i] = parse(pieces[i], lists[i]); });
+    core::parallel_for(pieces.size(), [&](std::size_t i) { failed[i] = numbers_of(pieces[i], lists[i]); });
     for (std::size_t i = pieces.size(); i < lists.size(); ++i) {
         lists[i].grow_to(0);
     }
@@ -259,7 +245,7 @@ bool FluentText::hexadecimals(std::vector<Buffer<std::uint32_t>>& lists) {
     if (texts.empty() && !bracket) {
         fail(in_.at_end() ? "expected a number, found the end of the file" : "a number with too many digits");
     }
-    if (const char* failed = parse_all(texts, lists, hexadecimals_of); failed != nullptr) {
+    if (const char* failed = parse_all(texts, lists); failed != nullptr) {
         fail_at(failed);
     }
     if (!texts.empty()) {
@@ -273,7 +259,7 @@ void FluentText::reals(double* out, std::uint64_t count) {
     while (count > worth_it) {
         bool bracket = false;
         const auto texts = pieces(bracket);
-        const char* const failed = parse_all(texts, parts_, reals_of);
+        const char* const failed = parse_all(texts, parts_);
         std::uint64_t found = 0;
         for (const auto& part : parts_) {
             found += part.size();
@@ -330,6 +316,59 @@ std::vector<std::uint64_t> FluentText::numbers(int base) {
         result.push_back(number(base));
     }
     return result;
+}
+
+std::vector<std::uint64_t> FluentText::header(int base, std::size_t least) {
+    auto result = numbers(base);
+    if (result.size() < least) {
+        fail("a header with too few numbers");
+    }
+    return result;
+}
+
+void FluentText::machine() {
+    constexpr std::uint64_t little_endian = 60;
+    const auto sizes = numbers(10);
+    expect(')');
+    swap_ = !sizes.empty() && sizes[0] != little_endian;
+}
+
+void FluentText::binary_reals(double* out, std::uint64_t count, std::size_t size) {
+    if (size == sizeof(double)) {
+        in_.read(out, count * sizeof(double));
+        for (std::uint64_t i = 0; i < count && swap_; ++i) {
+            out[i] = std::bit_cast<double>(__builtin_bswap64(std::bit_cast<std::uint64_t>(out[i])));
+        }
+        return;
+    }
+    std::array<std::uint32_t, 16384> raw;
+    for (std::uint64_t done = 0; done < count;) {
+        const std::size_t some = std::min<std::uint64_t>(raw.size(), count - done);
+        binary_integers(raw.data(), some);
+        for (std::size_t i = 0; i < some; ++i) {
+            out[done + i] = std::bit_cast<float>(raw[i]);
+        }
+        done += some;
+    }
+}
+
+void FluentText::binary_integers(std::uint32_t* out, std::size_t count) {
+    in_.read(out, count * sizeof(std::uint32_t));
+    if (swap_) {
+        std::transform(out, out + count, out, [](std::uint32_t v) { return __builtin_bswap32(v); });
+    }
+}
+
+std::uint32_t FluentText::binary_integer() {
+    std::uint32_t value = 0;
+    in_.ensure(sizeof(value));
+    if (static_cast<std::size_t>(in_.end() - in_.here()) >= sizeof(value)) {
+        std::memcpy(&value, in_.here(), sizeof(value));
+        in_.move_to(in_.here() + sizeof(value));
+    } else {
+        in_.read(&value, sizeof(value));
+    }
+    return swap_ ? __builtin_bswap32(value) : value;
 }
 
 std::vector<std::string> FluentText::words() {
@@ -456,7 +495,11 @@ void FluentText::skip_plain_body() {
     fail("the file ends within the section");
 }
 
-void FluentText::skip_binary_section(std::uint64_t index) {
+void FluentText::skip_section(std::uint64_t index, bool binary) {
+    if (!binary) {
+        inside(0);
+        return;
+    }
     if (next() == '(') {
         in_.get();
         inside(0);
@@ -528,6 +571,14 @@ void FluentText::skip_binary_body(std::uint64_t index) {
         }
     }
     fail("the file ends within the binary body");
+}
+
+std::vector<std::string> listed_sections(const std::map<std::uint64_t, int>& skipped) {
+    std::vector<std::string> result;
+    for (const auto& [index, times] : skipped) {
+        result.push_back(std::to_string(index) + (times > 1 ? " (" + std::to_string(times) + " times)" : ""));
+    }
+    return result;
 }
 
 }  // namespace underbody::postproc

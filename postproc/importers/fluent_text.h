@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,10 @@ public:
     double real();
     /// "(1 a ff ...)": all the numbers in the brackets.
     std::vector<std::uint64_t> numbers(int base);
+    /// The same of a section's header, which has at least `least` numbers.
+    std::vector<std::uint64_t> header(int base, std::size_t least);
+    /// Section 4, "(4 (60 0 0 1 2 4 4 4 8 8 8 4))": binary bodies that follow may be of the other byte order.
+    void machine();
     /// "(10 interior int-FLUID 1)": the words in the brackets.
     std::vector<std::string> words();
 
@@ -45,6 +50,12 @@ public:
 
     /// `count` numbers in ASCII, after the opening bracket of a body. Long bodies are read by all threads.
     void reals(double* out, std::uint64_t count);
+    /// `count` numbers of a binary body, of `size` bytes each (4 or 8), in the byte order that `machine` told.
+    void binary_reals(double* out, std::uint64_t count, std::size_t size);
+    /// `count` whole numbers of 4 bytes of a binary body.
+    void binary_integers(std::uint32_t* out, std::size_t count);
+    std::uint32_t binary_integer();
+
     /// The hexadecimal numbers from here to the body's closing bracket, or as many as the window holds, in lists that
     /// follow one another. False: the bracket was reached, and is not taken.
     bool hexadecimals(std::vector<Buffer<std::uint32_t>>& lists);
@@ -56,9 +67,9 @@ public:
     void close_binary_body(std::uint64_t index);
     /// Searches for that end: for sections whose length nobody told.
     void skip_binary_body(std::uint64_t index);
-    /// Header and body of a binary section of unknown content, from behind its index on. A header may be all there is:
+    /// Header and body of a section of unknown content, from behind its index on. A header may be all there is:
     /// "(2040 (1 8))".
-    void skip_binary_section(std::uint64_t index);
+    void skip_section(std::uint64_t index, bool binary);
 
     /// One hexadecimal number of 32 bits.
     std::uint32_t hexadecimal();
@@ -73,6 +84,7 @@ private:
 
     ByteStream& in_;
     std::uint64_t section_ = 0;
+    bool swap_ = false;
     std::vector<Buffer<double>> parts_;  ///< of `reals`, kept for the next window
 };
 
@@ -99,5 +111,8 @@ private:
     const std::uint32_t* end_ = nullptr;
     bool more_ = true;
 };
+
+/// "3067 (4 times)" for sections that were passed over, with how often.
+std::vector<std::string> listed_sections(const std::map<std::uint64_t, int>& skipped);
 
 }  // namespace underbody::postproc

@@ -72,10 +72,25 @@ bool wants_variable(const ReadOptions& options, const std::string& variable) {
            (canonical == "wall_shear_force" && matches_any(options.arrays, "wall_shear"));
 }
 
+bool needs_pressure_of_cells(const FaceMesh& mesh, const std::vector<ValueBlock>& values, const ReadOptions& options) {
+    const auto has_own = [&](const FaceBlock& faces) {
+        return std::any_of(values.begin(), values.end(), [&](const ValueBlock& block) {
+            return !block.on_cells && block.variable == pressure_variable && block.phase == 1 &&
+                   block.first < faces.first + faces.count && faces.first < block.first + block.count;
+        });
+    };
+    return options.surfaces_only && wants_variable(options, pressure_variable) &&
+           std::any_of(mesh.face_blocks.begin(), mesh.face_blocks.end(), [&](const FaceBlock& faces) {
+               const ZoneLabel* label = mesh.label(faces.zone);
+               const std::string type = label != nullptr && !label->type.empty() ? label->type : type_of_code(faces.kind);
+               return faces.count > 0 && kind_of_type(type) == ZoneKind::wall && !has_own(faces);
+           });
+}
+
 ReadOptions for_pressure_of_cells(const ReadOptions& options) {
     ReadOptions again = options;
     again.surfaces_only = false;
-    again.arrays = {"SV_P"};
+    again.arrays = {pressure_variable};
     return again;
 }
 

@@ -1,4 +1,5 @@
-// Numbers of HDF5 data sets, read together: the library does one after another, what is deflated is inflated by all cores.
+// Numbers of HDF5 data sets, read together: the library does one after another, what is deflated is inflated by all
+// cores.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +19,16 @@ public:
     /// The file must outlive this.
     explicit Hdf5Rows(const Hdf5File& file) : file_(file) {}
 
-    /// `rows` rows from `first` on (from 0) of a data set of numbers with one or two dimensions. `out` has room for them
-    /// and stays where it is until `read`.
-    void add(const std::string& path, std::uint64_t first, std::uint64_t rows, double* out) { note(path, false, {first, rows, out}); }
-    /// Whole numbers. Negative ones of up to 4 bytes become larger than any id; wider ones are cut to the smallest and the largest.
-    void add(const std::string& path, std::uint64_t first, std::uint64_t rows, std::uint32_t* out) { note(path, true, {first, rows, out}); }
+    /// `rows` rows from `first` on (from 0) of a data set of numbers with one or two dimensions. `out` has room for
+    /// them and stays where it is until `read`.
+    void add(const std::string& path, std::uint64_t first, std::uint64_t rows, double* out) {
+        note(path, false, {first, rows, out});
+    }
+    /// Whole numbers. Negative ones of up to 4 bytes become larger than any id; wider ones are cut to the smallest and
+    /// the largest.
+    void add(const std::string& path, std::uint64_t first, std::uint64_t rows, std::uint32_t* out) {
+        note(path, true, {first, rows, out});
+    }
 
     /// Reads what was noted and forgets it. Throws InputError with file and path.
     void read(core::Progress& progress);
@@ -46,8 +52,8 @@ private:
     std::vector<Request> requests_;
 };
 
-/// All rows of a data set in order, some at a time, without memory for all of them. `take` gets their numbers and how many
-/// rows it are, and says whether it wants more. Throws as `Hdf5Rows::read` does.
+/// All rows of a data set in order, some at a time, without memory for all of them. `take` gets their numbers and how
+/// many rows it are, and says whether it wants more. Throws as `Hdf5Rows::read` does.
 void each_row(const Hdf5File& file, const std::string& path, core::Progress& progress,
               const std::function<bool(const double* numbers, std::size_t rows)>& take);
 void each_row(const Hdf5File& file, const std::string& path, core::Progress& progress,

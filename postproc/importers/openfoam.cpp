@@ -95,9 +95,7 @@ private:
 std::string Reader::understood() const {
     std::string text = std::to_string(mesh_.nodes) + " nodes, " + std::to_string(mesh_.faces) + " faces, " +
                        std::to_string(mesh_.cells) + " cells";
-    for (const auto& label : mesh_.labels) {
-        text += (&label == &mesh_.labels.front() ? ", patches " : ", ") + label.name;
-    }
+    text += listed_zones(mesh_);
     if (!values_.empty()) {
         text += "; the last field " + values_.back().variable;
     }
