@@ -9,6 +9,7 @@
 #include "postproc/importers/element_zone.h"
 #include "postproc/importers/ensight_case.h"
 #include "postproc/importers/ensight_geometry.h"
+#include "postproc/importers/face_orientation.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/understood.h"
 #include "postproc/importers/variable_reading.h"
@@ -257,6 +258,7 @@ public:
 private:
     void read_variable(const EnsightVariable& variable);
     void add_zones();
+    std::vector<bool> turn_walls(std::vector<ElementPart>& parts);
 
     const std::filesystem::path& path_;
     const ReadOptions& options_;
@@ -300,7 +302,9 @@ void Reader::add_zones() {
         parts.push_back(std::move(part.elements));
     }
     scale_parts(parts, options_, field_);
-    for (auto& part : parts) {
+    const std::vector<bool> settled = turn_walls(parts);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        auto& part = parts[p];
         const bool volume = part.dimension() == field_.dimension;
         if (!matches_any(options_.zones, part.name) || (volume && options_.surfaces_only)) {
             continue;
@@ -308,7 +312,25 @@ void Reader::add_zones() {
         auto& own = values_[part.id];
         field_.zones.push_back(
             zone_from(std::move(part), std::move(own), field_.dimension, options_, path_.string(), field_.problems));
+        field_.zones.back().normals_into_fluid = settled[p];
     }
+}
+
+/// Where the volume is in the file too, its cells say on which side of a wall the fluid is. True for the parts that are
+/// turned that way.
+std::vector<bool> Reader::turn_walls(std::vector<ElementPart>& parts) {
+    std::vector<bool> settled(parts.size(), false);
+    for (std::size_t p = 0; p < parts.size() && field_.dimension == 3; ++p) {
+        if (parts[p].dimension() != 2 || !matches_any(options_.zones, parts[p].name)) {
+            continue;
+        }
+        // Between two volumes (fluid and solid) neither side is the fluid's for sure.
+        settled[p] = std::count_if(parts.begin(), parts.end(), [&](const ElementPart& volume) {
+                         progress_.check();
+                         return volume.dimension() == 3 && turn_into_volume(parts[p], volume);
+                     }) == 1;
+    }
+    return settled;
 }
 
 Field Reader::read() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace underbody::postproc {
 
@@ -88,7 +89,7 @@ BoundaryFaces::Key BoundaryFaces::key_of(const std::int64_t* nodes, std::size_t 
 void BoundaryFaces::note(const std::int64_t* nodes, std::size_t count, std::size_t cell) {
     const auto found = cells_.find(key_of(nodes, count));
     if (found != cells_.end()) {
-        found->second = static_cast<std::int64_t>(cell);
+        found->second = {static_cast<std::int64_t>(cell), found->second.cell >= 0};
     }
 }
 
@@ -96,7 +97,7 @@ BoundaryFaces::BoundaryFaces(const std::vector<ElementPart>& surfaces, const Ele
     for (const auto& surface : surfaces) {
         for (std::size_t i = 0; i < surface.elements(); ++i) {
             const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
-            cells_.emplace(key_of(surface.nodes.data() + surface.offsets[i], count), -1);
+            cells_.emplace(key_of(surface.nodes.data() + surface.offsets[i], count), Behind{});
         }
     }
     std::size_t stream = 0;
@@ -121,22 +122,24 @@ BoundaryFaces::BoundaryFaces(const std::vector<ElementPart>& surfaces, const Ele
     }
 }
 
-std::int64_t BoundaryFaces::cell_behind(const std::int64_t* nodes, std::size_t count) const {
+BoundaryFaces::Behind BoundaryFaces::behind(const std::int64_t* nodes, std::size_t count) const {
     const auto found = cells_.find(key_of(nodes, count));
-    return found == cells_.end() ? -1 : found->second;
+    return found == cells_.end() ? Behind{} : found->second;
 }
+
+std::int64_t BoundaryFaces::cell_behind(const std::int64_t* nodes, std::size_t count) const { return behind(nodes, count).cell; }
 
 bool BoundaryFaces::turn_into_volume(ElementPart& surface, const Buffer<double>& points) const {
     bool all = true;
     for (std::size_t i = 0; i < surface.elements(); ++i) {
         std::int64_t* nodes = surface.nodes.data() + surface.offsets[i];
         const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
-        const std::int64_t behind = cell_behind(nodes, count);
-        if (behind < 0 || count < 3) {
+        const Behind found = behind(nodes, count);
+        if (found.cell < 0 || found.between || count < 3) {
             all = false;
             continue;
         }
-        const auto cell = static_cast<std::size_t>(behind);
+        const auto cell = static_cast<std::size_t>(found.cell);
         const Vector inside =
             mean_of(volume_.nodes.data() + volume_.offsets[cell],
                     static_cast<std::size_t>(volume_.offsets[cell + 1] - volume_.offsets[cell]), points);
@@ -151,6 +154,68 @@ bool BoundaryFaces::turn_into_volume(ElementPart& surface, const Buffer<double>&
         }
     }
     return all && surface.elements() > 0;
+}
+
+namespace {
+
+struct PlaceHash {
+    std::size_t operator()(const Vector& place) const {
+        std::uint64_t hash = 1469598103934665603ULL;
+        for (const double x : place) {
+            hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15ULL;  // -0 is 0
+        }
+        return hash ^ (hash >> 29);
+    }
+};
+
+Vector place_of(const Buffer<double>& points, std::size_t node) { return {points[3 * node], points[3 * node + 1], points[3 * node + 2]}; }
+
+/// For each node of the surface the volume's node at its place; empty when one has none.
+std::vector<std::int64_t> nodes_in_volume(const ElementPart& surface, const ElementPart& volume) {
+    std::unordered_map<Vector, std::int64_t, PlaceHash> places;
+    for (std::size_t i = 0; i < surface.points.size() / 3; ++i) {
+        places.emplace(place_of(surface.points, i), -1);
+    }
+    for (std::size_t i = 0; i < volume.points.size() / 3; ++i) {
+        if (const auto found = places.find(place_of(volume.points, i)); found != places.end()) {
+            found->second = static_cast<std::int64_t>(i);
+        }
+    }
+    std::vector<std::int64_t> nodes;
+    for (std::size_t i = 0; i < surface.points.size() / 3; ++i) {
+        nodes.push_back(places.at(place_of(surface.points, i)));
+    }
+    const bool all = std::none_of(surface.nodes.begin(), surface.nodes.end(), [&](std::int64_t node) { return nodes[static_cast<std::size_t>(node)] < 0; });
+    return all ? nodes : std::vector<std::int64_t>();
+}
+
+}  // namespace
+
+bool turn_into_volume(ElementPart& surface, const ElementPart& volume) {
+    const bool plain = std::all_of(surface.types.begin(), surface.types.end(),
+                                   [](unsigned char type) { return type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON; });
+    const auto nodes = plain ? nodes_in_volume(surface, volume) : std::vector<std::int64_t>();
+    if (nodes.empty()) {
+        return false;
+    }
+    std::vector<ElementPart> faces(1);
+    faces[0].types = surface.types;
+    faces[0].offsets = surface.offsets;
+    for (const std::int64_t node : surface.nodes) {
+        faces[0].nodes.push_back(nodes[static_cast<std::size_t>(node)]);
+    }
+    const std::vector<std::int64_t> before = faces[0].nodes;
+    if (!BoundaryFaces(faces, volume).turn_into_volume(faces[0], volume.points)) {
+        return false;
+    }
+    for (std::size_t i = 0; i < surface.elements(); ++i) {
+        const auto first = static_cast<std::ptrdiff_t>(surface.offsets[i]);
+        const auto end = static_cast<std::ptrdiff_t>(surface.offsets[i + 1]);
+        if (!std::equal(before.begin() + first, before.begin() + end, faces[0].nodes.begin() + first)) {
+            std::reverse(surface.nodes.begin() + first, surface.nodes.begin() + end);
+        }
+    }
+    return true;
 }
 
 }  // namespace underbody::postproc

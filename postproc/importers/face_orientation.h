@@ -15,7 +15,7 @@ public:
     BoundaryFaces(const std::vector<ElementPart>& surfaces, const ElementPart& volume);
 
     /// Turns the faces of a surface so that their right-hand normals point into the volume.
-    /// True if a cell was found behind every face.
+    /// True if every face has one cell behind it; a face between two cells has no side.
     bool turn_into_volume(ElementPart& surface, const Buffer<double>& points) const;
 
     /// The place of the cell behind a face among the volume's elements; -1 when there is none.
@@ -33,8 +33,18 @@ private:
     static Key key_of(const std::int64_t* nodes, std::size_t count);
     void note(const std::int64_t* nodes, std::size_t count, std::size_t cell);
 
+    struct Behind {
+        std::int64_t cell = -1;  ///< the last one found; -1: none yet
+        bool between = false;    ///< two cells share the face
+    };
+    [[nodiscard]] Behind behind(const std::int64_t* nodes, std::size_t count) const;
+
     const ElementPart& volume_;
-    std::unordered_map<Key, std::int64_t, Hash> cells_;  ///< face -> a cell behind it, -1: none yet
+    std::unordered_map<Key, Behind, Hash> cells_;
 };
+
+/// Turns the faces of a surface into a volume with nodes of its own, told by their places (the same numbers, as of one
+/// file). True if every face has one cell behind it; the surface is left as it was otherwise.
+bool turn_into_volume(ElementPart& surface, const ElementPart& volume);
 
 }  // namespace underbody::postproc

@@ -21,6 +21,7 @@
 #include <vtkPointData.h>
 #include <vtkSTLReader.h>
 #include <vtkTecplotReader.h>
+#include <vtkTriangleFilter.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkXMLGenericDataObjectReader.h>
 #include <vtkXMLMultiBlockDataReader.h>
@@ -36,6 +37,7 @@
 #include "postproc/importers/trial.h"
 #include "postproc/importers/variable_reading.h"
 #include "postproc/importers/vtk_problems.h"
+#include "postproc/importers/vtk_sides.h"
 
 namespace underbody::postproc {
 
@@ -220,53 +222,67 @@ vtkSmartPointer<vtkPolyData> surface_of(vtkUnstructuredGrid& grid) {
     return surface;
 }
 
+/// A copy that may be changed: without cells that another process's share holds too, strips as triangles, grids of any
+/// kind cell by cell.
+vtkSmartPointer<vtkDataSet> own_copy(vtkDataSet& data) {
+    vtkSmartPointer<vtkDataSet> copy;
+    if (auto* surface = vtkPolyData::SafeDownCast(&data)) {
+        auto polygons = vtkSmartPointer<vtkPolyData>::New();
+        polygons->ShallowCopy(surface);
+        polygons->RemoveGhostCells();
+        if (polygons->GetNumberOfStrips() > 0) {
+            vtkNew<vtkTriangleFilter> triangles;
+            triangles->SetInputData(polygons);
+            triangles->Update();
+            polygons->ShallowCopy(triangles->GetOutput());
+        }
+        copy = polygons;
+    } else {
+        auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+        if (auto* cells = vtkUnstructuredGrid::SafeDownCast(&data)) {
+            grid->ShallowCopy(cells);
+        } else {
+            vtkNew<vtkAppendFilter> append;
+            append->AddInputData(&data);
+            append->Update();
+            grid->ShallowCopy(append->GetOutput());
+        }
+        grid->RemoveGhostCells();
+        go_round_corners(*grid);
+        copy = grid;
+    }
+    copy->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+    copy->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+    return copy;
+}
+
 void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
-    auto* data = vtkDataSet::SafeDownCast(object);
-    if (data == nullptr || data->GetNumberOfPoints() == 0) {
+    auto* read = vtkDataSet::SafeDownCast(object);
+    if (read == nullptr || read->GetNumberOfPoints() == 0) {
         return;
     }
+    const vtkSmartPointer<vtkDataSet> data = own_copy(*read);
     Zone zone;
     zone.name = name;
     zone.id = static_cast<int>(field.zones.size()) + 1;
     zone.normals_into_fluid = false;
-    const auto append = vtkSmartPointer<vtkAppendFilter>::New();  // holds what it makes
-    if (auto* surface = vtkPolyData::SafeDownCast(data)) {
-        zone.surface = vtkSmartPointer<vtkPolyData>::New();
-        zone.surface->ShallowCopy(surface);
-    } else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data)) {
-        zone.volume = vtkSmartPointer<vtkUnstructuredGrid>::New();
-        zone.volume->ShallowCopy(grid);
-        zone.kind = ZoneKind::fluid;
-    } else {
-        // Structured grids, images and the like: their cells one by one.
-        append->AddInputData(data);
-        append->Update();
-        data = append->GetOutput();
-        zone.volume = vtkSmartPointer<vtkUnstructuredGrid>::New();
-        zone.volume->ShallowCopy(data);
-        zone.kind = ZoneKind::fluid;
-    }
+    zone.surface = vtkPolyData::SafeDownCast(data);
+    zone.volume = vtkUnstructuredGrid::SafeDownCast(data);
     if (zone.volume != nullptr && faces_are_surfaces && dimension_of(*zone.volume) == 2) {
-        go_round_corners(*zone.volume);
         zone.surface = surface_of(*zone.volume);
         zone.volume = nullptr;
-        zone.kind = ZoneKind::unknown;
     }
-    if (!matches_any(options.zones, name) || (zone.volume != nullptr && options.surfaces_only)) {
-        return;
-    }
-    if (zone.volume != nullptr) {
-        go_round_corners(*zone.volume);
-    }
+    zone.kind = zone.volume != nullptr ? ZoneKind::fluid : ZoneKind::unknown;
     add_arrays(field, zone, *data->GetPointData(), Location::nodes, options);
-    vtkDataSet* own =
-        zone.surface != nullptr ? static_cast<vtkDataSet*>(zone.surface) : static_cast<vtkDataSet*>(zone.volume);
-    own->GetPointData()->ShallowCopy(data->GetPointData());
     add_arrays(field, zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, options);
-    own->GetCellData()->ShallowCopy(data->GetCellData());
+    vtkPointSet* own = zone.surface != nullptr ? static_cast<vtkPointSet*>(zone.surface) : static_cast<vtkPointSet*>(zone.volume);
+    if (own != data) {
+        own->GetPointData()->ShallowCopy(data->GetPointData());
+        own->GetCellData()->ShallowCopy(data->GetCellData());
+    }
     if (!options.length_unit.empty()) {
         const double scale = core::conversion(options.length_unit, "m").scale;
-        auto* points = vtkPointSet::SafeDownCast(own)->GetPoints()->GetData();
+        auto* points = own->GetPoints()->GetData();
         for (vtkIdType i = 0; i < points->GetNumberOfTuples() && scale != 1; ++i) {
             for (int k = 0; k < 3; ++k) {
                 points->SetComponent(i, k, scale * points->GetComponent(i, k));
@@ -427,10 +443,14 @@ Field field_for(const fs::path& path, const std::string& format) {
     return field;
 }
 
-Field read_one(const fs::path& path, const std::string& format, vtkDataObject* object, const ReadOptions& options) {
+Field read_one(const fs::path& path, const std::string& format, vtkDataObject* object, const ReadOptions& options, core::Progress& progress) {
     Field field = field_for(path, format);
     add_tree(field, vtkDataObjectTree::SafeDownCast(object) != nullptr ? "" : path.stem().string(), object,
              grids_are_surfaces(object), options);
+    settle_sides(field, progress);
+    std::erase_if(field.zones, [&](const Zone& zone) {
+        return !matches_any(options.zones, zone.name) || (zone.volume != nullptr && options.surfaces_only);
+    });
     if (field.zones.empty() && options.zones.empty() && !options.surfaces_only) {
         throw core::InputError("format", "there are no points in this file", {path.string(), {}, {}, {}});
     }
@@ -444,22 +464,22 @@ bool is_xml(std::string_view head, const fs::path& /*path*/) {
     const std::size_t at = head.find("<VTKFile");
     return at != std::string_view::npos && at < 1024;
 }
-Field read_xml(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
+Field read_xml(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
     if (core::lower_case(path.extension().string()) == ".vtm") {
-        return read_one(path, "VTK XML", output_of<vtkXMLMultiBlockDataReader>(path), options);
+        return read_one(path, "VTK XML", output_of<vtkXMLMultiBlockDataReader>(path), options, progress);
     }
-    return read_one(path, "VTK XML", output_of<vtkXMLGenericDataObjectReader>(path), options);
+    return read_one(path, "VTK XML", output_of<vtkXMLGenericDataObjectReader>(path), options, progress);
 }
 
 bool is_legacy(std::string_view head, const fs::path& /*path*/) { return head.starts_with("# vtk DataFile"); }
-Field read_legacy(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
+Field read_legacy(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
     const auto prepare = [&](vtkGenericDataObjectReader& reader) {
         reader.SetFileName(path.c_str());
         reader.ReadAllScalarsOn();
         reader.ReadAllVectorsOn();
         reader.ReadAllFieldsOn();
     };
-    return read_one(path, "VTK legacy", output_of<vtkGenericDataObjectReader>(path, prepare), options);
+    return read_one(path, "VTK legacy", output_of<vtkGenericDataObjectReader>(path, prepare), options, progress);
 }
 
 /// The first bytes: content decides, an ending may lie.
@@ -529,15 +549,15 @@ bool is_surface(std::string_view head, const fs::path& path) {
     }
     return ending == ".obj" && (head.find("\nv ") != std::string_view::npos || head.starts_with("v "));
 }
-Field read_surface(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
+Field read_surface(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
     const std::string ending = core::lower_case(path.extension().string());
     Field field;
     if (head_of(path).starts_with("ply")) {
-        field = read_one(path, "surface (PLY)", ply_surface(path), options);
+        field = read_one(path, "surface (PLY)", ply_surface(path), options, progress);
     } else if (ending == ".obj") {
-        field = read_one(path, "surface (OBJ)", output_of<vtkOBJReader>(path), options);
+        field = read_one(path, "surface (OBJ)", output_of<vtkOBJReader>(path), options, progress);
     } else {
-        field = read_one(path, "surface (STL)", output_of<vtkSTLReader>(path), options);
+        field = read_one(path, "surface (STL)", output_of<vtkSTLReader>(path), options, progress);
     }
     return field;
 }
@@ -551,7 +571,7 @@ bool is_tecplot(std::string_view head, const fs::path& /*path*/) {
     return (text.starts_with("title") || text.starts_with("variables")) &&
            text.find("variables") != std::string::npos && text.find('=') != std::string::npos;
 }
-Field read_tecplot(const fs::path& path, const ReadOptions& options, core::Progress& /*progress*/) {
+Field read_tecplot(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
     const auto prepare = [&](vtkTecplotReader& reader) {
         reader.SetFileName(path.c_str());
         reader.UpdateInformation();
@@ -559,7 +579,7 @@ Field read_tecplot(const fs::path& path, const ReadOptions& options, core::Progr
             reader.SetDataArrayStatus(reader.GetDataArrayName(i), 1);
         }
     };
-    return read_one(path, "Tecplot ASCII", output_of<vtkTecplotReader>(path, prepare), options);
+    return read_one(path, "Tecplot ASCII", output_of<vtkTecplotReader>(path, prepare), options, progress);
 }
 
 }  // namespace

@@ -182,6 +182,33 @@ TEST(EnsightBlocks, BlankedCellsAndGhostsAreLeftOutWithTheirValues) {
     EXPECT_EQ(grid.GetCellData()->GetArray("pressure")->GetTuple1(3), 4);
 }
 
+TEST(EnsightWalls, LookIntoTheVolumeThatIsInTheFile) {
+    const core::TemporaryFolder folder;
+    const std::vector<float> x = {0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1};  // a unit cube: x, y, z
+    Writer geometry("little");
+    head(geometry);
+    geometry.line("part").ints({1}).line("water").line("coordinates").ints({8}).reals(x).line("hexa8").ints({1}).ints({1, 2, 3, 4, 5, 6, 7, 8});
+    // The same corners in another order, the faces now in, now out.
+    const std::vector<float> turned = {1, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0};
+    geometry.line("part").ints({2}).line("walls").line("coordinates").ints({8}).reals(turned);
+    geometry.line("quad4").ints({6}).ints({1, 2, 3, 4, 5, 6, 7, 8, 1, 2, 6, 5, 3, 2, 6, 7, 3, 4, 8, 7, 1, 4, 8, 5});
+    geometry.to(folder.path() / "a.geo");
+    Writer pressure("little", false);
+    pressure.line("pressure").line("part").ints({2}).line("quad4").reals({20, 10, 15, 15, 15, 15});  // rises with z
+    pressure.to(folder.path() / "a.p");
+    write_case(folder.path() / "a.case", "GEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per element: Pressure a.p\n");
+    for (const bool surfaces_only : {false, true}) {
+        ReadOptions options;
+        options.surfaces_only = surfaces_only;
+        options.zones = {"walls"};
+        const auto field = read_field(folder.path() / "a.case", options);
+        ASSERT_EQ(field.zones.size(), 1U);
+        EXPECT_TRUE(field.zones[0].normals_into_fluid);
+        // The water is inside: it pushes the lid up.
+        EXPECT_NEAR(test::pressure_force(*field.zones[0].surface)[2], 10, 1e-6);
+    }
+}
+
 TEST(EnsightBlocks, MayHoldTheIdsThatTheHeaderPromisesOrNot) {
     const core::TemporaryFolder folder;
     for (const auto& coding : codings) {

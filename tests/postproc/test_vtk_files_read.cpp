@@ -119,6 +119,65 @@ TEST(VtkFiles, WhatImportWritesIsReadAgainTheSame) {
     EXPECT_NEAR(test::volume_of(read_field(folder.path() / "all.vtu")), test::volume_of(whole), 1e-12);
 }
 
+TEST(VtkFiles, TheCellsOfAVolumeTellOnWhichSideOfItsWallsTheFluidIs) {
+    const core::TemporaryFolder folder;
+    const auto whole = read_field(test::data_folder() / "fluent_legacy" / "ascii.cas");
+    for (const auto& zone : whole.zones) {
+        if (zone.surface != nullptr) {
+            zone.surface->BuildCells();
+            for (vtkIdType face = 1; face < zone.surface->GetNumberOfCells(); face += 2) {
+                zone.surface->ReverseCell(face);  // a writer that cares for no order
+            }
+        }
+    }
+    postproc::write_vtk(whole, folder.path() / "all.vtm");
+    const auto right = read_field(test::data_folder() / "fluent_legacy" / "ascii.cas");
+    int walls = 0;
+    for (const bool surfaces_only : {false, true}) {
+        postproc::ReadOptions options;
+        options.surfaces_only = surfaces_only;
+        const auto field = read_field(folder.path() / "all.vtm", options);
+        for (const auto& zone : field.zones) {
+            EXPECT_FALSE(surfaces_only && zone.volume != nullptr) << zone.name;
+            if (zone.surface == nullptr) {
+                continue;
+            }
+            EXPECT_TRUE(zone.normals_into_fluid) << zone.name;
+            const auto* same = right.find(zone.name);
+            ASSERT_NE(same, nullptr) << zone.name;
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_NEAR(test::pressure_force(*zone.surface)[k], test::pressure_force(*same->surface)[k], 1e-12) << zone.name;
+            }
+            ++walls;
+        }
+    }
+    EXPECT_GT(walls, 2);
+}
+
+TEST(VtkFiles, GhostCellsOfAnotherProcessAreLeftOutAndStripsAreTriangles) {
+    const core::TemporaryFolder folder;
+    const auto surface = [](const std::string& cells, const std::string& data) {
+        return "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData>\n"
+               "<Piece NumberOfPoints=\"4\" " + cells.substr(0, cells.find('|')) + ">\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
+               "0 0 0 1 0 0 0 1 0 1 1 0</DataArray></Points>\n" + cells.substr(cells.find('|') + 1) + "<CellData>" + data + "</CellData></Piece></PolyData></VTKFile>\n";
+    };
+    const auto array = [](const char* type, const char* name, const char* values) {
+        return std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values + "</DataArray>";
+    };
+    const auto ghosts = read_field(written(folder, "ghosts.vtp",
+                                           surface("NumberOfPolys=\"2\"|<Polys>" + array("Int64", "connectivity", "0 1 2 1 3 2") + array("Int64", "offsets", "3 6") + "</Polys>",
+                                                   array("UInt8", "vtkGhostType", "0 1") + array("Float64", "pressure", "5 7"))));
+    EXPECT_NEAR(test::area_of(*ghosts.zones.at(0).surface), 0.5, 1e-12);
+    EXPECT_EQ(test::range_of(*ghosts.zones[0].surface, "pressure").high, 5);
+    EXPECT_EQ(ghosts.zones[0].arrays.size(), 1U);
+    const auto strip = read_field(written(folder, "strip.vtp",
+                                          surface("NumberOfStrips=\"1\"|<Strips>" + array("Int64", "connectivity", "0 1 2 3") + array("Int64", "offsets", "4") + "</Strips>",
+                                                  array("Float64", "pressure", "5"))));
+    EXPECT_EQ(strip.zones.at(0).surface->GetNumberOfPolys(), 2);
+    EXPECT_NEAR(test::area_of(*strip.zones[0].surface), 1, 1e-12);
+    EXPECT_EQ(strip.zones[0].surface->GetCellData()->GetArray("pressure")->GetTuple1(1), 5);
+}
+
 TEST(VtkFiles, SurfacesInPlyObjAndBothKindsOfStlHaveTheirArea) {
     const core::TemporaryFolder folder;
     EXPECT_NEAR(test::area_of(*read_field(written(folder, "a.ply", ply)).zones.at(0).surface), 1, 1e-6);
