@@ -62,6 +62,7 @@ private:
     };
     [[nodiscard]] std::uint64_t count(const std::string& name) const;
     [[nodiscard]] std::vector<Part> parts(const std::string& path) const;
+    [[nodiscard]] std::vector<std::string> zone_names(const std::string& path, std::size_t zones) const;
     void read_nodes();
     [[nodiscard]] std::vector<std::uint32_t> places_of_used_nodes();
     void read_cells();
@@ -102,6 +103,22 @@ std::vector<Part> Reader::parts(const std::string& path) const {
         result.push_back({inner, static_cast<std::uint64_t>(*first), static_cast<std::uint64_t>(*last - *first + 1)});
     }
     return result;
+}
+
+/// One string for all zones, "inlet;outlet", as Fluent writes it, or one for each.
+std::vector<std::string> Reader::zone_names(const std::string& path, std::size_t zones) const {
+    std::vector<std::string> names = file_.texts(path);
+    if (names.size() != zones || zones == 1) {
+        const std::string joined = std::accumulate(names.begin(), names.end(), std::string());
+        names.clear();
+        for (const std::string_view name : core::split(joined, ';')) {
+            names.emplace_back(name);
+        }
+    }
+    for (auto& name : names) {
+        name = std::string(core::trimmed(name));
+    }
+    return names;
 }
 
 FaceMesh Reader::read_mesh() {
@@ -224,8 +241,7 @@ void Reader::read_cells() {
     const auto element =
         file_.has(topology + "cellType") ? file_.numbers(topology + "cellType") : Buffer<std::uint32_t>();
     const auto type = file_.has(topology + "zoneType") ? file_.numbers(topology + "zoneType") : Buffer<std::uint32_t>();
-    const std::string joined_names = file_.text(topology + "name");
-    const auto names = core::split(joined_names, ';');
+    const auto names = zone_names(topology + "name", ids.size());
     if (first.size() != ids.size() || last.size() != ids.size()) {
         refuse(topology, "its lists differ in length");
     }
@@ -240,7 +256,7 @@ void Reader::read_cells() {
             refuse(topology, "cells beyond the " + number(mesh_.cells) + " of the mesh");
         }
         mesh_.labels.push_back({block.zone, i < type.size() && type[i] == solid ? "solid" : "fluid",
-                                i < names.size() ? std::string(core::trimmed(names[i])) : ""});
+                                i < names.size() ? names[i] : ""});
         mesh_.cell_blocks.push_back(std::move(block));
     }
     if (options_.surfaces_only) {
@@ -282,8 +298,7 @@ void Reader::read_faces() {
     const auto first = file_.numbers(topology + "minId");
     const auto last = file_.numbers(topology + "maxId");
     const auto type = file_.numbers(topology + "zoneType");
-    const std::string joined_names = file_.text(topology + "name");
-    const auto names = core::split(joined_names, ';');
+    const auto names = zone_names(topology + "name", ids.size());
     if (first.size() != ids.size() || last.size() != ids.size() || type.size() != ids.size()) {
         refuse(topology, "its lists differ in length");
     }
@@ -299,7 +314,7 @@ void Reader::read_faces() {
             refuse(topology, "faces beyond the " + number(mesh_.faces) + " of the mesh");
         }
         mesh_.labels.push_back(
-            {block.zone, type_of_code(block.kind), i < names.size() ? std::string(core::trimmed(names[i])) : ""});
+            {block.zone, type_of_code(block.kind), i < names.size() ? names[i] : ""});
         if (!(options_.surfaces_only && is_inner_code(block.kind)) && block.count > 0) {
             mesh_.face_blocks.push_back(std::move(block));
         }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <numeric>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -27,30 +28,99 @@ herr_t note_child(hid_t /*group*/, const char* name, const H5L_info_t* /*info*/,
     return 0;
 }
 
-std::string string_of(hid_t type, const std::vector<char>& raw) {
-    std::string text(raw.data(), raw.size());
+/// The strings that stand in `raw`, as many bytes each as `type` has.
+std::vector<std::string> fixed_strings(hid_t type, const std::vector<char>& raw) {
     const std::size_t width = H5Tget_size(type);
-    std::string joined;
-    for (std::size_t at = 0; width > 0 && at < text.size(); at += width) {
-        const std::string part = text.substr(at, width);
-        joined += part.substr(0, part.find('\0'));
+    std::vector<std::string> strings;
+    for (std::size_t at = 0; width > 0 && at + width <= raw.size(); at += width) {
+        const std::string_view part(raw.data() + at, width);
+        strings.emplace_back(part.substr(0, part.find('\0')));
     }
-    return joined;
+    return strings;
 }
 
-constexpr std::size_t longest_attribute = 1 << 16;
+/// Strings of variable length: `read` fills a list of pointers to memory that the library took and takes back.
+template <typename Read>
+std::vector<std::string> variable_strings(hid_t type, hid_t space, std::size_t count, Read&& read) {
+    std::vector<char*> pointers(count, nullptr);
+    const bool good = read(pointers.data()) >= 0;
+    std::vector<std::string> strings;
+    for (const char* pointer : pointers) {
+        if (good) {
+            strings.emplace_back(pointer != nullptr ? pointer : "");
+        }
+    }
+    H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data());
+    return strings;
+}
+
+/// The string of an attribute; nothing if it holds another number of them, something else, or cannot be read.
+std::optional<std::string> string_of_attribute(hid_t attribute) {
+    constexpr std::size_t longest = 1 << 16;
+    const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
+    const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+    if (!type.good() || !space.good() || H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1) {
+        return {};
+    }
+    std::vector<std::string> strings;
+    if (H5Tis_variable_str(type.get()) > 0) {
+        strings = variable_strings(type.get(), space.get(), 1, [&](char** out) { return H5Aread(attribute, type.get(), out); });
+    } else if (H5Tget_size(type.get()) <= longest) {
+        std::vector<char> raw(H5Tget_size(type.get()));
+        if (H5Aread(attribute, type.get(), raw.data()) >= 0) {
+            strings = fixed_strings(type.get(), raw);
+        }
+    }
+    return strings.empty() ? std::nullopt : std::optional(strings.front());
+}
+
+/// The strings of a dataset; nothing if it holds something else, more than a file of so many bytes can, or cannot be read.
+std::optional<std::vector<std::string>> strings_of_set(hid_t set, std::uint64_t file_bytes) {
+    const Hdf5Handle type(H5Dget_type(set), H5Tclose);
+    const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+    const hssize_t size = space.good() ? H5Sget_simple_extent_npoints(space.get()) : 0;
+    if (!type.good() || H5Tget_class(type.get()) != H5T_STRING || size < 0) {
+        return {};
+    }
+    const auto count = static_cast<std::uint64_t>(size);
+    const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(set), file_bytes);
+    const std::size_t width = H5Tget_size(type.get());
+    if (count > stored || width == 0 || width / largest_ratio > stored || width * count / largest_ratio > stored) {
+        return {};
+    }
+    if (H5Tis_variable_str(type.get()) > 0) {
+        hsize_t bytes = 0;
+        if (H5Dvlen_get_buf_size(set, type.get(), space.get(), &bytes) < 0 || bytes > file_bytes) {
+            return {};
+        }
+        auto strings = variable_strings(type.get(), space.get(), count,
+                                        [&](char** out) { return H5Dread(set, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); });
+        return strings.size() == count ? std::optional(std::move(strings)) : std::nullopt;
+    }
+    std::vector<char> raw(width * count);
+    if (count > 0 && H5Dread(set, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) < 0) {
+        return {};
+    }
+    return fixed_strings(type.get(), raw);
+}
 
 herr_t read_attribute(hid_t object, const char* name, const H5A_info_t* info, void* /*unused*/) {
+    constexpr std::size_t longest = 1 << 16;
     const Hdf5Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+    if (!attribute.good() || info->data_size > longest) {
+        return 0;
+    }
     const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
-    if (attribute.good() && type.good() && info->data_size <= longest_attribute && H5Tis_variable_str(type.get()) <= 0) {
-        std::vector<char> memory(2 * longest_attribute);
+    if (type.good() && H5Tget_class(type.get()) == H5T_STRING) {
+        (void)string_of_attribute(attribute.get());
+    } else if (type.good() && H5Tdetect_class(type.get(), H5T_VLEN) == 0) {
+        std::vector<char> memory(2 * longest);
         H5Aread(attribute.get(), type.get(), memory.data());
     }
     return 0;
 }
 
-herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void* /*unused*/) {
+herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void* file_bytes) {
     const Hdf5Handle object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
     if (object.good()) {
         H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
@@ -60,15 +130,20 @@ herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void* /*unu
         const Hdf5Handle type(H5Dget_type(object.get()), H5Tclose);
         hsize_t chunks = 0;
         H5Dget_num_chunks(object.get(), space.get(), &chunks);  // walks the index of the chunks
+        if (H5Tget_class(type.get()) == H5T_STRING && H5Tis_variable_str(type.get()) > 0) {
+            (void)strings_of_set(object.get(), *static_cast<std::uint64_t*>(file_bytes));
+        }
     }
     return 0;
 }
 
-/// Everything about the file but the values: what damage makes the library stumble over lies there.
+/// Everything about the file but the numbers: what damage makes the library stumble over lies there.
 void look_through(const std::filesystem::path& path) {
+    std::error_code error;
+    std::uint64_t bytes = std::filesystem::file_size(path, error);
     const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (file.good()) {
-        H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, look_at, nullptr);
+        H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, look_at, &bytes);
     }
 }
 
@@ -179,18 +254,7 @@ std::optional<std::string> Hdf5File::text_attribute(const std::string& path, con
     if (!attribute.good()) {
         return {};
     }
-    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
-    const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
-    const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : 0;
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 || count != 1 ||
-        H5Tget_size(type.get()) > 65536) {
-        return {};
-    }
-    std::vector<char> raw(H5Tget_size(type.get()));
-    if (H5Aread(attribute.get(), type.get(), raw.data()) < 0) {
-        return {};
-    }
-    return string_of(type.get(), raw);
+    return string_of_attribute(attribute.get());
 }
 
 std::vector<std::uint64_t> Hdf5File::shape(const std::string& path) const {
@@ -247,28 +311,14 @@ Buffer<std::uint32_t> Hdf5File::numbers(const std::string& path) const {
     return values;
 }
 
-std::string Hdf5File::text(const std::string& path) const {
+std::vector<std::string> Hdf5File::texts(const std::string& path) const {
     const Hdf5Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
-    if (!set.good()) {
-        return {};
-    }
-    const Hdf5Handle type(H5Dget_type(set.get()), H5Tclose);
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0) {
-        return {};
-    }
-    const std::size_t width = H5Tget_size(type.get());
-    const Hdf5Handle space(H5Dget_space(set.get()), H5Sclose);
-    const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.get()) : 0;
-    const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(set.get()), bytes_);
-    if (count <= 0 || width == 0 || static_cast<std::uint64_t>(count) > stored || width / largest_ratio > stored ||
-        width * static_cast<std::uint64_t>(count) / largest_ratio > stored) {
-        return {};
-    }
-    std::vector<char> raw(width * static_cast<std::size_t>(count));
-    if (H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) < 0) {
-        fail(path, "its text cannot be read");
-    }
-    return string_of(type.get(), raw);
+    return set.good() ? strings_of_set(set.get(), bytes_).value_or(std::vector<std::string>()) : std::vector<std::string>();
+}
+
+std::string Hdf5File::text(const std::string& path) const {
+    const auto strings = texts(path);
+    return std::accumulate(strings.begin(), strings.end(), std::string());
 }
 
 }  // namespace underbody::postproc

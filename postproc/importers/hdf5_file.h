@@ -27,6 +27,7 @@ public:
     [[nodiscard]] std::vector<std::string> children(const std::string& path) const;
     /// An attribute with one whole number.
     [[nodiscard]] std::optional<std::int64_t> attribute(const std::string& path, const std::string& name) const;
+    /// An attribute with one string, of fixed or variable length.
     [[nodiscard]] std::optional<std::string> text_attribute(const std::string& path, const std::string& name) const;
     /// Lengths along the dimensions of a dataset (at most 2); empty if it is not one.
     [[nodiscard]] std::vector<std::uint64_t> shape(const std::string& path) const;
@@ -36,7 +37,9 @@ public:
 
     /// A list of whole numbers, as `Hdf5Rows` gives them.
     [[nodiscard]] Buffer<std::uint32_t> numbers(const std::string& path) const;
-    /// All strings of a dataset joined; "" if it is not there.
+    /// The strings of a dataset, of fixed or variable length; none if it is not there or holds something else.
+    [[nodiscard]] std::vector<std::string> texts(const std::string& path) const;
+    /// All of them joined.
     [[nodiscard]] std::string text(const std::string& path) const;
 
     // For what reads values of this file.

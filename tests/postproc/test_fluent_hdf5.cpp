@@ -45,6 +45,17 @@ public:
         const std::array<hsize_t, 2> size = {values.size() / std::max<hsize_t>(1, columns), columns};
         set(path, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, columns > 0 ? 2 : 1, size.data(), values.data());
     }
+    /// Strings of variable length.
+    void texts(const std::string& path, const std::vector<const char*>& values) {
+        const hid_t type = H5Tcopy(H5T_C_S1);
+        H5Tset_size(type, H5T_VARIABLE);
+        const hsize_t size = values.size();
+        if (H5Lexists(file_, path.substr(0, path.find('/', 1)).c_str(), H5P_DEFAULT) > 0 && H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0) {
+            H5Ldelete(file_, path.c_str(), H5P_DEFAULT);
+        }
+        set(path, type, type, 1, &size, values.data(), false);
+        H5Tclose(type);
+    }
     void text(const std::string& path, const std::string& value) {
         const hid_t type = H5Tcopy(H5T_C_S1);
         H5Tset_size(type, value.size() + 1);
@@ -61,13 +72,14 @@ public:
         H5Sclose(space);
         H5Oclose(object);
     }
-    void text_attribute(const std::string& path, const std::string& name, const std::string& value) {
+    void text_attribute(const std::string& path, const std::string& name, const std::string& value, bool variable = false) {
         const hid_t object = H5Oopen(file_, path.c_str(), H5P_DEFAULT);
         const hid_t space = H5Screate(H5S_SCALAR);
         const hid_t type = H5Tcopy(H5T_C_S1);
-        H5Tset_size(type, value.size() + 1);
+        H5Tset_size(type, variable ? H5T_VARIABLE : value.size() + 1);
         const hid_t attribute = H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT);
-        H5Awrite(attribute, type, value.c_str());
+        const char* text = value.c_str();
+        H5Awrite(attribute, type, variable ? static_cast<const void*>(&text) : text);
         H5Aclose(attribute);
         H5Tclose(type);
         H5Sclose(space);
@@ -296,14 +308,42 @@ TEST(FluentHdf5, ASolidNeedsNoValuesAndAWallTakesThePressureOfItsCells) {
 }
 
 TEST(FluentHdf5, AMeshIsInTheUnitThatItStates) {
-    const core::TemporaryFolder folder;
-    {
-        Writer out(folder.path() / "tank.msh.h5");
-        write_mesh(out);
-        out.text_attribute("/meshes/1", "units", "in");
+    for (const bool variable : {false, true}) {
+        const core::TemporaryFolder folder;
+        {
+            Writer out(folder.path() / "tank.msh.h5");
+            write_mesh(out);
+            out.text_attribute("/meshes/1", "units", "in", variable);
+        }
+        const auto field = read_field(folder.path() / "tank.msh.h5");
+        EXPECT_NEAR(test::volume_of(field), 2 * 0.0254 * 0.0254 * 0.0254, 1e-14);
     }
-    const auto field = read_field(folder.path() / "tank.msh.h5");
-    EXPECT_NEAR(test::volume_of(field), 2 * 0.0254 * 0.0254 * 0.0254, 1e-14);
+}
+
+TEST(FluentHdf5, NamesMayBeStringsOfVariableLengthInOneOrOneForEachZone) {
+    const std::string cells = "/meshes/1/cells/zoneTopology/name";
+    const std::string faces = "/meshes/1/faces/zoneTopology/name";
+    for (const bool in_one : {true, false}) {
+        SCOPED_TRACE(in_one);
+        const core::TemporaryFolder folder;
+        {
+            Writer out(folder.path() / "tank.cas.h5");
+            write_mesh(out);
+            if (in_one) {
+                out.texts(cells, {"water;more water"});
+                out.texts(faces, {"interior-tank; hull;inlet;outlet"});
+            } else {
+                out.texts(cells, {"water", "more water"});
+                out.texts(faces, {"interior-tank", "hull", "inlet", "outlet"});
+            }
+            out.texts("/settings/Rampant Variables", {"((operating-pressure 90000)", "(case-file-units \"si\"))"});
+        }
+        const auto field = read_field(folder.path() / "tank.cas.h5");
+        for (const char* name : {"water", "more water", "hull", "inlet", "outlet"}) {
+            EXPECT_NE(field.find(name), nullptr) << name;
+        }
+        EXPECT_EQ(field.pressure.operating_pressure, 90000);
+    }
 }
 
 TEST(FluentHdf5, CellsOfAnotherKindAmongManyAlikeAreFoundWhereTheFileDoesNotSayWhatTheyAre) {
