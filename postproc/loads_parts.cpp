@@ -23,6 +23,7 @@ using Severity = core::Problem::Severity;
 using Part = SummedZone;
 
 const double pi = 4 * std::atan(1.0);
+const char* const lines_hint = "lines bound a body only in a plane case, where they go round or its elements stand beside them: export these too";
 
 class Chooser {
 public:
@@ -124,7 +125,8 @@ private:
             }
         }
         if (zones.empty()) {
-            throw InputError("zone", "the file holds no surface to integrate over", place(), "zones: underbody info FILE");
+            const bool lines = std::any_of(field_.zones.begin(), field_.zones.end(), [](const Zone& zone) { return zone.kind == ZoneKind::line; });
+            throw InputError("zone", "the file holds no surface to integrate over", place(), lines ? lines_hint : "zones: underbody info FILE");
         }
         return zones;
     }
@@ -133,7 +135,9 @@ private:
         for (const Zone* zone : wanted_zones()) {
             if (!is_surface(*zone)) {
                 throw InputError("zone", "zone '" + zone->name + "' has no faces, so that forces cannot be integrated", place(),
-                                 field_.format == "CFD-Post CSV" ? "export it with 'Line and Face Connectivity', or leave it out with --zones" : "leave it out with --zones");
+                                 field_.format == "CFD-Post CSV" ? "export it with 'Line and Face Connectivity', or leave it out with --zones"
+                                 : zone->kind == ZoneKind::line ? lines_hint
+                                                                : "leave it out with --zones");
             }
             Part part;
             part.zone = zone;

@@ -165,17 +165,29 @@ void Values::place(PartValues& values, std::size_t first, std::size_t count, boo
     }
 }
 
-/// 2-D cases have no cells but elements in one plane, and lines for boundaries.
+/// Do lines go round, so that they bound something?
+bool goes_round(const ElementPart& part) {
+    std::vector<int> lines_at(part.points.size() / 3);
+    for (const std::int64_t node : part.nodes) {
+        ++lines_at[static_cast<std::size_t>(node)];
+    }
+    return part.dimension() == 1 && std::all_of(lines_at.begin(), lines_at.end(), [](int lines) { return lines == 2 || lines == 0; });
+}
+
+/// 2-D cases have no cells but elements in one plane, and lines for boundaries. These may be all that was exported: then
+/// one of them has to go round, for lines through a flow lie in a plane too.
 int volume_dimension(const EnsightGeometry& geometry) {
     int highest = 0;
     bool plane = true;
+    bool round = false;
     for (const auto& [number, part] : geometry.parts) {
         highest = std::max(highest, part.elements.dimension());
+        round = round || goes_round(part.elements);
         for (std::size_t i = 2; i < part.elements.points.size() && plane; i += 3) {
             plane = part.elements.points[i] == 0;
         }
     }
-    return highest == 2 && plane ? 2 : 3;
+    return plane && (highest == 2 || (highest == 1 && round)) ? 2 : 3;
 }
 
 bool recognises(std::string_view head, const std::filesystem::path& /*path*/) { return is_ensight_case(head); }
@@ -296,6 +308,12 @@ void Reader::read_variable(const EnsightVariable& variable) {
 }
 
 void Reader::add_zones() {
+    const auto is_line = [](const auto& part) { return part.second.elements.dimension() < 2; };
+    if (field_.dimension == 2 && std::all_of(geometry_->parts.begin(), geometry_->parts.end(), is_line)) {
+        field_.problems.push_back({core::Problem::Severity::note,
+                                   "there are lines in one plane alone: they are taken for the boundaries of a plane case",
+                                   {path_.string(), {}, {}, {}}});
+    }
     std::vector<ElementPart> parts;
     for (auto& [number, part] : geometry_->parts) {
         mind_unused_nodes(part, field_.files[1], field_.problems);

@@ -4,6 +4,7 @@
 #include <vtkCellType.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -12,6 +13,7 @@
 
 #include "core/file.h"
 #include "import_support.h"
+#include "postproc/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -333,6 +335,56 @@ TEST(EnsightTimes, CoordinatesThatChangeAloneTakeTheElementsFromTheirStep) {
     const auto field = read_field(folder.path() / "a.case");
     EXPECT_EQ(test::cells_of(field), 1);
     EXPECT_EQ(left_of(field), 1);
+}
+
+TEST(EnsightLines, ThatGoRoundInAPlaneAreTheBoundaryOfAPlaneCase) {
+    const auto write = [](const fs::path& folder, const std::string& coding, bool closed, float z) {
+        Writer geometry(coding);
+        head(geometry);
+        geometry.line("part").ints({4}).line("body").line("coordinates").ints({4});
+        geometry.reals({0, 1, 1, 0}).reals({0, 0, 1, 1}).reals({z, 0, 0, 0});
+        geometry.line("bar2").ints({closed ? 4 : 3});
+        geometry.ints({1, 2}).ints({2, 3}).ints({3, 4});
+        if (closed) {
+            geometry.ints({4, 1});
+        }
+        geometry.line("part").ints({5}).line("inlet").line("coordinates").ints({2});
+        geometry.reals({5, 5}).reals({-1, 2}).reals({0, 0}).line("bar2").ints({1}).ints({1, 2});
+        geometry.to(folder / "a.geo");
+        Writer pressure(coding, false);
+        pressure.line("pressure").line("part").ints({4}).line("coordinates").reals({1, 2, 3, 4});
+        pressure.to(folder / "a.p");
+        write_case(folder / "a.case", "GEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: pressure a.p\n");
+    };
+    const core::TemporaryFolder folder;
+    write(folder.path(), "text", true, 0);
+    const auto field = read_field(folder.path() / "a.case");
+    EXPECT_EQ(field.dimension, 2);
+    postproc::LoadsOptions body;
+    body.zones = {"body"};
+    // 1.5 Pa on the floor, 3.5 Pa on the lid, 2.5 Pa on either side.
+    const auto result = postproc::loads(field, body);
+    EXPECT_NEAR(result.total.force[0], 0, 1e-12);
+    EXPECT_NEAR(result.total.force[1], -2, 1e-12);
+    const bool told = std::any_of(field.problems.begin(), field.problems.end(),
+                                  [](const auto& problem) { return problem.message.find("boundaries of a plane case") != std::string::npos; });
+    EXPECT_TRUE(told);
+    for (const bool closed : {true, false}) {  // lines in space; lines through a flow
+        write(folder.path(), "little", closed, closed ? 1.0F : 0.0F);
+        const auto lines = read_field(folder.path() / "a.case");
+        EXPECT_EQ(lines.dimension, 3);
+        EXPECT_EQ(lines.find("body")->kind, postproc::ZoneKind::line);
+        for (const auto& zones : {std::vector<std::string>{}, std::vector<std::string>{"body"}}) {
+            try {
+                postproc::LoadsOptions options;
+                options.zones = zones;
+                (void)postproc::loads(lines, options);
+                ADD_FAILURE() << "lines were summed";
+            } catch (const core::InputError& error) {
+                EXPECT_THAT(error.hint(), HasSubstr("export these too"));
+            }
+        }
+    }
 }
 
 }  // namespace underbody
