@@ -127,7 +127,17 @@ bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& w
 
 }  // namespace
 
-WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool normals_into_fluid) {
+bool bounds_a_volume(const FaceSums& sums, int dimension) {
+    constexpr double rim = 1e-3;
+    if (!(norm(sums.area_vector) < rim * sums.area)) {
+        return false;
+    }
+    const auto& flux = sums.flux_of_place;
+    const auto [low, high] = std::minmax_element(flux.begin(), flux.begin() + dimension);
+    return *high - *low <= 0.01 * std::max(std::abs(*low), std::abs(*high)) && *high * *low > 0;
+}
+
+WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool normals_into_fluid, int dimension) {
     WallShape wall;
     wall.name = name;
     wall.normals_into_fluid = normals_into_fluid;
@@ -145,6 +155,7 @@ WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool n
     const FaceSums sums = integrate_faces(surface, {}, centre);
     wall.area = sums.area;
     wall.area_vector = sums.area_vector;
+    wall.closed = bounds_a_volume(sums, dimension);
     wall.volume = (sums.flux_of_place[0] + sums.flux_of_place[1] + sums.flux_of_place[2]) / 3;
     return wall;
 }
@@ -172,7 +183,7 @@ std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls) 
 std::vector<std::string> separate_bodies(const std::vector<WallShape>& walls) {
     std::vector<const WallShape*> closed;
     for (const auto& wall : walls) {
-        if (norm(wall.area_vector) < 1e-3 * wall.area) {
+        if (wall.closed) {
             closed.push_back(&wall);
         }
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "postproc/face_integral.h"
 #include "postproc/loads.h"
 #include "postproc/surface_arrays.h"
 
@@ -18,8 +19,14 @@ struct WallShape {
     std::array<double, 3> area_vector{};     ///< m^2, by the node order of the file
     double volume = 0;                       ///< m^3, of the cones from its faces to the centre of the box, by the node order
     bool normals_into_fluid = false;         ///< the node order is known to look into the fluid
+    bool closed = false;                     ///< it bounds a volume by itself: not so two sides of a duct, whose area vectors cancel too
 };
-WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool normals_into_fluid);
+/// `dimension` 2: strips across the plane of the case, open at their ends.
+WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool normals_into_fluid, int dimension = 3);
+
+/// Does a surface with these sums bound a volume? Its area vectors cancel, and it gives one volume along every axis (along
+/// x and y, of the strips of a plane case).
+bool bounds_a_volume(const FaceSums& sums, int dimension = 3);
 
 /// Walls that cannot be part of one body with the others:
 /// 1. that look one way (within 5 % of their area) and whose area vector is larger than anything in the box around the

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "postproc/body_zones.h"
 #include "postproc/facing.h"
 #include "postproc/loads_reference.h"
 #include "postproc/mirror_plane.h"
@@ -302,16 +303,23 @@ private:
         return count > 0 ? sum / static_cast<double>(count) : 0;
     }
 
-    /// The one zone without which the surface closes; empty when there is none.
+    /// The one zone without which the others bound a volume; empty when there is none.
     [[nodiscard]] std::string opening_zone() const {
-        for (const auto& without : result_.zones) {
-            Vector area_vector{};
-            for (const auto& zone : result_.zones) {
-                area_vector = plus(area_vector, zone.area_vector, &zone == &without ? 0 : 1);
+        for (const auto& without : parts_) {
+            FaceSums rest;
+            for (const auto& part : parts_) {
+                if (&part == &without) {
+                    continue;
+                }
+                rest.area += part.sums.area;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const bool cancels = static_cast<int>(k) == mirror_.axis;  // with the other half
+                    rest.area_vector[k] += cancels ? 0 : part.sign * part.sums.area_vector[k];
+                    rest.flux_of_place[k] += part.sign * part.sums.flux_of_place[k];
+                }
             }
-            const double rest = result_.area - without.area;
-            if (result_.zones.size() > 1 && rest > 0 && norm(area_vector) < 1e-3 * rest) {
-                return without.name;
+            if (parts_.size() > 1 && bounds_a_volume(rest, field_.dimension)) {
+                return without.zone->name;
             }
         }
         return {};

@@ -173,7 +173,7 @@ private:
     void leave_out_other_walls() {
         std::vector<WallShape> walls;
         for (const auto& part : parts_) {
-            walls.push_back(shape_of(part.zone->name, *part.surface, part.zone->normals_into_fluid));
+            walls.push_back(shape_of(part.zone->name, *part.surface, part.zone->normals_into_fluid, field_.dimension));
         }
         const auto is_other = [&](const std::string& name) {
             return std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& zone) { return zone.name == name; });

@@ -79,7 +79,11 @@ double mesh_size_of(const LoadsCase& one, const std::string& column) {
         }
         return mesh_size(value_of(one.numbers, column, static_cast<double>(faces)), 2);
     }
-    return mesh_size(value_of(one.numbers, column, 0.0));
+    const double cells = value_of(one.numbers, column, std::numeric_limits<double>::quiet_NaN());
+    if (!(cells > 0)) {
+        throw core::InputError("range", "'" + column + "' is " + (std::isnan(cells) ? "missing" : core::format_number(cells)) + " for this case: a mesh study needs its number of cells", {one.file, {}, {}, {}});
+    }
+    return mesh_size(cells);
 }
 
 LoadsCase study_of(std::vector<const LoadsCase*> group, const std::string& column) {

@@ -78,6 +78,9 @@ void add_manifest(const std::string& path, Batch& batch) {
     const auto& names = table.text("file");
     const bool all = batch.files.empty();
     for (std::size_t row = 0; row < table.rows(); ++row) {
+        if (names[row].empty()) {
+            throw core::InputError("missing", "row " + std::to_string(row + 1) + " of the manifest names no file", {path, {}, {}, {}});
+        }
         const fs::path listed = fs::path(path).parent_path() / names[row];
         if (all) {
             batch.files.push_back({listed.string(), {}, {}});
@@ -87,6 +90,10 @@ void add_manifest(const std::string& path, Batch& batch) {
         for (auto& file : batch.files) {
             std::error_code ignored;
             if (fs::equivalent(file.path, listed, ignored)) {
+                if (!file.numbers.empty() || !file.texts.empty()) {
+                    throw core::InputError("manifest", "row " + std::to_string(row + 1) + " of the manifest lists '" + names[row] + "' once more, or a pattern gave its conditions already", {path, {}, {}, {}},
+                                           "one row a file, or no pattern with a manifest");
+                }
                 add_row(table, row, file);
             }
         }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -41,7 +42,7 @@ std::optional<double> optional_quantity(const std::string& text, const char* uni
 std::optional<postproc::Vector> reference_of(const std::string& text, const ConditionedFile& file) {
     const auto condition = [&](const std::string& name) {
         const auto found = std::find_if(file.numbers.begin(), file.numbers.end(), [&](const auto& entry) { return entry.first == name; });
-        return found == file.numbers.end() ? std::nullopt : std::optional<double>(found->second);
+        return found == file.numbers.end() || std::isnan(found->second) ? std::nullopt : std::optional<double>(found->second);
     };
     if (text.empty()) {
         const auto x = condition("reference_x");
@@ -107,11 +108,8 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
         shell.print(name + std::string(16 - name.size(), ' ') + cell(total.*which) + cell(pressure.*which) + cell(viscous.*which) +
                     (one.sigmas.empty() ? "" : sigma == one.sigmas.end() ? "            -" : cell(sigma->second)) + "  " + unit);
     };
-    shell.print(result.file);
+    shell.print(result.file + (result.depth.empty() ? "" : ", " + result.depth));
     shell.print(std::string("                        total     pressure      viscous") + (one.sigmas.empty() ? "" : "        sigma"));
-    if (!result.depth.empty()) {
-        shell.print(result.depth + ":");
-    }
     line("lift_force", &postproc::NamedLoads::lift_force, "N, up");
     line("drag_force", &postproc::NamedLoads::drag_force, "N, against the motion");
     line("side_force", &postproc::NamedLoads::side_force, "N, to starboard");

@@ -165,5 +165,14 @@ TEST(BodyZones, ClosedBodiesThatLieApartAreNamed) {
     EXPECT_THAT(separate_bodies({ball("first", 0), ball("inner", 0.5)}), IsEmpty());
 }
 
+TEST(BodyZones, DuctsAreNoBodiesThoughTheirWallsCancel) {
+    // A round pipe, open at both ends: its area vectors sum to nothing.
+    const auto pipe = [](const std::string& name, double at) {
+        return sheet(name, 40, 8, [=](double s, double t) { return Point{at + std::cos(2 * M_PI * s), std::sin(2 * M_PI * s), 5 * t}; });
+    };
+    EXPECT_THAT(separate_bodies({pipe("inlet-duct", 0), pipe("outlet-duct", 3)}), IsEmpty());
+    EXPECT_THAT(walls_beside_body({pipe("inlet-duct", 0), pipe("outlet-duct", 3)}), IsEmpty());
+}
+
 }  // namespace
 }  // namespace underbody::postproc

@@ -240,6 +240,26 @@ TEST(Loads, TakeEveryWallThatIsNamed) {
     EXPECT_THAT(result.problems.back().message, HasSubstr("closes without zone 'ground'"));
 }
 
+TEST(Loads, SeeNoGroundInAPipeWithAFlange) {
+    // Without the flange the area vectors of the pipe cancel, and still it is no body.
+    std::vector<Vector> points;
+    std::vector<std::vector<vtkIdType>> faces;
+    constexpr vtkIdType around = 24;
+    for (vtkIdType i = 0; i < 2 * around; ++i) {
+        const double phi = 2 * M_PI * static_cast<double>(i % around) / around;
+        points.push_back({i < around ? 0.0 : 3.0, std::cos(phi), std::sin(phi)});
+    }
+    for (vtkIdType i = 0; i < around; ++i) {
+        faces.push_back({i, (i + 1) % around, around + (i + 1) % around, around + i});
+    }
+    const auto p = [](const Vector&) { return 5.0; };
+    LoadsOptions all = about({});
+    all.zones = {"*"};
+    const auto result = loads(field_of({make_zone("pipe", points, faces, p), make_zone("flange", {{3, -2, -2}, {3, 2, -2}, {3, 2, 2}, {3, -2, 2}}, {{0, 1, 2, 3}}, p)}), all);
+    ASSERT_FALSE(result.problems.empty());
+    EXPECT_THAT(result.problems.back().message, testing::AllOf(HasSubstr("not closed"), testing::Not(HasSubstr("a ground?"))));
+}
+
 TEST(Loads, TakeTheSidesAsToldWhenTold) {
     LoadsOptions options;
     options.fluid = FluidSide::as_in_file;

@@ -89,6 +89,21 @@ TEST_F(PostprocCommands, LoadsOfABatchNameEveryFileThatCannotBeUsed) {
     EXPECT_EQ(run({"loads", "nowhere.csv", "nor-here.csv", "--keep-going"}).exit_code, 3);
 }
 
+TEST_F(PostprocCommands, LoadsSayWhichRowOfAManifestIsWrong) {
+    const auto refusal = [&](const std::string& rows, std::vector<std::string> more = {}) {
+        core::write_file(folder_.path() / "list.csv", rows);
+        more.insert(more.begin(), {"loads", "--manifest", "list.csv"});
+        const auto result = run(more);
+        EXPECT_EQ(result.exit_code, 3) << result.output;
+        return result.errors;
+    };
+    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n7, \n"), testing::HasSubstr("row 2 of the manifest names no file"));
+    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n7, a-h5.csv\n", {"a-h5.csv"}), testing::HasSubstr("row 2 of the manifest lists 'a-h5.csv' once more"));
+    EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n, b-h10.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("b-h10.csv: 'cells' is missing"));
+    EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n0, b-h10.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("'cells' is 0"));
+    EXPECT_THAT(refusal("reference_x [m], reference_y [m], reference_z [m], file\n0, 0, , a-h5.csv\n"), testing::HasSubstr("needs reference_x, reference_y and reference_z"));
+}
+
 TEST_F(PostprocCommands, LoadsAreCheckedAgainstAManifest) {
     core::write_file(folder_.path() / "stated.csv", "gap [mm], lift_force [N], drag_force [N], file\n5, -1.001, 0, a-h5.csv\n10, -1.2, 0, b-h10.csv\n");
     const auto wrong = run({"loads", "--manifest", "stated.csv", "--check", "0.01"});
