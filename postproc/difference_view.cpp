@@ -150,10 +150,10 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
         throw core::InputError("range", "the two bodies lie nowhere within " + core::format_number(1000 * apart, 2) + " mm of each other", {b.files.empty() ? "" : b.files.front(), {}, {}, {}});
     }
     scene.range = drawn_range(values, scene.colours);
-    scene.value_name = array == "pressure" ? "difference" : "difference of " + array;
+    scene.value_name = "difference";
     scene.value_unit = unit;
     scene.camera = to.from_below();
-    scene.title = "difference of " + array + " on the underbody";
+    scene.title = "difference of " + view_label(array) + " on the underbody";
     scene.subtitle = options.case_name.empty() ? to.case_name() + "  minus  " + from.case_name() : options.case_name;
     scene.width = options.width;
     scene.height = options.height;

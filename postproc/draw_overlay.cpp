@@ -88,10 +88,14 @@ void Overlay::shapes(const std::vector<Vector>& points, const std::vector<Polygo
 }
 
 void Overlay::add_title() {
-    if (!scene_.title.empty()) {
-        text(scene_.title, 24 * layout_.unit, scene_.height - 34 * layout_.unit, title_size, true, 0.1, -1);
-        text(scene_.subtitle, 24 * layout_.unit, scene_.height - 78 * layout_.unit, number_size, false, 0.35, -1);
+    if (scene_.title.empty()) {
+        return;
     }
+    // Long names are written smaller rather than cut off: a letter is about 0.6 of its height wide.
+    const double room = scene_.width / layout_.unit - 48;
+    const auto fitting = [&](const std::string& words, double size) { return std::min(size, room / (0.6 * static_cast<double>(std::max<std::size_t>(1, words.size())))); };
+    text(scene_.title, 24 * layout_.unit, scene_.height - 34 * layout_.unit, fitting(scene_.title, title_size), true, 0.1, -1);
+    text(scene_.subtitle, 24 * layout_.unit, scene_.height - 78 * layout_.unit, fitting(scene_.subtitle, number_size), false, 0.35, -1);
 }
 
 void Overlay::add_bar(std::pair<double, double> range, std::pair<double, double> values) {

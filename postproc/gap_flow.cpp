@@ -271,7 +271,7 @@ core::Figure gap_profile_figure(const Field& field, const GapOptions& options, c
         ground = std::min(ground, dot({all[corner & 1], all[2 + ((corner >> 1) & 1)], all[4 + ((corner >> 2) & 1)]}, options.up));
     }
     core::Figure figure;
-    figure.title = "velocity across the gap along the base (0: its middle, +: forward)";
+    figure.title = "velocity across the gap at places along the base (+: forward of its middle)";
     figure.x = {"velocity of the stream", "m/s"};
     figure.y = {"height over the ground", "mm"};
     figure.caption = "Velocity against the forward axis between ground and base, in the middle plane, at stations along the base (position from its centre, forward positive).";

@@ -273,6 +273,11 @@ private:
             warn("zone '" + part.zone->name + "' has no wall shear vector: its viscous part is left out");
             return;
         }
+        const ArrayInfo* info = part.zone->find("wall_shear");
+        if (revolved_ && info != nullptr && info->original_unit == "N") {
+            warn("zone '" + part.zone->name + "' has forces on its faces, and of an axisymmetric case it is not known whether these are per radian: its viscous part is left out");
+            return;
+        }
         part.values.shear = summed_values(part, *array, on_nodes, part.own_shear);
         if (scale != 1) {
             std::vector<double> scaled(part.values.shear.begin(), part.values.shear.end());

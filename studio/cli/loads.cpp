@@ -119,6 +119,9 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     const auto vector = [](const postproc::Vector& v) { return core::format_number(v[0], 6) + ", " + core::format_number(v[1], 6) + ", " + core::format_number(v[2], 6); };
     shell.print("force           " + vector(result.total.force) + " N, in the file's axes");
     shell.print("moment          " + vector(result.total.moment) + " N m, about " + vector(result.reference) + " m: " + result.reference_from);
+    if (result.centre_of_pressure) {
+        shell.print("acts at         " + vector(*result.centre_of_pressure) + " m: the lift, on the line forward through that point");
+    }
     for (const auto& zone : result.zones) {
         const auto& p = zone.pressure.force;
         const auto& v = zone.viscous.force;

@@ -561,6 +561,11 @@ TEST(Loads, OfAnAxisymmetricCaseAreThoseOfTheBodyOfRevolution) {
         field.metadata.clear();
         options.axisymmetric = true;
         EXPECT_EQ(loads(field, options).total.force, result.total.force);
+        // Forces on faces that may be per radian are no traction: left out, aloud.
+        field.zones[0].arrays[1].original_unit = "N";
+        const auto without = loads(field, options);
+        EXPECT_EQ(without.viscous.force, Vector{});
+        EXPECT_THAT(without.problems.back().message, HasSubstr("per radian"));
         options.symmetry = "y";
         EXPECT_THROW(loads(field, options), core::UsageError);
     }
