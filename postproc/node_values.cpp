@@ -2,7 +2,6 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCellType.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
@@ -20,6 +19,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "postproc/cell_geometry.h"
 #include "postproc/field.h"
 #include "postproc/surface_arrays.h"
 
@@ -32,85 +32,6 @@ using Eigen::Vector3d;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t block = 4096;
-
-std::vector<Index> integers(vtkDataArray& array) {
-    std::vector<Index> result(static_cast<std::size_t>(array.GetNumberOfValues()));
-    if (auto* wide = vtkArrayDownCast<vtkCellArray::ArrayType64>(&array)) {
-        std::copy_n(wide->GetPointer(0), result.size(), result.begin());
-    } else if (auto* narrow = vtkArrayDownCast<vtkCellArray::ArrayType32>(&array)) {
-        std::copy_n(narrow->GetPointer(0), result.size(), result.begin());
-    }
-    return result;
-}
-
-/// Rows of numbers, one after the other.
-struct Rows {
-    std::vector<Index> offsets{0};  ///< one more than rows
-    std::vector<Index> values;
-
-    [[nodiscard]] std::size_t count() const { return offsets.size() - 1; }
-    [[nodiscard]] std::span<const Index> operator[](std::size_t row) const {
-        return {values.data() + offsets[row], static_cast<std::size_t>(offsets[row + 1] - offsets[row])};
-    }
-};
-
-Rows rows_of(vtkCellArray& cells) {
-    Rows rows;
-    if (cells.GetNumberOfCells() > 0) {
-        rows.offsets = integers(*cells.GetOffsetsArray());
-        rows.values = integers(*cells.GetConnectivityArray());
-    }
-    return rows;
-}
-
-/// For each node the cells that have it.
-Rows turned_round(const Rows& cells, std::size_t nodes) {
-    Rows result;
-    result.offsets.assign(nodes + 1, 0);
-    for (const Index node : cells.values) {
-        ++result.offsets[static_cast<std::size_t>(node) + 1];
-    }
-    for (std::size_t i = 0; i < nodes; ++i) {
-        result.offsets[i + 1] += result.offsets[i];
-    }
-    result.values.resize(cells.values.size());
-    std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
-    for (std::size_t c = 0; c < cells.count(); ++c) {
-        for (const Index node : cells[c]) {
-            result.values[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = static_cast<Index>(c);
-        }
-    }
-    return result;
-}
-
-/// The faces of VTK's linear cells by their nodes; -1 ends a triangle early.
-using Faces = std::span<const std::array<int, 4>>;
-Faces faces_of(int type) {
-    static constexpr std::array<std::array<int, 4>, 4> tetra = {{{0, 1, 3, -1}, {1, 2, 3, -1}, {2, 0, 3, -1}, {0, 2, 1, -1}}};
-    static constexpr std::array<std::array<int, 4>, 6> hexahedron = {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
-    static constexpr std::array<std::array<int, 4>, 6> voxel = {{{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}}};
-    static constexpr std::array<std::array<int, 4>, 5> wedge = {{{0, 1, 2, -1}, {3, 5, 4, -1}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}};
-    static constexpr std::array<std::array<int, 4>, 5> pyramid = {{{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}};
-    switch (type) {
-        case VTK_TETRA: return tetra;
-        case VTK_HEXAHEDRON: return hexahedron;
-        case VTK_VOXEL: return voxel;
-        case VTK_WEDGE: return wedge;
-        case VTK_PYRAMID: return pyramid;
-        default: return {};
-    }
-}
-
-/// Centre of gravity in the making: pieces with their sizes, about a point near by.
-struct Centre {
-    Vector3d sum = Vector3d::Zero();
-    double size = 0;
-    void add(const Vector3d& at, double much) {
-        sum += much * at;
-        size += much;
-    }
-    [[nodiscard]] Vector3d place(const Vector3d& otherwise) const { return size > 0 ? Vector3d(sum / size) : otherwise; }
-};
 
 /// Where a boundary zone touches the cells.
 struct Boundary {
@@ -182,28 +103,8 @@ private:
 
 class NodeValues::Carrier {
 public:
-    Carrier(vtkPointSet& data, vtkCellArray& cells) : data_(data), cells_(rows_of(cells)) {
-        if (data.GetPoints() != nullptr) {
-            points_ = values_of(*data.GetPoints()->GetData(), own_points_);
-        }
-        around_ = turned_round(cells_, points_.size() / 3);
-    }
-
-    void find_centres(vtkUnstructuredGrid& grid) {
-        centres_.resize(cells_.count());
-        opening_.assign(around_.count(), Vector3d::Zero());
-        size_.assign(around_.count(), 0);
-        for (std::size_t c = 0; c < cells_.count(); ++c) {
-            centres_[c] = centre_of(grid, c);
-        }
-    }
-
-    void find_centres() {
-        centres_.resize(cells_.count());
-        for (std::size_t c = 0; c < cells_.count(); ++c) {
-            centres_[c] = centre_of_polygon(cells_[c], [&](Index node) { return point(node); });
-        }
-    }
+    template <typename Data>
+    explicit Carrier(Data& data) : data_(data), geometry_(data) {}
 
     void know(const std::vector<const Zone*>& zones) {
         std::unordered_map<std::array<double, 3>, std::vector<Index>, SamePlace> at;  // grid nodes at the boundaries' places
@@ -216,8 +117,8 @@ public:
                 at.try_emplace(key(places[z].data() + i));
             }
         }
-        for (std::size_t i = 0; 3 * i < points_.size() && !at.empty(); ++i) {
-            if (const auto found = at.find(key(points_.data() + 3 * i)); found != at.end()) {
+        for (std::size_t i = 0; i < geometry_.nodes() && !at.empty(); ++i) {
+            if (const auto found = at.find(key(geometry_.point(static_cast<Index>(i)).data())); found != at.end()) {
                 found->second.push_back(static_cast<Index>(i));
             }
         }
@@ -230,7 +131,11 @@ public:
             }
             for (std::size_t f = 0; f < boundary.faces.count(); ++f) {
                 boundary.owner.push_back(owner_of(boundary.faces[f], boundary.places));
-                boundary.centre.push_back(centre_of_polygon(boundary.faces[f], [&](Index node) { return Vector3d(places[z].data() + 3 * node); }));
+                std::vector<Vector3d> corners;
+                for (const Index node : boundary.faces[f]) {
+                    corners.emplace_back(places[z].data() + 3 * node);
+                }
+                boundary.centre.push_back(centre_of_polygon(corners));
             }
             boundaries_.push_back(std::move(boundary));
         }
@@ -238,7 +143,7 @@ public:
 
     [[nodiscard]] vtkSmartPointer<vtkDoubleArray> of(const std::string& name) const {
         auto* in_cells = data_.GetCellData()->GetArray(name.c_str());
-        if (in_cells == nullptr || static_cast<std::size_t>(in_cells->GetNumberOfTuples()) != cells_.count()) {
+        if (in_cells == nullptr || static_cast<std::size_t>(in_cells->GetNumberOfTuples()) != geometry_.cells().count()) {
             throw core::InputError("missing", "no values of '" + name + "' in the cells");
         }
         std::vector<double> own;
@@ -247,10 +152,10 @@ public:
         auto result = vtkSmartPointer<vtkDoubleArray>::New();
         result->SetName(name.c_str());
         result->SetNumberOfComponents(values.components);
-        result->SetNumberOfTuples(static_cast<vtkIdType>(around_.count()));
+        result->SetNumberOfTuples(static_cast<vtkIdType>(geometry_.nodes()));
         double* out = result->GetPointer(0);
         const bool never_negative = values.components == 1 && std::none_of(values.data.begin(), values.data.end(), [](double v) { return v < 0; });
-        core::parallel_blocks(around_.count(), block, [&](std::size_t from, std::size_t to) {
+        core::parallel_blocks(geometry_.nodes(), block, [&](std::size_t from, std::size_t to) {
             for (std::size_t node = from; node < to; ++node) {
                 for (int k = 0; k < values.components; ++k) {
                     const double value = mean_around(node, values, slopes, k);
@@ -277,100 +182,18 @@ private:
         explicit Slopes(std::size_t count) : gradients(3 * count), low(count), high(count) {}
     };
 
-    [[nodiscard]] Vector3d point(Index node) const { return Vector3d(points_.data() + 3 * node); }
-
-    template <typename Point>
-    static Vector3d centre_of_polygon(std::span<const Index> nodes, Point&& at) {
-        if (nodes.empty()) {
-            return Vector3d::Constant(nan);
-        }
-        Vector3d mean = Vector3d::Zero();
-        for (const Index node : nodes) {
-            mean += at(node) / static_cast<double>(nodes.size());
-        }
-        Centre centre;
-        for (std::size_t i = 0; i < nodes.size() && nodes.size() > 3; ++i) {
-            const Vector3d a = at(nodes[i]);
-            const Vector3d b = at(nodes[(i + 1) % nodes.size()]);
-            centre.add((mean + a + b) / 3, (a - mean).cross(b - mean).norm());
-        }
-        return centre.place(mean);
-    }
-
-    /// A side of a cell, for the nodes on it: around a node with cells on all sides these sum to nothing.
-    void note_side(std::span<const Index> nodes, const Vector3d& outward) {
-        for (const Index node : nodes) {
-            opening_[static_cast<std::size_t>(node)] += outward;
-            size_[static_cast<std::size_t>(node)] += outward.norm();
-        }
-    }
-
-    /// Of a cell that can be seen whole from the mean of its nodes.
-    [[nodiscard]] Vector3d centre_of(vtkUnstructuredGrid& grid, std::size_t cell) {
-        const auto nodes = cells_[cell];
-        const int type = grid.GetCellType(static_cast<vtkIdType>(cell));
-        if (type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON) {
-            const Vector3d centre = centre_of_polygon(nodes, [&](Index node) { return point(node); });
-            for (std::size_t i = 0; i < nodes.size(); ++i) {
-                const std::array<Index, 2> edge = {nodes[i], nodes[(i + 1) % nodes.size()]};
-                const Vector3d along = point(edge[1]) - point(edge[0]);
-                note_side(edge, (point(edge[0]) - centre).cross(along)[2] < 0 ? Vector3d(-along) : along);
-            }
-            return centre;
-        }
-        Vector3d mean = Vector3d::Zero();
-        for (const Index node : nodes) {
-            mean += point(node) / static_cast<double>(nodes.size());
-        }
-        Centre centre;
-        const auto add_face = [&](std::span<const Index> face) {
-            Vector3d middle = Vector3d::Zero();
-            for (const Index node : face) {
-                middle += point(node) / static_cast<double>(face.size());
-            }
-            Vector3d area = Vector3d::Zero();
-            for (std::size_t i = 0; i < face.size(); ++i) {
-                const Vector3d a = point(face[i]);
-                const Vector3d b = point(face[(i + 1) % face.size()]);
-                centre.add((mean + middle + a + b) / 4, std::abs((middle - mean).dot((a - mean).cross(b - mean))));
-                area += (a - middle).cross(b - middle);
-            }
-            note_side(face, area.dot(middle - mean) < 0 ? Vector3d(-area) : area);
-        };
-        if (type == VTK_POLYHEDRON) {
-            vtkIdType faces = 0;
-            const vtkIdType* stream = nullptr;
-            grid.GetFaceStream(static_cast<vtkIdType>(cell), faces, stream);
-            for (vtkIdType f = 0; f < faces; ++f) {
-                const std::vector<Index> face(stream + 1, stream + 1 + *stream);
-                add_face(face);
-                stream += 1 + *stream;
-            }
-        } else {
-            for (const auto& local : faces_of(type)) {
-                std::array<Index, 4> face{};
-                std::size_t count = 0;
-                for (; count < 4 && local[count] >= 0; ++count) {
-                    face[count] = nodes[static_cast<std::size_t>(local[count])];
-                }
-                add_face({face.data(), count});
-            }
-        }
-        return centre.place(mean);
-    }
-
     /// The cell that has all nodes of a face.
     [[nodiscard]] Index owner_of(std::span<const Index> face, const std::vector<std::vector<Index>>& places) const {
         if (face.empty()) {
             return -1;
         }
         const auto has = [&](Index cell, Index node) {
-            const auto nodes = cells_[static_cast<std::size_t>(cell)];
+            const auto nodes = geometry_.cells()[static_cast<std::size_t>(cell)];
             const auto& same = places[static_cast<std::size_t>(node)];
             return std::any_of(same.begin(), same.end(), [&](Index at) { return std::find(nodes.begin(), nodes.end(), at) != nodes.end(); });
         };
         for (const Index first : places[static_cast<std::size_t>(face[0])]) {
-            for (const Index cell : around_[static_cast<std::size_t>(first)]) {
+            for (const Index cell : geometry_.around()[static_cast<std::size_t>(first)]) {
                 if (std::all_of(face.begin(), face.end(), [&](Index node) { return has(cell, node); })) {
                     return cell;
                 }
@@ -389,16 +212,16 @@ private:
     }
 
     [[nodiscard]] Slopes slopes_of(const Values& values) const {
-        Slopes slopes(cells_.count() * static_cast<std::size_t>(values.components));
-        core::parallel_blocks(cells_.count(), block, [&](std::size_t from, std::size_t to) {
+        Slopes slopes(geometry_.cells().count() * static_cast<std::size_t>(values.components));
+        core::parallel_blocks(geometry_.cells().count(), block, [&](std::size_t from, std::size_t to) {
             for (std::size_t c = from; c < to; ++c) {
                 const auto cell = static_cast<Index>(c);
                 Fit fit(values.components);
                 for (int k = 0; k < values.components; ++k) {
                     slopes.low[values.at(cell, k)] = slopes.high[values.at(cell, k)] = values(cell, k);
                 }
-                for (const Index node : cells_[c]) {
-                    for (const Index other : around_[static_cast<std::size_t>(node)]) {  // who shares more nodes counts more
+                for (const Index node : geometry_.cells()[c]) {
+                    for (const Index other : geometry_.around()[static_cast<std::size_t>(node)]) {  // who shares more nodes counts more
                         if (other != cell && std::isfinite(values(other, 0))) {
                             for (int k = 0; k < values.components; ++k) {
                                 double& low = slopes.low[values.at(cell, k)];
@@ -406,7 +229,7 @@ private:
                                 low = std::min(low, values(other, k));
                                 high = std::max(high, values(other, k));
                             }
-                            fit.add(centres_[static_cast<std::size_t>(other)] - centres_[c], [&](int k) { return values(other, k) - values(cell, k); });
+                            fit.add(geometry_.centre(other) - geometry_.centre(cell), [&](int k) { return values(other, k) - values(cell, k); });
                         }
                     }
                 }
@@ -429,19 +252,18 @@ private:
         int count = 0;
         std::array<double, 2> near = {far, -far};
         std::array<double, 2> wide = {far, -far};
-        for (const Index cell : around_[node]) {
+        for (const Index cell : geometry_.around()[node]) {
             const double value = values(cell, k);
             if (!std::isfinite(value)) {
                 continue;
             }
-            sum += value + along(slopes, values, cell, k, point(static_cast<Index>(node)) - centres_[static_cast<std::size_t>(cell)]);
+            sum += value + along(slopes, values, cell, k, geometry_.point(static_cast<Index>(node)) - geometry_.centre(cell));
             ++count;
             near = {std::min(near[0], value), std::max(near[1], value)};
             wide = {std::min(wide[0], slopes.low[values.at(cell, k)]), std::max(wide[1], slopes.high[values.at(cell, k)])};
         }
         // With cells on all sides the node lies among their middles, and its value among theirs.
-        const bool inside = !size_.empty() && opening_[node].norm() < 1e-9 * size_[node];
-        const double room = inside ? 0 : wide[1] - wide[0];
+        const double room = geometry_.inside(node) ? 0 : wide[1] - wide[0];
         return count == 0 ? nan : std::clamp(sum / count, near[0] - room, near[1] + room);
     }
 
@@ -467,7 +289,7 @@ private:
                 }
                 for (const Index node : boundary.faces[f]) {
                     for (const Index at : boundary.places[static_cast<std::size_t>(node)]) {
-                        const auto nodes = cells_[static_cast<std::size_t>(cell)];
+                        const auto nodes = geometry_.cells()[static_cast<std::size_t>(cell)];
                         if (std::find(nodes.begin(), nodes.end(), at) == nodes.end()) {
                             continue;  // the other side of a baffle
                         }
@@ -480,7 +302,7 @@ private:
                         }
                         ++sum.count;
                         for (int k = 0; k < values.components; ++k) {
-                            sum.value[static_cast<std::size_t>(k)] += (*known)(face, k) + (holds ? 0 : along(slopes, values, cell, k, point(at) - boundary.centre[f]));
+                            sum.value[static_cast<std::size_t>(k)] += (*known)(face, k) + (holds ? 0 : along(slopes, values, cell, k, geometry_.point(at) - boundary.centre[f]));
                         }
                     }
                 }
@@ -494,22 +316,13 @@ private:
     }
 
     vtkPointSet& data_;
-    Rows cells_;
-    Rows around_;
-    std::span<const double> points_;
-    std::vector<double> own_points_;
-    std::vector<Vector3d> centres_;
-    std::vector<Vector3d> opening_;  ///< of a grid, by node, see `note_side`
-    std::vector<double> size_;
+    CellGeometry geometry_;
     std::vector<Boundary> boundaries_;
 };
 
-NodeValues::NodeValues(vtkUnstructuredGrid& grid, const std::vector<const Zone*>& boundaries) : carrier_(std::make_unique<Carrier>(grid, *grid.GetCells())) {
-    carrier_->find_centres(grid);
-    carrier_->know(boundaries);
-}
+NodeValues::NodeValues(vtkUnstructuredGrid& grid, const std::vector<const Zone*>& boundaries) : carrier_(std::make_unique<Carrier>(grid)) { carrier_->know(boundaries); }
 
-NodeValues::NodeValues(vtkPolyData& surface) : carrier_(std::make_unique<Carrier>(surface, *surface.GetPolys())) { carrier_->find_centres(); }
+NodeValues::NodeValues(vtkPolyData& surface) : carrier_(std::make_unique<Carrier>(surface)) {}
 
 NodeValues::~NodeValues() = default;
 

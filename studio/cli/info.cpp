@@ -1,9 +1,12 @@
 // underbody info FILE: what a CFD file holds.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "core/text.h"
 #include "postproc/summary.h"
@@ -15,30 +18,47 @@ namespace underbody::studio {
 
 namespace {
 
-std::string padded(const std::string& text, std::size_t width) {
-    return text.size() >= width ? text + " " : text + std::string(width - text.size(), ' ');
-}
-
 std::string number(double value) { return std::isfinite(value) ? core::format_number(value, 5) : "-"; }
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// Every column as wide as its longest entry.
+void print_columns(Shell& shell, const Rows& rows) {
+    std::vector<std::size_t> widths(rows.front().size(), 0);
+    for (const auto& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            widths[i] = std::max(widths[i], row[i].size());
+        }
+    }
+    std::string text;
+    for (const auto& row : rows) {
+        text += "\n";
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            text += row[i] + (i + 1 < row.size() ? std::string(widths[i] - row[i].size() + 2, ' ') : "");
+        }
+    }
+    shell.print(text);
+}
 
 void print(Shell& shell, const postproc::FieldSummary& summary) {
     shell.print(summary.file + ": " + summary.format + (summary.writer.empty() ? "" : ", written by " + summary.writer) +
                 (summary.dimension == 2 ? ", two-dimensional" : ""));
-    shell.print("\n" + padded("zone", 26) + padded("kind", 12) + padded("points", 10) + padded("faces", 10) + padded("cells", 10) + "extent [m]");
+    Rows zones = {{"zone", "kind", "points", "faces", "cells", "extent [m]"}};
     for (const auto& zone : summary.zones) {
         std::string extent;
         for (std::size_t k = 0; k < 3; ++k) {
             extent += std::string(k == 0 ? "" : "  ") + "xyz"[k] + " " + number(zone.lower[k]) + " .. " + number(zone.upper[k]);
         }
-        shell.print(padded(zone.name, 26) + padded(zone.kind, 12) + padded(std::to_string(zone.points), 10) + padded(std::to_string(zone.faces), 10) +
-                    padded(std::to_string(zone.cells), 10) + extent);
+        zones.push_back({zone.name, zone.kind, std::to_string(zone.points), std::to_string(zone.faces), std::to_string(zone.cells), extent});
     }
-    shell.print("\n" + padded("array", 26) + padded("unit", 12) + padded("on", 10) + padded("min", 14) + padded("max", 14) + "in the file");
+    print_columns(shell, zones);
+    Rows arrays = {{"array", "unit", "on", "min", "max", "in the file"}};
     for (const auto& array : summary.arrays) {
-        shell.print(padded(array.name + (array.components > 1 ? " (" + std::to_string(array.components) + ")" : ""), 26) + padded(array.unit.empty() ? "?" : array.unit, 12) +
-                    padded(array.on, 10) + padded(number(array.min), 14) + padded(number(array.max), 14) + array.original_name +
-                    (array.original_unit.empty() ? "" : " [" + array.original_unit + "]") + (array.missing > 0 ? ", " + std::to_string(array.missing) + " missing" : ""));
+        arrays.push_back({array.name + (array.components > 1 ? " (" + std::to_string(array.components) + ")" : ""), array.unit.empty() ? "?" : array.unit, array.on, number(array.min),
+                          number(array.max),
+                          array.original_name + (array.original_unit.empty() ? "" : " [" + array.original_unit + "]") + (array.missing > 0 ? ", " + std::to_string(array.missing) + " missing" : "")});
     }
+    print_columns(shell, arrays);
     shell.print("\npressure is " + (summary.pressure_reference == "unknown" ? std::string("gauge or absolute: the file does not say") : summary.pressure_reference) +
                 (summary.operating_pressure != 0 ? ", operating pressure " + number(summary.operating_pressure) + " Pa" : ""));
     for (const auto& [key, value] : summary.metadata) {

@@ -1,0 +1,64 @@
+// Which nodes the cells of a grid have, where their middles lie, which nodes lie inside.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "postproc/surface_arrays.h"
+
+class vtkCellArray;
+class vtkPolyData;
+class vtkPointSet;
+class vtkUnstructuredGrid;
+
+namespace underbody::postproc {
+
+/// Rows of numbers, one after the other.
+struct Rows {
+    std::vector<Index> offsets{0};  ///< one more than rows
+    std::vector<Index> values;
+
+    [[nodiscard]] std::size_t count() const { return offsets.size() - 1; }
+    [[nodiscard]] std::span<const Index> operator[](std::size_t row) const {
+        return {values.data() + offsets[row], static_cast<std::size_t>(offsets[row + 1] - offsets[row])};
+    }
+};
+
+Rows rows_of(vtkCellArray& cells);
+
+/// Centre of gravity of a polygon (of a line: its middle), by fans around the mean of its corners; not-a-number without any.
+Eigen::Vector3d centre_of_polygon(const std::vector<Eigen::Vector3d>& corners);
+
+/// Lives shorter than its source.
+class CellGeometry {
+public:
+    explicit CellGeometry(vtkUnstructuredGrid& grid);  ///< linear cells of two or three dimensions, polyhedra
+    explicit CellGeometry(vtkPolyData& surface);       ///< its polygons
+
+    [[nodiscard]] const Rows& cells() const { return cells_; }    ///< the nodes of each cell
+    [[nodiscard]] const Rows& around() const { return around_; }  ///< the cells that have each node
+    [[nodiscard]] Eigen::Vector3d point(Index node) const { return Eigen::Vector3d(points_.data() + 3 * node); }
+    [[nodiscard]] std::size_t nodes() const { return points_.size() / 3; }
+    /// Centre of gravity of a cell that can be seen whole from the mean of its nodes.
+    [[nodiscard]] const Eigen::Vector3d& centre(Index cell) const { return centres_[static_cast<std::size_t>(cell)]; }
+    /// Has the node cells on all sides? Never so on a surface.
+    [[nodiscard]] bool inside(std::size_t node) const { return !size_.empty() && opening_[node].norm() < 1e-9 * size_[node]; }
+
+private:
+    CellGeometry(vtkPointSet& data, vtkCellArray& cells);
+    void note_side(std::span<const Index> nodes, const Eigen::Vector3d& outward);
+    [[nodiscard]] std::vector<Eigen::Vector3d> corners_of(std::size_t cell) const;
+    [[nodiscard]] Eigen::Vector3d centre_of_plane_cell(std::size_t cell);
+    [[nodiscard]] Eigen::Vector3d centre_of(vtkUnstructuredGrid& grid, std::size_t cell);
+
+    Rows cells_;
+    Rows around_;
+    std::span<const double> points_;
+    std::vector<double> own_points_;
+    std::vector<Eigen::Vector3d> centres_;
+    std::vector<Eigen::Vector3d> opening_;  ///< of a grid, by node: the sides of its cells around the node, outward, summed
+    std::vector<double> size_;              ///< their sizes
+};
+
+}  // namespace underbody::postproc
