@@ -1,14 +1,12 @@
-// A face mesh with its values becomes zones with VTK data.
+// A face mesh with its values becomes zones with VTK data. The values: zone_values.h.
 #include <vtkCellData.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "core/text.h"
 #include "postproc/importers/face_cells.h"
@@ -16,6 +14,7 @@
 #include "postproc/importers/fluent_settings.h"
 #include "postproc/importers/fluent_variables.h"
 #include "postproc/importers/vtk_arrays.h"
+#include "postproc/importers/zone_values.h"
 
 namespace underbody::postproc {
 
@@ -23,45 +22,10 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// From where to where the ids of a zone go. Its blocks may come in any order: the ends of the list do not tell.
-struct Span {
-    std::uint64_t first = 1, last = 0;
-    bool gapless = false;  ///< and in order
-};
-Span span_of(const Ids& ids) {
-    Span span;
-    if (ids.empty()) {
-        return span;
-    }
-    span.first = ids[0];
-    span.last = ids[ids.size() - 1];
-    span.gapless = true;
-    for (std::size_t i = 1; i < ids.size() && ids.listed(); ++i) {
-        span.gapless = span.gapless && ids[i] == ids[i - 1] + 1;
-        span.first = std::min(span.first, ids[i]);
-        span.last = std::max(span.last, ids[i]);
-    }
-    return span;
-}
-
-/// One variable of one zone, gathered from its blocks.
-struct Gathered {
-    Buffer<double> values;
-    int components = 1;
-    std::uint64_t found = 0;
-};
-
-struct VariableKey {
-    std::string variable;
-    int phase = 1;
-    CanonicalName canonical{};
-    bool operator<(const VariableKey& o) const { return std::tie(phase, variable) < std::tie(o.phase, o.variable); }
-};
-
 class Assembly {
 public:
     Assembly(FaceMesh& mesh, std::vector<ValueBlock>& values, const ReadOptions& options, core::Progress& progress)
-        : mesh_(mesh), values_(values), options_(options), progress_(progress) {}
+        : mesh_(mesh), values_(values), zone_values_(values, mesh.file, options, progress), options_(options), progress_(progress) {}
 
     void add_volumes(Field& field);
     void add_surfaces(Field& field);
@@ -79,16 +43,13 @@ private:
     [[nodiscard]] bool turned(const FaceBlock& block, std::size_t face, bool wall) const;
     [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall) const;
     [[nodiscard]] double face_area(const Element& element) const;
-    [[nodiscard]] Gathered gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids, const Span& span);
-    void add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on_cells, const std::vector<double>& areas,
-                    core::Problems& problems);
-    void add_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) const;
     void add_surface(Field& field, int id, const std::vector<std::size_t>& blocks);
     void take_pressure_of_cells(Zone& zone, const std::vector<Element>& elements, core::Problems& problems) const;
     [[nodiscard]] std::uint64_t hidden_within(const CellBlock& block) const;
 
     FaceMesh& mesh_;
-    std::vector<ValueBlock>& values_;
+    const std::vector<ValueBlock>& values_;
+    ZoneValues zone_values_;
     const ReadOptions& options_;
     core::Progress& progress_;
     std::vector<std::int32_t> place_of_node_;  ///< only for the nodes of the zone at hand
@@ -233,169 +194,6 @@ double Assembly::face_area(const Element& element) const {
     return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / 2;
 }
 
-Gathered Assembly::gather(const VariableKey& key, int zone, bool on_cells, const Ids& ids, const Span& span) {
-    Gathered result;
-    if (ids.empty()) {
-        return result;
-    }
-    const auto [first, last, gapless] = span;
-    for (auto& block : values_) {
-        const bool ours = block.on_cells == on_cells && block.variable == key.variable && block.phase == key.phase &&
-                          (block.zone == 0 || block.zone == zone) && block.count > 0 && block.first <= last &&
-                          block.first + block.count > first;
-        if (!ours) {
-            continue;
-        }
-        const auto n = static_cast<std::size_t>(block.components);
-        const std::uint64_t from = std::max(first, block.first);
-        const std::uint64_t to = std::min(last + 1, block.first + block.count);
-        if (gapless && result.values.empty() && block.first == first && block.count == ids.size()) {
-            result = {std::move(block.values), block.components, block.count};
-            block.count = 0;  // taken: no other zone has these ids
-            return result;
-        }
-        if (result.values.empty()) {
-            result.components = block.components;
-            result.values.grow_to(ids.size() * n);
-            if (!gapless || to - from < ids.size()) {
-                result.values.fill(missing);
-            }
-        }
-        if (block.components != result.components) {
-            continue;
-        }
-        if (gapless) {
-            std::copy_n(block.values.data() + (from - block.first) * n, (to - from) * n,
-                        result.values.data() + (from - first) * n);
-            result.found += to - from;
-            continue;
-        }
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            if (ids[i] >= block.first && ids[i] < block.first + block.count) {
-                std::copy_n(block.values.data() + (ids[i] - block.first) * n, n, result.values.data() + i * n);
-                ++result.found;
-            }
-        }
-    }
-    return result;
-}
-
-void Assembly::add_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) const {
-    auto array = given_to_vtk<vtkDoubleArray>(std::move(values), info.components);
-    array->SetName(info.name.c_str());
-    data.AddArray(array);
-    zone.arrays.push_back(std::move(info));
-}
-
-/// Traction on the body, out of the force of the wall on the fluid.
-void to_traction(Buffer<double>& forces, int components, const std::vector<double>& areas) {
-    const auto n = static_cast<std::size_t>(components);
-    for (std::size_t i = 0; i < areas.size(); ++i) {
-        for (std::size_t k = 0; k < n; ++k) {
-            forces[i * n + k] = areas[i] > 0 ? -forces[i * n + k] / areas[i] : 0;
-        }
-    }
-}
-
-/// x, y, z by turns; a part that is not there is 0.
-Buffer<double> interleaved(const std::array<Buffer<double>, 3>& parts, std::size_t count) {
-    Buffer<double> result(3 * count);
-    const auto of = [&](std::size_t k, std::size_t i) { return parts[k].empty() ? 0 : parts[k][i]; };
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            result[3 * i + k] = of(k, i);
-        }
-    }
-    return result;
-}
-
-/// Three components out of two, the third 0.
-Buffer<double> widened(const Buffer<double>& values) {
-    Buffer<double> result(values.size() / 2 * 3);
-    for (std::size_t i = 0; i < values.size() / 2; ++i) {
-        result[3 * i] = values[2 * i];
-        result[3 * i + 1] = values[2 * i + 1];
-        result[3 * i + 2] = 0;
-    }
-    return result;
-}
-
-void Assembly::add_values(Zone& zone, const Ids& ids, vtkCellData& data, bool on_cells,
-                          const std::vector<double>& areas, core::Problems& problems) {
-    const auto wanted = [&](const std::string& name, const std::string& original) {
-        return options_.arrays.empty() || matches_any(options_.arrays, name) || matches_any(options_.arrays, original);
-    };
-    std::vector<VariableKey> keys;
-    std::set<VariableKey> seen;
-    for (const auto& block : values_) {
-        if (block.on_cells == on_cells && (block.zone == 0 || block.zone == zone.id)) {
-            VariableKey key{block.variable, block.phase,
-                            block.canonical.empty() ? canonical_name(block.variable)
-                                                    : CanonicalName{block.canonical, block.unit}};
-            if (seen.insert(key).second) {
-                keys.push_back(std::move(key));
-            }
-        }
-    }
-    struct Joined {
-        ArrayInfo info;
-        std::array<Buffer<double>, 3> parts;
-    };
-    std::vector<Joined> vectors;
-    const Span span = span_of(ids);
-    for (const auto& key : keys) {
-        progress_.check();
-        const std::string phase = key.phase == 1 ? "" : ".phase-" + std::to_string(key.phase);
-        const CanonicalName& canonical = key.canonical;
-        const auto component = vector_component(canonical.name);
-        std::string name = (component ? component->vector : canonical.name) + phase;
-        const bool shear = canonical.name == "wall_shear_force";
-        if (!wanted(shear ? "wall_shear" + phase : name, key.variable)) {
-            continue;
-        }
-        Gathered found = gather(key, zone.id, on_cells, ids, span);
-        if (found.found == 0) {
-            continue;
-        }
-        if (found.found < ids.size()) {
-            problems.push_back({core::Problem::Severity::warning,
-                                key.variable + " covers " + std::to_string(found.found) + " of the " +
-                                    std::to_string(ids.size()) + (on_cells ? " cells" : " faces") + " of zone " +
-                                    zone.name + "; the others are not-a-number",
-                                {mesh_.file, {}, {}, {}}});
-        }
-        ArrayInfo info{
-            name, canonical.unit, key.variable, "", on_cells ? Location::cells : Location::faces, found.components};
-        if (component && found.components == 1) {
-            auto joined =
-                std::find_if(vectors.begin(), vectors.end(), [&](const Joined& j) { return j.info.name == name; });
-            if (joined == vectors.end()) {
-                info.components = 3;
-                vectors.push_back({info, {}});
-                joined = std::prev(vectors.end());
-            } else {
-                joined->info.original_name += ", " + key.variable;
-            }
-            joined->parts[static_cast<std::size_t>(component->index)] = std::move(found.values);
-            continue;
-        }
-        if (found.components == 2 && (shear || vector_component(canonical.name + "_x"))) {
-            found.values = widened(found.values);
-            info.components = 3;
-        }
-        if (shear && !on_cells && areas.size() == ids.size()) {
-            to_traction(found.values, info.components, areas);
-            info.name = "wall_shear" + phase;
-            info.unit = "Pa";
-            info.original_unit = "N";
-        }
-        add_array(zone, data, std::move(info), std::move(found.values));
-    }
-    for (auto& joined : vectors) {
-        add_array(zone, data, std::move(joined.info), interleaved(joined.parts, ids.size()));
-    }
-}
-
 vtkSmartPointer<vtkUnstructuredGrid> grid_of(CellArrays&& cells, Buffer<double>&& coordinates) {
     auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
     grid->SetPoints(points_from(std::move(coordinates)));
@@ -450,7 +248,7 @@ void Assembly::add_volumes(Field& field) {
         const Ids ids = std::move(cells.ids);
         auto coordinates = picked_points(cells.connectivity, cells.face_stream, last);
         zone.volume = grid_of(std::move(cells), std::move(coordinates));
-        add_values(zone, ids, *zone.volume->GetCellData(), true, {}, field.problems);
+        zone_values_.add_to(zone, *zone.volume->GetCellData(), ids, true, {}, field.problems);
         field.zones.push_back(std::move(zone));
     }
 }
@@ -500,7 +298,7 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
     } else {
         zone.surface->SetPolys(array);
     }
-    add_values(zone, ids, *zone.surface->GetCellData(), false, areas, field.problems);
+    zone_values_.add_to(zone, *zone.surface->GetCellData(), ids, false, areas, field.problems);
     if (zone.kind == ZoneKind::wall && zone.find("pressure") == nullptr) {
         take_pressure_of_cells(zone, elements, field.problems);
     }
@@ -535,7 +333,7 @@ void Assembly::take_pressure_of_cells(Zone& zone, const std::vector<Element>& el
                                                            std::to_string(elements.size()) + " faces"
                                                      : ""),
                         {mesh_.file, {}, {}, {}}});
-    add_array(zone, *zone.surface->GetCellData(), {"pressure", "Pa", pressure_variable, "", Location::cells, 1},
+    add_cell_array(zone, *zone.surface->GetCellData(), {"pressure", "Pa", pressure_variable, "", Location::cells, 1},
               std::move(values));
 }
 
