@@ -290,7 +290,9 @@ void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
 
 /// The cells of a block, or of a plane one.
 ElementPart cells_of_block(const CgnsZone& zone, int dimension, core::Progress& progress) {
-    const auto [ni, nj, nk] = zone.nodes;
+    const std::int64_t ni = zone.nodes[0];
+    const std::int64_t nj = zone.nodes[1];
+    const std::int64_t nk = zone.nodes[2];
     const auto node = [&](std::int64_t i, std::int64_t j, std::int64_t k) { return (k * nj + j) * ni + i; };
     ElementPart volume;
     const std::int64_t layers = dimension == 3 ? nk - 1 : 1;

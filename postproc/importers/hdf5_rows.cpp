@@ -399,15 +399,15 @@ public:
         core::parallel_for(
             waiting_.size(),
             [&](std::size_t i) {
-                const auto& [set, shares, chunk] = waiting_[i];
-                const ChunkLayout& layout = *set->layout();
-                const hsize_t end = end_of_wanted(*shares, chunk.row, std::min(chunk.row + layout.chunk[0], layout.lengths[0]));
-                const bool good = unpack(layout, chunk, end, progress_, [&](hsize_t row, hsize_t rows, const unsigned char* stored) {
-                    distribute(layout, chunk, *shares, row, rows, stored);
+                const Task& task = waiting_[i];
+                const ChunkLayout& layout = *task.set->layout();
+                const hsize_t end = end_of_wanted(*task.shares, task.chunk.row, std::min(task.chunk.row + layout.chunk[0], layout.lengths[0]));
+                const bool good = unpack(layout, task.chunk, end, progress_, [&](hsize_t row, hsize_t rows, const unsigned char* stored) {
+                    distribute(layout, task.chunk, *task.shares, row, rows, stored);
                     return true;
                 });
                 if (!good) {
-                    set->damaged();
+                    task.set->damaged();
                 }
             },
             progress_);
