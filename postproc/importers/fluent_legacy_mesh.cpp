@@ -36,6 +36,7 @@ public:
 private:
     void section();
     void known_section(std::uint64_t index, std::uint64_t base, Coding coding);
+    bool is_declaration(const std::vector<std::uint64_t>& header, std::uint64_t& total, bool& declared);
     void nodes(std::uint64_t index, Coding coding);
     void cells(std::uint64_t index, Coding coding);
     void elements(CellBlock& block, std::uint64_t index, Coding coding);
@@ -169,18 +170,26 @@ void MeshReader::known_section(std::uint64_t index, std::uint64_t base, Coding c
     }
 }
 
+/// A section for zone 0 only declares how many there are in all.
+bool MeshReader::is_declaration(const std::vector<std::uint64_t>& header, std::uint64_t& total, bool& declared) {
+    if (header[0] != 0) {
+        return false;
+    }
+    total = std::max(total, header[2]);
+    declared = true;
+    text_.expect(')');
+    return true;
+}
+
 void MeshReader::nodes(std::uint64_t index, Coding coding) {
     auto& mesh = result_.mesh;
     const auto header = text_.header(16, 3);
     const std::uint64_t first = header[1];
     const std::uint64_t last = header[2];
-    if (header[0] == 0) {
-        mesh.nodes = std::max(mesh.nodes, last);
-        nodes_declared_ = true;
+    if (is_declaration(header, mesh.nodes, nodes_declared_)) {
         if (header.size() > 4 && mesh.dimension == 0 && (header[4] == 2 || header[4] == 3)) {
             mesh.dimension = static_cast<int>(header[4]);
         }
-        text_.expect(')');
         return;
     }
     const std::uint64_t components = header.size() > 4 ? header[4] : static_cast<std::uint64_t>(mesh.dimension);
@@ -226,10 +235,7 @@ void MeshReader::nodes(std::uint64_t index, Coding coding) {
 void MeshReader::cells(std::uint64_t index, Coding coding) {
     auto& mesh = result_.mesh;
     const auto header = text_.header(16, 4);
-    if (header[0] == 0) {
-        mesh.cells = std::max(mesh.cells, header[2]);
-        cells_declared_ = true;
-        text_.expect(')');
+    if (is_declaration(header, mesh.cells, cells_declared_)) {
         return;
     }
     CellBlock block;
@@ -271,10 +277,7 @@ void MeshReader::elements(CellBlock& block, std::uint64_t index, Coding coding) 
 void MeshReader::faces(std::uint64_t index, Coding coding) {
     auto& mesh = result_.mesh;
     const auto header = text_.header(16, 3);
-    if (header[0] == 0) {
-        mesh.faces = std::max(mesh.faces, header[2]);
-        faces_declared_ = true;
-        text_.expect(')');
+    if (is_declaration(header, mesh.faces, faces_declared_)) {
         return;
     }
     if (header.size() < 5) {
