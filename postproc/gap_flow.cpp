@@ -264,12 +264,7 @@ core::Table gap_flow(const Field& field, const GapOptions& options, core::Progre
 
 core::Figure gap_profile_figure(const Field& field, const GapOptions& options, core::Progress& progress) {
     const Gap gap(field, options);
-    Box all{};
-    gap.volume().GetBounds(all.data());
-    double ground = std::numeric_limits<double>::infinity();
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-        ground = std::min(ground, dot({all[corner & 1], all[2 + ((corner >> 1) & 1)], all[4 + ((corner >> 2) & 1)]}, options.up));
-    }
+    const double ground = lowest(gap.volume(), options.up);
     core::Figure figure;
     figure.title = "velocity across the gap at places along the base (+: forward of its middle)";
     figure.x = {"velocity of the stream", "m/s"};

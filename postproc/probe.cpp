@@ -49,6 +49,10 @@ std::string unit_of(const Field& field, const std::string& array) {
 /// The arrays asked for, checked; all when none were named.
 std::vector<std::string> chosen_arrays(const Field& field, const ProbeOptions& options, bool volumes) {
     const auto known = known_arrays(field, volumes);
+    if (known.empty()) {
+        throw core::InputError("missing", std::string("there are no values in the ") + (volumes ? "volume" : "surfaces") + " to look at", {field.files.empty() ? "" : field.files.front(), {}, {}, {}},
+                               "a mesh alone has none: name the file of results");
+    }
     for (const auto& name : options.arrays) {
         if (std::find(known.begin(), known.end(), name) == known.end()) {
             throw core::InputError("missing", "the field has no array '" + name + "'", {field.files.empty() ? "" : field.files.front(), {}, {}, {}},

@@ -25,7 +25,7 @@ struct ProbeOptions {
 /// In a volume: between the nodes of the cell that holds the point; values that lie in cells are first carried to the
 /// nodes along their gradients (`NodeValues`: a linear field comes out as it is, and a wall's own values hold at the
 /// wall). A point outside has missing values. On surfaces: the nearest face, and a column `distance_to_surface [m]`.
-/// Throws core::InputError: an array that nobody knows, a field without cells.
+/// Throws core::InputError: an array that nobody knows, a field without cells or without values.
 core::Table probe_points(const Field& field, const std::vector<std::array<double, 3>>& points, const ProbeOptions& options = {},
                          core::Progress& progress = core::Progress::none());
 

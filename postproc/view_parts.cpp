@@ -20,6 +20,7 @@
 
 #include "postproc/node_values.h"
 #include "postproc/surface_arrays.h"
+#include "postproc/vector_math.h"
 
 namespace underbody::postproc {
 
@@ -191,29 +192,62 @@ std::vector<const Zone*> with_face_values(const Field& field, const std::vector<
     return zones;
 }
 
+/// Volumes with cells: those that something flows through, else the solid ones.
+std::vector<const Zone*> volumes_to_join(const Field& field) {
+    std::vector<const Zone*> zones;
+    for (const bool solid : {false, true}) {
+        for (const auto& zone : field.zones) {
+            if (zone.volume != nullptr && zone.volume->GetNumberOfCells() > 0 && (zone.kind == ZoneKind::solid) == solid) {
+                zones.push_back(&zone);
+            }
+        }
+        if (!zones.empty()) {
+            break;
+        }
+    }
+    return zones;
+}
+
+const Zone* first_with(const std::vector<const Zone*>& zones, const std::string& name) {
+    const auto found = std::find_if(zones.begin(), zones.end(), [&](const Zone* zone) {
+        return zone->volume->GetPointData()->HasArray(name.c_str()) != 0 || zone->volume->GetCellData()->HasArray(name.c_str()) != 0;
+    });
+    return found == zones.end() ? nullptr : *found;
+}
+
+vtkSmartPointer<vtkDoubleArray> missing_values(const std::string& name, int components, vtkIdType count) {
+    auto array = vtkSmartPointer<vtkDoubleArray>::New();
+    array->SetName(name.c_str());
+    array->SetNumberOfComponents(components);
+    array->SetNumberOfTuples(count);
+    array->Fill(std::numeric_limits<double>::quiet_NaN());
+    return array;
+}
+
 }  // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::vector<std::string>& arrays) {
+    const std::vector<const Zone*> zones = volumes_to_join(field);
+    if (zones.empty()) {
+        return nullptr;
+    }
     vtkNew<vtkAppendFilter> append;
-    bool some = false;
-    for (const auto& zone : field.zones) {
-        if (zone.volume == nullptr || zone.volume->GetNumberOfCells() == 0 || zone.kind == ZoneKind::solid) {
-            continue;
-        }
+    for (const Zone* zone : zones) {
         vtkNew<vtkUnstructuredGrid> slim;
-        slim->CopyStructure(zone.volume);
+        slim->CopyStructure(zone->volume);
         for (const auto& name : arrays) {
-            if (auto* on_points = zone.volume->GetPointData()->GetArray(name.c_str())) {
+            if (auto* on_points = zone->volume->GetPointData()->GetArray(name.c_str())) {
                 slim->GetPointData()->AddArray(on_points);
-            } else if (auto* on_cells = zone.volume->GetCellData()->GetArray(name.c_str())) {
+            } else if (auto* on_cells = zone->volume->GetCellData()->GetArray(name.c_str())) {
                 slim->GetCellData()->AddArray(on_cells);
+            } else if (const Zone* like = first_with(zones, name)) {  // joining drops what one of them lacks
+                const bool points = like->volume->GetPointData()->HasArray(name.c_str()) != 0;
+                const vtkIdType count = points ? slim->GetNumberOfPoints() : slim->GetNumberOfCells();
+                const int components = (points ? like->volume->GetPointData()->GetArray(name.c_str()) : like->volume->GetCellData()->GetArray(name.c_str()))->GetNumberOfComponents();
+                (points ? static_cast<vtkDataSetAttributes*>(slim->GetPointData()) : slim->GetCellData())->AddArray(missing_values(name, components, count));
             }
         }
         append->AddInputData(slim);
-        some = true;
-    }
-    if (!some) {
-        return nullptr;
     }
     append->Update();
     auto result = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -262,6 +296,16 @@ DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point&
     cutter->SetCutFunction(plane);
     cutter->GenerateTrianglesOn();
     return flat_triangles(*cutter, array);
+}
+
+double lowest(vtkUnstructuredGrid& volume, const Point& up) {
+    Box all{};
+    volume.GetBounds(all.data());
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        least = std::min(least, dot({all[corner & 1], all[2 + ((corner >> 1) & 1)], all[4 + ((corner >> 2) & 1)]}, up));
+    }
+    return least;
 }
 
 DrawnSurface plane_cells(vtkUnstructuredGrid& volume, const std::string& array) {

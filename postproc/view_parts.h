@@ -39,12 +39,16 @@ DrawnSurface drawn_surface(const Zone& zone, const std::string& array);
 void mirror_into(DrawnSurface& surface, const ViewMirror& mirror);
 DrawnLine mirrored(const DrawnLine& line, const ViewMirror& mirror);
 
-/// All volumes in one grid with the given arrays at the points, and in the cells too where the file has them there;
-/// nullptr when the field has no volume with cells.
+/// All volumes that something flows through (the solid ones when there are no others) in one grid with the given arrays at
+/// the points, and in the cells too where the file has them there; not-a-number in zones without them. nullptr when the
+/// field has no volume with cells.
 vtkSmartPointer<vtkUnstructuredGrid> volume_with(const Field& field, const std::vector<std::string>& arrays);
 
 /// The grid cut by a plane, as triangles with values at their points.
 DrawnSurface cut(vtkUnstructuredGrid& volume, const Point& through, const Point& normal, const std::string& array);
+
+/// Height of the volume's lowest place along `up` (the ground), m; of its bounding box.
+double lowest(vtkUnstructuredGrid& volume, const Point& up);
 
 /// The cells of a two-dimensional case, as triangles with values at their points.
 DrawnSurface plane_cells(vtkUnstructuredGrid& volume, const std::string& array);

@@ -235,13 +235,7 @@ ComposedView ViewComposer::gap_view(const std::string& array) const {
     ComposedView composed;
     Scene& scene = composed.scene;
     const auto volume = volume_with(field_, {array});
-    Box all{};
-    volume->GetBounds(all.data());
-    double ground = std::numeric_limits<double>::infinity();
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-        ground = std::min(ground, dot({all[corner & 1], all[2 + ((corner >> 1) & 1)], all[4 + ((corner >> 2) & 1)]}, options_.up));
-    }
-    const double gap = dot(base_centre(), options_.up) - ground;
+    const double gap = dot(base_centre(), options_.up) - lowest(*volume, options_.up);
     for (auto& line : streamlines(*volume, gap_seeds(gap), 3 * diagonal(base_box_), mirror_)) {
         line.width = 2;
         if (mirror_.axis >= 0) {

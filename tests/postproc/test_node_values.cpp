@@ -266,6 +266,37 @@ TEST(ProbeBetweenPlates, FollowsPoiseuilleFlowToTheWalls) {
     }
 }
 
+TEST(Probe, LooksIntoSolidsAndZonesThatLackAnArray) {
+    // A block of steel alone: there is nothing that flows, and still a temperature.
+    Field field;
+    field.files = {"made"};
+    Zone steel;
+    steel.name = "steel";
+    steel.kind = ZoneKind::solid;
+    steel.volume = block(false, as_hexahedron);
+    set_cells(*steel.volume, "temperature", linear);
+    steel.arrays = {{"temperature", "K", "T", "", Location::cells, 1}};
+    field.zones = {steel};
+    EXPECT_NEAR(probe_points(field, {{0.3, 0.4, 0.5}}).numbers("temperature")[0], linear({0.3, 0.4, 0.5}), 1e-11);
+    Field bare_mesh = field;
+    bare_mesh.zones[0].arrays.clear();
+    EXPECT_THROW(probe_points(bare_mesh, {{0.3, 0.4, 0.5}}), core::InputError);
+    // Two waters side by side, one without the array: the other keeps its own.
+    Zone warm = steel;
+    warm.kind = ZoneKind::fluid;
+    Zone bare = warm;
+    bare.arrays.clear();
+    bare.volume = block(false, as_hexahedron);
+    for (vtkIdType i = 0; i < bare.volume->GetNumberOfPoints(); ++i) {
+        const double* x = bare.volume->GetPoint(i);
+        bare.volume->GetPoints()->SetPoint(i, x[0] + 2, x[1], x[2]);
+    }
+    field.zones = {warm, bare};
+    const core::Table both = probe_points(field, {{0.3, 0.4, 0.5}, {2.3, 0.4, 0.5}});
+    EXPECT_NEAR(both.numbers("temperature")[0], linear({0.3, 0.4, 0.5}), 1e-11);
+    EXPECT_TRUE(std::isnan(both.numbers("temperature")[1]));
+}
+
 TEST(NodeValues, OfWhatIsNowhereNegativeStaySo) {
     const auto grid = block(false, as_hexahedron);
     set_cells(*grid, "energy", [](const Point& p) { return std::pow(p[2], 3); });
