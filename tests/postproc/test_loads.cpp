@@ -57,7 +57,8 @@ Zone make_zone(const std::string& name, const std::vector<Vector>& points, const
 }
 
 /// An ellipsoid of quads (triangles at the poles), optionally cut at y = 0 to a half model; `turned`: normals inward.
-Zone ellipsoid(int rings, const Vector& axes, const PointFunction& pressure, bool half = false, bool turned = false, const std::string& name = "hull") {
+Zone ellipsoid(int rings, const Vector& axes, const PointFunction& pressure, bool half = false, bool turned = false, const std::string& name = "hull",
+               const std::function<Vector(const Vector&)>& shear = {}) {
     std::vector<Vector> points;
     std::vector<std::vector<vtkIdType>> faces;
     const int around = half ? rings : 2 * rings;
@@ -86,7 +87,7 @@ Zone ellipsoid(int rings, const Vector& axes, const PointFunction& pressure, boo
             faces.push_back(face);
         }
     }
-    return make_zone(name, points, faces, pressure);
+    return make_zone(name, points, faces, pressure, shear);
 }
 
 Field field_of(std::vector<Zone> zones) {
@@ -158,6 +159,27 @@ TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
     EXPECT_THAT(forgotten.problems.back().message, HasSubstr("--symmetry y"));
     EXPECT_GT(forgotten.closure, 0.1);
     EXPECT_THROW(loads(field_of({ellipsoid(20, {0.1, 0.1, 0.1}, p)}), about({}, "y")), core::InputError);
+}
+
+TEST(Loads, OfTheShearOnAHalfModelAreThoseOfTheWhole) {
+    // What mirroring at y = 0 leaves as it is: along x and z even, along y odd.
+    const auto shear = [](const Vector& x) { return Vector{3 + 20 * x[0] + x[1] * x[1], 40 * x[1], 5 - 30 * x[2] * x[0]}; };
+    const auto p = [](const Vector& x) { return 100 * x[2]; };
+    const auto whole = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, false, false, "hull", shear)}), about({0.01, 0, -0.02}));
+    const auto half = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, false, "hull", shear)}), about({0.01, 0, -0.02}, "y"));
+    ASSERT_GT(std::abs(whole.viscous.force[0]), 0.01);
+    ASSERT_GT(std::abs(whole.viscous.moment[1]), 1e-4);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(half.viscous.force[k], whole.viscous.force[k], 1e-10);
+        EXPECT_NEAR(half.viscous.moment[k], whole.viscous.moment[k], 1e-11);
+    }
+    // About another point: M' = M + (r - r') x F.
+    const auto moved = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, false, false, "hull", shear)}), about({-0.3, 0.2, 0.5}));
+    const Vector arm = {0.31, -0.2, -0.52};
+    const Vector more = cross(arm, whole.total.force);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(moved.total.moment[k], whole.total.moment[k] + more[k], 1e-12);
+    }
 }
 
 /// A box whose top and bottom are zones of their own; any of them may lie the wrong way round.
@@ -573,6 +595,25 @@ TEST(Loads, OfAnAxisymmetricCaseAreThoseOfTheBodyOfRevolution) {
     LoadsOptions options;
     options.axisymmetric = true;
     EXPECT_THROW(loads(below, options), core::InputError);
+}
+
+TEST(Loads, OfHalfAPlaneCaseAreThoseOfTheWhole) {
+    // The upper half of a cylinder, p = c - b x: 2 b times the half's area along x, per metre.
+    std::vector<std::array<double, 2>> places;
+    constexpr int count = 60;
+    for (int i = 0; i <= count; ++i) {
+        const double at = M_PI * (1 - static_cast<double>(i) / count);
+        places.push_back({0.1 * std::cos(at), i == 0 || i == count ? 0 : 0.1 * std::sin(at)});
+    }
+    const double area = 0.5 * count * 0.01 * std::sin(M_PI / count);
+    for (const bool known : {true, false}) {
+        const auto half = loads(profile(places, [](const Vector& x) { return 50 - 2000 * x[0]; }, {4, 0, 0}, known), about({}, "y"));
+        EXPECT_NEAR(half.pressure.force[0], 2 * 2000 * area, 1e-9);
+        EXPECT_NEAR(half.viscous.force[0], 2 * 4 * count * 0.2 * std::sin(M_PI / count / 2), 1e-9);
+        EXPECT_EQ(half.total.force[1], 0);
+        EXPECT_LT(half.closure, 1e-12);
+        EXPECT_EQ(half.depth, "per metre depth");
+    }
 }
 
 TEST(Loads, OfAnOpenSurfaceAreAuditedAgainstAbsolutePressureToo) {
