@@ -306,7 +306,7 @@ private:
         give_values(*data, line.values);
         auto actor = actor_for(*data, !line.values.empty(), line.colour);
         actor->GetProperty()->LightingOff();
-        actor->GetProperty()->SetLineWidth(static_cast<float>(line.width));
+        actor->GetProperty()->SetLineWidth(static_cast<float>(std::max(1.0, line.width * layout_.unit)));
         actor->GetProperty()->RenderLinesAsTubesOff();
     }
 

@@ -214,6 +214,16 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
             table.add_numbers(loads[i].name + "_sigma", loads[i].unit, std::move(sigmas));
         }
     }
+    if (std::any_of(cases.begin(), cases.end(), [](const LoadsCase& c) { return c.loads.coefficients.has_value(); })) {
+        for (const auto& [name, which] : {std::pair{"lift_coefficient", &LoadsCoefficients::lift}, {"drag_coefficient", &LoadsCoefficients::drag},
+                                          {"pitch_moment_coefficient", &LoadsCoefficients::pitch_moment}}) {
+            std::vector<double> values;
+            for (const auto& one : cases) {
+                values.push_back(one.loads.coefficients ? (*one.loads.coefficients).*which : std::numeric_limits<double>::quiet_NaN());
+            }
+            table.add_numbers(free_name(name), "1", std::move(values));
+        }
+    }
     for (std::size_t k = 0; k < 3 && !cases.empty(); ++k) {
         std::vector<double> values;
         for (const auto& one : cases) {

@@ -25,8 +25,8 @@ struct LoadsCase {
     std::vector<Comparison> comparisons{};                          ///< with the solver's own report
 };
 
-/// Texts, numbers, loads (table_row) with their NAME_sigma, the reference point, values_from, file: one row a case. A
-/// condition that a case does not have is missing there. `written_units`: condition -> the unit to write it in. A
+/// Texts, numbers, loads (table_row) with their NAME_sigma, coefficients where some case has them, the reference point,
+/// values_from, file: one row a case. A condition or coefficient that a case does not have is missing there. `written_units`: condition -> the unit to write it in. A
 /// condition called like a load (a manifest that already has lift_force) is kept as NAME_stated.
 core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<std::pair<std::string, std::string>>& written_units = {});
 

@@ -31,7 +31,7 @@ struct DrawnLine {
     std::vector<std::array<double, 3>> points;
     std::vector<double> values;                 ///< per point, by the scene's colour map; empty: one colour
     std::array<double, 3> colour{0.1, 0.1, 0.1};
-    double width = 2;                           ///< pixels
+    double width = 2;                           ///< pixels of a picture 800 high; thinner in smaller ones
 };
 
 /// Where the picture is taken from; axes of the drawn points.

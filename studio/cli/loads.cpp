@@ -38,12 +38,15 @@ std::optional<double> optional_quantity(const std::string& text, const char* uni
     return text.empty() ? std::nullopt : std::optional<double>(core::parse_in(text, unit));
 }
 
+/// A condition of a file, SI; nothing when it has none of that name or a missing value.
+std::optional<double> condition_of(const ConditionedFile& file, const std::string& name) {
+    const auto found = std::find_if(file.numbers.begin(), file.numbers.end(), [&](const auto& entry) { return entry.first == name; });
+    return found == file.numbers.end() || std::isnan(found->second) ? std::nullopt : std::optional<double>(found->second);
+}
+
 /// The point of the moments: "x,y,z" with lengths or names of conditions ("0,0,gap"), else the manifest's columns reference_x, _y, _z.
 std::optional<postproc::Vector> reference_of(const std::string& text, const ConditionedFile& file) {
-    const auto condition = [&](const std::string& name) {
-        const auto found = std::find_if(file.numbers.begin(), file.numbers.end(), [&](const auto& entry) { return entry.first == name; });
-        return found == file.numbers.end() || std::isnan(found->second) ? std::nullopt : std::optional<double>(found->second);
-    };
+    const auto condition = [&](const std::string& name) { return condition_of(file, name); };
     if (text.empty()) {
         const auto x = condition("reference_x");
         const auto y = condition("reference_y");
@@ -242,6 +245,12 @@ postproc::LoadsCase case_of(Shell& shell, const Options& given, const Conditione
     const postproc::Field field = postproc::read_field(file.path, read, shell.progress());
     shell.show(field.problems);
     options.reference = reference_of(given.reference, file);
+    if (!options.references.speed) {
+        options.references.speed = condition_of(file, "speed");
+    }
+    if (!options.references.density) {
+        options.references.density = condition_of(file, "density");
+    }
     postproc::LoadsCase one{file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {}, {}};
     std::erase_if(one.numbers, [](const auto& entry) { return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z"; });
     shell.show(one.loads.problems);
@@ -339,8 +348,8 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
     command->add_option("--fluid", o->fluid, "where normals point: automatic, file (into the fluid), reversed")->check(CLI::IsMember({"automatic", "file", "reversed"}))->capture_default_str();
     command->add_option("--reference-pressure", o->reference_pressure, "taken from all pressures (\"101325 Pa\")");
-    command->add_option("--density", o->density, "for coefficients, and for files that hold p/rho");
-    command->add_option("--speed", o->speed, "for coefficients");
+    command->add_option("--density", o->density, "for coefficients, and for files that hold p/rho (default: the file's, or the condition of that name)");
+    command->add_option("--speed", o->speed, "for coefficients (default: the condition of that name)");
     command->add_option("--length", o->length, "for coefficients (default: of the bounding box)");
     command->add_option("--width", o->width, "for coefficients");
     command->add_option("--height", o->height, "for coefficients");

@@ -89,6 +89,16 @@ TEST_F(PostprocCommands, LoadsOfABatchNameEveryFileThatCannotBeUsed) {
     EXPECT_EQ(run({"loads", "nowhere.csv", "nor-here.csv", "--keep-going"}).exit_code, 3);
 }
 
+TEST_F(PostprocCommands, LoadsTakeTheSpeedOfTheirCoefficientsFromTheConditions) {
+    core::write_file(folder_.path() / "list.csv", "speed [m/s], file\n2, a-h5.csv\n, b-h10.csv\n");
+    ASSERT_EQ(run({"loads", "--manifest", "list.csv", "--density", "1000", "--out", "loads.csv"}).exit_code, 0);
+    const core::Table table = core::read_csv(folder_.path() / "loads.csv");
+    EXPECT_NEAR(table.numbers("lift_coefficient")[0], -1 / (0.5 * 1000 * 4 * M_PI / 4 * 2 * 1), 1e-12);
+    EXPECT_TRUE(std::isnan(table.numbers("lift_coefficient")[1]));
+    ASSERT_EQ(run({"loads", "--manifest", "list.csv", "--out", "plain.csv"}).exit_code, 0);
+    EXPECT_EQ(core::read_csv(folder_.path() / "plain.csv").find("lift_coefficient"), nullptr);
+}
+
 TEST_F(PostprocCommands, LoadsSayWhichRowOfAManifestIsWrong) {
     const auto refusal = [&](const std::string& rows, std::vector<std::string> more = {}) {
         core::write_file(folder_.path() / "list.csv", rows);
