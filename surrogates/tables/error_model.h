@@ -31,12 +31,21 @@ public:
     /// Standard deviation at a point; `beyond` (one entry per axis) is how far it lies outside.
     [[nodiscard]] double sigma(const double* point, const double* beyond) const noexcept;
 
+    /// On other grid lines inside the axes, never less than this one: a node has the largest error of the nodes that went between it and its neighbours,
+    /// a cell that joins several the largest of theirs.
+    [[nodiscard]] ErrorModel resampled(std::vector<std::vector<double>> points) const;
+    /// Likewise for a consumer that knows nodes only: they carry the cells' errors too, and `more` for all that straight lines between them miss.
+    [[nodiscard]] ErrorModel straightened(std::vector<std::vector<double>> points, double more) const;
+
     [[nodiscard]] const std::vector<GridAxis>& axes() const { return axes_; }
     [[nodiscard]] const std::vector<double>& node_sigma() const { return sigma_; }
     [[nodiscard]] const std::vector<double>& cell_error(std::size_t k) const { return cell_error_[k]; }
     [[nodiscard]] const Growth& growth(std::size_t k) const { return growth_[k]; }
 
 private:
+    [[nodiscard]] double between_nodes(const std::size_t* cell, const double* fraction) const noexcept;
+    [[nodiscard]] ErrorModel nodes_on(std::vector<std::vector<double>> points) const;
+    void add_along(std::size_t k, const std::vector<double>& more);
     std::vector<GridAxis> axes_;
     std::vector<double> sigma_;
     std::array<std::vector<double>, CubicGrid::max_axes> cell_error_;

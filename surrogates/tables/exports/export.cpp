@@ -15,6 +15,7 @@ struct Exporter {
     void (*write)(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
     bool straight = false;  ///< its consumer draws straight lines between the points
     std::filesystem::path (*beside)(const std::filesystem::path& path) = nullptr;  ///< a second file that it writes
+    std::size_t most_axes = max_axes;
 };
 
 const std::vector<Exporter>& exporters() {
@@ -23,7 +24,7 @@ const std::vector<Exporter>& exporters() {
         {{"csv", ".csv", "table with slopes and error that this program reads back exactly"}, export_csv},
         {{"json", ".json", "grid, Hermite data and error"}, export_json},
         {{"mat", ".mat", "MATLAB and Octave: .mat and a .m that looks it up"}, export_mat, false, mat_function},
-        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"}, export_jsbsim, true},
+        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"}, export_jsbsim, true, nullptr, 3},
         {{"fmu", ".fmu", "FMU 2.0, model exchange and co-simulation, Linux x86-64, source included"}, export_fmu},
     };
     return all;
@@ -79,6 +80,10 @@ ExportResult export_table(const ForceTable& table, const std::string& format, co
             names.push_back(f.name);
         }
         throw core::UsageError("format", "there is no export format '" + format + "'", {}, core::did_you_mean(format, names));
+    }
+    if (table.axes().size() > found->most_axes) {
+        throw core::UsageError("format", "the format " + format + " takes at most " + std::to_string(found->most_axes) + " axes, this table has " + std::to_string(table.axes().size()),
+                               {}, "hold one of them: select rows with --where");
     }
     check_path(path, table, options.overwrite);
     if (found->beside != nullptr) {

@@ -1,6 +1,7 @@
 #include "surrogates/tables/exports/export_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -54,41 +55,6 @@ double range_of_points(const ForceTable::Impl& table) {
     const auto& values = table.points.numbers(table.quantity);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     return *high - *low;
-}
-
-/// The error at the nodes of another grid; cell errors stay with the cells they came from.
-ErrorModel resampled_error(const ErrorModel& error, const CubicGrid& to) {
-    const std::size_t n = to.dimensions();
-    auto points = to.points();
-    std::vector<double> sigma(to.nodes());
-    double at[CubicGrid::max_axes];
-    for (std::size_t node = 0; node < sigma.size(); ++node) {
-        std::size_t rest = node;
-        for (std::size_t k = n; k-- > 0;) {
-            at[k] = points[k][rest % points[k].size()];
-            rest /= points[k].size();
-        }
-        sigma[node] = error.sigma(at, nullptr);
-    }
-    ErrorModel result(points, std::move(sigma));
-    for (std::size_t k = 0; k < n; ++k) {
-        result.set_growth(k, error.growth(k));
-        const auto& old_cells = error.cell_error(k);
-        if (old_cells.empty()) {
-            continue;
-        }
-        const auto& old_points = error.axes()[k].points();
-        std::vector<double> cells(points[k].size() - 1, 0.0);
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            for (std::size_t j = 0; j < old_cells.size(); ++j) {
-                if (old_points[j] < points[k][i + 1] && old_points[j + 1] > points[k][i]) {
-                    cells[i] = std::max(cells[i], old_cells[j]);
-                }
-            }
-        }
-        result.set_cell_error(k, std::move(cells));
-    }
-    return result;
 }
 
 ErrorModel mirrored_error(const ErrorModel& error, const CubicGrid& to, unsigned mirrored) {
@@ -194,85 +160,64 @@ std::string identifier(const std::string& text) {
 
 namespace {
 
-/// Differences are sampled, between the samples they may be a little larger.
-constexpr double margin = 1.02;
-
 std::size_t most_points(std::size_t axes, bool asked) {
     const std::size_t most[] = {asked ? 20000u : 400u, asked ? 1000u : 60u, asked ? 100u : 20u};
     return most[std::min<std::size_t>(axes, 3) - 1];
 }
 
-/// Points for straight lines between them.
-std::vector<std::vector<double>> straight_points(const ForceTable::Impl& full, const CubicGrid& surface, const ExportOptions& options, double allowed,
-                                                 core::Progress& progress) {
+/// For straight lines between the points.
+Resampled straight_surface(const ForceTable::Impl& full, const CubicGrid& surface, const ExportOptions& options, double allowed, core::Progress& progress) {
     const std::size_t most = most_points(surface.dimensions(), options.max_error > 0);
     if (options.max_error <= 0) {
-        return points_for_straight_lines(surface, 1e-3 * range_of_points(full), most, progress);
+        return straight_resampled(full.surface, points_for_straight_lines(surface, 1e-3 * range_of_points(full), most, progress), progress);
     }
-    auto points = thinned_for_straight_lines(surface, allowed, most, progress);
-    if (const double reached = largest_straight_difference(surface, points); reached > allowed) {
+    Resampled thin = thinned_for_straight_lines(full.surface, surface, allowed, most, progress);
+    if (thin.difference > allowed) {
         throw core::UsageError("range",
-                               "straight lines between the points, as this format draws them, stay within " + core::format_number(reached, 3) + " " + full.unit +
+                               "straight lines between the points, as this format draws them, stay within " + core::format_number(thin.difference, 3) + " " + full.unit +
                                    " of the table on at most " + std::to_string(most) + " points an axis, not within " + core::format_number(allowed, 3) + " " + full.unit,
                                {}, "allow a larger error, or take a format with cubics, such as c, json or fmu");
     }
-    return points;
+    return thin;
 }
 
 /// The function on the points that the options ask for.
-CubicGrid chosen_surface(const ForceTable& table, const ExportOptions& options, bool straight, ExportGrid& grid, core::Progress& progress) {
+Resampled chosen_surface(const ForceTable& table, const ExportOptions& options, bool straight, core::Problems& remarks, core::Progress& progress) {
     const ForceTable::Impl& full = table.impl();
-    CubicGrid surface = full.surface;
+    Resampled chosen{full.surface, 0};
     if (!options.points.empty()) {
-        surface = surface.resampled(chosen_points(table, surface, options));
+        auto points = chosen_points(table, full.surface, options);
+        chosen = straight && options.max_error <= 0 ? straight_resampled(full.surface, std::move(points), progress) : resampled(full.surface, std::move(points), progress);
     }
-    const double asked = options.max_error * range_of_points(full);
-    const double spent = options.points.empty() ? 0 : margin * largest_difference(full.surface, surface);
-    if (options.max_error > 0 && spent >= asked) {
-        grid.remarks.push_back({core::Problem::Severity::warning,
-                                "the points asked for are too few for the error asked for: they alone differ from the table by up to " +
-                                    core::format_number(spent, 3) + " " + full.unit,
-                                {}});
-        return surface;
+    if (options.max_error <= 0) {
+        return straight && options.points.empty() ? straight_surface(full, chosen.grid, options, 0, progress) : chosen;
     }
-    const double allowed = (asked - spent) / margin;
-    if (straight && (options.points.empty() || options.max_error > 0)) {
-        return surface.resampled(straight_points(full, surface, options, allowed, progress));
+    const double allowed = options.max_error * range_of_points(full);
+    if (!options.points.empty() && chosen.difference >= allowed) {
+        remarks.push_back({core::Problem::Severity::warning,
+                           "the points asked for are too few for the error asked for: their grid is off by " + core::format_number(chosen.difference, 3) + " " + full.unit,
+                           {}});
+        return straight ? straight_resampled(full.surface, chosen.grid.points(), progress) : chosen;
     }
-    return options.max_error > 0 ? surface.resampled(thinned_points(surface, allowed, progress)) : surface;
+    return straight ? straight_surface(full, chosen.grid, options, allowed, progress) : thinned(full.surface, chosen.grid, allowed, progress);
 }
 
-/// With straight lines between the nodes never less than the error at the nodes and half way to their neighbours.
-ErrorModel straight_error(const ErrorModel& error, const CubicGrid& to) {
-    const std::size_t n = to.dimensions();
-    auto points = to.points();
-    std::vector<double> sigma(to.nodes());
-    for (std::size_t node = 0; node < sigma.size(); ++node) {
-        double at[CubicGrid::max_axes];
-        std::size_t index[CubicGrid::max_axes];
-        std::size_t rest = node;
-        for (std::size_t k = n; k-- > 0;) {
-            index[k] = rest % points[k].size();
-            at[k] = points[k][index[k]];
-            rest /= points[k].size();
-        }
-        sigma[node] = error.sigma(at, nullptr);
-        for (std::size_t k = 0; k < n; ++k) {
-            const double here = at[k];
-            for (const std::size_t next : {index[k] - 1, index[k] + 1}) {  // below the first: wraps to a large number
-                if (next < points[k].size()) {
-                    at[k] = 0.5 * (here + points[k][next]);
-                    sigma[node] = std::max(sigma[node], error.sigma(at, nullptr));
-                }
-            }
-            at[k] = here;
-        }
-    }
-    ErrorModel result(std::move(points), std::move(sigma));
+/// Thinning moves the value: so much more of an error between the lines of each axis. Its parts over the axes make up the whole.
+void add_thinning(ErrorModel& error, const CubicGrid& full, const Resampled& thin, core::Progress& progress) {
+    const std::size_t n = full.dimensions();
+    std::array<double, CubicGrid::max_axes> along{};
+    double sum = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        result.set_growth(k, error.growth(k));
+        along[k] = full.axis(k).points() == thin.grid.axis(k).points() ? 0 : largest_difference_along(k, full, thin.grid, progress);
+        sum += along[k];
     }
-    return result;
+    for (std::size_t k = 0; k < n && sum > 0; ++k) {
+        std::vector<double> cells = error.cell_error(k).empty() ? std::vector<double>(thin.grid.axis(k).size() - 1, 0.0) : error.cell_error(k);
+        for (double& c : cells) {
+            c += along[k] * std::max(1.0, thin.difference / sum);
+        }
+        error.set_cell_error(k, std::move(cells));
+    }
 }
 
 }  // namespace
@@ -289,17 +234,11 @@ ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, bo
     if (const auto* known = core::find_quantity(full.quantity)) {
         grid.meaning = known->meaning;
     }
-    CubicGrid surface = chosen_surface(table, options, straight, grid, progress);
-    const bool same = !straight && surface.points() == full.surface.points();
-    grid.thinning_error = same ? 0 : margin * (straight ? largest_straight_difference(full.surface, surface.points()) : largest_difference(full.surface, surface));
-    ErrorModel error = same ? full.error : straight ? straight_error(full.error, surface) : resampled_error(full.error, surface);
-    // Thinning moves the value by up to thinning_error: the error says so everywhere between the points.
-    if (!same && !error.empty()) {
-        std::vector<double> cells = error.cell_error(0).empty() ? std::vector<double>(surface.axis(0).size() - 1, 0.0) : error.cell_error(0);
-        for (double& c : cells) {
-            c += grid.thinning_error;
-        }
-        error.set_cell_error(0, std::move(cells));
+    Resampled chosen = chosen_surface(table, options, straight, grid.remarks, progress);
+    grid.thinning_error = chosen.difference;
+    ErrorModel error = straight ? full.error.straightened(chosen.grid.points(), chosen.difference) : full.error.resampled(chosen.grid.points());
+    if (!straight) {
+        add_thinning(error, full.surface, chosen, progress);
     }
     unsigned mirrored = 0;
     double factor = 1;
@@ -326,7 +265,7 @@ ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, bo
             }
         }
     }
-    grid.surface = factor == 1 && mirrored == 0 ? std::move(surface) : surface.transformed(factor, mirrored);
+    grid.surface = factor == 1 && mirrored == 0 ? std::move(chosen.grid) : chosen.grid.transformed(factor, mirrored);
     grid.error = mirrored_error(error, grid.surface, mirrored);
     for (std::size_t k = 0; k < names.size(); ++k) {
         grid.axes.push_back({names[k], full.axes[k].unit, grid.surface.axis(k).points(), full.axes[k].range});
@@ -366,63 +305,6 @@ std::vector<std::string> header_lines(const ExportGrid& grid) {
         lines.push_back(std::move(line));
     }
     return lines;
-}
-
-namespace {
-
-/// Corners, middles and quarters of the cells between the lines; fewer a cell for many axes.
-template <class Visit>
-void for_samples(const std::vector<std::vector<double>>& lines, Visit&& visit) {
-    const std::size_t n = lines.size();
-    const std::size_t a_cell = n == 1 ? 8 : n == 2 ? 4 : 2;
-    std::vector<std::vector<double>> samples(n);
-    std::size_t count = 1;
-    for (std::size_t k = 0; k < n; ++k) {
-        const auto& x = lines[k];
-        for (std::size_t i = 0; i + 1 < x.size(); ++i) {
-            for (std::size_t j = 0; j < a_cell; ++j) {
-                samples[k].push_back(x[i] + (x[i + 1] - x[i]) * static_cast<double>(j) / static_cast<double>(a_cell));
-            }
-        }
-        samples[k].push_back(x.back());
-        count *= samples[k].size();
-    }
-    double at[CubicGrid::max_axes];
-    for (std::size_t i = 0; i < count; ++i) {
-        std::size_t rest = i;
-        for (std::size_t k = n; k-- > 0;) {
-            at[k] = samples[k][rest % samples[k].size()];
-            rest /= samples[k].size();
-        }
-        visit(at);
-    }
-}
-
-}  // namespace
-
-double largest_difference(const CubicGrid& fine, const CubicGrid& coarse) {
-    double worst = 0;
-    for_samples(fine.points(), [&](const double* at) { worst = std::max(worst, std::abs(fine.value(at, nullptr) - coarse.value(at, nullptr))); });
-    return worst;
-}
-
-double largest_straight_difference(const CubicGrid& fine, const std::vector<std::vector<double>>& points) {
-    const std::size_t n = fine.dimensions();
-    std::vector<double> values;
-    const CubicGrid sampled = fine.resampled(points);
-    for (std::size_t i = 0; i < sampled.nodes(); ++i) {
-        values.push_back(sampled.hermite()[i << n]);
-    }
-    const ErrorModel straight(points, std::move(values));  // multilinear between the nodes
-    std::vector<std::vector<double>> lines = fine.points();
-    for (std::size_t k = 0; k < n; ++k) {
-        lines[k].insert(lines[k].end(), points[k].begin(), points[k].end());
-        std::sort(lines[k].begin(), lines[k].end());
-        lines[k].erase(std::unique(lines[k].begin(), lines[k].end()), lines[k].end());
-    }
-    double worst = 0;
-    for_samples(lines, [&](const double* at) { worst = std::max(worst, std::abs(straight.sigma(at, nullptr) - fine.value(at, nullptr))); });
-    return worst;
 }
 
 }  // namespace underbody::tables

@@ -34,25 +34,33 @@ struct ExportGrid {
     bool single_precision = false;
 };
 
-/// The table in the frame and on the grid that the options ask for. `straight`: for a consumer that draws straight lines between the points. Its grid is
-/// fine enough for these to stay within `max_error` of the table, or within a thousandth of the force's range where none is asked for.
+/// The table in the frame and on the grid that the options ask for. `straight`: for a consumer that draws straight lines between the points. These stay
+/// within `max_error` of the table (else core::UsageError); where neither an error nor points are asked for, the cells of the table are halved until they
+/// stay within a thousandth of the force's range or 400, 60 or 20 points an axis (one, two, more axes) are reached. `thinning_error` says what came of it.
 ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, bool straight, core::Progress& progress);
 
-/// Smallest grid, out of the grid lines there are, whose cubic with the same slopes stays within `allowed` of `surface`.
-std::vector<std::vector<double>> thinned_points(const CubicGrid& surface, double allowed, core::Progress& progress);
-/// For consumers that draw straight lines between the points: the surface's grid lines with cells halved until those lines stay within `allowed`, at
-/// most `most` an axis; and the fewest points out of a denser set that do.
+/// A function taken on other grid lines, with its slopes, and how far it is from what it was taken of.
+struct Resampled {
+    CubicGrid grid;
+    double difference = 0;  ///< largest, sampled in the cells too, with a margin of a fiftieth for what lies between the samples
+};
+Resampled resampled(const CubicGrid& fine, std::vector<std::vector<double>> points, core::Progress& progress);
+/// Likewise for a consumer that draws straight lines between the values: `difference` is that of the lines.
+Resampled straight_resampled(const CubicGrid& fine, std::vector<std::vector<double>> points, core::Progress& progress);
+/// The difference on the grid lines of `coarse` along one axis.
+double largest_difference_along(std::size_t axis, const CubicGrid& fine, const CubicGrid& coarse, core::Progress& progress);
+
+/// A small grid, out of the grid lines of `surface`, whose cubic with the same slopes stays within `allowed` of `full`: along each axis the fewest lines
+/// for its share of the error. `surface` as it is where none does.
+Resampled thinned(const CubicGrid& full, const CubicGrid& surface, double allowed, core::Progress& progress);
+/// For consumers that draw straight lines between the points: the grid lines of `surface` with cells halved until those lines stay within `allowed` of it,
+/// or `most` points an axis are reached; and a small grid out of a denser set that stays within `allowed` of `full`, or the dense set where none does.
 std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress);
-std::vector<std::vector<double>> thinned_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress);
+Resampled thinned_for_straight_lines(const CubicGrid& full, const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress);
 /// What the file does outside its axes, one line for each; for formats that follow every policy.
 std::vector<std::string> outside_lines(const ExportGrid& grid);
 /// origin, then these lines.
 std::vector<std::string> header_lines(const ExportGrid& grid);
-
-/// Largest difference of two functions over the cells of `fine`.
-double largest_difference(const CubicGrid& fine, const CubicGrid& coarse);
-/// Likewise of a function and the multilinear one through its values at `points`.
-double largest_straight_difference(const CubicGrid& fine, const std::vector<std::vector<double>>& points);
 
 /// Letters, digits and underscores; never starts with a digit.
 std::string identifier(const std::string& text);

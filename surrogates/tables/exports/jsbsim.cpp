@@ -1,6 +1,5 @@
 // JSBSim: <function> with <table>s of the value, its slopes and its error. JSBSim interpolates linearly between the points of a table and holds
 // the ends, so the grid is one that is dense enough for that, and the file says so.
-#include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "surrogates/tables/exports/export_grid.h"
@@ -11,7 +10,7 @@ namespace {
 
 class Writer {
 public:
-    explicit Writer(const ExportGrid& grid) : g_(grid), x_(grid.surface.points()), n_(grid.axes.size()) {}
+    explicit Writer(const ExportGrid& grid) : g_(grid), n_(grid.axes.size()) {}
 
     std::string text() {
         std::string out = "<?xml version=\"1.0\"?>\n<!--\n";
@@ -36,6 +35,7 @@ public:
     }
 
 private:
+    [[nodiscard]] const std::vector<double>& x(std::size_t k) const { return g_.axes[k].points; }
     static std::string without_dashes(std::string text) {
         for (std::size_t at; (at = text.find("--")) != std::string::npos;) {
             text.replace(at, 2, "- ");
@@ -53,15 +53,15 @@ private:
         }
         if (n_ == 1) {
             out += "   <tableData>\n";
-            for (std::size_t i = 0; i < x_[0].size(); ++i) {
-                out += "    " + core::format_number(x_[0][i]) + " " + core::format_number(f(i)) + "\n";
+            for (std::size_t i = 0; i < x(0).size(); ++i) {
+                out += "    " + core::format_number(x(0)[i]) + " " + core::format_number(f(i)) + "\n";
             }
             out += "   </tableData>\n";
         } else if (n_ == 2) {
             out += "   <tableData>\n" + block(f, 1, 0) + "   </tableData>\n";
         } else {
-            for (std::size_t i = 0; i < x_[2].size(); ++i) {
-                out += "   <tableData breakPoint=\"" + core::format_number(x_[2][i]) + "\">\n" + block(f, x_[2].size(), i) + "   </tableData>\n";
+            for (std::size_t i = 0; i < x(2).size(); ++i) {
+                out += "   <tableData breakPoint=\"" + core::format_number(x(2)[i]) + "\">\n" + block(f, x(2).size(), i) + "   </tableData>\n";
             }
         }
         return out + "  </table>\n </function>\n";
@@ -71,14 +71,14 @@ private:
     template <class F>
     std::string block(F&& f, std::size_t layers, std::size_t layer) {
         std::string out = "    ";
-        for (const double y : x_[1]) {
+        for (const double y : x(1)) {
             out += " " + core::format_number(y);
         }
         out += "\n";
-        for (std::size_t i = 0; i < x_[0].size(); ++i) {
-            out += "    " + core::format_number(x_[0][i]);
-            for (std::size_t j = 0; j < x_[1].size(); ++j) {
-                out += " " + core::format_number(f((i * x_[1].size() + j) * layers + layer));
+        for (std::size_t i = 0; i < x(0).size(); ++i) {
+            out += "    " + core::format_number(x(0)[i]);
+            for (std::size_t j = 0; j < x(1).size(); ++j) {
+                out += " " + core::format_number(f((i * x(1).size() + j) * layers + layer));
             }
             out += "\n";
         }
@@ -86,16 +86,12 @@ private:
     }
 
     const ExportGrid& g_;
-    std::vector<std::vector<double>> x_;
     std::size_t n_;
 };
 
 }  // namespace
 
 void export_jsbsim(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result) {
-    if (grid.axes.size() > 3) {
-        throw core::UsageError("format", "a JSBSim table has at most three axes, this one has four", {}, "hold one of them: select rows with --where");
-    }
     result.remarks.push_back({core::Problem::Severity::note, "JSBSim interpolates linearly: within " + core::format_number(grid.thinning_error, 3) + " " + grid.unit + " of the table", {}});
     for (const auto& axis : grid.axes) {
         if (axis.range != RangePolicy::clamp) {

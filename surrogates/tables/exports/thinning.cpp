@@ -101,24 +101,24 @@ std::vector<double> fewest_points(const Lines& lines, Between between, double al
     return kept;
 }
 
-/// Fewest points an axis such that `difference` of them stays within `allowed`; those of the surface when none fits.
-template <class Difference>
-std::vector<std::vector<double>> thinned(const CubicGrid& surface, Between between, double allowed, Difference&& difference, core::Progress& progress) {
+/// Fewest of the surface's lines an axis such that what `made` makes of them stays within `allowed`; all of them when none fits.
+template <class Make>
+Resampled fewest_lines(const CubicGrid& surface, Between between, double allowed, Make&& made, core::Progress& progress) {
     std::vector<Lines> lines;
     for (std::size_t k = 0; k < surface.dimensions(); ++k) {
         lines.push_back(lines_along(surface, k));
     }
     // The errors of the axes add at worst; how much of the allowance each may spend is found by trying.
-    for (const double share : {1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.05, 0.01}) {
+    for (const double share : {0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.05, 0.01}) {
         std::vector<std::vector<double>> points;
         for (const auto& axis : lines) {
             points.push_back(fewest_points(axis, between, share * allowed, progress));
         }
-        if (difference(points) <= allowed) {
-            return points;
+        if (Resampled thin = made(std::move(points)); thin.difference <= allowed) {
+            return thin;
         }
     }
-    return surface.points();
+    return made(surface.points());
 }
 
 /// Does a straight line over the cell err by more than `allowed` anywhere on the grid's lines along axis k?
@@ -150,9 +150,9 @@ bool bends(const CubicGrid& surface, std::size_t k, double low, double high, dou
 
 }  // namespace
 
-std::vector<std::vector<double>> thinned_points(const CubicGrid& surface, double allowed, core::Progress& progress) {
-    const auto difference = [&](const std::vector<std::vector<double>>& points) { return largest_difference(surface, surface.resampled(points)); };
-    return thinned(surface, Between::cubic, allowed, difference, progress);
+Resampled thinned(const CubicGrid& full, const CubicGrid& surface, double allowed, core::Progress& progress) {
+    const auto made = [&](std::vector<std::vector<double>> points) { return resampled(full, std::move(points), progress); };
+    return fewest_lines(surface, Between::cubic, allowed, made, progress);
 }
 
 std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress) {
@@ -179,11 +179,11 @@ std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surf
     return points;
 }
 
-std::vector<std::vector<double>> thinned_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress) {
+Resampled thinned_for_straight_lines(const CubicGrid& full, const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress) {
     // Candidates twice as dense as they need be.
     const CubicGrid fine = surface.resampled(points_for_straight_lines(surface, allowed / 4, most, progress));
-    const auto difference = [&](const std::vector<std::vector<double>>& points) { return largest_straight_difference(surface, points); };
-    return thinned(fine, Between::straight, allowed, difference, progress);
+    const auto made = [&](std::vector<std::vector<double>> points) { return straight_resampled(full, std::move(points), progress); };
+    return fewest_lines(fine, Between::straight, allowed, made, progress);
 }
 
 }  // namespace underbody::tables

@@ -122,9 +122,10 @@ inline Expected expected(const tables::ForceTable& table, const double* point) {
     return result;
 }
 
-/// How large values and slopes are over the points: what rounding is measured by.
+/// How large values, errors and slopes are over the points: what rounding is measured by.
 struct Sizes {
     double value = 0;
+    double sigma = 0;
     double slope[tables::max_axes] = {};
 
     Sizes(const tables::ForceTable& table, const std::vector<double>& points) {
@@ -132,6 +133,7 @@ struct Sizes {
         for (std::size_t i = 0; i < points.size(); i += n) {
             const Expected e = expected(table, &points[i]);
             value = e.refused ? value : std::max(value, std::abs(e.at.value));
+            sigma = std::max(sigma, e.at.sigma);
             for (std::size_t k = 0; k < n && !e.refused; ++k) {
                 slope[k] = std::max(slope[k], std::abs(e.at.slope[k]));
             }
@@ -144,7 +146,7 @@ inline void expect_alike(const tables::ForceTable& table, const double* point, c
                          double sigma, bool outside) {
     const Expected e = expected(table, point);
     const std::size_t n = table.axes().size();
-    EXPECT_NEAR(sigma, e.at.sigma, tolerance * (1 + e.at.sigma));
+    EXPECT_NEAR(sigma, e.at.sigma, tolerance * sizes.sigma);
     EXPECT_EQ(outside, e.at.outside);
     if (e.refused) {
         EXPECT_TRUE(std::isnan(value));

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/progress.h"
+#include "core/text.h"
 #include "tests/surrogates/tables/exports_support.h"
 
 namespace underbody {
@@ -39,6 +41,60 @@ TEST(Exports, ThinTheGridAndKeepTheErrorAskedFor) {
     EXPECT_LE(worst, result.error);
     EXPECT_GT(result.error, 0);
     EXPECT_THAT(core::read_file(folder.path() / "thin.csv"), HasSubstr("Differs from the full table by at most"));
+}
+
+TEST(Exports, SayWithTheirErrorWhatThinningCostBetweenTheLinesOfEveryAxis) {
+    core::TemporaryFolder folder;
+    const auto table = test::two_axes();
+    ExportOptions options;
+    options.max_error = 0.02;
+    export_table(table, "csv", folder.path() / "thin.csv", options);
+    const auto thin = ForceTable::read(folder.path() / "thin.csv", "lift_force");
+    for (std::size_t k = 0; k < 2; ++k) {
+        ASSERT_LT(thin.axes()[k].points.size(), table.axes()[k].points.size());
+    }
+    // On the lines of one axis only the other's cells can speak.
+    const auto check = [&](const double* p) {
+        const double off = std::abs(thin.value(p) - table.value(p));
+        ASSERT_GE(thin.sigma(p), (1 - 1e-12) * (0.01 + off)) << p[0] << " " << p[1];
+    };
+    for (int i = 0; i <= 400; ++i) {
+        const double t = i / 400.0;
+        for (const double gap : thin.axes()[0].points) {
+            const double p[2] = {gap, (1 - t) * table.axes()[1].lower + t * table.axes()[1].upper};
+            ASSERT_NO_FATAL_FAILURE(check(p));
+        }
+        for (const double pitch : thin.axes()[1].points) {
+            const double p[2] = {(1 - t) * table.axes()[0].lower + t * table.axes()[0].upper, pitch};
+            ASSERT_NO_FATAL_FAILURE(check(p));
+        }
+    }
+}
+
+TEST(Exports, DoNotLoseTheErrorOfAPointThatThinningLeavesOut) {
+    std::string text = "gap [m], lift_force [N], lift_force_sigma [N]\n";
+    for (int i = 0; i <= 10; ++i) {
+        text += core::format_number(0.1 * i) + ", " + core::format_number(1 - 0.1 * i) + (i == 5 ? ", 0.2\n" : ", 0.01\n");
+    }
+    core::TemporaryFolder folder;
+    ExportOptions options;
+    options.max_error = 0.01;
+    const auto result = export_table(ForceTable::fit(test::csv(text), "lift_force", test::interpolation()), "csv", folder.path() / "thin.csv", options);
+    ASSERT_EQ(result.grid[0], 2u);
+    const auto thin = ForceTable::read(folder.path() / "thin.csv", "lift_force");
+    for (const double gap : {0.0, 0.3, 0.5, 1.0}) {
+        EXPECT_NEAR(thin.sigma(&gap), 0.2, 1e-9);
+    }
+}
+
+TEST(Exports, CanBeCancelledWhileTheyCompare) {
+    core::TemporaryFolder folder;
+    core::Progress progress;
+    progress.cancel();
+    ExportOptions options;
+    options.points = {{"gap", 50}};
+    EXPECT_THROW(export_table(test::two_axes(), "csv", folder.path() / "t.csv", options, progress), core::Cancelled);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "t.csv"));
 }
 
 TEST(Exports, AreThinnedByTheRangeOfThePointsNotOfTheCornersWithoutAny) {
