@@ -24,12 +24,6 @@ namespace {
 
 using tables::ForceTable;
 
-/// A value in the unit the user's file has.
-std::string shown(const ForceTable& table, const std::string& quantity, const std::string& si, double value, int digits = 5) {
-    const std::string unit = tables::shown_unit(table, quantity);
-    return core::format_number(core::convert(value, si, unit), digits) + " " + unit;
-}
-
 struct FitCommand {
     TableOptions table;
     std::string picture;

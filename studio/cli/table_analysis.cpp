@@ -83,8 +83,38 @@ int run_continue(Shell& shell, const ContinueCommand& command) {
 
 struct PitchCommand {
     TableOptions table;
-    std::string held, weight, picture;
+    std::string held, weight, trim, mass, inertia, picture;
 };
+
+std::string degrees(double radians) { return number(core::convert(std::abs(radians) < 1e-12 ? 0 : radians, "rad", "deg"), 4); }
+
+void show_windows(Shell& shell, const std::vector<tables::PitchWindow>& windows) {
+    for (const auto& w : windows) {
+        shell.print(w.side + ": restores from " + degrees(w.lower) + " to " + degrees(w.upper) + " deg, stiffest at " + degrees(w.best_pitch) + " deg (" + number(w.stiffness, 4) +
+                    " N m/rad); trim torque there " + number(w.trim_torque, 4) + " N m nose up, " + number(w.trim_lower, 4) + " to " + number(w.trim_upper, 4) +
+                    " N m over the window");
+    }
+    if (windows.empty()) {
+        shell.print("the pitch moment restores nowhere in the table");
+    }
+}
+
+void show_coupled(Shell& shell, const tables::ForceTable& lift, const std::vector<tables::CoupledEquilibrium>& found, bool masses) {
+    const auto with_error = [](double sigma, const std::string& text) { return sigma > 0 && std::isfinite(sigma) ? " +- " + text : std::string(); };
+    for (const auto& e : found) {
+        std::string text = e.kind + " balance of heave and pitch at gap " + shown(lift, "gap", "m", e.gap) + with_error(e.gap_sigma, shown(lift, "gap", "m", e.gap_sigma, 2)) +
+                           ", pitch " + degrees(e.pitch) + " deg" + with_error(e.pitch_sigma, number(core::convert(e.pitch_sigma, "rad", "deg"), 2) + " deg");
+        text += e.frequency[0] > 0 ? "; " + number(e.frequency[0], 4) + " and " + number(e.frequency[1], 4) + " Hz"
+                                   : "; eigenvalues of the stiffness " + std::string(masses ? "over the masses " : "") + eigenvalue(e.eigenvalues[0]) + " and " +
+                                         eigenvalue(e.eigenvalues[1]) + (masses ? " 1/s^2" : "");
+        shell.print(text);
+    }
+    if (found.empty()) {
+        shell.print("heave and pitch balance nowhere together");
+    } else if (!masses) {
+        shell.warn("without --mass and --inertia 1 kg and 1 kg m^2 are taken: they decide between stable and flutter where the stiffness is not symmetric");
+    }
+}
 
 int run_pitch(Shell& shell, const PitchCommand& command) {
     TableOptions table = command.table;
@@ -92,37 +122,37 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
     const auto moment = table.fit(shell);
     const auto held = read_assignments(command.held);
     shell.show(tables::outside_remarks(moment, held));
+    const auto holds = [&](const char* name) { return std::any_of(held.begin(), held.end(), [&](const auto& h) { return h.first == name; }); };
     nlohmann::json document;
     document["windows"] = nlohmann::json::array();
-    const bool over_gap = moment.axes().size() > 1;
-    if (!command.held.empty() || !over_gap) {
-        for (const auto& w : tables::pitch_windows(moment, held)) {
-            const auto degrees = [](double v) { return number(core::convert(v, "rad", "deg"), 4); };
-            shell.print(w.side + ": restores from " + degrees(w.lower) + " to " + degrees(w.upper) + " deg, stiffest at " + degrees(w.best_pitch) + " deg (" + number(w.stiffness, 4) +
-                        " N m/rad); trim torque there " + number(w.trim_torque, 4) + " N m nose up, " + number(w.trim_lower, 4) + " to " + number(w.trim_upper, 4) +
-                        " N m over the window");
-            document["windows"].push_back(w);
-        }
-        if (document["windows"].empty()) {
-            shell.print("the pitch moment restores nowhere in the table");
-        }
+    const bool windows = command.weight.empty() || holds("gap");
+    if (windows) {
+        const auto found = tables::pitch_windows(moment, held);
+        show_windows(shell, found);
+        document["windows"] = found;
         if (!command.picture.empty()) {
             write_picture(tables::pitch_figure(moment, held), command.picture);
         }
     }
     if (!command.weight.empty()) {
         table.quantity = "lift_force";
+        const auto lift = table.fit(shell);
         tables::CoupledOptions options;
         options.net_weight = option_value("--weight", command.weight, "N");
-        document["equilibria"] = nlohmann::json::array();
-        for (const auto& e : tables::coupled_equilibria(table.fit(shell), moment, options)) {
-            shell.print(e.kind + " balance of heave and pitch at gap " + number(e.gap) + " m, pitch " + number(core::convert(std::abs(e.pitch) < 1e-12 ? 0 : e.pitch, "rad", "deg"), 4) + " deg; eigenvalues of the stiffness " + eigenvalue(e.eigenvalues[0]) + " and " +
-                        eigenvalue(e.eigenvalues[1]));
-            document["equilibria"].push_back(e);
+        options.trim_torque = command.trim.empty() ? 0 : option_value("--trim", command.trim, "N m");
+        options.virtual_mass = command.mass.empty() ? 0 : option_value("--mass", command.mass, "kg");
+        options.virtual_inertia = command.inertia.empty() ? 0 : option_value("--inertia", command.inertia, "kg m^2");
+        options.held = held;
+        std::erase_if(options.held, [](const auto& h) { return h.first == "gap"; });  // of the windows; here it is free
+        const auto found = tables::coupled_equilibria(lift, moment, options);
+        show_coupled(shell, lift, found, options.virtual_mass > 0);
+        document["equilibria"] = found;
+        if (!windows && !command.picture.empty()) {
+            write_picture(tables::coupled_figure(lift, moment, options), command.picture);
         }
-        if (document["equilibria"].empty()) {
-            shell.print("heave and pitch balance nowhere together");
-        }
+    }
+    if (!command.picture.empty()) {
+        document["picture"] = command.picture;
     }
     if (shell.json) {
         shell.print_json(document);
@@ -234,10 +264,19 @@ void add_table_analysis(CLI::App& table, Shell& shell) {
     auto pitch = std::make_shared<PitchCommand>();
     sub = table.add_subcommand("pitch", "stable windows of pitch and their trim; with --weight, balance of heave and pitch together");
     pitch->table.add_to(*sub);
+    sub->remove_option(sub->get_option("--quantity"));  // it is the pitch moment, and the lift beside it
     sub->add_option("--held", pitch->held, "values of the other axes, such as gap=5mm");
-    sub->add_option("--weight", pitch->weight, "net weight: also finds the points where lift and pitch moment both balance");
-    sub->add_option("--picture", pitch->picture, "writes moment against pitch (.png, .pdf)");
-    sub->footer("Examples:\n  underbody table pitch forces.csv --where \"variant=ellipse, mesh=medium, speed=0.5\" --held gap=5mm");
+    auto* weight = sub->add_option("--weight", pitch->weight, "net weight: also finds the points where lift and pitch moment both balance; windows then only where --held gives the gap");
+    sub->add_option("--trim", pitch->trim, "constant torque nose up beside the table's (default 0 N m)")->needs(weight);
+    auto* mass = sub->add_option("--mass", pitch->mass, "virtual mass in heave, mass + added mass; with --inertia gives frequencies")->needs(weight);
+    auto* inertia = sub->add_option("--inertia", pitch->inertia, "virtual inertia in pitch, such as \"0.02 kg m^2\"")->needs(weight);
+    mass->needs(inertia);
+    inertia->needs(mass);
+    sub->add_option("--picture", pitch->picture, "writes moment against pitch, or the lines of balance where there are no windows (.png, .pdf)");
+    sub->footer(
+        "Examples:\n"
+        "  underbody table pitch forces.csv --where \"variant=ellipse, mesh=medium, speed=0.5\" --held gap=5mm\n"
+        "  underbody table pitch forces.csv --where \"variant=ellipse, mesh=medium\" --held speed=0.5 --weight 0.3 --trim \"2 mN m\" --mass 3.954 --inertia 0.02");
     shell.on(sub, [&shell, pitch] { return run_pitch(shell, *pitch); });
 
     auto compare = std::make_shared<CompareCommand>();

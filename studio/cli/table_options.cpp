@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "studio/cli/shell.h"
 #include "surrogates/dynamics/force_points.h"
+#include "surrogates/tables/figures.h"
 #include "surrogates/tables/select.h"
 
 namespace underbody::studio {
@@ -93,6 +94,11 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell) const {
         shell.show(all.back().remarks());
     }
     return all;
+}
+
+std::string shown(const tables::ForceTable& table, const std::string& quantity, const std::string& si, double value, int digits) {
+    const std::string unit = tables::shown_unit(table, quantity);
+    return core::format_number(core::convert(value, si, unit), digits) + " " + unit;
 }
 
 std::vector<std::pair<std::string, double>> read_assignments(const std::string& text) {

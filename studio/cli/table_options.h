@@ -34,6 +34,9 @@ struct TableOptions {
     [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell) const;
 };
 
+/// A value in the unit that the user's file has for the quantity.
+std::string shown(const tables::ForceTable& table, const std::string& quantity, const std::string& si, double value, int digits = 5);
+
 /// "gap=5mm,pitch=1deg" as name and SI value.
 std::vector<std::pair<std::string, double>> read_assignments(const std::string& text);
 

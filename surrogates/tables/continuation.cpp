@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/units.h"
 #include "surrogates/tables/figures.h"
+#include "surrogates/tables/zero_lines.h"
 
 namespace underbody::tables {
 
@@ -75,112 +74,6 @@ private:
     std::vector<double> point_;
 };
 
-double bisected(const std::function<double(double)>& f, double low, double high) {
-    const bool rising = f(high) > f(low);
-    for (int i = 0; i < 80 && high - low > 1e-15 * (std::abs(low) + std::abs(high)); ++i) {
-        const double middle = 0.5 * (low + high);
-        ((f(middle) > 0) == rising ? high : low) = middle;
-    }
-    return 0.5 * (low + high);
-}
-
-struct Crossing {
-    double gap, parameter;
-};
-
-/// Level line of zero by marching squares; crossings on the edges of the grid are exact roots.
-class Contour {
-public:
-    Contour(NetForce& force, std::vector<double> gaps, std::vector<double> parameters) : f_(force), h_(std::move(gaps)), p_(std::move(parameters)) {}
-
-    std::vector<std::vector<Crossing>> lines(core::Progress& progress) {
-        std::vector<double> value(h_.size() * p_.size());
-        for (std::size_t i = 0; i < h_.size(); ++i) {
-            progress.check();
-            for (std::size_t j = 0; j < p_.size(); ++j) {
-                value[i * p_.size() + j] = f_(h_[i], p_[j]);
-            }
-        }
-        const auto at = [&](std::size_t i, std::size_t j) { return value[i * p_.size() + j] >= 0; };
-        for (std::size_t i = 0; i + 1 < h_.size(); ++i) {
-            for (std::size_t j = 0; j + 1 < p_.size(); ++j) {
-                std::vector<std::size_t> edges;  // bottom, right, top, left of the cell: ids shared by neighbours
-                if (at(i, j) != at(i + 1, j)) {
-                    edges.push_back(along_gap(i, j));
-                }
-                if (at(i + 1, j) != at(i + 1, j + 1)) {
-                    edges.push_back(along_parameter(i + 1, j));
-                }
-                if (at(i, j + 1) != at(i + 1, j + 1)) {
-                    edges.push_back(along_gap(i, j + 1));
-                }
-                if (at(i, j) != at(i, j + 1)) {
-                    edges.push_back(along_parameter(i, j));
-                }
-                for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {
-                    link_[edges[e]].push_back(edges[e + 1]);
-                    link_[edges[e + 1]].push_back(edges[e]);
-                }
-            }
-        }
-        return joined();
-    }
-
-private:
-    [[nodiscard]] std::size_t along_gap(std::size_t i, std::size_t j) const { return 2 * (i * p_.size() + j); }
-    [[nodiscard]] std::size_t along_parameter(std::size_t i, std::size_t j) const { return 2 * (i * p_.size() + j) + 1; }
-
-    Crossing root(std::size_t edge) {
-        const std::size_t node = edge / 2;
-        const std::size_t i = node / p_.size();
-        const std::size_t j = node % p_.size();
-        if (edge % 2 == 0) {
-            return {bisected([&](double h) { return f_(h, p_[j]); }, h_[i], h_[i + 1]), p_[j]};
-        }
-        return {h_[i], bisected([&](double p) { return f_(h_[i], p); }, p_[j], p_[j + 1])};
-    }
-
-    std::vector<std::vector<Crossing>> joined() {
-        std::map<std::size_t, bool> seen;
-        std::vector<std::vector<Crossing>> lines;
-        const auto follow = [&](std::size_t start) {
-            std::vector<Crossing> line;
-            std::size_t edge = start;
-            while (true) {
-                seen[edge] = true;
-                line.push_back(root(edge));
-                std::size_t next = edge;
-                for (const std::size_t other : link_[edge]) {
-                    if (!seen[other]) {
-                        next = other;
-                        break;
-                    }
-                }
-                if (next == edge) {
-                    break;
-                }
-                edge = next;
-            }
-            lines.push_back(std::move(line));
-        };
-        for (const auto& [edge, others] : link_) {
-            if (others.size() == 1 && !seen[edge]) {
-                follow(edge);
-            }
-        }
-        for (const auto& [edge, others] : link_) {
-            if (!seen[edge]) {
-                follow(edge);
-            }
-        }
-        return lines;
-    }
-
-    NetForce& f_;
-    std::vector<double> h_, p_;
-    std::map<std::size_t, std::vector<std::size_t>> link_;
-};
-
 std::vector<double> spaced(double low, double high, int steps) {
     std::vector<double> x;
     for (int i = 0; i <= steps; ++i) {
@@ -237,12 +130,13 @@ EquilibriumCurve continue_equilibria(const ForceTable& table, const Continuation
     curve.parameter_unit = force.unit;
     curve.axis = axis.name;
     curve.axis_unit = axis.unit;
-    for (const auto& line : Contour(force, std::move(gaps), spaced(options.lower, options.upper, options.steps)).lines(progress)) {
+    const auto net = [&force](double gap, double parameter) { return force(gap, parameter); };
+    for (const auto& line : zero_lines(net, gaps, spaced(options.lower, options.upper, options.steps), progress)) {
         Branch branch;
-        for (const auto& c : line) {
+        for (const auto& [gap, parameter] : line) {
             double slope = 0;
-            force(c.gap, c.parameter, &slope);
-            branch.push_back({c.parameter, c.gap, -slope, slope < 0 ? Stability::stable : Stability::unstable});
+            force(gap, parameter, &slope);
+            branch.push_back({parameter, gap, -slope, slope < 0 ? Stability::stable : Stability::unstable});
         }
         for (std::size_t i = 0; i + 1 < branch.size(); ++i) {
             if (branch[i].stability != branch[i + 1].stability) {
@@ -260,8 +154,7 @@ core::Figure continuation_figure(const ForceTable& table, const EquilibriumCurve
     figure.title = "equilibria against " + curve.parameter;
     figure.x = {curve.parameter, curve.parameter_unit, 0, 0, false};
     const TableAxis& axis = table.axes()[axis_index(table, curve.axis)];
-    // Small gaps are where the forces change, as in the picture of the table.
-    figure.y = {curve.axis, shown_unit(table, curve.axis), 0, 0, axis.name == "gap" && axis.lower > 0 && axis.upper >= 20 * axis.lower};
+    figure.y = {curve.axis, shown_unit(table, curve.axis), 0, 0, axis.name == "gap" && spans_decades(axis.lower, axis.upper)};
     const auto shown = core::conversion(curve.axis_unit, figure.y.unit);
     bool named[2] = {false, false};
     for (const auto& branch : curve.branches) {

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/figures.h"
+#include "surrogates/tables/zero_lines.h"
 
 namespace underbody::tables {
 
@@ -111,6 +114,11 @@ namespace {
 class Side {
 public:
     Side(const ForceTable& table, Held held) : table_(table), gap_(axis_index(table, "gap")), pitch_(axis_index(table, "pitch")) {
+        for (const auto& [name, value] : held) {
+            if (name == "gap" || name == "pitch") {
+                throw core::UsageError("axis", name + " cannot be held: heave and pitch balance where both are free");
+            }
+        }
         held.emplace_back("gap", gap().lower);
         held.emplace_back("pitch", pitch().lower);
         point_ = held_point(table, {}, held);
@@ -128,6 +136,15 @@ public:
         slope[1] = s[pitch_];
         return v;
     }
+    [[nodiscard]] double value(double h, double p) {
+        double slope[2];
+        return at(h, p, slope);
+    }
+    [[nodiscard]] double sigma(double h, double p) {
+        point_[gap_] = h;
+        point_[pitch_] = p;
+        return table_.sigma(point_.data());
+    }
 
 private:
     const ForceTable& table_;
@@ -135,12 +152,32 @@ private:
     std::vector<double> point_;
 };
 
-/// The box of gap and pitch that both tables cover.
-struct Box {
+/// Lift and moment, and the box of gap and pitch that both cover.
+struct Sides {
+    Side force, torque;
     double gap_lower, gap_upper, pitch_lower, pitch_upper;
+
+    Sides(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options) : force(lift, options.held), torque(moment, options.held) {
+        if (!(options.virtual_mass >= 0) || !(options.virtual_inertia >= 0) || (options.virtual_mass > 0) != (options.virtual_inertia > 0)) {
+            throw core::UsageError("range", "mass and inertia must be positive, and both be given or none");
+        }
+        gap_lower = std::max(force.gap().lower, torque.gap().lower);
+        gap_upper = std::min(force.gap().upper, torque.gap().upper);
+        pitch_lower = std::max(force.pitch().lower, torque.pitch().lower);
+        pitch_upper = std::min(force.pitch().upper, torque.pitch().upper);
+        if (!(gap() > 0) || !(pitch() > 0)) {
+            throw core::UsageError("range", "lift and moment have no common range of gap and pitch");
+        }
+    }
     [[nodiscard]] bool holds(double h, double p) const { return h >= gap_lower && h <= gap_upper && p >= pitch_lower && p <= pitch_upper; }
     [[nodiscard]] double gap() const { return gap_upper - gap_lower; }
     [[nodiscard]] double pitch() const { return pitch_upper - pitch_lower; }
+    /// At shares of the ranges; small gaps, where the forces change, lie closer.
+    [[nodiscard]] double gap_at(double t) const {
+        const bool log = gap_lower > 0 && gap_upper / gap_lower > 4;
+        return t >= 1 ? gap_upper : log ? gap_lower * std::pow(gap_upper / gap_lower, t) : gap_lower + gap() * t;
+    }
+    [[nodiscard]] double pitch_at(double t) const { return t >= 1 ? pitch_upper : pitch_lower + pitch() * t; }
 };
 
 struct Place {
@@ -148,11 +185,11 @@ struct Place {
 };
 
 /// Newton on (force, moment) = 0; nothing when it leaves the box, or its first step is longer than `reach`.
-std::optional<Place> balance_near(Side& force, Side& torque, const CoupledOptions& options, const Box& box, Place at, Place reach) {
+std::optional<Place> balance_near(Sides& sides, const CoupledOptions& options, Place at, Place reach) {
     double fs[2], ms[2];
     for (int k = 0; k < 30; ++k) {
-        const double f = force.at(at.gap, at.pitch, fs) - options.net_weight;
-        const double m = torque.at(at.gap, at.pitch, ms) + options.trim_torque;
+        const double f = sides.force.at(at.gap, at.pitch, fs) - options.net_weight;
+        const double m = sides.torque.at(at.gap, at.pitch, ms) + options.trim_torque;
         const double det = fs[0] * ms[1] - fs[1] * ms[0];
         if (det == 0) {
             return std::nullopt;
@@ -164,58 +201,59 @@ std::optional<Place> balance_near(Side& force, Side& torque, const CoupledOption
         }
         at.gap -= dh;
         at.pitch -= dp;
-        if (!box.holds(at.gap, at.pitch)) {
+        if (!sides.holds(at.gap, at.pitch)) {
             return std::nullopt;
         }
-        if (std::abs(dh) < 1e-13 * box.gap() && std::abs(dp) < 1e-13 * box.pitch()) {
+        if (std::abs(dh) < 1e-13 * sides.gap() && std::abs(dp) < 1e-13 * sides.pitch()) {
             return at;
         }
     }
     return std::nullopt;
 }
 
-CoupledEquilibrium described(Side& force, Side& torque, const CoupledOptions& options, Place at) {
+CoupledEquilibrium described(Sides& sides, const CoupledOptions& options, Place at) {
     double fs[2], ms[2];
-    force.at(at.gap, at.pitch, fs);
-    torque.at(at.gap, at.pitch, ms);
+    sides.force.at(at.gap, at.pitch, fs);
+    sides.torque.at(at.gap, at.pitch, ms);
     CoupledEquilibrium e;
     e.gap = at.gap;
     e.pitch = at.pitch;
     e.stiffness = {{{-fs[0], -fs[1]}, {-ms[0], -ms[1]}}};
-    const bool masses = options.virtual_mass > 0 && options.virtual_inertia > 0;
+    const double lift_sigma = sides.force.sigma(at.gap, at.pitch), moment_sigma = sides.torque.sigma(at.gap, at.pitch);
+    if (lift_sigma > 0 || moment_sigma > 0) {
+        const double det = std::abs(fs[0] * ms[1] - fs[1] * ms[0]);
+        e.gap_sigma = std::hypot(ms[1] * lift_sigma, fs[1] * moment_sigma) / det;
+        e.pitch_sigma = std::hypot(ms[0] * lift_sigma, fs[0] * moment_sigma) / det;
+    }
+    const bool masses = options.virtual_mass > 0;
     const double mass = masses ? options.virtual_mass : 1, inertia = masses ? options.virtual_inertia : 1;
     const double a = e.stiffness[0][0] / mass, b = e.stiffness[0][1] / mass;
     const double c = e.stiffness[1][0] / inertia, d = e.stiffness[1][1] / inertia;
     const std::complex<double> root = std::sqrt(std::complex<double>((a - d) * (a - d) / 4 + b * c));
     e.eigenvalues = {(a + d) / 2 - root, (a + d) / 2 + root};
     e.kind = root.imag() != 0 ? "flutter" : e.eigenvalues[0].real() > 0 ? "stable" : "divergent";
+    for (std::size_t i = 0; i < 2 && masses && e.kind == "stable"; ++i) {
+        e.frequency[i] = std::sqrt(e.eigenvalues[i].real()) / (2 * std::numbers::pi);
+    }
     return e;
 }
 
 }  // namespace
 
 std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options) {
-    Side force(lift, options.held);
-    Side torque(moment, options.held);
-    const Box box{std::max(force.gap().lower, torque.gap().lower), std::min(force.gap().upper, torque.gap().upper),
-                  std::max(force.pitch().lower, torque.pitch().lower), std::min(force.pitch().upper, torque.pitch().upper)};
-    if (!(box.gap() > 0) || !(box.pitch() > 0)) {
-        throw core::UsageError("range", "lift and moment have no common range of gap and pitch");
-    }
+    Sides sides(lift, moment, options);
     const int n = 60;
-    const bool log = box.gap_lower > 0 && box.gap_upper / box.gap_lower > 4;
-    const auto gap_at = [&](double t) { return log ? box.gap_lower * std::pow(box.gap_upper / box.gap_lower, t) : box.gap_lower + box.gap() * t; };
     std::vector<CoupledEquilibrium> found;
     for (int i = 0; i < n; ++i) {
         // From the middle of its cell a start may walk a few cells, no further: every equilibrium has starts near it.
-        const Place reach{6 * (gap_at((i + 1.0) / n) - gap_at(static_cast<double>(i) / n)), 6 * box.pitch() / n};
+        const Place reach{6 * (sides.gap_at((i + 1.0) / n) - sides.gap_at(static_cast<double>(i) / n)), 6 * sides.pitch() / n};
         for (int j = 0; j < n; ++j) {
-            const auto place = balance_near(force, torque, options, box, {gap_at((i + 0.5) / n), box.pitch_lower + box.pitch() * (j + 0.5) / n}, reach);
+            const auto place = balance_near(sides, options, {sides.gap_at((i + 0.5) / n), sides.pitch_at((j + 0.5) / n)}, reach);
             const bool known = place && std::any_of(found.begin(), found.end(), [&](const auto& e) {
-                return std::abs(e.gap - place->gap) < 1e-7 * box.gap() && std::abs(e.pitch - place->pitch) < 1e-7 * box.pitch();
+                return std::abs(e.gap - place->gap) < 1e-7 * sides.gap() && std::abs(e.pitch - place->pitch) < 1e-7 * sides.pitch();
             });
             if (place && !known) {
-                found.push_back(described(force, torque, options, *place));
+                found.push_back(described(sides, options, *place));
             }
         }
     }
@@ -223,8 +261,63 @@ std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const
     return found;
 }
 
+core::Figure coupled_figure(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options) {
+    Sides sides(lift, moment, options);
+    core::Figure figure;
+    figure.title = "balance of heave and pitch";
+    figure.caption = "Net weight " + core::format_number(options.net_weight, 4) + " N, trim torque " + core::format_number(options.trim_torque, 4) + " N m nose up.";
+    figure.x = {"gap", shown_unit(lift, "gap"), 0, 0, spans_decades(sides.gap_lower, sides.gap_upper)};
+    figure.y = {"pitch", shown_unit(lift, "pitch"), 0, 0, false};
+    const auto x_shown = core::conversion("m", figure.x.unit), y_shown = core::conversion("rad", figure.y.unit);
+    std::vector<double> gaps, pitches;
+    const int n = 200;
+    for (int i = 0; i <= n; ++i) {
+        gaps.push_back(sides.gap_at(static_cast<double>(i) / n));
+        pitches.push_back(sides.pitch_at(static_cast<double>(i) / n));
+    }
+    const auto draw = [&](const PlaneFunction& f, std::string name, core::Colour colour) {
+        for (const auto& line : zero_lines(f, gaps, pitches)) {
+            core::FigureCurve curve;
+            curve.name = std::exchange(name, "");
+            curve.colour = colour;
+            for (const auto& [h, p] : line) {
+                curve.x.push_back(x_shown(h));
+                curve.y.push_back(y_shown(p));
+            }
+            figure.curves.push_back(std::move(curve));
+        }
+    };
+    draw([&](double h, double p) { return sides.force.value(h, p) - options.net_weight; }, "lift holds the weight", core::palette(0));
+    draw([&](double h, double p) { return sides.torque.value(h, p) + options.trim_torque; }, "pitch moment holds the trim", core::palette(1));
+    const auto found = coupled_equilibria(lift, moment, options);
+    for (const std::string kind : {"stable", "flutter", "divergent"}) {
+        core::FigurePoints marks;
+        marks.name = kind;
+        marks.shape = kind == "stable" ? core::FigurePoints::Shape::disc : core::FigurePoints::Shape::circle;
+        marks.colour = core::palette(kind == "stable" ? 2 : kind == "flutter" ? 4 : 5);
+        marks.size = 11;
+        for (const auto& e : found) {
+            if (e.kind == kind) {
+                marks.x.push_back(x_shown(e.gap));
+                marks.y.push_back(y_shown(e.pitch));
+            }
+        }
+        if (!marks.x.empty()) {
+            figure.points.push_back(std::move(marks));
+        }
+    }
+    return figure;
+}
+
 void to_json(nlohmann::json& json, const CoupledEquilibrium& e) {
-    json = nlohmann::json{{"gap", e.gap}, {"pitch", e.pitch}, {"stiffness", e.stiffness}, {"kind", e.kind}, {"stable", e.kind == "stable"}};
+    json = nlohmann::json{{"gap", e.gap},
+                          {"gap_sigma", e.gap_sigma},
+                          {"pitch", e.pitch},
+                          {"pitch_sigma", e.pitch_sigma},
+                          {"stiffness", e.stiffness},
+                          {"kind", e.kind},
+                          {"stable", e.kind == "stable"},
+                          {"frequency", e.frequency}};
     for (const auto& v : e.eigenvalues) {
         json["eigenvalues"].push_back({{"real", v.real()}, {"imaginary", v.imag()}});
     }

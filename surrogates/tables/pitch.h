@@ -30,21 +30,29 @@ void to_json(nlohmann::json& json, const PitchWindow& window);
 struct CoupledOptions {
     double net_weight = 0;       ///< N
     double trim_torque = 0;      ///< N m, nose up, constant
-    double virtual_mass = 0;     ///< kg; 0: eigenvalues of the stiffness itself
-    double virtual_inertia = 0;  ///< kg m^2 (I_yy + B_q)
+    double virtual_mass = 0;     ///< kg, mass + added mass in heave
+    double virtual_inertia = 0;  ///< kg m^2 (I_yy + B_q). Both or neither of the two: without them 1 kg and 1 kg m^2 are taken
     Held held;                   ///< axes other than gap and pitch
 };
 struct CoupledEquilibrium {
     double gap = 0, pitch = 0;
+    /// One standard deviation each from the errors of both tables, taken as independent: stiffness^-1 (sigma of lift, sigma of moment). 0 without errors,
+    /// infinite where the stiffness is singular.
+    double gap_sigma = 0, pitch_sigma = 0;  ///< m, rad
     /// -[[dF/dh, dF/dpitch], [dM/dh, dM/dpitch]]; N/m, N/rad, N, N m/rad.
     std::array<std::array<double, 2>, 2> stiffness{};
-    /// Of the stiffness, or of mass^-1 stiffness (1/s^2) when mass and inertia are given.
+    /// Of mass^-1 stiffness, 1/s^2.
     std::array<std::complex<double>, 2> eigenvalues{};
     /// "stable": both real and positive; "divergent": one real and negative; "flutter": complex (grows without damping, the stiffness is not symmetric).
+    /// Of what is not symmetric, mass and inertia decide between "stable" and "flutter".
     std::string kind;
+    std::array<double, 2> frequency{};  ///< Hz, of a stable one whose mass and inertia are known; else 0
 };
 /// All points in the common range of lift and moment where both balance. Both tables need axes gap and pitch.
+/// Throws core::UsageError: no common range, mass or inertia negative or without the other, a held axis that is none, gap or pitch held.
 std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options);
+/// Over gap and pitch the lines where lift balances the net weight and where the pitch moment balances the trim torque, and the equilibria where they cross.
+core::Figure coupled_figure(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options);
 void to_json(nlohmann::json& json, const CoupledEquilibrium& equilibrium);
 
 }  // namespace underbody::tables

@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/file.h"
 #include "tests/support/support.h"
@@ -79,6 +82,49 @@ TEST(TableCommand, TakesARangePolicyForEachAxis) {
     EXPECT_EQ(run_underbody({"table", "at", "t.json", "gap=6mm,pitch=0", "--range", "clamp"}, folder.path()).exit_code, 0);
     const auto fit = run_underbody({"table", "fit", "t.json", "--json"}, folder.path());
     EXPECT_EQ(nlohmann::json::parse(fit.output)["tables"][0]["axes"][0]["range_policy"], "refuse");
+}
+
+TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
+    // Lift (1 - 2 (h - 0.5) + 3 p) v^2, moment (-0.5 p + 0.2 (h - 0.5)) v^2.
+    std::string text = "gap [m], pitch [rad], speed [m/s], lift_force [N], lift_force_sigma [N], pitch_moment [N m], pitch_moment_sigma [N m]\n";
+    for (const double h : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+        for (const double p : {-0.2, -0.1, 0.0, 0.1, 0.2}) {
+            for (const double v : {1.0, 2.0}) {
+                std::ostringstream line;
+                line << h << ", " << p << ", " << v << ", " << (1 - 2 * (h - 0.5) + 3 * p) * v * v << ", 0.01, " << (-0.5 * p + 0.2 * (h - 0.5)) * v * v << ", 0.002\n";
+                text += line.str();
+            }
+        }
+    }
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "t.csv", text);
+    const auto pitch = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"table", "pitch", "t.csv", "--kind", "interpolation"});
+        return run_underbody(more, folder.path());
+    };
+    const auto run = pitch({"--held", "speed=2", "--weight", "4", "--trim", "80 mN m", "--mass", "2", "--inertia", "0.5", "--picture", "balance.png", "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const auto json = nlohmann::json::parse(run.output);
+    ASSERT_EQ(json["equilibria"].size(), 1u) << run.output;
+    const auto& e = json["equilibria"][0];
+    EXPECT_NEAR(e["gap"].get<double>(), 0.65, 1e-6);
+    EXPECT_NEAR(e["pitch"].get<double>(), 0.1, 1e-6);
+    EXPECT_NEAR(e["frequency"][0].get<double>(), std::sqrt(4 * (1 - std::sqrt(0.6))) / (2 * M_PI), 1e-6);
+    EXPECT_NEAR(e["gap_sigma"].get<double>(), std::hypot(0.5 * 0.01, 3 * 0.002) / 0.4 / 4, 1e-5);
+    EXPECT_TRUE(json["windows"].empty());
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "balance.png"));
+    // With a gap there are windows at it too, and the picture is theirs.
+    const auto both = pitch({"--held", "speed=2,gap=500mm", "--weight", "4", "--picture", "moment.png"});
+    EXPECT_THAT(both.output, HasSubstr("restores from"));
+    EXPECT_THAT(both.output, HasSubstr("balance of heave and pitch at gap 0.5 m +- "));
+    EXPECT_THAT(both.errors, HasSubstr("without --mass and --inertia"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "moment.png"));
+    // What is missing is said.
+    EXPECT_EQ(pitch({"--held", "speed=2"}).exit_code, 2);
+    EXPECT_THAT(pitch({"--held", "speed=2"}).errors, HasSubstr("'gap' whose value is not given"));
+    EXPECT_THAT(pitch({"--weight", "4"}).errors, HasSubstr("'speed' whose value is not given"));
+    EXPECT_EQ(pitch({"--held", "speed=2", "--weight", "4", "--mass", "2"}).exit_code, 2);
+    EXPECT_EQ(pitch({"--held", "speed=2,gap=0.5", "--trim", "1"}).exit_code, 2);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "core/text.h"
 #include "surrogates/tables/collapse.h"
 #include "surrogates/tables/compare.h"
@@ -94,32 +95,94 @@ TEST(Pitch, HasItsStableWindowsAndTheTorqueThatTrimsThem) {
     EXPECT_NEAR(windows[0].trim_torque, -0.002, 1e-5);
 }
 
-TEST(Pitch, CouplesWithHeaveAtThePointsWhereBothBalance) {
-    // F = 1 - 2 (h - 0.5) + 3 p, M = -0.5 p + 0.2 (h - 0.5): both linear, so one balance for weight 1 at (0.5, 0).
-    std::vector<double> h = {0.1, 0.3, 0.5, 0.7, 0.9}, q = {-0.2, -0.1, 0, 0.1, 0.2};
-    const auto lift = spline(test::grid_table(h, q, [](double a, double b) { return 1 - 2 * (a - 0.5) + 3 * b; }));
-    std::vector<double> g, p, m;
+/// F = 1 - 2 (h - 0.5) + 3 p, M = -0.5 p + 0.2 (h - 0.5): both linear, so one balance for weight 1 at (0.5, 0), with K = [[2, -3], [-0.2, 0.5]].
+core::Table coupled_points() {
+    const std::vector<double> h = {0.1, 0.3, 0.5, 0.7, 0.9}, q = {-0.2, -0.1, 0, 0.1, 0.2};
+    core::Table data = test::grid_table(h, q, [](double a, double b) { return 1 - 2 * (a - 0.5) + 3 * b; });
+    std::vector<double> m;
     for (const double a : h) {
         for (const double b : q) {
-            g.push_back(a);
-            p.push_back(b);
             m.push_back(-0.5 * b + 0.2 * (a - 0.5));
         }
     }
-    core::Table data;
-    data.add_numbers("gap", "m", g);
-    data.add_numbers("pitch", "rad", p);
     data.add_numbers("pitch_moment", "N m", m);
+    return data;
+}
+
+TEST(Pitch, CouplesWithHeaveAtThePointsWhereBothBalance) {
+    const core::Table data = coupled_points();
+    const auto lift = spline(data, "lift_force"), moment = spline(data, "pitch_moment");
     CoupledOptions options;
     options.net_weight = 1;
-    const auto found = coupled_equilibria(lift, spline(data, "pitch_moment"), options);
+    auto found = coupled_equilibria(lift, moment, options);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NEAR(found[0].gap, 0.5, 1e-9);
     EXPECT_NEAR(found[0].pitch, 0, 1e-9);
-    // K = [[2, -3], [-0.2, 0.5]]: eigenvalues 1.25 +- sqrt(0.5625 + 0.6).
+    // Eigenvalues of K: 1.25 +- sqrt(0.5625 + 0.6).
     EXPECT_NEAR(found[0].eigenvalues[0].real(), 1.25 - std::sqrt(1.1625), 1e-8);
     EXPECT_NEAR(found[0].eigenvalues[1].real(), 1.25 + std::sqrt(1.1625), 1e-8);
     EXPECT_EQ(found[0].kind, "stable");
+    EXPECT_EQ(found[0].frequency[0], 0);
+    // Masses of 2 kg and 0.5 kg m^2: M^-1 K = [[1, -1.5], [-0.4, 1]], eigenvalues 1 +- sqrt(0.6).
+    options.virtual_mass = 2;
+    options.virtual_inertia = 0.5;
+    found = coupled_equilibria(lift, moment, options);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].frequency[0], std::sqrt(1 - std::sqrt(0.6)) / (2 * M_PI), 1e-8);
+    EXPECT_NEAR(found[0].frequency[1], std::sqrt(1 + std::sqrt(0.6)) / (2 * M_PI), 1e-8);
+    // A torque of 0.02 N m nose up: K (dh, dp) = (0, 0.02), det K = 0.4.
+    options.trim_torque = 0.02;
+    found = coupled_equilibria(lift, moment, options);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].gap, 0.5 + 3 * 0.02 / 0.4, 1e-8);
+    EXPECT_NEAR(found[0].pitch, 2 * 0.02 / 0.4, 1e-8);
+    EXPECT_THROW(coupled_equilibria(lift, moment, {1, 0, 2, 0, {}}), core::UsageError);
+    EXPECT_THROW(coupled_equilibria(lift, moment, {1, 0, 0, 0.5, {}}), core::UsageError);
+    options.held = {{"gap", 0.5}};
+    EXPECT_THROW(coupled_equilibria(lift, moment, options), core::UsageError);
+}
+
+TEST(Pitch, KnowsHowSureABalanceWithHeaveIs) {
+    core::Table data = coupled_points();
+    const auto sure = coupled_equilibria(spline(data, "lift_force"), spline(data, "pitch_moment"), {1, 0, 0, 0, {}});
+    ASSERT_EQ(sure.size(), 1u);
+    EXPECT_NEAR(sure[0].gap_sigma, 0, 1e-9);
+    data.add_numbers("lift_force_sigma", "N", std::vector<double>(data.rows(), 0.01));
+    data.add_numbers("pitch_moment_sigma", "N m", std::vector<double>(data.rows(), 0.002));
+    const auto lift = spline(data, "lift_force"), moment = spline(data, "pitch_moment");
+    const auto found = coupled_equilibria(lift, moment, {1, 0, 0, 0, {}});
+    ASSERT_EQ(found.size(), 1u);
+    // K^-1 = [[0.5, 3], [0.2, 2]]/0.4 on errors of 0.01 N and 0.002 N m; and as the balances of shifted forces scatter.
+    EXPECT_NEAR(found[0].gap_sigma, std::hypot(0.5 * 0.01, 3 * 0.002) / 0.4, 1e-6);
+    EXPECT_NEAR(found[0].pitch_sigma, std::hypot(0.2 * 0.01, 2 * 0.002) / 0.4, 1e-6);
+    core::Random random(3);
+    double gap = 0, pitch = 0;
+    const int draws = 400;
+    for (int i = 0; i < draws; ++i) {
+        const auto moved = coupled_equilibria(lift, moment, {1 - 0.01 * random.normal(), 0.002 * random.normal(), 0, 0, {}});
+        ASSERT_EQ(moved.size(), 1u);
+        gap += std::pow(moved[0].gap - 0.5, 2) / draws;
+        pitch += std::pow(moved[0].pitch, 2) / draws;
+    }
+    EXPECT_NEAR(std::sqrt(gap) / found[0].gap_sigma, 1, 0.1);
+    EXPECT_NEAR(std::sqrt(pitch) / found[0].pitch_sigma, 1, 0.1);
+}
+
+TEST(Pitch, DrawsTheLinesOfBalanceThroughTheirCommonPoints) {
+    const core::Table data = coupled_points();
+    const auto figure = coupled_figure(spline(data, "lift_force"), spline(data, "pitch_moment"), {1, 0.02, 0, 0, {}});
+    ASSERT_EQ(figure.curves.size(), 2u);
+    // h = 0.5 + 1.5 p, and p = 0.04 + 0.4 (h - 0.5).
+    for (std::size_t i = 0; i < figure.curves[0].x.size(); ++i) {
+        EXPECT_NEAR(figure.curves[0].x[i], 0.5 + 1.5 * figure.curves[0].y[i], 1e-9);
+    }
+    for (std::size_t i = 0; i < figure.curves[1].x.size(); ++i) {
+        EXPECT_NEAR(figure.curves[1].y[i], 0.04 + 0.4 * (figure.curves[1].x[i] - 0.5), 1e-9);
+    }
+    ASSERT_EQ(figure.points.size(), 1u);
+    EXPECT_EQ(figure.points[0].name, "stable");
+    EXPECT_NEAR(figure.points[0].x.at(0), 0.65, 1e-8);
+    EXPECT_NEAR(figure.points[0].y.at(0), 0.1, 1e-8);
 }
 
 TEST(Comparison, NamesTheWinnerAndWhereVariantsDifferBeyondTheirErrors) {
