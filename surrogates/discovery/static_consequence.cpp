@@ -7,7 +7,7 @@
 #include "surrogates/discovery/consequence.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
-#include "surrogates/dynamics/force_points.h"
+#include "surrogates/dynamics/effects/effect.h"
 
 namespace underbody::discovery {
 
@@ -64,7 +64,7 @@ Consequence static_consequence(const dynamics::Model& before, const std::vector<
     std::vector<std::string> rig, body;
     dynamics::Model after = before;
     for (const dynamics::EffectUse& use : uses) {
-        std::vector<std::string>& side = dynamics::belongs_to_the_rig(use.name) ? rig : body;
+        std::vector<std::string>& side = dynamics::effect(use.name).info().belongs_to_the_rig ? rig : body;
         const std::string name = use.name == "unknown" ? "the smooth correction" : use.name;
         if (std::find(side.begin(), side.end(), name) == side.end()) {
             side.push_back(name);

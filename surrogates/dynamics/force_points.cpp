@@ -1,7 +1,6 @@
 #include "surrogates/dynamics/force_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -22,7 +21,8 @@ Model of_the_vehicle(const Model& model, ForcePoints& out) {
     Model kept = model.resolved();
     std::string left;
     std::erase_if(kept.effects, [&left](const EffectUse& use) {
-        const bool goes = belongs_to_the_rig(use.name) || effect(use.name).info().seen_in == SeenIn::time_series;
+        const EffectInfo& info = effect(use.name).info();
+        const bool goes = info.belongs_to_the_rig || info.seen_in == SeenIn::time_series;
         if (goes) {
             left += (left.empty() ? "" : ", ") + use.name;
         }
@@ -117,13 +117,6 @@ void add_constants(core::Table& points, const Model& model, const Axes& axes, co
 }
 
 }  // namespace
-
-bool belongs_to_the_rig(const std::string& effect) {
-    static constexpr std::array<const char*, 9> rig{
-        "gap_offset",     "force_bias",     "sensor_gain",    "drift",             "current",
-        "strut_buoyancy", "cable_buoyancy", "guide_friction", "pitch_misalignment"};
-    return std::find(rig.begin(), rig.end(), effect) != rig.end();
-}
 
 ForcePoints force_points(const Model& declared, const Conditions& given) {
     ForcePoints out;

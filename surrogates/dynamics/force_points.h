@@ -12,10 +12,6 @@ struct ForcePoints {
     core::Problems remarks;  ///< what was held, what was left out
 };
 
-/// True for an effect of the rig (load cell, guide, cable, set-up, water of the tank), which goes with the vehicle
-/// nowhere.
-bool belongs_to_the_rig(const std::string& effect);
-
 /// Every quantity that the model has force sources for, with the effects that change the vehicle's own forces (roughness,
 /// exponents, pump curve, corrections), on the set points of its tables; four times as many between them when an effect
 /// bends the force there. Effects of the rig and those of the motion are left out, and named in the remarks.

@@ -8,13 +8,14 @@ namespace {
 class Kind final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"current",
-                                    "water that moves along x",
-                                    "speed through the water = speed + velocity",
-                                    SeenIn::static_set,
-                                    {"speed"},
-                                    {{"velocity", "m/s", -5, 5, 0.02, 0, false, "adds to the speed through the water"}},
-                                    "definition"};
+        static const EffectInfo the =
+            of_the_rig({"current",
+                        "water that moves along x",
+                        "speed through the water = speed + velocity",
+                        SeenIn::static_set,
+                        {"speed"},
+                        {{"velocity", "m/s", -5, 5, 0.02, 0, false, "adds to the speed through the water"}},
+                        "definition"});
         return the;
     }
 

@@ -8,14 +8,14 @@ namespace {
 class Kind final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"drift",
-                                    "drift of the load cell",
-                                    "reading = force + rate time",
-                                    SeenIn::static_set,
-                                    {"time"},
-                                    {{"rate", "N/s", -10, 10, 1e-06, 0, false, "growth of the reading"}},
-                                    "definition",
-                                    true};
+        static const EffectInfo the = of_the_rig({"drift",
+                                                  "drift of the load cell",
+                                                  "reading = force + rate time",
+                                                  SeenIn::static_set,
+                                                  {"time"},
+                                                  {{"rate", "N/s", -10, 10, 1e-06, 0, false, "growth of the reading"}},
+                                                  "definition",
+                                                  true});
         return the;
     }
 

@@ -43,7 +43,13 @@ struct EffectInfo {
     bool takes_quantity = false;   ///< may name one measured quantity (`quantity = "lift_force"`); else all of them
     bool takes_table = false;      ///< needs a table of corrections (unknown)
     bool takes_parameter = false;  ///< names a declared parameter of the model (declared_parameter)
+    bool belongs_to_the_rig = false;  ///< load cell, guide, cable, set-up, water of the tank: goes with the vehicle nowhere
 };
+
+inline EffectInfo of_the_rig(EffectInfo info) {
+    info.belongs_to_the_rig = true;
+    return info;
+}
 
 /// One use of an effect in a model.
 struct EffectUse {

@@ -8,14 +8,15 @@ namespace {
 class Kind final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"force_bias",
-                                    "bias of the load cell",
-                                    "reading = force + bias",
-                                    SeenIn::static_set,
-                                    {},
-                                    {{"bias", "N", -1000.0, 1000.0, 0.01, 0, false, "reading too large when positive"}},
-                                    "definition",
-                                    true};
+        static const EffectInfo the =
+            of_the_rig({"force_bias",
+                        "bias of the load cell",
+                        "reading = force + bias",
+                        SeenIn::static_set,
+                        {},
+                        {{"bias", "N", -1000.0, 1000.0, 0.01, 0, false, "reading too large when positive"}},
+                        "definition",
+                        true});
         return the;
     }
 

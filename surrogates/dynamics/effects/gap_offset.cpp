@@ -8,14 +8,14 @@ namespace {
 class Kind final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{
-            "gap_offset",
-            "offset of the set gaps",
-            "h = set gap + offset",
-            SeenIn::static_set,
-            {"gap"},
-            {{"offset", "m", -0.1, 0.1, 0.0005, 0, false, "the true gap is larger than the set one"}},
-            "definition"};
+        static const EffectInfo the =
+            of_the_rig({"gap_offset",
+                        "offset of the set gaps",
+                        "h = set gap + offset",
+                        SeenIn::static_set,
+                        {"gap"},
+                        {{"offset", "m", -0.1, 0.1, 0.0005, 0, false, "the true gap is larger than the set one"}},
+                        "definition"});
         return the;
     }
 

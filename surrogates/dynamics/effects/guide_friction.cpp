@@ -8,15 +8,16 @@ namespace {
 class Kind final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"guide_friction",
-                                    "friction of the guide",
-                                    "reading = force + friction approach_direction",
-                                    SeenIn::static_set,
-                                    {"approach_direction"},
-                                    {{"friction", "N", -100, 100, 0.01, 0, false,
-                                      "sign follows the direction of approach (hysteresis of the slide)"}},
-                                    "Coulomb",
-                                    true};
+        static const EffectInfo the =
+            of_the_rig({"guide_friction",
+                        "friction of the guide",
+                        "reading = force + friction approach_direction",
+                        SeenIn::static_set,
+                        {"approach_direction"},
+                        {{"friction", "N", -100, 100, 0.01, 0, false,
+                          "sign follows the direction of approach (hysteresis of the slide)"}},
+                        "Coulomb",
+                        true});
         return the;
     }
 

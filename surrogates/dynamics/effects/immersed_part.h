@@ -9,15 +9,16 @@ namespace underbody::dynamics {
 class ImmersedPart : public Effect {
 public:
     ImmersedPart(const char* name, const char* title, const char* depends_on)
-        : info_{name,
-                title,
-                "reading = force + slope (depth, or gap where no depth is given) + force",
-                SeenIn::static_set,
-                {depends_on},
-                {{"slope", "N/m", -10000.0, 10000.0, 0.05, 0, false, "growth of the reading with depth or gap"},
-                 {"force", "N", -1000.0, 1000.0, 0.01, 0, true, "at depth or gap zero"}},
-                "Archimedes",
-                true} {}
+        : info_(of_the_rig(
+              {name,
+               title,
+               "reading = force + slope (depth, or gap where no depth is given) + force",
+               SeenIn::static_set,
+               {depends_on},
+               {{"slope", "N/m", -10000.0, 10000.0, 0.05, 0, false, "growth of the reading with depth or gap"},
+                {"force", "N", -1000.0, 1000.0, 0.01, 0, true, "at depth or gap zero"}},
+               "Archimedes",
+               true})) {}
 
     [[nodiscard]] const EffectInfo& info() const override { return info_; }
 

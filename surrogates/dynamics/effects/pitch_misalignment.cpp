@@ -12,14 +12,15 @@ namespace {
 class Kind final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"pitch_misalignment",
-                                    "body mounted at an angle",
-                                    "pitch + angle where tables have a pitch axis; else the load cell leans: lift cos "
-                                    "+ drag sin, drag cos - lift sin",
-                                    SeenIn::static_set,
-                                    {"pitch", "lift_force", "drag_force"},
-                                    {{"angle", "rad", -0.6, 0.6, 0.01, 0, false, "nose up"}},
-                                    "rotation of the balance axes"};
+        static const EffectInfo the =
+            of_the_rig({"pitch_misalignment",
+                        "body mounted at an angle",
+                        "pitch + angle where tables have a pitch axis; else the load cell leans: lift cos "
+                        "+ drag sin, drag cos - lift sin",
+                        SeenIn::static_set,
+                        {"pitch", "lift_force", "drag_force"},
+                        {{"angle", "rad", -0.6, 0.6, 0.01, 0, false, "nose up"}},
+                        "rotation of the balance axes"});
         return the;
     }
 
