@@ -99,7 +99,31 @@ ForceScale read_scale(const core::TomlTable& scales, const std::string& name) {
     return scale;
 }
 
-ForceSource read_force(const core::TomlTable& table) {
+/// A table that this program exported is taken as it was. It may refuse or extrapolate beyond its ends, but a motion cannot stop being in the middle: there
+/// every table holds its end values, and the result counts the places.
+std::optional<tables::ForceTable> exported_table(const core::Table& points, const std::string& quantity,
+                                                 tables::FitOptions options, const core::Place& place,
+                                                 core::Problems& remarks) {
+    auto table = tables::ForceTable::exported(points, quantity, options);
+    bool holds = true;
+    for (std::size_t k = 0; table && k < table->axes().size(); ++k) {
+        const tables::TableAxis& axis = table->axes()[k];
+        if (axis.range != tables::RangePolicy::clamp) {
+            holds = false;
+            remarks.push_back({core::Problem::Severity::warning,
+                               "the table asks to " + to_string(axis.range) + " beyond the ends of " + axis.name +
+                                   ": in a model every table holds its end values",
+                               place});
+        }
+    }
+    if (!holds) {
+        options.range = tables::RangePolicy::clamp;
+        table = tables::ForceTable::exported(points, quantity, options);
+    }
+    return table;
+}
+
+ForceSource read_force(const core::TomlTable& table, core::Problems& remarks) {
     const std::string quantity = table.choice(
         "quantity", {"lift_force", "drag_force", "side_force", "pitch_moment", "roll_moment", "yaw_moment"});
     const core::Table points = core::read_csv(table.file("table"));
@@ -107,7 +131,6 @@ ForceSource read_force(const core::TomlTable& table) {
     if (table.has("axes")) {
         options.axes = table.strings("axes");
     }
-    options.range = tables::RangePolicy::clamp;
     const std::string fit =
         table.choice("fit", {"automatic", "interpolation", "spline", "gaussian_process"}, "automatic");
     using Kind = tables::FitOptions::Kind;
@@ -117,6 +140,11 @@ ForceSource read_force(const core::TomlTable& table) {
     // Full grids are interpolated without overshoot; points that form none get the surrogate that suits scattered
     // points.
     const auto fitted = [&] {
+        if (fit == "automatic") {
+            if (auto table_as_it_was = exported_table(points, quantity, options, table.place("table"), remarks)) {
+                return *table_as_it_was;
+            }
+        }
         try {
             return tables::ForceTable::fit(points, quantity, options);
         } catch (const core::InputError&) {
@@ -278,7 +306,7 @@ Model read(const core::TomlTable& root, std::string_view text) {
         model.conditions[channel] = conditions.quantity(name, channel_unit(channel));
     }
     for (const core::TomlTable& table : root.tables("force")) {
-        model.forces.push_back(read_force(table));
+        model.forces.push_back(read_force(table, model.remarks));
     }
     for (const core::TomlTable& table : root.tables("jet")) {
         model.jets.push_back(read_jet(table));

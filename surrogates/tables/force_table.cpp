@@ -34,10 +34,15 @@ ForceTable ForceTable::read(const std::filesystem::path& path, const std::string
     return fit(read_points(path), quantity, options);
 }
 
+std::optional<ForceTable> ForceTable::exported(const core::Table& table, const std::string& quantity, const FitOptions& options) {
+    auto impl = fit_exported(table, quantity, options);
+    return impl ? std::optional<ForceTable>(ForceTable(std::move(impl))) : std::nullopt;
+}
+
 ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity, const FitOptions& options) {
     if (options.kind == FitOptions::Kind::automatic) {
-        if (auto exported = fit_exported(table, quantity, options)) {
-            return ForceTable(std::move(exported));
+        if (auto as_it_was = exported(table, quantity, options)) {
+            return *as_it_was;
         }
     }
     SetPoints points = set_points(table, quantity, options);

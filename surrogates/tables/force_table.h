@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -52,11 +53,14 @@ public:
     /// points on a line in two axes, non-positive sigma, ...
     static ForceTable fit(const core::Table& table, const std::string& quantity, const FitOptions& options = {});
     static ForceTable read(const std::filesystem::path& path, const std::string& quantity, const FitOptions& options = {});
+    /// A table that this program exported as CSV or JSON, as it was: not fitted again, whatever the kind. Nothing when it is none, or one of another quantity.
+    /// Throws core::InputError when rows or numbers of it are missing.
+    static std::optional<ForceTable> exported(const core::Table& table, const std::string& quantity, const FitOptions& options = {});
 
     [[nodiscard]] const std::string& quantity() const;
     [[nodiscard]] const std::string& unit() const;
     [[nodiscard]] const std::vector<TableAxis>& axes() const;
-    [[nodiscard]] const std::string& kind() const;    ///< "monotone cubic", "bicubic", "gaussian process", ...
+    [[nodiscard]] const std::string& kind() const;    ///< "monotone cubic, two axes", "Gaussian process", "exported grid", ...
     [[nodiscard]] const std::string& source() const;  ///< the file it came from
     /// Remarks of the fit for the user: choices made, kinks, duplicates merged.
     [[nodiscard]] const core::Problems& remarks() const;

@@ -6,10 +6,12 @@
 
 #include "core/file.h"
 #include "core/random.h"
+#include "core/text.h"
 #include "surrogates/dynamics/heave.h"
 #include "surrogates/dynamics/model.h"
 #include "surrogates/dynamics/predict.h"
 #include "surrogates/dynamics/region.h"
+#include "surrogates/tables/exports/export.h"
 #include "tests/support/support.h"
 #include "tests/surrogates/dynamics/models.h"
 
@@ -56,6 +58,34 @@ TEST_F(ModelFile, ReadsUnitsAndKeepsWhatWasDeclared) {
     point[Channel::gap] = .5;
     EXPECT_NEAR(static_value(model, "lift_force", point, &outside), .04, 1e-12);
     EXPECT_TRUE(outside);
+}
+
+TEST_F(ModelFile, TakesAnExportedTableAsItWasButHoldsItsEnds) {
+    // Few points whose slopes make the curve: a new fit through the values alone would be another one.
+    std::string text = "gap [mm], lift_force [N]\n";
+    for (int i = 1; i <= 60; ++i) {
+        text += core::format_number(i) + ", " + core::format_number(std::sin(0.1 * i) + 3.0 / i) + "\n";
+    }
+    core::write_file(folder_.path() / "many.csv", text);
+    const auto many = tables::ForceTable::read(folder_.path() / "many.csv", "lift_force", {.kind = tables::FitOptions::Kind::interpolation, .range = tables::RangePolicy::refuse, .axes = {}});
+    tables::ExportOptions thin;
+    thin.max_error = 0.01;
+    const auto result = export_table(many, "csv", folder_.path() / "thin.csv", thin);
+    ASSERT_LT(result.grid.at(0), 20u);
+    std::string toml = plain;
+    toml.replace(toml.find("lift.csv"), 8, "thin.csv");
+    const Model model = read(toml);
+    Conditions point;
+    point[Channel::speed] = .5;
+    for (double gap = 0.001; gap < 0.06; gap += 0.0007) {
+        point[Channel::gap] = gap;
+        EXPECT_NEAR(static_value(model, "lift_force", point), many.value(&gap), result.error) << gap;
+    }
+    double end = 0.06;
+    point[Channel::gap] = 0.2;
+    EXPECT_NEAR(static_value(model, "lift_force", point), many.value(&end), 1e-12);
+    ASSERT_EQ(model.remarks.size(), 1u);
+    EXPECT_NE(model.remarks[0].message.find("asks to refuse beyond the ends of gap: in a model every table holds its end values"), std::string::npos);
 }
 
 TEST_F(ModelFile, RefusesMistakesAndNamesThem) {
