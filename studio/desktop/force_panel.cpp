@@ -220,12 +220,11 @@ void ForcePanel::show_table() {
     redraw();
 }
 
-/// A gap over more than one and a half decades wants a logarithmic axis.
 void ForcePanel::suggest_scale() {
     const auto& axis = table_->axes()[tables::axis_index(*table_, view_axis())];
     const QSignalBlocker quiet(logarithmic_);
     logarithmic_->setEnabled(axis.lower > 0);
-    logarithmic_->setChecked(axis.lower > 0 && axis.upper > 30 * axis.lower);
+    logarithmic_->setChecked(tables::spans_decades(axis.lower, axis.upper));
 }
 
 void ForcePanel::fill_axes() {

@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
+#include "surrogates/tables/figures.h"
 
 namespace underbody::discovery {
 
@@ -105,8 +106,7 @@ core::Figure residual_figure(const StaticExperiment& experiment, const std::vect
     std::sort(after.begin(), after.end());
     core::Figure figure;
     figure.title = "What the model leaves of " + name + " over " + dynamics::channel_name(channel);
-    const bool wide = before.front().first > 0 && before.back().first > 20 * before.front().first;
-    figure.x = {dynamics::channel_name(channel), unit.unit, 0, 0, wide};
+    figure.x = {dynamics::channel_name(channel), unit.unit, 0, 0, tables::spans_decades(before.front().first, before.back().first)};
     figure.y = {"measured less model", (scale > 1 ? "m" : "") + core::find_quantity(name)->unit, 0, 0, false};
     figure.lines.push_back({false, 0, "", {60, 60, 60, 255}, false});
     figure.lines.push_back({false, 2 * sigma * scale, "two standard deviations of a reading", {120, 120, 120, 255}, true});
@@ -176,7 +176,7 @@ core::Figure error_figure(const Discovery& result) {
         figure.bars.push_back(std::move(bars));
     }
     // a free run may err a thousand times more than the next two seconds: all of them are to be seen
-    if (smallest > 0 && std::isfinite(largest) && largest > 20 * smallest) {
+    if (std::isfinite(largest) && tables::spans_decades(smallest, largest)) {
         figure.y.logarithmic = true;
         figure.y.lower = 0.5 * smallest;
         figure.y.upper = 1.5 * largest;

@@ -10,14 +10,11 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/figures.h"
 
 namespace underbody::tables {
 
 namespace {
-
-/// Small gaps are where the forces change: they are drawn on a logarithmic axis, as in the picture of a table.
-bool spans_decades(double lower, double upper) { return lower > 0 && upper >= 20 * lower; }
 
 const std::vector<std::string>& known_levels() {
     static const std::vector<std::string> names = {"speed", "length", "jet_voltage", "jet_flow"};

@@ -42,10 +42,9 @@ std::vector<double> base_point(const ForceTable& table, const Held& held) {
     return held_point(table, {}, all);
 }
 
-/// Small gaps are where the forces change: on a linear axis they would be one column of pixels.
 bool is_logarithmic(const ForceTable& table, std::size_t axis, const FigureOptions& options) {
     const auto& a = table.axes()[axis];
-    return a.lower > 0 && options.logarithmic.value_or(a.name == "gap" && a.upper >= 20 * a.lower);
+    return a.lower > 0 && options.logarithmic.value_or(a.name == "gap" && spans_decades(a.lower, a.upper));
 }
 
 /// Samples that hold the grid lines, so that no corner is cut.
@@ -183,6 +182,8 @@ std::string caption_of(const ForceTable& table) {
 }
 
 }  // namespace
+
+bool spans_decades(double lower, double upper) { return lower > 0 && upper >= 20 * lower; }
 
 std::string shown_unit(const ForceTable& table, const std::string& quantity) {
     if (const core::Column* column = table.points().find(quantity); column != nullptr && !column->is_text()) {

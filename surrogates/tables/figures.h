@@ -17,7 +17,7 @@ struct FigureOptions {
     Held held;                        ///< the other axes, SI; those that are missing take 0 (pitch) or the middle of their range
     std::optional<EquilibriumOptions> equilibria;  ///< draws the net weight and the equilibria
     std::string title;
-    /// Of the axis, where its values are positive. Not given: for a gap that spans a factor of twenty and more.
+    /// Of the axis, where its values are positive. Not given: for a gap that spans decades.
     std::optional<bool> logarithmic;
     int samples = 400;
 };
@@ -32,6 +32,10 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
 core::Figure comparison_figure(const std::vector<std::pair<std::string, ForceTable>>& tables, const FigureOptions& options = {});
 /// The one to show first: a map for two and more axes, a curve for one.
 core::Figure figure(const ForceTable& table, const FigureOptions& options = {});
+
+/// Positive numbers that span a factor of twenty and more are drawn on a logarithmic axis: on a linear one the small ones, small gaps above all, would share
+/// one column of pixels.
+bool spans_decades(double lower, double upper);
 
 /// Unit that people read this quantity in here: the one its column was written in, else the SI unit.
 std::string shown_unit(const ForceTable& table, const std::string& quantity);

@@ -86,8 +86,8 @@ public:
     /// value() of many points, bit for bit, several times as fast on two axes: `points` [count * dimensions], `value` [count], `slope` (may be
     /// null) [count * dimensions].
     void values(const double* points, std::size_t count, double* value, double* slope) const noexcept;
-    /// The same, but beyond the ends of the axes whose bit is set in `going_on` the function goes on along its tangent: C1 everywhere, linear in each of
-    /// these coordinates there, with the slopes of that function.
+    /// value() to rounding, but beyond the ends of the axes whose bit is set in `going_on` the function goes on along its tangent: C1 there, linear in each
+    /// of these coordinates, with the slopes of that function. A NaN on any axis gives NaN.
     double continued(const double* point, double* slope, unsigned going_on) const noexcept;
 
     /// Where a coordinate lies: cell, distance from its lower end, and whether it had to be held.
@@ -112,7 +112,14 @@ private:
     void limit_cross_slopes();
     void limit_node(std::size_t node, std::span<const std::size_t> index);
     void build_cells();
-    double from_nodes(const double* point, double* slope, unsigned going_on) const noexcept;
+    /// Hermite functions of the cell where a point lies.
+    struct CellWeights {
+        double of[max_axes][2][2][2];  ///< [axis][differentiated][corner][derivative]
+        std::size_t node;              ///< lowest corner of the cell
+        bool held[max_axes];           ///< the point lies beyond the axis, the functions are those at its end
+    };
+    void set_weights(const double* point, CellWeights& weights) const noexcept;
+    [[nodiscard]] double sum(const CellWeights& weights, std::size_t differentiated) const noexcept;
     double value_1(double x, double* slope) const noexcept;
     double value_2(const double* point, double* slope) const noexcept;
 

@@ -68,97 +68,70 @@ double CubicGrid::value_2(const double* point, double* slope) const noexcept {
     return result[0];
 }
 
-/// Sum over corners and derivatives of the products of Hermite functions; any number of axes. Beyond the ends of the axes whose bit is set in
-/// `going_on` the functions go on along their tangents; those of all others are held.
-double CubicGrid::from_nodes(const double* point, double* slope, unsigned going_on) const noexcept {
-    const std::size_t n = dimensions();
-    const std::size_t width = std::size_t{1} << n;
-    double weight[max_axes][2][2][2];  // [axis][differentiated][corner][derivative]
-    bool held[max_axes];
-    std::size_t base = 0;
-    for (std::size_t k = 0; k < n; ++k) {
+void CubicGrid::set_weights(const double* point, CellWeights& w) const noexcept {
+    w.node = 0;
+    for (std::size_t k = 0; k < dimensions_; ++k) {
         const Spot s = spot(k, point[k]);
         const auto& x = axes_[k].points();
-        hermite_weights(x[s.cell + 1] - x[s.cell], s.offset, weight[k]);
-        base += s.cell * stride_[k];
-        held[k] = s.held && (going_on >> k & 1) == 0;
-        if (s.held && !held[k]) {
-            const double beyond = point[k] - (point[k] < axes_[k].lower() ? axes_[k].lower() : axes_[k].upper());
-            for (std::size_t corner = 0; corner < 2; ++corner) {
-                for (std::size_t m = 0; m < 2; ++m) {
-                    weight[k][0][corner][m] += beyond * weight[k][1][corner][m];
-                }
-            }
-        }
+        hermite_weights(x[s.cell + 1] - x[s.cell], s.offset, w.of[k]);
+        w.node += s.cell * stride_[k];
+        w.held[k] = s.held;
     }
-    double value = 0;
-    double gradient[max_axes] = {};
+}
+
+/// Sum over the corners of a cell and their Hermite data of the products of Hermite functions, once differentiated along every axis whose bit is set.
+double CubicGrid::sum(const CellWeights& w, std::size_t differentiated) const noexcept {
+    const std::size_t width = std::size_t{1} << dimensions_;
+    double result = 0;
     for (std::size_t corner = 0; corner < width; ++corner) {
-        std::size_t node = base;
-        for (std::size_t k = 0; k < n; ++k) {
+        std::size_t node = w.node;
+        for (std::size_t k = 0; k < dimensions_; ++k) {
             node += (corner >> k & 1) * stride_[k];
         }
         const double* data = &nodes_[node * width];
         for (std::size_t mask = 0; mask < width; ++mask) {
             double product = data[mask];
-            for (std::size_t k = 0; k < n; ++k) {
-                product *= weight[k][0][corner >> k & 1][mask >> k & 1];
+            for (std::size_t k = 0; k < dimensions_; ++k) {
+                product *= w.of[k][differentiated >> k & 1][corner >> k & 1][mask >> k & 1];
             }
-            value += product;
-            if (slope == nullptr) {
-                continue;
-            }
-            for (std::size_t j = 0; j < n; ++j) {
-                double part = data[mask];
-                for (std::size_t k = 0; k < n; ++k) {
-                    part *= weight[k][k == j ? 1 : 0][corner >> k & 1][mask >> k & 1];
-                }
-                gradient[j] += part;
-            }
+            result += product;
         }
     }
-    if (slope != nullptr) {
-        for (std::size_t k = 0; k < n; ++k) {
-            slope[k] = held[k] ? 0 : gradient[k];
+    return result;
+}
+
+double CubicGrid::continued(const double* point, double* slope, unsigned going_on) const noexcept {
+    CellWeights w;
+    set_weights(point, w);
+    for (std::size_t k = 0; k < dimensions_; ++k) {
+        if (!w.held[k] || (going_on >> k & 1) == 0) {
+            continue;
         }
+        const double beyond = point[k] - (point[k] < axes_[k].lower() ? axes_[k].lower() : axes_[k].upper());
+        for (std::size_t corner = 0; corner < 2; ++corner) {
+            for (std::size_t m = 0; m < 2; ++m) {
+                w.of[k][0][corner][m] += beyond * w.of[k][1][corner][m];
+            }
+        }
+        w.held[k] = false;
     }
-    return value;
+    for (std::size_t k = 0; k < dimensions_ && slope != nullptr; ++k) {
+        slope[k] = w.held[k] ? 0 : sum(w, std::size_t{1} << k);
+    }
+    return sum(w, 0);
 }
 
 void CubicGrid::derivatives(const double* point, double* result) const noexcept {
-    const std::size_t n = axes_.size();
-    const std::size_t width = std::size_t{1} << n;
-    double weight[max_axes][2][2][2];  // [axis][differentiated][corner][derivative]
-    std::size_t base = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const Spot s = spot(k, point[k]);
-        const auto& x = axes_[k].points();
-        hermite_weights(x[s.cell + 1] - x[s.cell], s.offset, weight[k]);
-        base += s.cell * stride_[k];
-    }
-    for (std::size_t wanted = 0; wanted < width; ++wanted) {
-        result[wanted] = 0;
-        for (std::size_t corner = 0; corner < width; ++corner) {
-            std::size_t node = base;
-            for (std::size_t k = 0; k < n; ++k) {
-                node += (corner >> k & 1) * stride_[k];
-            }
-            for (std::size_t mask = 0; mask < width; ++mask) {
-                double product = nodes_[node * width + mask];
-                for (std::size_t k = 0; k < n; ++k) {
-                    product *= weight[k][wanted >> k & 1][corner >> k & 1][mask >> k & 1];
-                }
-                result[wanted] += product;
-            }
-        }
+    CellWeights w;
+    set_weights(point, w);
+    for (std::size_t wanted = 0; wanted < std::size_t{1} << dimensions_; ++wanted) {
+        result[wanted] = sum(w, wanted);
     }
 }
 
 double CubicGrid::value(const double* point, double* slope) const noexcept {
     const std::size_t n = dimensions();
-    return n == 2 ? value_2(point, slope) : n == 1 ? value_1(point[0], slope) : from_nodes(point, slope, 0);
+    return n == 2 ? value_2(point, slope) : n == 1 ? value_1(point[0], slope) : continued(point, slope, 0);
 }
-
-double CubicGrid::continued(const double* point, double* slope, unsigned going_on) const noexcept { return from_nodes(point, slope, going_on); }
 
 }  // namespace underbody::tables

@@ -13,7 +13,7 @@ namespace underbody::tables {
 /// Values of the axes that are held, by name, SI.
 using Held = std::vector<std::pair<std::string, double>>;
 
-/// Index of the axis by name; throws core::InputError with the nearest name.
+/// Index of the axis by name; throws core::UsageError with the nearest name.
 std::size_t axis_index(const ForceTable& table, const std::string& name);
 
 /// A point of the table with the held values filled in. The entry of `free_axis` is the middle of its range.

@@ -1,4 +1,4 @@
-// What a table does outside its points, axis by axis.
+// What a table does beyond the ends of its axes, axis by axis.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,12 @@
 
 namespace underbody::tables {
 
-/// What happens outside the points of an axis.
+/// What ForceTable::at() and all exports but JSBSim's do beyond the ends of an axis. The standard deviation grows with the distance under each policy.
+/// Searches (equilibria, pitch windows, pictures) end where the axis does that they move along, and the motion of a model holds the ends of all axes.
 enum class RangePolicy {
-    clamp,        ///< hold the end value, slope zero, flagged (default)
-    refuse,       ///< throw core::InputError
-    extrapolate,  ///< go on with the end slope, with growing error, flagged
+    clamp,        ///< hold the end value with slope zero, flagged (default)
+    refuse,       ///< core::InputError; an export gives values that are not numbers
+    extrapolate,  ///< go on along the tangent at the end, flagged
 };
 
 /// "clamp", "refuse" or "extrapolate"; the way back gives nothing for any other word.
