@@ -47,8 +47,14 @@ const std::vector<double>& Table::numbers(std::string_view name) const {
 const std::vector<std::string>& Table::text(std::string_view name) const {
     const Column* column = find(name);
     if (column == nullptr || !column->is_text()) {
+        std::vector<std::string> texts;
+        for (const auto& other : columns_) {
+            if (other.is_text()) {
+                texts.push_back(other.name);
+            }
+        }
         throw InputError("missing", "there is no text column '" + std::string(name) + "'", {source, {}, {}, {}},
-                         did_you_mean(std::string(name), names_of(columns_)));
+                         texts.empty() ? "no column holds text: its header has no unit in brackets" : did_you_mean(std::string(name), texts));
     }
     return column->text;
 }
@@ -200,6 +206,10 @@ Table read_csv(std::string_view bytes, const std::string& source) {
         }
         const auto cells = split(line, ',');
         if (headings.empty()) {
+            if (cells.size() == 1 && line.find_first_of(";\t") != std::string_view::npos) {
+                throw InputError("parse", std::string("the columns are separated by ") + (line.find(';') != std::string_view::npos ? "';'" : "tabulators") + ", not by commas",
+                                 {source, line_number, {}, {}}, "separate them by commas, and write numbers with '.' as decimal point");
+            }
             for (std::size_t i = 0; i < cells.size(); ++i) {
                 const Place place{source, line_number, static_cast<std::int64_t>(i) + 1, {}};
                 headings.push_back(read_heading(cells[i], place));

@@ -3,6 +3,7 @@
 #include <locale.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
@@ -336,7 +337,11 @@ std::vector<std::pair<std::string, std::string>> pairs_of(std::string_view text,
             throw UsageError("parse", "'" + std::string(part) + "' is not of the form name=value", {},
                              "write a list such as " + example);
         }
-        pairs.emplace_back(trimmed(part.substr(0, equal)), trimmed(part.substr(equal + 1)));
+        const std::string name(trimmed(part.substr(0, equal)));
+        if (std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) { return pair.first == name; })) {
+            throw UsageError("parse", "'" + name + "' is given twice: " + std::string(text));
+        }
+        pairs.emplace_back(name, trimmed(part.substr(equal + 1)));
     }
     return pairs;
 }

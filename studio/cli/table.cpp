@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -64,12 +65,21 @@ struct AtCommand {
 int run_at(Shell& shell, const AtCommand& command) {
     nlohmann::json document;
     document["values"] = nlohmann::json::array();
+    std::set<std::string> said;  // of a point once, not for every force
     for (const auto& table : command.table.fit_all(shell)) {
         for (const auto& text : command.points) {
             core::Problems remarks;
             const auto point = tables::held_point(table, {}, read_assignments(text), &remarks);
-            shell.show(remarks);
             const auto e = table.at(point);
+            tables::Held named;
+            for (std::size_t k = 0; k < point.size(); ++k) {
+                named.emplace_back(table.axes()[k].name, point[k]);
+            }
+            for (auto& remark : tables::outside_remarks(table, named)) {
+                remarks.push_back(std::move(remark));
+            }
+            std::erase_if(remarks, [&](const core::Problem& remark) { return !said.insert(remark.message).second; });
+            shell.show(remarks);
             nlohmann::json entry = tables::to_json(table, point, e);
             std::string line = table.quantity() + " " + shown(table, table.quantity(), table.unit(), e.value, 7);
             if (e.sigma > 0) {
@@ -78,10 +88,6 @@ int run_at(Shell& shell, const AtCommand& command) {
             for (std::size_t k = 0; k < point.size(); ++k) {
                 const auto& axis = table.axes()[k];
                 line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " + table.unit() + "/" + axis.unit + " along " + axis.name;
-                if (e.beyond[k] != 0) {
-                    shell.warn(axis.name + " is outside the table by " + shown(table, axis.name, axis.unit, std::abs(e.beyond[k])) + ": " +
-                               tables::outside_words(axis.range));
-                }
             }
             if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
                 shell.warn("no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
@@ -116,6 +122,9 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
     std::string text = tables::to_string(e.stability) + " at " + shown(table, found.axis, found.axis_unit, e.gap, 6);
     if (e.sigma > 1e-9 * (found.upper - found.lower) && std::isfinite(e.sigma)) {
         text += " +- " + shown(table, found.axis, found.axis_unit, e.sigma, 2);
+    }
+    if (e.extent > 0) {
+        text += ", all over " + shown(table, found.axis, found.axis_unit, e.extent, 4);
     }
     text += "   stiffness " + core::format_number(e.stiffness, 5) + " N/m";
     if (e.frequency > 0) {

@@ -38,6 +38,27 @@ struct ContinueCommand {
     double exponent = 2;
 };
 
+/// Each stretch of one stability from end to end, and the folds between them.
+void show_curve(Shell& shell, const tables::ForceTable& table, const tables::EquilibriumCurve& curve) {
+    const auto place = [&](double parameter, double gap) {
+        return curve.parameter + " " + number(parameter) + " " + curve.parameter_unit + ", " + curve.axis + " " + shown(table, curve.axis, curve.axis_unit, gap, 6);
+    };
+    for (const auto& branch : curve.branches) {
+        for (std::size_t i = 0, j = 0; i < branch.size(); i = j) {
+            while (j < branch.size() && branch[j].stability == branch[i].stability) {
+                ++j;
+            }
+            shell.print(tables::to_string(branch[i].stability) + " from " + place(branch[i].parameter, branch[i].gap) + " to " + place(branch[j - 1].parameter, branch[j - 1].gap));
+        }
+    }
+    for (const auto& fold : curve.folds) {
+        shell.print("fold at " + place(fold.parameter, fold.gap));
+    }
+    if (curve.branches.empty()) {
+        shell.print("no equilibrium in this range of " + curve.parameter);
+    }
+}
+
 int run_continue(Shell& shell, const ContinueCommand& command) {
     const auto table = command.table.fit(shell);
     const std::size_t equals = command.along.find('=');
@@ -54,24 +75,20 @@ int run_continue(Shell& shell, const ContinueCommand& command) {
     options.base.net_weight = option_value("--weight", command.weight, "N");
     options.base.held = read_assignments(command.held);
     options.exponent = command.exponent;
-    for (const auto& [name, value] : table.conditions()) {
-        if (name == options.parameter) {
-            options.reference = value;
-        }
-    }
+    const auto named = [&](const auto& entry) { return entry.first == options.parameter; };
+    const auto& conditions = table.conditions();
+    const auto condition = std::find_if(conditions.begin(), conditions.end(), named);
+    const bool axis = std::any_of(table.axes().begin(), table.axes().end(), [&](const tables::TableAxis& a) { return a.name == options.parameter; });
     if (!command.reference.empty()) {
         options.reference = option_value("--reference", command.reference, unit);
+    } else if (condition != conditions.end()) {
+        options.reference = condition->second;
+    } else if (known != nullptr && options.parameter != "net_weight" && !axis) {
+        throw core::UsageError("missing", "the table does not say at which " + options.parameter + " it was made", {}, "say it: --reference \"0.5 " + unit + "\"");
     }
     shell.show(tables::outside_remarks(table, options.base.held));
     const auto curve = tables::continue_equilibria(table, options, shell.progress());
-    std::size_t points = 0;
-    for (const auto& branch : curve.branches) {
-        points += branch.size();
-    }
-    shell.print(std::to_string(curve.branches.size()) + " branches of equilibria, " + std::to_string(points) + " points, " + std::to_string(curve.folds.size()) + " folds");
-    for (const auto& fold : curve.folds) {
-        shell.print("fold at " + curve.parameter + " " + number(fold.parameter, 7) + " " + curve.parameter_unit + ", " + curve.axis + " " + number(fold.gap, 7) + " " + curve.axis_unit);
-    }
+    show_curve(shell, table, curve);
     if (!command.picture.empty()) {
         write_picture(tables::continuation_figure(table, curve), command.picture);
     }
@@ -109,9 +126,7 @@ void show_coupled(Shell& shell, const tables::ForceTable& lift, const std::vecto
                                          eigenvalue(e.eigenvalues[1]) + (masses ? " 1/s^2" : "");
         shell.print(text);
     }
-    if (found.empty()) {
-        shell.print("heave and pitch balance nowhere together");
-    } else if (!masses) {
+    if (!found.empty() && !masses) {
         shell.warn("without --mass and --inertia 1 kg and 1 kg m^2 are taken: they decide between stable and flutter where the stiffness is not symmetric");
     }
 }
@@ -145,6 +160,13 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
         options.held = held;
         std::erase_if(options.held, [](const auto& h) { return h.first == "gap"; });  // of the windows; here it is free
         const auto found = tables::coupled_equilibria(lift, moment, options);
+        if (found.empty()) {
+            const auto trim = tables::trim_range(lift, moment, options);
+            shell.print(trim ? "heave and pitch balance nowhere together: where lift holds the weight, the trim torque would be " + number(trim->first, 4) + " to " +
+                                   number(trim->second, 4) + " N m nose up"
+                             : "heave and pitch balance nowhere together: lift holds the weight nowhere");
+            document["trim"] = trim ? nlohmann::json{trim->first, trim->second} : nlohmann::json();
+        }
         show_coupled(shell, lift, found, options.virtual_mass > 0);
         document["equilibria"] = found;
         if (!windows && !command.picture.empty()) {

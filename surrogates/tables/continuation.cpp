@@ -33,6 +33,9 @@ public:
             throw core::UsageError("parameter", "'" + options.parameter + "' is no parameter to continue along", {},
                                    core::did_you_mean(options.parameter, {"net_weight", "speed", "jet_voltage", "pitch"}));
         }
+        if (!weight && parameter_axis_ == none && (!(options.reference > 0) || !std::isfinite(options.reference) || !std::isfinite(options.exponent))) {
+            throw core::UsageError("range", "the reference of " + options.parameter + " must be positive, and the exponent a number");
+        }
         unit = weight ? "N" : parameter_axis_ != none ? table.axes()[parameter_axis_].unit : known->unit;
         if (parameter_axis_ != none) {
             const auto& a = table.axes()[parameter_axis_];

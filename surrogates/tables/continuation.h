@@ -40,7 +40,8 @@ struct EquilibriumCurve {
     std::vector<Fold> folds;  ///< where a stable and an unstable equilibrium meet (dF/dh = 0), to 1e-9 of the range
 };
 
-/// Throws core::UsageError: ends swapped, a range outside the table's axis, an unknown parameter.
+/// Throws core::UsageError: ends swapped, a range outside the table's axis, an unknown parameter, a reference that is not positive or an exponent that is
+/// not finite.
 EquilibriumCurve continue_equilibria(const ForceTable& table, const ContinuationOptions& options, core::Progress& progress = core::Progress::none());
 core::Figure continuation_figure(const ForceTable& table, const EquilibriumCurve& curve);
 void to_json(nlohmann::json& json, const EquilibriumCurve& curve);

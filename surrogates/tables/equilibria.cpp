@@ -85,7 +85,7 @@ std::vector<Equilibrium> find(const Line& force) {
     for (const auto& zero : force.zeros()) {
         Equilibrium e;
         e.gap = zero.x;
-        e.stiffness = -zero.slope;
+        e.stiffness = 0 - zero.slope;  // no negative zero
         e.stability = stability_of(zero, slope_scale);
         e.extent = zero.extent;
         found.push_back(e);

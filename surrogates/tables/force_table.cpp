@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/tables/figures.h"
 #include "surrogates/tables/fit.h"
 #include "surrogates/tables/force_table_impl.h"
 #include "surrogates/tables/hull.h"
@@ -103,9 +104,16 @@ core::Problems outside_remarks(const ForceTable& table, const Held& held) {
     for (const auto& [name, value] : held) {
         const auto& axes = table.axes();
         const auto axis = std::find_if(axes.begin(), axes.end(), [&n = name](const TableAxis& a) { return a.name == n; });
-        if (axis != axes.end() && (value < axis->lower || value > axis->upper)) {
-            remarks.push_back({core::Problem::Severity::warning, axis->name + " lies outside the table: " + outside_words(axis->range), {table.source(), {}, {}, {}}});
+        if (axis == axes.end() || (value >= axis->lower && value <= axis->upper)) {
+            continue;
         }
+        const std::string unit = shown_unit(table, axis->name);
+        const double beyond = std::max(axis->lower - value, value - axis->upper);
+        std::string text = axis->name + " is outside the table by " + core::format_number(core::convert(beyond, axis->unit, unit), 5) + " " + unit + ": " + outside_words(axis->range);
+        if (const double meant = core::convert(value, unit, axis->unit); meant >= axis->lower && meant <= axis->upper) {
+            text += "; a bare number is SI, " + core::format_number(value, 6) + " " + unit + " would lie inside";
+        }
+        remarks.push_back({core::Problem::Severity::warning, text, {table.source(), {}, {}, {}}});
     }
     return remarks;
 }

@@ -32,12 +32,15 @@ std::vector<double> held_point(const ForceTable& table, std::optional<std::size_
                     throw core::UsageError("axis",
                                            "the table holds for " + name + " " + core::format_number(constant, 6) + " only, not " +
                                                core::format_number(value, 6),
-                                           {table.source(), {}, {}, {}});
+                                           {table.source(), {}, {}, {}}, "take points at several values of " + name + ", or scale the force by a law");
                 }
             }
         }
         if (!known) {
             const std::size_t k = axis_index(table, name);
+            if (k == free_axis) {
+                throw core::UsageError("axis", name + " cannot be held: it is what varies", {table.source(), {}, {}, {}});
+            }
             if (!std::isfinite(value)) {
                 throw core::UsageError("range", name + " is not finite", {table.source(), {}, {}, {}});
             }

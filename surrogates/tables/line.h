@@ -18,7 +18,7 @@ std::size_t axis_index(const ForceTable& table, const std::string& name);
 
 /// A point of the table with the held values filled in. The entry of `free_axis` is the middle of its range.
 /// An axis that is not held takes 0 when it is a pitch and 0 lies in its range (the choice is added to `remarks`);
-/// else throws core::UsageError that names it. Names that are no axis throw, unless they are conditions of the table with that value.
+/// else throws core::UsageError that names it. Names that are no axis throw, unless they are conditions of the table with that value; so does the free axis.
 std::vector<double> held_point(const ForceTable& table, std::optional<std::size_t> free_axis, const Held& held, core::Problems* remarks = nullptr);
 
 /// C1 piecewise cubic in one variable.

@@ -17,7 +17,8 @@ void values(const ForceTable& table, const double* points, std::size_t count, do
 /// for grids. Beyond an axis its end counts.
 double beyond_points(const ForceTable& table, const double* point);
 
-/// A warning for every held value that lies outside its axis, with what the table does there.
+/// A warning for every held value that lies outside its axis: by how much, what the table does there, and whether the number would fit in the unit of the
+/// table's file.
 core::Problems outside_remarks(const ForceTable& table, const Held& held);
 
 }  // namespace underbody::tables

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -261,6 +260,33 @@ std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const
     return found;
 }
 
+namespace {
+
+/// Over gap and pitch, in steps that show what a grid of the tables shows.
+std::vector<ZeroLine> balance_lines(const Sides& sides, const PlaneFunction& f) {
+    std::vector<double> gaps, pitches;
+    const int n = 200;
+    for (int i = 0; i <= n; ++i) {
+        gaps.push_back(sides.gap_at(static_cast<double>(i) / n));
+        pitches.push_back(sides.pitch_at(static_cast<double>(i) / n));
+    }
+    return zero_lines(f, gaps, pitches);
+}
+
+}  // namespace
+
+std::optional<std::pair<double, double>> trim_range(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options) {
+    Sides sides(lift, moment, options);
+    double low = INFINITY, high = -INFINITY;
+    for (const auto& line : balance_lines(sides, [&](double h, double p) { return sides.force.value(h, p) - options.net_weight; })) {
+        for (const auto& [h, p] : line) {
+            low = std::min(low, -sides.torque.value(h, p));
+            high = std::max(high, -sides.torque.value(h, p));
+        }
+    }
+    return low <= high ? std::optional(std::pair(low, high)) : std::nullopt;
+}
+
 core::Figure coupled_figure(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options) {
     Sides sides(lift, moment, options);
     core::Figure figure;
@@ -269,14 +295,8 @@ core::Figure coupled_figure(const ForceTable& lift, const ForceTable& moment, co
     figure.x = {"gap", shown_unit(lift, "gap"), 0, 0, spans_decades(sides.gap_lower, sides.gap_upper)};
     figure.y = {"pitch", shown_unit(lift, "pitch"), 0, 0, false};
     const auto x_shown = core::conversion("m", figure.x.unit), y_shown = core::conversion("rad", figure.y.unit);
-    std::vector<double> gaps, pitches;
-    const int n = 200;
-    for (int i = 0; i <= n; ++i) {
-        gaps.push_back(sides.gap_at(static_cast<double>(i) / n));
-        pitches.push_back(sides.pitch_at(static_cast<double>(i) / n));
-    }
     const auto draw = [&](const PlaneFunction& f, std::string name, core::Colour colour) {
-        for (const auto& line : zero_lines(f, gaps, pitches)) {
+        for (const auto& line : balance_lines(sides, f)) {
             core::FigureCurve curve;
             curve.name = std::exchange(name, "");
             curve.colour = colour;

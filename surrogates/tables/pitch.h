@@ -4,7 +4,9 @@
 #include <array>
 #include <complex>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/figure.h"
@@ -51,6 +53,9 @@ struct CoupledEquilibrium {
 /// All points in the common range of lift and moment where both balance. Both tables need axes gap and pitch.
 /// Throws core::UsageError: no common range, mass or inertia negative or without the other, a held axis that is none, gap or pitch held.
 std::vector<CoupledEquilibrium> coupled_equilibria(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options);
+/// Smallest and largest trim torque (N m, nose up) that would balance the pitch moment somewhere on the lines where lift holds the net weight; nothing where
+/// it does so nowhere.
+std::optional<std::pair<double, double>> trim_range(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options);
 /// Over gap and pitch the lines where lift balances the net weight and where the pitch moment balances the trim torque, and the equilibria where they cross.
 core::Figure coupled_figure(const ForceTable& lift, const ForceTable& moment, const CoupledOptions& options);
 void to_json(nlohmann::json& json, const CoupledEquilibrium& equilibrium);

@@ -138,8 +138,12 @@ std::vector<std::string> found_axes(const core::Table& table, const std::string&
         for (const auto& name : constant) {
             known += (known.empty() ? "" : ", ") + name;
         }
+        std::string all;
+        for (const auto& column : table.columns()) {
+            all += (all.empty() ? "" : ", ") + column.name;
+        }
         throw InputError("axis", "the table has no axis: no set-point column varies", {table.source, {}, {}, {}},
-                         known.empty() ? "it needs a column such as gap [mm], pitch [deg] or speed [m/s]"
+                         known.empty() ? "it needs a column such as gap [mm], pitch [deg] or speed [m/s], and has " + all
                                        : "these have one value throughout: " + known);
     }
     if (axes.size() > max_axes) {
@@ -265,7 +269,9 @@ void merge_repeats(SetPoints& points) {
         begin = end;
     }
     if (repeats > 0) {
-        points.remarks.push_back(note(std::to_string(repeats) + " repeated set points agree within their errors and are merged", first_repeat));
+        points.remarks.push_back(note(std::to_string(repeats) + (repeats == 1 ? " repeated set point agrees" : " repeated set points agree") +
+                                          (errors ? " within the errors" : "") + (repeats == 1 ? " and is merged" : " and are merged"),
+                                      first_repeat));
     }
     points.x = std::move(merged.x);
     points.value = std::move(merged.value);

@@ -51,6 +51,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BadTable{"gap [s], lift_force [N]\n1, 2\n", "unit", 1, 1, "another dimension"},
                     BadTable{"gap [m], lift_force_sigma [m]\n1, 2\n", "unit", 1, 2, "another dimension"},
                     BadTable{"gap [m], gap [mm]\n1, 2\n", "duplicate", 1, 2, "occurs twice"},
+                    BadTable{"gap [mm];lift_force [N]\n1;0,6\n", "parse", 1, 0, "separated by ';'"},
+                    BadTable{"gap [mm]\tlift_force [N]\n1\t0.6\n", "parse", 1, 0, "separated by tabulators"},
                     BadTable{"gap [m, lift_force [N]\n1, 2\n", "parse", 1, 1, "name [unit]"},
                     BadTable{"gap [m], lift_force [N]\n1, 2\n1\n", "ragged", 3, 0, "1 fields"},
                     BadTable{"gap [m], lift_force [N]\n1, 2, 3\n", "ragged", 2, 3, "3 fields"},

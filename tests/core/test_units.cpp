@@ -89,6 +89,8 @@ TEST(Units, ReadsListsOfTheCommandLine) {
     EXPECT_DOUBLE_EQ(ranges[1].lower, -0.1);
     EXPECT_THROW(parse_ranges("gap=1:0"), UsageError);
     EXPECT_THROW(parse_ranges("gap=1"), UsageError);
+    EXPECT_THROW(parse_ranges("gap=0:1,gap=0:2"), UsageError);
+    EXPECT_THROW(parse_assignments("gap=5mm, gap=6mm"), UsageError);
     try {
         parse_assignments("gapp=5mm");
         FAIL();

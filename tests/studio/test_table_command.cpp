@@ -34,6 +34,10 @@ TEST(TableCommand, GivesValuesEquilibriaAndTheirJson) {
     run = run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.2:0.6", "--json"}, folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     EXPECT_GE(nlohmann::json::parse(run.output)["folds"].size(), 2u);
+    run = run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.2:0.6"}, folder.path());
+    EXPECT_THAT(run.output, HasSubstr("stable from net_weight "));
+    EXPECT_THAT(run.output, HasSubstr("unstable from net_weight "));
+    EXPECT_THAT(run.output, HasSubstr(" mm"));
 }
 
 TEST(TableCommand, SaysWhatIsWrong) {
@@ -49,6 +53,19 @@ TEST(TableCommand, SaysWhatIsWrong) {
     const auto outside = run_underbody({"table", "at", "lift.csv", "gap=200mm"}, folder.path());
     EXPECT_EQ(outside.exit_code, 0);
     EXPECT_THAT(outside.errors, HasSubstr("outside the table by 100 mm"));
+    const auto bare = run_underbody({"table", "at", "lift.csv", "gap=5"}, folder.path());
+    EXPECT_THAT(bare.errors, HasSubstr("outside the table by 4900 mm: the end value is held; a bare number is SI, 5 mm would lie inside"));
+    // What would be passed over in silence.
+    const auto wrong = [&](const std::vector<std::string>& words, const char* message) {
+        const auto run = run_underbody(words, folder.path());
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_THAT(run.errors, HasSubstr(message));
+    };
+    wrong({"table", "equilibria", "lift.csv", "--held", "gap=5mm"}, "gap cannot be held: it is what varies");
+    wrong({"table", "at", "lift.csv", "gap=5mm,gap=6mm"}, "'gap' is given twice");
+    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8"}, "does not say at which speed it was made");
+    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "0"}, "must be positive");
+    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "1", "--exponent", "nan"}, "exponent a number");
     // A unit that is none of a force is a mistake of the command line.
     const auto unit = run_underbody({"table", "equilibria", "lift.csv", "--weight", "3 mm"}, folder.path());
     EXPECT_EQ(unit.exit_code, 2);
@@ -119,6 +136,10 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     EXPECT_THAT(both.output, HasSubstr("balance of heave and pitch at gap 0.5 m +- "));
     EXPECT_THAT(both.errors, HasSubstr("without --mass and --inertia"));
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "moment.png"));
+    // Where nothing balances, what torque would: at v = 2 lift holds 4 N on h - 0.5 = 1.5 p, with the moment -0.2 p v^2 there.
+    const auto none = pitch({"--held", "speed=2", "--weight", "4", "--trim", "0.5"});
+    EXPECT_THAT(none.output, HasSubstr("the trim torque would be -0.16 to 0.16 N m nose up"));
+    EXPECT_THAT(pitch({"--held", "speed=2", "--weight", "400"}).output, HasSubstr("lift holds the weight nowhere"));
     // What is missing is said.
     EXPECT_EQ(pitch({"--held", "speed=2"}).exit_code, 2);
     EXPECT_THAT(pitch({"--held", "speed=2"}).errors, HasSubstr("'gap' whose value is not given"));

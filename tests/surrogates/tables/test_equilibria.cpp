@@ -176,7 +176,7 @@ TEST(Equilibria, FollowThePolicyOfAHeldAxis) {
     ASSERT_EQ(holding.all.size(), 1u);
     EXPECT_DOUBLE_EQ(holding.all[0].gap, at_the_end.all[0].gap);
     ASSERT_EQ(holding.remarks.size(), 1u);
-    EXPECT_EQ(holding.remarks[0].message, "pitch lies outside the table: the end value is held");
+    EXPECT_EQ(holding.remarks[0].message, "pitch is outside the table by 0.05 rad: the end value is held");
     const auto going_on = of("pitch=extrapolate");
     ASSERT_EQ(going_on.all.size(), 1u);
     EXPECT_NEAR(1e-3 / going_on.all[0].gap, 0.4 - 0.2, 0.03) << "the linear part goes on";
