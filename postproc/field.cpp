@@ -1,10 +1,15 @@
 #include "postproc/field.h"
 
+#include <vtkCellData.h>
+#include <vtkPointData.h>
+
 #include <array>
 #include <fstream>
 
+#include "core/utf8.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/understood.h"
+#include "postproc/importers/unknown_content.h"
 
 namespace underbody::postproc {
 
@@ -76,6 +81,39 @@ std::string known_formats() {
     return text;
 }
 
+/// Names go into JSON, XML and figures, which take nothing else.
+void make_names_utf8(Field& field) {
+    const auto rename = [](vtkDataSetAttributes& data, const std::string& from, const std::string& to) {
+        if (vtkAbstractArray* array = data.GetAbstractArray(from.c_str()); array != nullptr) {
+            array->SetName(to.c_str());
+        }
+    };
+    for (auto& zone : field.zones) {
+        zone.name = core::as_utf8(zone.name);
+        zone.original_kind = core::as_utf8(zone.original_kind);
+        for (auto& info : zone.arrays) {
+            const std::string name = core::as_utf8(info.name);
+            for (vtkDataSet* data : {static_cast<vtkDataSet*>(zone.surface), static_cast<vtkDataSet*>(zone.volume)}) {
+                if (data != nullptr && name != info.name) {
+                    rename(*data->GetPointData(), info.name, name);
+                    rename(*data->GetCellData(), info.name, name);
+                }
+            }
+            info.name = name;
+            info.original_name = core::as_utf8(info.original_name);
+            info.original_unit = core::as_utf8(info.original_unit);
+        }
+    }
+    field.writer = core::as_utf8(field.writer);
+    for (auto& [key, value] : field.metadata) {
+        key = core::as_utf8(key);
+        value = core::as_utf8(value);
+    }
+    for (auto& problem : field.problems) {
+        problem.message = core::as_utf8(problem.message);
+    }
+}
+
 }  // namespace
 
 const Importer* importer_for(const fs::path& path) {
@@ -112,10 +150,13 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
         throw core::InputError("format", "the file is empty", place);  // an empty NAME.foam stands for the case around it
     }
     if (importer == nullptr) {
-        throw core::InputError("format", "no importer knows this content", place, "known formats: " + known_formats());
+        const std::string known = what_it_is(path);
+        throw core::InputError("format", "no importer knows this content", place,
+                               known.empty() ? "known formats: " + known_formats() : "it looks like " + known);
     }
     progress.report(0, "reading " + path.filename().string());
     Field field = telling([&] { return importer->read(path, options, progress); }, [&] { return "the format, " + importer->format + ", nothing else yet"; });
+    make_names_utf8(field);
     progress.report(1, "read " + path.filename().string());
     return field;
 }

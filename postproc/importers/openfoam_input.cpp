@@ -3,6 +3,7 @@
 #include <fast_float/fast_float.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 
 #include "core/text.h"
@@ -107,6 +108,8 @@ bool FoamInput::accept(char c) {
     in_.get();
     return true;
 }
+
+bool FoamInput::at_letter() { return std::isalpha(next()) != 0; }
 
 void FoamInput::skip_list_type() {
     if (const int c = next(); c < '0' || c > '9') {

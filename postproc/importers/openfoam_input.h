@@ -29,6 +29,8 @@ public:
     std::string token();
     void expect(const std::string& wanted);
     bool accept(char c);
+    /// Does a word come next, no number and no bracket?
+    bool at_letter();
     double number();
     std::uint64_t count();
 

@@ -436,4 +436,29 @@ std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
     return reports;
 }
 
+ReportKinds report_kinds(const std::filesystem::path& path) {
+    const core::MappedFile file(path);
+    const std::string_view text = without_mark(file.bytes()).substr(0, std::size_t{16} << 20);
+    ReportKinds kinds;
+    if (text.empty() || text.substr(0, 65536).find('\0') != std::string_view::npos) {
+        return kinds;
+    }
+    kinds.plot = text.find("((xy/key/label") != std::string_view::npos;
+    kinds.forces = has_cfx_forces(text);
+    kinds.monitor = has_cfx_iterations(text);
+    for (const auto raw : core::split(text, '\n')) {
+        const auto line = core::trimmed(raw);
+        kinds.forces = kinds.forces || report_begun_by(line).has_value();
+        kinds.monitor = kinds.monitor || (line.starts_with("iter") && is_residual_header(words_of(line)));
+    }
+    if (!kinds.any()) {
+        try {
+            kinds.monitor = read_table(file.name(), text.substr(0, text.rfind('\n', 65536) + 1)).columns.size() > 1;
+        } catch (const core::InputError&) {
+            // Some other text.
+        }
+    }
+    return kinds;
+}
+
 }  // namespace underbody::postproc

@@ -71,4 +71,13 @@ struct ForceReport {
 /// text ends within one.
 std::vector<ForceReport> read_force_reports(const std::filesystem::path& path);
 
+/// What a text holds of these, found by its first megabytes.
+struct ReportKinds {
+    bool plot = false;
+    bool monitor = false;  ///< a table with a header of names, or residuals among other lines
+    bool forces = false;
+    [[nodiscard]] bool any() const { return plot || monitor || forces; }
+};
+ReportKinds report_kinds(const std::filesystem::path& path);
+
 }  // namespace underbody::postproc

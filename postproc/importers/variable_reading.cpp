@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/text.h"
+
 namespace underbody::postproc {
 
 namespace {
@@ -21,19 +23,40 @@ std::string unit_beside_pressure(const ReadOptions& options) {
     return pressure == nullptr ? "" : core::same_dimension(*pressure, over_density) ? over_density : "Pa";
 }
 
+struct NameWithUnit {
+    std::string name;
+    std::string unit;
+};
+
+/// "Pressure [ Pa ]": the name without its unit, where the brackets hold one.
+NameWithUnit parts_of(const std::string& original) {
+    const std::size_t open = original.rfind('[');
+    if (original.empty() || original.back() != ']' || open == std::string::npos || open == 0) {
+        return {original, ""};
+    }
+    const std::string unit(core::trimmed(std::string_view(original).substr(open + 1, original.size() - open - 2)));
+    try {
+        (void)core::si_unit(unit);
+        return {std::string(core::trimmed(std::string_view(original).substr(0, open))), unit};
+    } catch (const core::InputError&) {
+        return {original, ""};  // brackets of another meaning
+    }
+}
+
 }  // namespace
 
 VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place) {
-    const CanonicalName canonical = canonical_name(original);
+    const NameWithUnit stated = parts_of(original);
+    const CanonicalName canonical = canonical_name(stated.name);
     const std::string* own = stated_unit(options, original);
-    const std::string unit = own != nullptr ? *own : original == foam_shear ? unit_beside_pressure(options) : "";
+    const std::string unit = own != nullptr ? *own : original == foam_shear ? unit_beside_pressure(options) : stated.unit;
     VariableReading reading{canonical.name, canonical.unit, unit, {}};
     if (!unit.empty()) {
         const bool expected = !canonical.unit.empty() && core::same_dimension(unit, canonical.unit);
         const bool kinematic = core::same_dimension(unit, over_density) &&
                                (canonical.name == "pressure" || canonical.name == "wall_shear" || canonical.name.starts_with("wall_shear_"));
         reading.unit = expected ? canonical.unit : kinematic ? over_density : core::si_unit(unit, place);
-        reading.name = expected || canonical.unit.empty() ? canonical.name : kinematic ? "kinematic_" + canonical.name : original;
+        reading.name = expected || canonical.unit.empty() ? canonical.name : kinematic ? "kinematic_" + canonical.name : stated.name;
         reading.convert = core::conversion(unit, reading.unit, place);
     }
     if (original == foam_shear) {

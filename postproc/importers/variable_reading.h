@@ -11,11 +11,11 @@ namespace underbody::postproc {
 struct VariableReading {
     std::string name;           ///< canonical, or the file's own
     std::string unit;           ///< SI; empty when nobody says
-    std::string original_unit;  ///< as stated by the caller
+    std::string original_unit;  ///< as stated by the caller or behind the name
     core::Conversion convert;   ///< from the file's numbers to SI, and to our sign
 };
 
-/// SI is taken, or the unit in `options.units`, which may make another quantity of it: pressure in m^2/s^2 is
+/// SI is taken, or the unit behind the name ("Pressure [ Pa ]"), or before both that in `options.units`, which may make another quantity of it: pressure in m^2/s^2 is
 /// kinematic_pressure. OpenFOAM's `wallShearStress` follows the unit stated for `p`, and is turned round: it acts on the
 /// fluid there, on the body here. Throws core::InputError for a unit that is none.
 VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place);

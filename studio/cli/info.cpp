@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/text.h"
+#include "postproc/importers/importer.h"
+#include "postproc/report_summary.h"
 #include "postproc/summary.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
@@ -66,23 +69,92 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
     }
 }
 
+void print(Shell& shell, const postproc::Monitor& monitor, const std::vector<std::optional<postproc::IterationScatter>>& scatter) {
+    const auto& steps = monitor.values.front();
+    shell.print("\n" + (monitor.title.empty() ? "" : monitor.title + ": ") + std::to_string(steps.size()) + " rows, " + monitor.columns.front() + " " +
+                number(steps.front()) + " to " + number(steps.back()));
+    shell.print(padded("column", 26) + padded("last", 14) + "the last rows");
+    for (std::size_t c = 1; c < monitor.columns.size(); ++c) {
+        shell.print(padded(monitor.columns[c], 26) + padded(number(monitor.values[c].back()), 14) +
+                    (scatter[c] ? scatter[c]->text : std::string("too few to judge, or not all finite")));
+    }
+}
+
+void print(Shell& shell, const postproc::Plot& plot) {
+    shell.print("\n" + (plot.title.empty() ? "plot" : plot.title) + ": " + plot.y_label + " over " + plot.x_label);
+    shell.print(padded("curve", 26) + padded("points", 10) + padded("x", 28) + "y");
+    const auto range = [](const std::vector<double>& values) {
+        const auto [least, most] = std::minmax_element(values.begin(), values.end());
+        return values.empty() ? std::string("-") : number(*least) + " .. " + number(*most);
+    };
+    for (const auto& curve : plot.curves) {
+        shell.print(padded(curve.name, 26) + padded(std::to_string(curve.x.size()), 10) + padded(range(curve.x), 28) + range(curve.y));
+    }
+}
+
+void print(Shell& shell, const postproc::ForceReport& report) {
+    const auto triple = [](const std::array<double, 3>& v) { return "(" + number(v[0]) + " " + number(v[1]) + " " + number(v[2]) + ")"; };
+    shell.print(std::string("\n") + (report.moments ? "moments [N m] about " + triple(report.centre) + ", axis " : "forces [N] along ") + triple(report.direction));
+    shell.print(padded("zone", 26) + padded("pressure", 14) + padded("viscous", 14) + "total");
+    for (const auto& row : report.rows) {
+        shell.print(padded(row.zone, 26) + padded(number(row.pressure), 14) + padded(number(row.viscous), 14) + number(row.total));
+    }
+}
+
+void print(Shell& shell, const postproc::ReportSummary& summary) {
+    shell.print(summary.file + ": a report of the solver");
+    if (summary.monitor) {
+        print(shell, *summary.monitor, summary.scatter);
+    }
+    if (summary.plot) {
+        print(shell, *summary.plot);
+    }
+    for (const auto& report : summary.forces) {
+        print(shell, report);
+    }
+}
+
+/// A report that is no field: true when the file is one.
+bool show_report(Shell& shell, const std::string& file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error) || postproc::importer_for(file) != nullptr) {
+        return false;
+    }
+    const auto summary = postproc::summarise_report(file);
+    if (!summary) {
+        return false;
+    }
+    if (shell.json) {
+        shell.print_json(*summary);
+    } else {
+        print(shell, *summary);
+    }
+    shell.show(summary->problems);
+    return true;
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& app, Shell& shell) {
-    auto* command = app.add_subcommand("info", "what a CFD file holds: format, zones, arrays with units and ranges");
+    auto* command = app.add_subcommand("info", "what a CFD file or a report of its solver holds: format, zones, arrays with units and ranges, histories, forces");
     struct Options {
         std::string file;
         FieldOptions field;
     };
     auto options = std::make_shared<Options>();
-    command->add_option("file", options->file, "a CFD-Post CSV, Fluent, EnSight, CGNS, OpenFOAM or VTK file")->required();
+    command->add_option("file", options->file, "a CFD-Post CSV, Fluent, EnSight, CGNS, OpenFOAM or VTK file; or a monitor (.out), transcript, .xy plot or force report")->required();
     options->field.add_to(*command);
     command->footer(
         "Examples:\n"
         "  underbody info body.csv\n"
         "  underbody info case.cas.h5 --json\n"
-        "  underbody info mesh.msh --length-unit mm");
+        "  underbody info mesh.msh --length-unit mm\n"
+        "  underbody info lift-rfile.out                histories and how settled they are\n"
+        "  underbody info pressure.xy --json            the curves of a plot, point by point");
     shell.on(command, [&shell, options] {
+        if (show_report(shell, options->file)) {
+            return static_cast<int>(done);
+        }
         postproc::ReadOptions read = options->field.read_options();
         read.zones = options->field.zones;
         const auto summary = postproc::summarise(postproc::read_field(options->file, read, shell.progress()));

@@ -74,8 +74,8 @@ void Shell::on(CLI::App* command, std::function<int()> action) {
 }
 
 void Shell::print_json(const nlohmann::json& document) {
-    // NaN has no place in JSON: nlohmann writes null for it.
-    std::cout << document.dump(2) << '\n';
+    // NaN has no place in JSON: nlohmann writes null for it. Names of files may be of any bytes.
+    std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
 }
 
 void Shell::print(const std::string& text) {

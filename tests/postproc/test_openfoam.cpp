@@ -188,6 +188,23 @@ TEST(OpenFoam, FilesThatAFieldIncludesArePassedOver) {
               plain.find("movingWall")->surface->GetCellData()->GetArray(name)->GetComponent(3, 0));
 }
 
+TEST(OpenFoam, DimensionsMayHaveNames) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const auto state = [&](const std::string& dimensions) {
+        std::string text = core::read_file(data("ascii") / "0.005/p");
+        const std::size_t at = text.find('[');
+        std::ofstream(box / "0.005/p", std::ios::binary) << text.replace(at, text.find(']') + 1 - at, dimensions);
+    };
+    state("[kinematicPressure]");
+    EXPECT_NE(read_field(box).find("movingWall")->find("kinematic_pressure"), nullptr);
+    state("[pressure]");
+    EXPECT_NE(read_field(box).find("movingWall")->find("pressure"), nullptr);
+    state("[blubber]");
+    EXPECT_THAT(test::refusal(box), HasSubstr("'blubber' are not known"));
+}
+
 TEST(OpenFoam, ForcesOfARunThatBeganAgainReplaceThoseOfTheFirst) {
     const core::TemporaryFolder folder;
     const fs::path start = folder.path() / "postProcessing/forces/0";

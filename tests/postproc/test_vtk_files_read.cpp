@@ -215,6 +215,23 @@ TEST(VtkFiles, PAndWallShearStressOfOpenFoamWaitForTheirUnit) {
     EXPECT_EQ(value("m^2/s^2", "kinematic_wall_shear", 1), -2);
 }
 
+TEST(TecplotFiles, WithUnitsRepeatCountsOrSharedVariablesAreRefusedInWords) {
+    const core::TemporaryFolder folder;
+    const auto file = [&](const std::string& variables, const std::string& zone, const std::string& last) {
+        return written(folder, "a.dat", "TITLE = \"a\"\nVARIABLES = " + variables + "\nZONE T=\"hull\" N=4, E=2, F=FEPOINT, ET=TRIANGLE" + zone +
+                                            "\n0 0 0 7\n1 0 0 8\n0 1 0 9\n0 0 1 6\n1 2 3\n" + last);
+    };
+    const auto plain = read_field(file("\"X\" \"Y\" \"Z\" \"Pressure [ kPa ]\"", "", "1 2 4\n"));
+    EXPECT_NEAR(test::area_of(*plain.zones.at(0).surface), 1, 1e-12);
+    ASSERT_NE(plain.zones[0].find("pressure"), nullptr);
+    EXPECT_EQ(plain.zones[0].find("pressure")->original_unit, "kPa");
+    EXPECT_NEAR(plain.zones[0].surface->GetPointData()->GetArray("pressure")->GetTuple1(2), 9000, 1e-9);
+    EXPECT_THAT(test::refusal(file("\"X [ m ]\" \"Y [ m ]\" \"Z [ m ]\" \"Pressure\"", "", "1 2 4\n")), HasSubstr("'X [ m ]' is a coordinate"));
+    EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", "", "3*1\n")), HasSubstr("repeat counts"));
+    EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", "", "3*1\n")), HasSubstr("a.dat:9"));
+    EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", ", varsharelist=([1-3]=1)", "1 2 4\n")), HasSubstr("VARSHARELIST"));
+}
+
 TEST(VtkFiles, NumbersOnThePointsAndFacesOfAPlyAreArrays) {
     const core::TemporaryFolder folder;
     const auto field = read_field(written(

@@ -48,6 +48,59 @@ TEST_F(PostprocCommands, InfoSaysWhatAFileHolds) {
     EXPECT_THAT(run({"info", "a-h5.csv"}).output, testing::HasSubstr("hull"));
 }
 
+TEST_F(PostprocCommands, InfoSaysWhatAReportOfTheSolverHolds) {
+    std::string monitor = "\"lift-rfile\"\n\"Iteration\" \"lift\"\n(\"Iteration\" \"lift\")\n";
+    for (int i = 1; i <= 20; ++i) {
+        monitor += std::to_string(i) + " " + std::to_string(1.25 + (i % 2 == 0 ? 1e-5 : -1e-5)) + "\n";
+    }
+    core::write_file(folder_.path() / "lift.out", monitor);
+    const json history = run_json({"info", "lift.out"});
+    EXPECT_EQ(history["monitor"]["columns"][1]["name"], "lift");
+    EXPECT_EQ(history["monitor"]["columns"][1]["values"].size(), 20U);
+    EXPECT_NEAR(history["monitor"]["columns"][1]["tail"]["mean"].get<double>(), 1.25, 1e-5);
+    EXPECT_THAT(run({"info", "lift.out"}).output, testing::HasSubstr("Iteration 1 to 20"));
+    core::write_file(folder_.path() / "a.xy",
+                     "(title \"Static Pressure\")\n(labels \"Position\" \"Static Pressure\")\n((xy/key/label \"wall\")\n0\t10\n0.5\t20\n1\t15\n)\n");
+    const json plot = run_json({"info", "a.xy"});
+    EXPECT_EQ(plot["plot"]["curves"][0]["name"], "wall");
+    EXPECT_EQ(plot["plot"]["curves"][0]["y"], json({10, 20, 15}));
+    EXPECT_THAT(run({"info", "a.xy"}).output, testing::HasSubstr("10 .. 20"));
+    core::write_file(folder_.path() / "forces.txt", "Forces - Direction Vector (1 0 0)\n  Forces (n)   Coefficients\nZone Pressure Viscous Total Pressure Viscous Total\n"
+                                                    "hull 1 0.5 1.5 1 0.5 1.5\nNet 1 0.5 1.5 1 0.5 1.5\n");
+    EXPECT_EQ(run_json({"info", "forces.txt"})["force_reports"][0]["rows"][0]["viscous"], 0.5);
+    EXPECT_THAT(run({"info", "forces.txt"}).output, testing::HasSubstr("forces [N] along (1 0 0)"));
+}
+
+TEST_F(PostprocCommands, NamesInOldCodesAreStillNamesInJson) {
+    std::string latin = box_csv;
+    latin.replace(latin.find("hull"), 4, "R\xFCmpf");
+    core::write_file(folder_.path() / "latin.csv", latin);
+    EXPECT_EQ(run_json({"info", "latin.csv"})["zones"][1]["name"], "R\u00fcmpf");
+    EXPECT_EQ(run({"import", "latin.csv", "--out", "latin.vtm"}).exit_code, 0);
+    EXPECT_EQ(run_json({"info", "latin.vtm"})["zones"].size(), 2U);
+    const auto missing = run({"info", "no\xFF.csv", "--json"});
+    EXPECT_EQ(missing.exit_code, 3);
+    EXPECT_TRUE(json::parse(missing.output).contains("error"));
+}
+
+TEST_F(PostprocCommands, ContentThatNoImporterReadsIsNamed) {
+    const auto hint = [&](const std::string& name, const std::string& content) {
+        core::write_file(folder_.path() / name, content);
+        const auto result = run({"info", name});
+        EXPECT_EQ(result.exit_code, 3) << name;
+        return result.errors;
+    };
+    EXPECT_THAT(hint("a.msh", "$MeshFormat\n4.1 0 8\n"), testing::HasSubstr("Gmsh"));
+    EXPECT_THAT(hint("a.csv", std::string("\xFF\xFE[\0N\0", 6)), testing::HasSubstr("UTF-16"));
+    EXPECT_THAT(hint("a.vtk.series", "{\"file-series-version\": \"1.0\", \"files\": []}"), testing::HasSubstr("one of the files"));
+    EXPECT_THAT(hint("a.prof", "((inlet point 2)\n(x 0 1)\n"), testing::HasSubstr("boundary profile"));
+    EXPECT_THAT(hint("a.bin", std::string("\x01\x02\0\x03", 4)), testing::HasSubstr("known formats"));
+    core::write_file(folder_.path() / "rooms/constant/air/polyMesh/owner", "");
+    EXPECT_THAT(run({"info", "rooms"}).errors, testing::HasSubstr("regions air"));
+    core::write_file(folder_.path() / "shares/processors4/constant/polyMesh/owner", "");
+    EXPECT_THAT(run({"info", "shares"}).errors, testing::HasSubstr("reconstructPar"));
+}
+
 TEST_F(PostprocCommands, LoadsGiveOneResultOrATable) {
     const json one = run_json({"loads", "a-h5.csv"});
     EXPECT_NEAR(one["lift_force"].get<double>(), -1, 1e-12);

@@ -1,0 +1,103 @@
+#include "postproc/importers/unknown_content.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/text.h"
+#include "postproc/importers/byte_stream.h"
+#include "postproc/importers/reports.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string head_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string head(std::size_t{1} << 16, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    return head;
+}
+
+struct Known {
+    std::string_view begins;
+    std::string_view means;
+};
+
+constexpr std::array known = {
+    Known{"$MeshFormat", "a mesh of Gmsh: save it as CGNS (gmsh FILE -save -format cgns)"},
+    Known{"\xFF\xFE", "text in UTF-16: save it as UTF-8 (\"CSV UTF-8\")"},
+    Known{"\xFE\xFF", "text in UTF-16: save it as UTF-8 (\"CSV UTF-8\")"},
+    Known{"#!TDV", "a binary Tecplot file: save it as ASCII"},
+    Known{"PK\x03\x04", "a packed archive (an Excel sheet, a Workbench project): unpack it, or save the sheet as CSV UTF-8"},
+    Known{"%PDF", "a PDF"},
+    Known{"CDF", "netCDF (Exodus): save it as VTK in ParaView"},
+    Known{"((", "a boundary profile of Fluent: it is no surface; export the surface as ASCII, CGNS or EnSight"},
+    Known{"<?xml", "XML of another kind than VTK's"},
+};
+
+/// A list of files over time, as foamToVTK and ParaView write it.
+bool is_series(std::string_view text) { return text.find("file-series-version") != std::string_view::npos; }
+
+std::string of_text(std::string_view text) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const Known& kind) { return text.starts_with(kind.begins); });
+    if (found != known.end()) {
+        return std::string(found->means);
+    }
+    if (is_series(text)) {
+        return "a list of files over time: give one of the files that it names";
+    }
+    const bool ensight = core::lower_case(text.substr(0, 400)).find("node id") != std::string::npos;
+    return ensight ? "a geometry of EnSight: give the .case (.encas) that names it" : "";
+}
+
+std::string of_folder(const fs::path& path) {
+    std::error_code error;
+    std::vector<std::string> regions;
+    for (const auto& entry : fs::directory_iterator(path / "constant", error)) {
+        if (fs::is_directory(entry.path() / "polyMesh", error)) {
+            regions.push_back(entry.path().filename().string());
+        }
+    }
+    std::sort(regions.begin(), regions.end());
+    if (!regions.empty()) {
+        std::string names;
+        for (const auto& region : regions) {
+            names += (names.empty() ? "" : ", ") + region;
+        }
+        return "an OpenFOAM case of the regions " + names + ", which are not read: write them with foamToVTK -region " + regions.front();
+    }
+    for (const auto& entry : fs::directory_iterator(path, error)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("processors") && entry.is_directory(error)) {
+            return "an OpenFOAM case with the files of all processors in one (" + name + "): put it together with reconstructPar";
+        }
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string what_it_is(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) {
+        return of_folder(path);
+    }
+    const std::string head = head_of(path);
+    if (head.starts_with("\x1F\x8B")) {
+        const std::string inside = of_text(inflated_head(head));
+        return "gzip: unpack it (gunzip -k " + path.filename().string() + ")" + (inside.empty() ? "" : "; inside is " + inside);
+    }
+    if (const std::string text = of_text(head); !text.empty()) {
+        return text;
+    }
+    return report_kinds(path).any() ? "a report of the solver, no field: see 'underbody info', and 'underbody loads --monitor' and '--report'" : "";
+}
+
+}  // namespace underbody::postproc
