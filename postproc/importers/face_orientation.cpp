@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <map>
+#include <utility>
 
 namespace underbody::postproc {
 
@@ -66,6 +68,113 @@ Vector normal_of(const std::int64_t* nodes, std::size_t count, const Buffer<doub
     return sum;
 }
 
+/// The faces of one polyhedron with a sense each, so that all look out of it. The centre of a concave cell may lie on the
+/// wrong side of a face: faces that share an edge run along it opposite ways, and the volume is positive.
+class OrientedCell {
+public:
+    /// `stream`: number of faces, then per face its number of nodes and these.
+    OrientedCell(const std::int64_t* stream, const Buffer<double>& points) {
+        const std::int64_t count = *stream++;
+        for (std::int64_t f = 0; f < count; ++f) {
+            const std::int64_t corners = *stream++;
+            faces_.push_back({stream, static_cast<std::size_t>(corners)});
+            stream += corners;
+        }
+        orient();
+        if (!senses_.empty() && volume(points) < 0) {
+            for (int& sense : senses_) {
+                sense = -sense;
+            }
+        }
+    }
+
+    /// +1 if the corners go round the face so that it looks out of the cell, -1 if into it, 0 if nobody knows.
+    [[nodiscard]] int sense_of(const std::int64_t* nodes, std::size_t count) const {
+        std::vector<std::int64_t> wanted(nodes, nodes + count);
+        std::sort(wanted.begin(), wanted.end());
+        for (std::size_t f = 0; f < senses_.size(); ++f) {
+            std::vector<std::int64_t> own(faces_[f].first, faces_[f].first + faces_[f].second);
+            std::sort(own.begin(), own.end());
+            if (own == wanted) {
+                const bool same = follows(f, nodes[0], nodes[1]);
+                return same == follows(f, nodes[1], nodes[0]) ? 0 : same ? senses_[f] : -senses_[f];
+            }
+        }
+        return 0;
+    }
+
+private:
+    /// Does `b` come right behind `a` in a face?
+    [[nodiscard]] bool follows(std::size_t face, std::int64_t a, std::int64_t b) const {
+        const auto& [nodes, count] = faces_[face];
+        for (std::size_t i = 0; i < count; ++i) {
+            if (nodes[i] == a && nodes[(i + 1) % count] == b) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// Senses from face to face across the edges; none where the faces do not close.
+    void orient() {
+        std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::pair<std::size_t, int>>> edges;
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            const auto& [nodes, count] = faces_[f];
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::int64_t a = nodes[i];
+                const std::int64_t b = nodes[(i + 1) % count];
+                edges[std::minmax(a, b)].emplace_back(f, a < b ? 1 : -1);
+            }
+        }
+        std::vector<std::vector<std::pair<std::size_t, int>>> beside(faces_.size());
+        for (const auto& [edge, two] : edges) {
+            if (two.size() != 2) {
+                return;
+            }
+            const int turned = two[0].second == two[1].second ? -1 : 1;
+            beside[two[0].first].emplace_back(two[1].first, turned);
+            beside[two[1].first].emplace_back(two[0].first, turned);
+        }
+        std::vector<int> senses(faces_.size(), 0);
+        std::vector<std::size_t> next;
+        if (!faces_.empty()) {
+            senses[0] = 1;
+            next.push_back(0);
+        }
+        while (!next.empty()) {
+            const std::size_t face = next.back();
+            next.pop_back();
+            for (const auto& [other, turned] : beside[face]) {
+                if (senses[other] == 0) {
+                    senses[other] = senses[face] * turned;
+                    next.push_back(other);
+                } else if (senses[other] != senses[face] * turned) {
+                    return;
+                }
+            }
+        }
+        if (std::find(senses.begin(), senses.end(), 0) == senses.end()) {
+            senses_ = std::move(senses);
+        }
+    }
+
+    [[nodiscard]] double volume(const Buffer<double>& points) const {
+        const double* origin = points.data() + 3 * faces_[0].first[0];
+        double sum = 0;
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            const Vector normal = normal_of(faces_[f].first, faces_[f].second, points);
+            const Vector centre = mean_of(faces_[f].first, faces_[f].second, points);
+            for (std::size_t k = 0; k < 3; ++k) {
+                sum += senses_[f] * normal[k] * (centre[k] - origin[k]);
+            }
+        }
+        return sum;
+    }
+
+    std::vector<std::pair<const std::int64_t*, std::size_t>> faces_;
+    std::vector<int> senses_;
+};
+
 }  // namespace
 
 std::size_t BoundaryFaces::Hash::operator()(const Key& key) const {
@@ -86,10 +195,10 @@ BoundaryFaces::Key BoundaryFaces::key_of(const std::int64_t* nodes, std::size_t 
     return key;
 }
 
-void BoundaryFaces::note(const std::int64_t* nodes, std::size_t count, std::size_t cell) {
+void BoundaryFaces::note(const std::int64_t* nodes, std::size_t count, std::size_t cell, std::size_t stream) {
     const auto found = cells_.find(key_of(nodes, count));
     if (found != cells_.end()) {
-        found->second = {static_cast<std::int64_t>(cell), found->second.cell >= 0};
+        found->second = {static_cast<std::int64_t>(cell), stream, found->second.cell >= 0};
     }
 }
 
@@ -105,9 +214,10 @@ BoundaryFaces::BoundaryFaces(const std::vector<ElementPart>& surfaces, const Ele
     for (std::size_t cell = 0; cell < volume.elements(); ++cell) {
         const std::int64_t* nodes = volume.nodes.data() + volume.offsets[cell];
         if (volume.types[cell] == VTK_POLYHEDRON) {
+            const std::size_t begin = stream;
             for (std::int64_t faces = volume.polyhedra[stream++]; faces > 0; --faces) {
                 const auto count = static_cast<std::size_t>(volume.polyhedra[stream++]);
-                note(volume.polyhedra.data() + stream, count, cell);
+                note(volume.polyhedra.data() + stream, count, cell, begin);
                 stream += count;
             }
             continue;
@@ -129,31 +239,45 @@ BoundaryFaces::Behind BoundaryFaces::behind(const std::int64_t* nodes, std::size
 
 std::int64_t BoundaryFaces::cell_behind(const std::int64_t* nodes, std::size_t count) const { return behind(nodes, count).cell; }
 
+int BoundaryFaces::turn_of(const Behind& found, const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const {
+    if (found.cell < 0 || found.between || count < 3) {
+        return 0;
+    }
+    const auto cell = static_cast<std::size_t>(found.cell);
+    if (volume_.types[cell] == VTK_POLYHEDRON) {
+        return -OrientedCell(volume_.polyhedra.data() + found.stream, points).sense_of(nodes, count);
+    }
+    const Vector inside = mean_of(volume_.nodes.data() + volume_.offsets[cell],
+                                  static_cast<std::size_t>(volume_.offsets[cell + 1] - volume_.offsets[cell]), points);
+    const Vector here = mean_of(nodes, count, points);
+    const Vector normal = normal_of(nodes, count, points);
+    double toward = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        toward += normal[k] * (inside[k] - here[k]);
+    }
+    return toward > 0 ? 1 : toward < 0 ? -1 : 0;
+}
+
 bool BoundaryFaces::turn_into_volume(ElementPart& surface, const Buffer<double>& points) const {
-    bool all = true;
+    std::vector<int> turns;  // -1: the face looks out of the volume, 0: nobody knows
     for (std::size_t i = 0; i < surface.elements(); ++i) {
-        std::int64_t* nodes = surface.nodes.data() + surface.offsets[i];
+        const std::int64_t* nodes = surface.nodes.data() + surface.offsets[i];
         const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
-        const Behind found = behind(nodes, count);
-        if (found.cell < 0 || found.between || count < 3) {
-            all = false;
-            continue;
-        }
-        const auto cell = static_cast<std::size_t>(found.cell);
-        const Vector inside =
-            mean_of(volume_.nodes.data() + volume_.offsets[cell],
-                    static_cast<std::size_t>(volume_.offsets[cell + 1] - volume_.offsets[cell]), points);
-        const Vector here = mean_of(nodes, count, points);
-        const Vector normal = normal_of(nodes, count, points);
-        double toward = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            toward += normal[k] * (inside[k] - here[k]);
-        }
-        if (toward < 0) {
-            std::reverse(nodes, nodes + count);
+        turns.push_back(turn_of(behind(nodes, count), nodes, count, points));
+    }
+    const auto known = [&](int turn) { return static_cast<std::size_t>(std::count(turns.begin(), turns.end(), turn)); };
+    const bool all = known(0) == 0;
+    const bool agreed = (known(1) == 0 || known(-1) == 0) && 4 * (known(1) + known(-1)) >= turns.size();
+    if (turns.empty() || (!all && !agreed)) {
+        return false;
+    }
+    for (std::size_t i = 0; i < surface.elements(); ++i) {
+        if (turns[i] < 0 || (!all && known(-1) > 0)) {
+            std::reverse(surface.nodes.begin() + static_cast<std::ptrdiff_t>(surface.offsets[i]),
+                         surface.nodes.begin() + static_cast<std::ptrdiff_t>(surface.offsets[i + 1]));
         }
     }
-    return all && surface.elements() > 0;
+    return true;
 }
 
 namespace {

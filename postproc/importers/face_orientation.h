@@ -14,8 +14,9 @@ class BoundaryFaces {
 public:
     BoundaryFaces(const std::vector<ElementPart>& surfaces, const ElementPart& volume);
 
-    /// Turns the faces of a surface so that their right-hand normals point into the volume.
-    /// True if every face has one cell behind it; a face between two cells has no side.
+    /// Turns the faces of a surface so that their right-hand normals point into the volume. True if every face has one
+    /// cell behind it, or a quarter of them have and those agree on the order of the whole; a face between two cells has no
+    /// side. A surface that is not settled so is left as it was.
     bool turn_into_volume(ElementPart& surface, const Buffer<double>& points) const;
 
     /// The place of the cell behind a face among the volume's elements; -1 when there is none.
@@ -31,12 +32,14 @@ private:
         std::size_t operator()(const Key& key) const;
     };
     static Key key_of(const std::int64_t* nodes, std::size_t count);
-    void note(const std::int64_t* nodes, std::size_t count, std::size_t cell);
+    void note(const std::int64_t* nodes, std::size_t count, std::size_t cell, std::size_t stream = 0);
 
     struct Behind {
         std::int64_t cell = -1;  ///< the last one found; -1: none yet
+        std::size_t stream = 0;  ///< where a polyhedron's faces begin in `polyhedra`
         bool between = false;    ///< two cells share the face
     };
+    [[nodiscard]] int turn_of(const Behind& found, const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const;
     [[nodiscard]] Behind behind(const std::int64_t* nodes, std::size_t count) const;
 
     const ElementPart& volume_;
@@ -44,7 +47,7 @@ private:
 };
 
 /// Turns the faces of a surface into a volume with nodes of its own, told by their places (the same numbers, as of one
-/// file). True if every face has one cell behind it; the surface is left as it was otherwise.
+/// file). True where BoundaryFaces::turn_into_volume is, and every node has its place in the volume.
 bool turn_into_volume(ElementPart& surface, const ElementPart& volume);
 
 }  // namespace underbody::postproc

@@ -1,4 +1,4 @@
-// underbody info FILE: what a CFD file holds.
+// underbody info FILE: what a CFD file, or a report of its solver, holds.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/text.h"
+#include "core/utf8.h"
 #include "postproc/importers/importer.h"
 #include "postproc/report_summary.h"
 #include "postproc/summary.h"
@@ -73,32 +74,34 @@ void print(Shell& shell, const postproc::Monitor& monitor, const std::vector<std
     const auto& steps = monitor.values.front();
     shell.print("\n" + (monitor.title.empty() ? "" : monitor.title + ": ") + std::to_string(steps.size()) + " rows, " + monitor.columns.front() + " " +
                 number(steps.front()) + " to " + number(steps.back()));
-    shell.print(padded("column", 26) + padded("last", 14) + "the last rows");
+    Rows rows = {{"column", "last", "the last rows"}};
     for (std::size_t c = 1; c < monitor.columns.size(); ++c) {
-        shell.print(padded(monitor.columns[c], 26) + padded(number(monitor.values[c].back()), 14) +
-                    (scatter[c] ? scatter[c]->text : std::string("too few to judge, or not all finite")));
+        rows.push_back({core::as_utf8(monitor.columns[c]), number(monitor.values[c].back()), scatter[c] ? scatter[c]->text : "too few to judge, or not all finite"});
     }
+    print_columns(shell, rows);
 }
 
 void print(Shell& shell, const postproc::Plot& plot) {
     shell.print("\n" + (plot.title.empty() ? "plot" : plot.title) + ": " + plot.y_label + " over " + plot.x_label);
-    shell.print(padded("curve", 26) + padded("points", 10) + padded("x", 28) + "y");
+    Rows rows = {{"curve", "points", "x", "y"}};
     const auto range = [](const std::vector<double>& values) {
         const auto [least, most] = std::minmax_element(values.begin(), values.end());
         return values.empty() ? std::string("-") : number(*least) + " .. " + number(*most);
     };
     for (const auto& curve : plot.curves) {
-        shell.print(padded(curve.name, 26) + padded(std::to_string(curve.x.size()), 10) + padded(range(curve.x), 28) + range(curve.y));
+        rows.push_back({core::as_utf8(curve.name), std::to_string(curve.x.size()), range(curve.x), range(curve.y)});
     }
+    print_columns(shell, rows);
 }
 
 void print(Shell& shell, const postproc::ForceReport& report) {
     const auto triple = [](const std::array<double, 3>& v) { return "(" + number(v[0]) + " " + number(v[1]) + " " + number(v[2]) + ")"; };
     shell.print(std::string("\n") + (report.moments ? "moments [N m] about " + triple(report.centre) + ", axis " : "forces [N] along ") + triple(report.direction));
-    shell.print(padded("zone", 26) + padded("pressure", 14) + padded("viscous", 14) + "total");
+    Rows rows = {{"zone", "pressure", "viscous", "total"}};
     for (const auto& row : report.rows) {
-        shell.print(padded(row.zone, 26) + padded(number(row.pressure), 14) + padded(number(row.viscous), 14) + number(row.total));
+        rows.push_back({core::as_utf8(row.zone), number(row.pressure), number(row.viscous), number(row.total)});
     }
+    print_columns(shell, rows);
 }
 
 void print(Shell& shell, const postproc::ReportSummary& summary) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkMath.h>
 #include <vtkPointData.h>
 
 #include <algorithm>
@@ -209,6 +210,65 @@ TEST(EnsightWalls, LookIntoTheVolumeThatIsInTheFile) {
         // The water is inside: it pushes the lid up.
         EXPECT_NEAR(test::pressure_force(*field.zones[0].surface)[2], 10, 1e-6);
     }
+}
+
+TEST(EnsightWalls, LookIntoACellWhoseCentreLiesOutsideIt) {
+    // An L of 10 x 10 x 1 with arms 1 thick: the mean of its corners lies off the arms.
+    const core::TemporaryFolder folder;
+    const std::vector<float> points = {0, 10, 10, 1, 1, 0, 0, 10, 10, 1, 1, 0, 0, 0, 1, 1, 10, 10, 0, 0, 1, 1, 10, 10, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
+    const std::vector<std::int32_t> sizes = {6, 6, 4, 4, 4, 4, 4, 4};
+    const std::vector<std::int32_t> faces = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 1, 2, 8, 7, 2, 3, 9, 8, 4, 3, 9, 10, 4, 5, 11, 10, 5, 6, 12, 11, 6, 1, 7, 12};
+    Writer geometry("little");
+    head(geometry);
+    geometry.line("part").ints({1}).line("water").line("coordinates").ints({12}).reals(points).line("nfaced").ints({1}).ints({8}).ints(sizes).ints(faces);
+    geometry.line("part").ints({2}).line("walls").line("coordinates").ints({12}).reals(points).line("nsided").ints({8}).ints(sizes).ints(faces);
+    geometry.to(folder.path() / "a.geo");
+    write_case(folder.path() / "a.case", "GEOMETRY\nmodel: a.geo\n");
+    const auto field = read_field(folder.path() / "a.case");
+    const auto* walls = field.find("walls");
+    ASSERT_NE(walls, nullptr);
+    EXPECT_TRUE(walls->normals_into_fluid);
+    double enclosed = 0;
+    for (vtkIdType c = 0; c < walls->surface->GetNumberOfCells(); ++c) {
+        auto* nodes = walls->surface->GetCell(c)->GetPoints();
+        double a[3], b[3], d[3];
+        nodes->GetPoint(0, a);
+        for (vtkIdType i = 1; i + 1 < nodes->GetNumberOfPoints(); ++i) {
+            nodes->GetPoint(i, b);
+            nodes->GetPoint(i + 1, d);
+            enclosed += vtkMath::Determinant3x3(a, b, d) / 6;
+        }
+    }
+    EXPECT_NEAR(enclosed, -19, 1e-6);
+}
+
+TEST(EnsightWalls, ThatFitTheCellsInPartTakeTheSideOfThatPart) {
+    const core::TemporaryFolder folder;
+    // Two cubes side by side; the second lid of the walls is cut into triangles that no cell has.
+    std::vector<float> points;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int z = 0; z < 2; ++z) {
+            for (int y = 0; y < 2; ++y) {
+                for (int x = 0; x < 3; ++x) {
+                    points.push_back(static_cast<float>(axis == 0 ? x : axis == 1 ? y : z));
+                }
+            }
+        }
+    }
+    Writer geometry("little");
+    head(geometry);
+    geometry.line("part").ints({1}).line("water").line("coordinates").ints({12}).reals(points).line("hexa8").ints({2});
+    geometry.ints({1, 2, 5, 4, 7, 8, 11, 10, 2, 3, 6, 5, 8, 9, 12, 11});
+    geometry.line("part").ints({2}).line("lid").line("coordinates").ints({12}).reals(points);
+    geometry.line("tria3").ints({2}).ints({8, 9, 12, 8, 12, 11}).line("quad4").ints({1}).ints({7, 8, 11, 10});
+    geometry.to(folder.path() / "a.geo");
+    Writer pressure("little", false);
+    pressure.line("pressure").line("part").ints({2}).line("tria3").reals({5, 5}).line("quad4").reals({5});
+    pressure.to(folder.path() / "a.p");
+    write_case(folder.path() / "a.case", "GEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per element: Pressure a.p\n");
+    const auto field = read_field(folder.path() / "a.case");
+    EXPECT_TRUE(field.find("lid")->normals_into_fluid);
+    EXPECT_NEAR(test::pressure_force(*field.find("lid")->surface)[2], 10, 1e-6);  // the water below pushes it up
 }
 
 TEST(EnsightBlocks, MayHoldTheIdsThatTheHeaderPromisesOrNot) {
