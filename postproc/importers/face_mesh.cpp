@@ -206,8 +206,13 @@ std::string listed_zones(const FaceMesh& mesh) {
 
 void check_cells_beside(const FaceMesh& mesh, core::Progress& progress) {
     check_ranges(mesh, false);
+    std::uint64_t sides = 0;
     for (const auto& block : mesh.face_blocks) {
         check_beside(mesh, block, progress);
+        sides += block.c0.size() + block.c1.size();
+    }
+    if (mesh.cells > sides) {  // before memory is taken for so many
+        refuse(mesh, "the file declares " + text(mesh.cells) + " cells, but its faces have only " + text(sides) + " sides for them");
     }
 }
 

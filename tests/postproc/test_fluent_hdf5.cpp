@@ -468,6 +468,11 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
         H5Dclose(data);
     };
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 400}); }), HasSubstr("more nodes"));
+    EXPECT_THAT(damaged([&](hid_t f) {
+                    values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 2000000000});
+                    set(f, "/meshes/1", "cellCount", 2000000000);
+                }),
+                HasSubstr("2000000000 cells, but its faces have only"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/c1/1", {-7}); }), HasSubstr("names cell"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/c0/1", {2, 1, 1, 1, 1, 2, 2, 2, 2, 1, 77}); }), HasSubstr("names cell 77"));
 }
