@@ -6,17 +6,16 @@
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/error.h"
+
 namespace underbody::postproc {
 
 namespace {
-
-using Eigen::Vector3d;
 
 std::vector<Index> integers(vtkDataArray& array) {
     std::vector<Index> result(static_cast<std::size_t>(array.GetNumberOfValues()));
@@ -33,6 +32,9 @@ Rows turned_round(const Rows& cells, std::size_t nodes) {
     Rows result;
     result.offsets.assign(nodes + 1, 0);
     for (const Index node : cells.values) {
+        if (node < 0 || static_cast<std::size_t>(node) >= nodes) {
+            throw core::InputError("range", "a cell names node " + std::to_string(node) + " of " + std::to_string(nodes));
+        }
         ++result.offsets[static_cast<std::size_t>(node) + 1];
     }
     for (std::size_t i = 0; i < nodes; ++i) {
@@ -68,13 +70,13 @@ Faces faces_of(int type) {
 
 /// Centre of gravity in the making: pieces with their sizes, about a point near by.
 struct Centre {
-    Vector3d sum = Vector3d::Zero();
+    Vector sum{};
     double size = 0;
-    void add(const Vector3d& at, double much) {
-        sum += much * at;
+    void add(const Vector& at, double much) {
+        sum = plus(sum, at, much);
         size += much;
     }
-    [[nodiscard]] Vector3d place(const Vector3d& otherwise) const { return size > 0 ? Vector3d(sum / size) : otherwise; }
+    [[nodiscard]] Vector place(const Vector& otherwise) const { return size > 0 ? plus({}, sum, 1 / size) : otherwise; }
 };
 
 }  // namespace
@@ -88,19 +90,21 @@ Rows rows_of(vtkCellArray& cells) {
     return rows;
 }
 
-Vector3d centre_of_polygon(const std::vector<Vector3d>& corners) {
+Vector centre_of_polygon(const std::vector<Vector>& corners) {
     if (corners.empty()) {
-        return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        return {nan, nan, nan};
     }
-    Vector3d mean = Vector3d::Zero();
+    const double share = 1 / static_cast<double>(corners.size());
+    Vector mean{};
     for (const auto& corner : corners) {
-        mean += corner / static_cast<double>(corners.size());
+        mean = plus(mean, corner, share);
     }
     Centre centre;
     for (std::size_t i = 0; i < corners.size() && corners.size() > 3; ++i) {
-        const Vector3d& a = corners[i];
-        const Vector3d& b = corners[(i + 1) % corners.size()];
-        centre.add((mean + a + b) / 3, (a - mean).cross(b - mean).norm());
+        const Vector& a = corners[i];
+        const Vector& b = corners[(i + 1) % corners.size()];
+        centre.add(plus({}, plus(plus(mean, a), b), 1.0 / 3), norm(cross(plus(a, mean, -1), plus(b, mean, -1))));
     }
     return centre.place(mean);
 }
@@ -114,7 +118,7 @@ CellGeometry::CellGeometry(vtkPointSet& data, vtkCellArray& cells) : cells_(rows
 }
 
 CellGeometry::CellGeometry(vtkUnstructuredGrid& grid) : CellGeometry(grid, *grid.GetCells()) {
-    opening_.assign(nodes(), Vector3d::Zero());
+    opening_.assign(nodes(), {});
     size_.assign(nodes(), 0);
     for (std::size_t c = 0; c < cells_.count(); ++c) {
         const int type = grid.GetCellType(static_cast<vtkIdType>(c));
@@ -130,15 +134,16 @@ CellGeometry::CellGeometry(vtkPolyData& surface) : CellGeometry(surface, *surfac
 }
 
 /// A side of a cell, for the nodes on it: around a node with cells on all sides these sum to nothing.
-void CellGeometry::note_side(std::span<const Index> nodes, const Vector3d& outward) {
+void CellGeometry::note_side(std::span<const Index> nodes, const Vector& outward) {
     for (const Index node : nodes) {
-        opening_[static_cast<std::size_t>(node)] += outward;
-        size_[static_cast<std::size_t>(node)] += outward.norm();
+        Vector& opening = opening_[static_cast<std::size_t>(node)];
+        opening = plus(opening, outward);
+        size_[static_cast<std::size_t>(node)] += norm(outward);
     }
 }
 
-std::vector<Vector3d> CellGeometry::corners_of(std::size_t cell) const {
-    std::vector<Vector3d> corners;
+std::vector<Vector> CellGeometry::corners_of(std::size_t cell) const {
+    std::vector<Vector> corners;
     for (const Index node : cells_[cell]) {
         corners.push_back(point(node));
     }
@@ -146,38 +151,42 @@ std::vector<Vector3d> CellGeometry::corners_of(std::size_t cell) const {
 }
 
 /// Of a case in the plane of x and y.
-Vector3d CellGeometry::centre_of_plane_cell(std::size_t cell) {
+Vector CellGeometry::centre_of_plane_cell(std::size_t cell) {
     const auto nodes = cells_[cell];
-    const Vector3d centre = centre_of_polygon(corners_of(cell));
+    const Vector centre = centre_of_polygon(corners_of(cell));
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const std::array<Index, 2> edge = {nodes[i], nodes[(i + 1) % nodes.size()]};
-        const Vector3d along = point(edge[1]) - point(edge[0]);
-        note_side(edge, (point(edge[0]) - centre).cross(along)[2] < 0 ? Vector3d(-along) : along);
+        const Vector along = plus(point(edge[1]), point(edge[0]), -1);
+        note_side(edge, plus({}, along, cross(plus(point(edge[0]), centre, -1), along)[2] < 0 ? -1.0 : 1.0));
     }
     return centre;
 }
 
-Vector3d CellGeometry::centre_of(vtkUnstructuredGrid& grid, std::size_t cell) {
+Vector CellGeometry::centre_of(vtkUnstructuredGrid& grid, std::size_t cell) {
     const auto nodes = cells_[cell];
     const int type = grid.GetCellType(static_cast<vtkIdType>(cell));
-    Vector3d mean = Vector3d::Zero();
-    for (const Index node : nodes) {
-        mean += point(node) / static_cast<double>(nodes.size());
-    }
+    const auto mean_of = [&](std::span<const Index> some) {
+        Vector sum{};
+        for (const Index node : some) {
+            sum = plus(sum, point(node), 1 / static_cast<double>(some.size()));
+        }
+        return sum;
+    };
+    const Vector mean = mean_of(nodes);
     Centre centre;
     const auto add_face = [&](std::span<const Index> face) {
-        Vector3d middle = Vector3d::Zero();
-        for (const Index node : face) {
-            middle += point(node) / static_cast<double>(face.size());
-        }
-        Vector3d area = Vector3d::Zero();
+        const Vector middle = mean_of(face);
+        const Vector outward = plus(middle, mean, -1);
+        Vector area{};
         for (std::size_t i = 0; i < face.size(); ++i) {
-            const Vector3d a = point(face[i]);
-            const Vector3d b = point(face[(i + 1) % face.size()]);
-            centre.add((mean + middle + a + b) / 4, std::abs((middle - mean).dot((a - mean).cross(b - mean))));
-            area += (a - middle).cross(b - middle);
+            const Vector a = point(face[i]);
+            const Vector b = point(face[(i + 1) % face.size()]);
+            // A tetrahedron from the middle of the cell over a piece of the face.
+            const Vector piece = cross(plus(a, middle, -1), plus(b, middle, -1));
+            centre.add(plus({}, plus(plus(plus(mean, middle), a), b), 0.25), std::abs(dot(outward, piece)));
+            area = plus(area, piece);
         }
-        note_side(face, area.dot(middle - mean) < 0 ? Vector3d(-area) : area);
+        note_side(face, plus({}, area, dot(area, outward) < 0 ? -1.0 : 1.0));
     };
     if (type == VTK_POLYHEDRON) {
         vtkIdType faces = 0;

@@ -38,7 +38,7 @@ struct Boundary {
     const Zone* zone = nullptr;
     Rows faces;                              ///< by the zone's own nodes; of a plane case its lines
     std::vector<Index> owner;                ///< cell behind each face, -1: none of these
-    std::vector<Vector3d> centre;            ///< of each face
+    std::vector<Vector> centre;              ///< of each face
     std::vector<std::vector<Index>> places;  ///< grid nodes at each node of the zone
 };
 
@@ -63,7 +63,8 @@ public:
     explicit Fit(int components) : right_(Eigen::Matrix3Xd::Zero(3, components)) {}
 
     template <typename Difference>
-    void add(const Vector3d& step, Difference&& difference) {
+    void add(const Vector& along, Difference&& difference) {
+        const Vector3d step(along.data());
         const double square = step.squaredNorm();
         if (!(square > 0)) {
             return;
@@ -118,7 +119,7 @@ public:
             }
         }
         for (std::size_t i = 0; i < geometry_.nodes() && !at.empty(); ++i) {
-            if (const auto found = at.find(key(geometry_.point(static_cast<Index>(i)).data())); found != at.end()) {
+            if (const auto found = at.find(geometry_.point(static_cast<Index>(i))); found != at.end()) {
                 found->second.push_back(static_cast<Index>(i));
             }
         }
@@ -131,9 +132,9 @@ public:
             }
             for (std::size_t f = 0; f < boundary.faces.count(); ++f) {
                 boundary.owner.push_back(owner_of(boundary.faces[f], boundary.places));
-                std::vector<Vector3d> corners;
+                std::vector<Vector> corners;
                 for (const Index node : boundary.faces[f]) {
-                    corners.emplace_back(places[z].data() + 3 * node);
+                    corners.push_back(key(places[z].data() + 3 * node));
                 }
                 boundary.centre.push_back(centre_of_polygon(corners));
             }
@@ -229,7 +230,7 @@ private:
                                 low = std::min(low, values(other, k));
                                 high = std::max(high, values(other, k));
                             }
-                            fit.add(geometry_.centre(other) - geometry_.centre(cell), [&](int k) { return values(other, k) - values(cell, k); });
+                            fit.add(plus(geometry_.centre(other), geometry_.centre(cell), -1), [&](int k) { return values(other, k) - values(cell, k); });
                         }
                     }
                 }
@@ -240,7 +241,7 @@ private:
         return slopes;
     }
 
-    static double along(const Slopes& slopes, const Values& values, Index cell, int k, const Vector3d& step) {
+    static double along(const Slopes& slopes, const Values& values, Index cell, int k, const Vector& step) {
         const double* g = slopes.gradients.data() + 3 * values.at(cell, k);
         return g[0] * step[0] + g[1] * step[1] + g[2] * step[2];
     }
@@ -257,7 +258,7 @@ private:
             if (!std::isfinite(value)) {
                 continue;
             }
-            sum += value + along(slopes, values, cell, k, geometry_.point(static_cast<Index>(node)) - geometry_.centre(cell));
+            sum += value + along(slopes, values, cell, k, plus(geometry_.point(static_cast<Index>(node)), geometry_.centre(cell), -1));
             ++count;
             near = {std::min(near[0], value), std::max(near[1], value)};
             wide = {std::min(wide[0], slopes.low[values.at(cell, k)]), std::max(wide[1], slopes.high[values.at(cell, k)])};
@@ -302,7 +303,7 @@ private:
                         }
                         ++sum.count;
                         for (int k = 0; k < values.components; ++k) {
-                            sum.value[static_cast<std::size_t>(k)] += (*known)(face, k) + (holds ? 0 : along(slopes, values, cell, k, geometry_.point(at) - boundary.centre[f]));
+                            sum.value[static_cast<std::size_t>(k)] += (*known)(face, k) + (holds ? 0 : along(slopes, values, cell, k, plus(geometry_.point(at), boundary.centre[f], -1)));
                         }
                     }
                 }
