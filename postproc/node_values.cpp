@@ -85,7 +85,7 @@ public:
             return matrix_.inverse() * right_;
         }
         const Eigen::SelfAdjointEigenSolver<Matrix3d> solved(matrix_);
-        const Vector3d values = solved.eigenvalues();
+        const Vector3d& values = solved.eigenvalues();
         Vector3d inverse = Vector3d::Zero();
         for (int k = 0; k < 3; ++k) {
             if (values[k] > nothing * values[2]) {
