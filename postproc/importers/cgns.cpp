@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <unordered_map>
 
 #include "core/text.h"
@@ -30,6 +31,7 @@ public:
     }
 
 private:
+    bool is_shell();
     void add_notes(Field& field) const;
     void add_unstructured(const CgnsZone& zone, Field& field);
     void add_structured(const CgnsZone& zone, Field& field);
@@ -48,6 +50,7 @@ private:
     const ReadOptions& options_;
     core::Progress& progress_;
     std::string understood_;
+    bool shell_ = false;  ///< its cells are faces in space
 };
 
 Field Reader::read() {
@@ -58,6 +61,7 @@ Field Reader::read() {
     if (file_.units_stated()) {
         field.metadata.emplace_back("length unit", core::format_number(file_.base_length()) + " m");
     }
+    shell_ = is_shell();
     for (int index = 1; index <= file_.zones(); ++index) {
         progress_.check();
         progress_.report(static_cast<double>(index - 1) / file_.zones(), "reading zone " + std::to_string(index));
@@ -69,9 +73,30 @@ Field Reader::read() {
     return field;
 }
 
+/// Faces in space are a surface, unless all of them lie in one plane across z: that is a plane flow.
+bool Reader::is_shell() {
+    if (file_.cell_dimension() != 2 || file_.physical_dimension() != 3) {
+        return false;
+    }
+    std::optional<double> z;
+    for (int index = 1; index <= file_.zones(); ++index) {
+        const auto points = file_.points(file_.zone(index));
+        for (std::size_t i = 2; i < points.size(); i += 3) {
+            if (points[i] != z.value_or(points[i])) {
+                return true;
+            }
+            z = points[i];
+        }
+    }
+    return false;
+}
+
 /// What one should know about the file as a whole.
 void Reader::add_notes(Field& field) const {
     const auto add = [&](core::Problem::Severity severity, const std::string& text) { field.problems.push_back({severity, text, {name_, {}, {}, {}}}); };
+    if (file_.newer_version() > 0) {
+        add(core::Problem::Severity::note, "written by CGNS " + core::format_number(file_.newer_version(), 3) + ", later than the library that reads it");
+    }
     if (file_.bases() > 1) {
         add(core::Problem::Severity::note, "the last of " + std::to_string(file_.bases()) + " bases is read");
     }
@@ -198,7 +223,7 @@ void Reader::add_surface(Field& field, const Buffer<double>& points, const std::
             own.push_back(std::move(part));
         }
     }
-    Zone zone = zone_from(std::move(surface), std::move(own), file_.cell_dimension(), options_, name_, field.problems);
+    Zone zone = zone_from(std::move(surface), std::move(own), shell_ ? 3 : file_.cell_dimension(), options_, name_, field.problems);
     zone.normals_into_fluid = settled;
     for (auto& info : zone.arrays) {
         info.on = of_cells && info.on == Location::faces ? Location::cells : info.on;
@@ -254,18 +279,18 @@ std::vector<ElementPart> Reader::surfaces_of(const std::vector<CgnsSection>& sec
 }
 
 void Reader::add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume, Buffer<double>&& points, std::vector<PartValues>&& values) {
-    if (volume.elements() == 0 || options_.surfaces_only || !matches_any(options_.zones, zone.name)) {
+    if (volume.elements() == 0 || (options_.surfaces_only && !shell_) || !matches_any(options_.zones, zone.name)) {
         return;
     }
     volume.name = zone.name;
-    volume.kind = ZoneKind::fluid;
+    volume.kind = shell_ ? ZoneKind::unknown : ZoneKind::fluid;
     volume.points = std::move(points);
     const std::int64_t turned = zone.structured ? 0 : turn_inverted_cells(volume);
     if (turned > 0) {
         field.metadata.emplace_back("cells turned to VTK's order in " + zone.name, std::to_string(turned));
     }
     field.zones.push_back(
-        zone_from(std::move(volume), std::move(values), file_.cell_dimension(), options_, name_, field.problems));
+        zone_from(std::move(volume), std::move(values), shell_ ? 3 : file_.cell_dimension(), options_, name_, field.problems));
 }
 
 void Reader::add_unstructured(const CgnsZone& zone, Field& field) {

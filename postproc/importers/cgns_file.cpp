@@ -1,5 +1,6 @@
 #include "postproc/importers/cgns_file.h"
 
+#include <cgns_io.h>
 #include <cgnslib.h>
 #include <vtkCellType.h>
 
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/file.h"
 #include "core/text.h"
 
 namespace underbody::postproc {
@@ -79,14 +81,86 @@ double CgnsFile::Scales::to_si(std::string_view unit) const {
     return found == powers.end() ? 1 : std::pow(mass, found->mass) * std::pow(length, found->length);
 }
 
+namespace {
+
+/// Top nodes of a CGNS file, read without a look at its version.
+struct TopNodes {
+    float version = 0;
+    std::vector<std::string> bases;
+};
+
+TopNodes top_nodes(const std::string& path) {
+    TopNodes top;
+    int file = -1;
+    double root = 0;
+    if (cgio_open_file(path.c_str(), CGIO_MODE_READ, CGIO_FILE_NONE, &file) != CGIO_ERR_NONE) {
+        return top;
+    }
+    int children = 0;
+    if (cgio_get_root_id(file, &root) == CGIO_ERR_NONE && cgio_number_children(file, root, &children) == CGIO_ERR_NONE) {
+        for (int i = 1; i <= children; ++i) {
+            std::array<char, CGIO_MAX_NAME_LENGTH + 1> name{};
+            std::array<char, CGIO_MAX_LABEL_LENGTH + 1> label{};
+            int read = 0;
+            double node = 0;
+            if (cgio_children_names(file, root, i, 1, CGIO_MAX_NAME_LENGTH + 1, &read, name.data()) != CGIO_ERR_NONE ||
+                cgio_get_node_id(file, root, name.data(), &node) != CGIO_ERR_NONE || cgio_get_label(file, node, label.data()) != CGIO_ERR_NONE) {
+                continue;
+            }
+            std::array<char, CGIO_MAX_DATATYPE_LENGTH + 1> type{};
+            std::array<cgsize_t, CGIO_MAX_DIMENSIONS> sizes{};
+            int dimensions = 0;
+            if (std::string_view(label.data()) == "CGNSBase_t") {
+                top.bases.emplace_back(name.data());
+            } else if (std::string_view(label.data()) == "CGNSLibraryVersion_t" && cgio_get_data_type(file, node, type.data()) == CGIO_ERR_NONE &&
+                       cgio_get_dimensions(file, node, &dimensions, sizes.data()) == CGIO_ERR_NONE && std::string_view(type.data()) == "R4" && dimensions == 1 && sizes[0] == 1) {
+                cgio_read_all_data(file, node, &top.version);
+            }
+        }
+    }
+    cgio_close_file(file);
+    return top;
+}
+
+}  // namespace
+
+/// The library here refuses files of a later version than its own by their number alone, and what it reads of them has not
+/// changed since its own. It does follow links into them: a file of its own version, gone as soon as it is open, links to
+/// their bases.
+bool CgnsFile::open_newer(bool hdf5) {
+    const TopNodes top = top_nodes(name_);
+    if (!(top.version > static_cast<float>(CGNS_DOTVERS)) || top.bases.empty()) {
+        return false;
+    }
+    const core::TemporaryFolder folder("underbody-cgns");
+    const std::string own = (folder.path() / "links.cgns").string();
+    const std::string target = std::filesystem::absolute(name_).string();
+    int file = -1;
+    int nodes = -1;
+    double root = 0;
+    double link = 0;
+    cg_set_file_type(hdf5 ? CG_FILE_HDF5 : CG_FILE_ADF);
+    if (cg_open(own.c_str(), CG_MODE_WRITE, &file) != CG_OK) {
+        return false;
+    }
+    bool linked = cg_get_cgio(file, &nodes) == CG_OK && cg_root_id(file, &root) == CG_OK;
+    for (const auto& base : top.bases) {
+        linked = linked && cgio_create_link(nodes, root, base.c_str(), target.c_str(), ("/" + base).c_str(), &link) == CGIO_ERR_NONE;
+    }
+    linked = cg_close(file) == CG_OK && linked;
+    version_ = top.version;
+    return linked && cg_open(own.c_str(), CG_MODE_READ, &file_) == CG_OK;
+}
+
 CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
     std::error_code error;
     bytes_ = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
     std::array<char, 4> head{};
     file.read(head.data(), head.size());
-    most_values_ = head[0] == '\x89' ? bytes_ * 1032 : bytes_;  // HDF5 may be deflated
-    if (cg_open(name_.c_str(), CG_MODE_READ, &file_) != CG_OK) {
+    const bool hdf5 = head[0] == '\x89';
+    most_values_ = hdf5 ? bytes_ * 1032 : bytes_;  // HDF5 may be deflated
+    if (cg_open(name_.c_str(), CG_MODE_READ, &file_) != CG_OK && !open_newer(hdf5)) {
         throw core::InputError("format", std::string("CGNS cannot open it: ") + cg_get_error(), {name_, {}, {}, {}},
                                "the file is cut short or damaged; copy it again");
     }

@@ -61,6 +61,8 @@ public:
     CgnsFile(const CgnsFile&) = delete;
     CgnsFile& operator=(const CgnsFile&) = delete;
 
+    /// Of the library that wrote the file, where it is later than the one here; 0 otherwise.
+    [[nodiscard]] float newer_version() const { return version_; }
     [[nodiscard]] int bases() const { return bases_; }
     [[nodiscard]] int cell_dimension() const { return cell_dimension_; }
     [[nodiscard]] int physical_dimension() const { return physical_dimension_; }
@@ -94,6 +96,7 @@ private:
         double length = 1;
         [[nodiscard]] double to_si(std::string_view unit) const;
     };
+    bool open_newer(bool hdf5);
     [[noreturn]] void fail(const std::string& what) const;
     void ok(const CgnsZone& zone, int result, const char* what) const;
     void check_room(const CgnsZone& zone, double count) const;
@@ -104,6 +107,7 @@ private:
     [[nodiscard]] int family_type(const CgnsZone& zone, int condition) const;
 
     std::string name_;
+    float version_ = 0;
     std::uint64_t bytes_ = 0;
     std::uint64_t most_values_ = 0;
     int file_ = -1;

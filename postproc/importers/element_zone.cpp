@@ -5,6 +5,8 @@
 #include <vtkPointData.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <array>
 #include <limits>
 
@@ -159,13 +161,38 @@ struct Named {
     bool on_nodes = true;
 };
 
+/// Vectors, on nodes or not, of which there are x and y at least: a plane flow has no z.
+std::set<std::pair<std::string, bool>> whole_vectors(const std::vector<PartValues>& values, const ReadOptions& options) {
+    std::map<std::pair<std::string, bool>, int> found;
+    for (const auto& entry : values) {
+        const auto component = entry.components == 1 ? vector_component(read_variable_name(entry.variable, options, {}).name) : std::nullopt;
+        if (component) {
+            found[{component->vector, entry.on_nodes}] |= 1 << component->index;
+        }
+    }
+    std::set<std::pair<std::string, bool>> whole;
+    for (const auto& [vector, components] : found) {
+        if ((components & 3) == 3) {
+            whole.insert(vector);
+        }
+    }
+    return whole;
+}
+
 /// Arrays with their names in SI, components joined.
 std::vector<Named> named_values(std::vector<PartValues>&& values, const ReadOptions& options, bool cells,
                                 const std::string& file) {
     std::vector<Named> arrays;
+    const std::set<std::pair<std::string, bool>> vectors = whole_vectors(values, options);
     for (auto& entry : values) {
-        const VariableReading reading = read_variable_name(entry.variable, options, {file, {}, {}, {}});
-        const auto component = entry.components == 1 ? vector_component(reading.name) : std::nullopt;
+        VariableReading reading = read_variable_name(entry.variable, options, {file, {}, {}, {}});
+        auto component = entry.components == 1 ? vector_component(reading.name) : std::nullopt;
+        if (component && !vectors.contains({component->vector, entry.on_nodes})) {
+            component.reset();  // what the file does not state is not nought
+        }
+        if (entry.components == 1 && vector_component(reading.name + "_x")) {
+            reading.name += "_magnitude";
+        }
         Named named;
         named.info.name = component ? component->vector : reading.name;
         named.info.unit = reading.unit;

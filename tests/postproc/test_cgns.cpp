@@ -1,5 +1,6 @@
 // CGNS files that the tests write through libcgns: every kind of element, polyhedra, boundaries as CFX and others give
 // them, in ADF and HDF5.
+#include <cgns_io.h>
 #include <cgnslib.h>
 #include <gmock/gmock.h>
 #include <vtkCellData.h>
@@ -15,6 +16,7 @@
 
 #include "core/file.h"
 #include "import_support.h"
+#include "postproc/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -453,6 +455,84 @@ TEST(Cgns, BoundariesKeepThePressureOfTheirNodesWhereTheCellsHaveOneToo) {
         expect_closed_with_gauss(field, volume);
         EXPECT_EQ(test::range_of(*field.find("Domain 1")->volume, "pressure").high, 40);
     }
+}
+
+/// As a later library would have written it: its version is all that the one here looks at.
+void set_version(const fs::path& path, float version) {
+    int file = 0;
+    double root = 0;
+    double node = 0;
+    ASSERT_EQ(cgio_open_file(path.c_str(), CGIO_MODE_MODIFY, CGIO_FILE_NONE, &file), CGIO_ERR_NONE);
+    ASSERT_EQ(cgio_get_root_id(file, &root), CGIO_ERR_NONE);
+    ASSERT_EQ(cgio_get_node_id(file, root, "CGNSLibraryVersion", &node), CGIO_ERR_NONE);
+    ASSERT_EQ(cgio_write_all_data(file, node, &version), CGIO_ERR_NONE);
+    ASSERT_EQ(cgio_close_file(file), CGIO_ERR_NONE);
+}
+
+TEST(Cgns, FilesOfALaterLibraryAreRead) {
+    const core::TemporaryFolder folder;
+    for (const int type : {CG_FILE_HDF5, CG_FILE_ADF}) {
+        const fs::path path = folder.path() / "a.cgns";
+        write_like_cfx(path, type);
+        const auto before = read_field(path);
+        set_version(path, 4.4F);
+        int file = 0;
+        ASSERT_NE(cg_open(path.c_str(), CG_MODE_READ, &file), CG_OK) << "the library reads it itself: the detour may go";
+        const auto field = read_field(path);
+        EXPECT_EQ(test::volume_of(field), test::volume_of(before));
+        ASSERT_EQ(field.zones.size(), before.zones.size());
+        for (std::size_t z = 0; z < field.zones.size(); ++z) {
+            EXPECT_EQ(field.zones[z].name, before.zones[z].name);
+            EXPECT_EQ(field.zones[z].kind, before.zones[z].kind);
+            EXPECT_EQ(field.zones[z].arrays.size(), before.zones[z].arrays.size());
+        }
+        const auto told = [](const auto& problem) { return problem.message.find("written by CGNS 4.4") != std::string::npos; };
+        EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), told));
+        EXPECT_NE(test::refusal((core::write_file(folder.path() / "cut.cgns", core::read_file(path).substr(0, 3000)), folder.path() / "cut.cgns")), "");
+    }
+}
+
+TEST(Cgns, FacesInSpaceAreASurfaceAndOneComponentIsNoVector) {
+    const core::TemporaryFolder folder;
+    const fs::path path = folder.path() / "shell.cgns";
+    int file = 0;
+    int base = 0;
+    int zone = 0;
+    int index = 0;
+    cg_set_file_type(CG_FILE_HDF5);
+    ASSERT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), CG_OK);
+    cg_set_file_type(CG_FILE_NONE);
+    ASSERT_EQ(cg_base_write(file, "Surface", 2, 3, &base), CG_OK);
+    // A unit cube, its lower side in a zone of its own, all normals outward.
+    const double x[3][8] = {{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+    const auto add = [&](const char* name, const Nodes& quads) {
+        const cgsize_t size[3] = {8, static_cast<cgsize_t>(quads.size() / 4), 0};
+        ASSERT_EQ(cg_zone_write(file, base, name, size, CGNS_ENUMV(Unstructured), &zone), CG_OK);
+        const char* names[] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
+        for (std::size_t k = 0; k < 3; ++k) {
+            ASSERT_EQ(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), names[k], x[k], &index), CG_OK);
+        }
+        ASSERT_EQ(cg_section_write(file, base, zone, "quads", CGNS_ENUMV(QUAD_4), 1, size[1], 0, quads.data(), &index), CG_OK);
+        int solution = 0;
+        ASSERT_EQ(cg_sol_write(file, base, zone, "Solution", CGNS_ENUMV(Vertex), &solution), CG_OK);
+        ASSERT_EQ(cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", x[2], &index), CG_OK);
+        ASSERT_EQ(cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "VelocityX", x[0], &index), CG_OK);
+    };
+    add("base", {1, 4, 3, 2});
+    add("hull", {5, 6, 7, 8, 1, 2, 6, 5, 2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8});
+    ASSERT_EQ(cg_close(file), CG_OK);
+    postproc::ReadOptions options;
+    options.surfaces_only = true;
+    const auto field = read_field(path, options);
+    ASSERT_EQ(field.zones.size(), 2U);
+    double lift = 0;
+    for (const auto& one : field.zones) {
+        ASSERT_NE(one.surface, nullptr) << one.name;
+        lift += postproc::loads(field).total.force[2] / 2;
+        ASSERT_NE(one.find("velocity_x"), nullptr);
+        EXPECT_EQ(one.find("velocity"), nullptr);
+    }
+    EXPECT_NEAR(lift, -1, 1e-12);  // p = z pushes the lid down
 }
 
 TEST(Cgns, EveryValueIsInTheUnitsThatTheFileStates) {

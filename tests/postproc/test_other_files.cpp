@@ -82,7 +82,7 @@ TEST(OtherFiles, FluentsAsciiTableIsPointsAndSaysSo) {
     EXPECT_EQ(zone.kind, postproc::ZoneKind::points);
     EXPECT_EQ(zone.surface->GetNumberOfPoints(), 2);
     EXPECT_EQ(zone.surface->GetPointData()->GetArray("pressure")->GetTuple1(1), 6);
-    EXPECT_NE(zone.find("wall_shear"), nullptr);
+    EXPECT_NE(zone.find("wall_shear_x"), nullptr);
     EXPECT_THAT(field.problems.back().message, HasSubstr("forces cannot be integrated"));
     EXPECT_THAT(
         test::refusal(written(folder, "cut.csv", "nodenumber x-coordinate y-coordinate pressure\n1 2 3 4\n2 3\n")),
