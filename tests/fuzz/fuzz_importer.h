@@ -1,7 +1,6 @@
 // One input of a fuzzer as a file in memory, given to one importer. Only errors about the input may come out.
 #pragma once
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -13,20 +12,24 @@
 
 namespace underbody::test {
 
-/// A file that exists in memory only, with a path that others can open.
+/// A file in memory, with a name: what has none (memfd_create) HDF5 does not open, it follows links to their names.
 class MemoryFile {
 public:
-    MemoryFile(const std::uint8_t* data, std::size_t size) : descriptor_(::memfd_create("fuzz", 0)) {
+    MemoryFile(const std::uint8_t* data, std::size_t size) : descriptor_(::mkstemp(path_.data())) {
         if (descriptor_ < 0 || ::write(descriptor_, data, size) != static_cast<ssize_t>(size)) {
             std::abort();
         }
     }
-    ~MemoryFile() { ::close(descriptor_); }
+    ~MemoryFile() {
+        ::close(descriptor_);
+        ::unlink(path_.c_str());
+    }
     MemoryFile(const MemoryFile&) = delete;
     MemoryFile& operator=(const MemoryFile&) = delete;
-    [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+    [[nodiscard]] const std::string& path() const { return path_; }
 
 private:
+    std::string path_ = "/dev/shm/underbody-fuzz-XXXXXX";
     int descriptor_;
 };
 
