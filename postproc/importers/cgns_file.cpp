@@ -161,8 +161,10 @@ CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
     const bool hdf5 = head[0] == '\x89';
     most_values_ = hdf5 ? bytes_ * 1032 : bytes_;  // HDF5 may be deflated
     if (cg_open(name_.c_str(), CG_MODE_READ, &file_) != CG_OK && !open_newer(hdf5)) {
-        throw core::InputError("format", std::string("CGNS cannot open it: ") + cg_get_error(), {name_, {}, {}, {}},
-                               "the file is cut short or damaged; copy it again");
+        const std::string why = cg_get_error();
+        const bool link = core::lower_case(why).find("linked") != std::string::npos;
+        throw core::InputError("format", "CGNS cannot open it: " + why, {name_, {}, {}, {}},
+                               link ? "it takes a part from another file by a link: that one must lie where it did" : "the file is cut short or damaged; copy it again");
     }
     try {
         std::array<char, 33> base_name{};
@@ -191,7 +193,9 @@ CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
 CgnsFile::~CgnsFile() { cg_close(file_); }
 
 void CgnsFile::fail(const std::string& what) const {
-    throw core::InputError("format", what, {name_, {}, {}, {}}, "the file is damaged or incomplete");
+    const bool link = core::lower_case(what).find("linked") != std::string::npos;
+    throw core::InputError("format", what, {name_, {}, {}, {}},
+                           link ? "it takes a part from another file by a link: that one must lie where it did" : "the file is damaged or incomplete");
 }
 
 void CgnsFile::ok(const CgnsZone& zone, int result, const char* what) const {

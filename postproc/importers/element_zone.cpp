@@ -346,6 +346,7 @@ void scale_parts(std::vector<ElementPart>& parts, const ReadOptions& options, Fi
         field.problems.push_back({core::Problem::Severity::note,
                                   "the file states no units; lengths are taken as metres (a length unit can be given)",
                                   place});
+        field.metadata.emplace_back("length unit", "not stated, taken as m");
         return;
     }
     const double scale = core::conversion(options.length_unit, "m", place).scale;

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "postproc/importers/element_zone.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/report_words.h"
 #include "postproc/importers/understood.h"
 
 namespace underbody::postproc {
@@ -16,7 +17,7 @@ namespace underbody::postproc {
 namespace {
 
 /// Words between blanks or commas.
-std::vector<std::string_view> words_of(std::string_view line) {
+std::vector<std::string_view> columns_of(std::string_view line) {
     std::vector<std::string_view> words;
     std::size_t at = 0;
     while (at < line.size()) {
@@ -31,7 +32,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 bool recognises(std::string_view head, const std::filesystem::path& /*path*/) {
-    const auto words = words_of(head.substr(0, std::min(head.find('\n'), head.size())));
+    const auto words = columns_of(head.substr(0, std::min(head.find('\n'), head.size())));
     return words.size() > 2 && (words[0] == "nodenumber" || words[0] == "cellnumber");
 }
 
@@ -42,7 +43,7 @@ void read_rows(const std::string& file, const std::vector<std::string_view>& lin
         if (core::trimmed(lines[i]).empty()) {
             continue;
         }
-        const auto words = words_of(lines[i]);
+        const auto words = columns_of(lines[i]);
         const core::Place place{file, static_cast<std::int64_t>(i + 1), {}, {}};
         if (words.size() != names) {
             throw core::InputError(
@@ -51,7 +52,7 @@ void read_rows(const std::string& file, const std::vector<std::string_view>& lin
                 place, "is the file cut short?");
         }
         for (std::size_t c = 0; c < words.size(); ++c) {
-            const auto value = core::parse_number(words[c]);
+            const auto value = number_of(words[c]);
             if (!value) {
                 throw core::InputError("parse", "'" + std::string(words[c]) + "' is not a number", place);
             }
@@ -66,7 +67,7 @@ void read_rows(const std::string& file, const std::vector<std::string_view>& lin
 Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
     const core::MappedFile file(path);
     const auto lines = core::split(file.bytes(), '\n');
-    const auto names = words_of(lines.empty() ? std::string_view() : lines[0]);
+    const auto names = columns_of(lines.empty() ? std::string_view() : lines[0]);
     if (names.empty()) {
         throw core::InputError("format", "the first line names no columns", {file.name(), 1, {}, {}});
     }

@@ -47,7 +47,7 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         }
         if (mesh_path.empty()) {
             throw core::InputError("missing", "these are solution data without a mesh", {path.string(), {}, {}, {}},
-                                   "give the case (.cas.h5) they belong to as the companion file");
+                                   "name the case (.cas.h5) they belong to: --mesh FILE");
         }
     }
     if (!data_path.empty()) {

@@ -14,7 +14,7 @@ namespace underbody::postproc {
 std::vector<std::string> words_of(std::string_view line);
 
 /// A number as solvers write it, with "nan(ind)" and "1.#INF" among them.
-std::optional<double> number_of(const std::string& word);
+std::optional<double> number_of(std::string_view word);
 
 /// All words as numbers; nothing when one is none, or there are no words.
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& words);

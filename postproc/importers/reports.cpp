@@ -1,6 +1,7 @@
 #include "postproc/importers/reports.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 
@@ -41,7 +42,7 @@ std::vector<std::string> words_of(std::string_view line) {
     return words;
 }
 
-std::optional<double> number_of(const std::string& word) {
+std::optional<double> number_of(std::string_view word) {
     if (const auto value = core::parse_number(word)) {
         return value;
     }
@@ -52,6 +53,11 @@ std::optional<double> number_of(const std::string& word) {
     }
     if (lower.find("#inf") != std::string::npos) {
         return HUGE_VAL;
+    }
+    // Fortran drops the letter where the exponent has three digits: "1.0-101".
+    const std::size_t sign = word.find_last_of("+-");
+    if (sign != std::string_view::npos && sign > 0 && std::isdigit(static_cast<unsigned char>(word[sign - 1])) != 0) {
+        return core::parse_number(std::string(word.substr(0, sign)) + "e" + std::string(word.substr(sign)));
     }
     return {};
 }

@@ -445,20 +445,34 @@ Field field_for(const fs::path& path, const std::string& format) {
     return field;
 }
 
+/// What the file does not say, and what is made of it.
+void note_units(Field& field, const ReadOptions& options) {
+    const core::Place place{field.files.front(), {}, {}, {}};
+    field.problems.push_back({core::Problem::Severity::note,
+                              "the file states no units; SI is taken unless stated otherwise",
+                              place});
+    if (options.length_unit.empty()) {
+        field.metadata.emplace_back("length unit", "not stated, taken as m");
+    }
+    const bool plane = std::any_of(field.zones.begin(), field.zones.end(), [](const Zone& zone) { return zone.volume != nullptr && dimension_of(*zone.volume) == 2; });
+    if (plane) {
+        field.problems.push_back({core::Problem::Severity::warning,
+                                  "its faces lie in one plane: they are taken for a two-dimensional flow, no surface (a flat surface is one in VTP, STL, PLY)",
+                                  place});
+    }
+}
+
 Field read_one(const fs::path& path, const std::string& format, vtkDataObject* object, const ReadOptions& options, core::Progress& progress) {
     Field field = field_for(path, format);
     add_tree(field, vtkDataObjectTree::SafeDownCast(object) != nullptr ? "" : path.stem().string(), object,
              grids_are_surfaces(object), options);
     settle_sides(field, progress);
-    std::erase_if(field.zones, [&](const Zone& zone) {
-        return !matches_any(options.zones, zone.name) || (zone.volume != nullptr && options.surfaces_only);
-    });
+    std::erase_if(field.zones, [&](const Zone& zone) { return !matches_any(options.zones, zone.name); });
+    note_units(field, options);
+    std::erase_if(field.zones, [&](const Zone& zone) { return zone.volume != nullptr && options.surfaces_only; });
     if (field.zones.empty() && options.zones.empty() && !options.surfaces_only) {
         throw core::InputError("format", "there are no points in this file", {path.string(), {}, {}, {}});
     }
-    field.problems.push_back({core::Problem::Severity::note,
-                              "the file states no units; SI is taken unless stated otherwise",
-                              {path.string(), {}, {}, {}}});
     return field;
 }
 
@@ -539,7 +553,7 @@ bool is_surface(std::string_view head, const fs::path& path) {
     if (head.starts_with("ply\n") || head.starts_with("ply\r\n")) {
         return true;
     }
-    if (head.starts_with("solid") && head.find("facet") != std::string_view::npos) {
+    if (core::lower_case(head.substr(0, 5)) == "solid" && core::lower_case(head).find("facet") != std::string::npos) {
         return true;
     }
     // A binary STL has nothing but its size to know it by: 84 bytes and 50 for each triangle.

@@ -4,6 +4,8 @@
 
 #include <fstream>
 
+#include <cmath>
+
 #include "core/file.h"
 #include "import_support.h"
 #include "postproc/import_error.h"
@@ -84,6 +86,11 @@ TEST(OtherFiles, FluentsAsciiTableIsPointsAndSaysSo) {
     EXPECT_EQ(zone.surface->GetPointData()->GetArray("pressure")->GetTuple1(1), 6);
     EXPECT_NE(zone.find("wall_shear_x"), nullptr);
     EXPECT_THAT(field.problems.back().message, HasSubstr("forces cannot be integrated"));
+    const auto odd = read_field(written(folder, "odd.txt", "nodenumber x-coordinate y-coordinate pressure\n1 0 0 1.0-101\n2 1 0 1.#QNAN\n3 1 1 2.5+100\n"));
+    auto* pressure = odd.zones.at(0).surface->GetPointData()->GetArray("pressure");
+    EXPECT_EQ(pressure->GetTuple1(0), 1e-101);  // Fortran, three digits of exponent
+    EXPECT_TRUE(std::isnan(pressure->GetTuple1(1)));
+    EXPECT_EQ(pressure->GetTuple1(2), 2.5e100);
     EXPECT_THAT(
         test::refusal(written(folder, "cut.csv", "nodenumber x-coordinate y-coordinate pressure\n1 2 3 4\n2 3\n")),
         HasSubstr("cut.csv:3"));
