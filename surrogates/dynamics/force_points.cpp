@@ -37,20 +37,32 @@ Model of_the_vehicle(const Model& model, ForcePoints& out) {
 using Axes = std::map<Channel, std::vector<double>>;
 
 void take(Axes& axes, const tables::ForceTable& table) {
-    for (const tables::TableAxis& axis : table.axes()) {
+    for (std::size_t i = 0; i < table.axes().size(); ++i) {
         Channel channel{};
-        if (find_channel(axis.name, channel)) {
+        if (find_channel(table.axes()[i].name, channel)) {
             std::vector<double>& points = axes[channel];
-            points.insert(points.end(), axis.points.begin(), axis.points.end());
+            points.insert(points.end(), table.knots(i).begin(), table.knots(i).end());
         }
     }
 }
 
-std::vector<double> quartered(const std::vector<double>& points) {
+constexpr std::size_t most_points = 1000000;
+
+std::size_t points_of(const Axes& axes, std::size_t parts) {
+    std::size_t count = 1;
+    for (const auto& [channel, points] : axes) {
+        count *= std::min(most_points + 1, parts * (points.size() - 1) + 1);
+        count = std::min(count, most_points + 1);
+    }
+    return count;
+}
+
+std::vector<double> divided(const std::vector<double>& points, std::size_t parts) {
     std::vector<double> out;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        for (int part = 0; part < 4; ++part) {
-            out.push_back(points[i] + (points[i + 1] - points[i]) * part / 4);
+        for (std::size_t part = 0; part < parts; ++part) {
+            out.push_back(points[i] +
+                          (points[i + 1] - points[i]) * static_cast<double>(part) / static_cast<double>(parts));
         }
     }
     out.push_back(points.back());
@@ -72,9 +84,17 @@ Axes axes_of(const Model& model, const Conditions& held) {
     for (auto& [channel, points] : axes) {
         std::sort(points.begin(), points.end());
         points.erase(std::unique(points.begin(), points.end()), points.end());
-        if (!model.effects.empty()) {
-            points = quartered(points);
-        }
+    }
+    const bool given_back =
+        model.effects.empty() && std::all_of(model.forces.begin(), model.forces.end(), [](const ForceSource& source) {
+            return source.table.is_monotone_interpolation();
+        });
+    std::size_t parts = given_back ? 1 : 4;
+    while (parts > 1 && points_of(axes, parts) > most_points) {
+        --parts;
+    }
+    for (auto& [channel, points] : axes) {
+        points = divided(points, parts);
     }
     return axes;
 }
@@ -87,10 +107,11 @@ void hold_scales(const Model& model, const Axes& axes, Conditions& held, ForcePo
                 continue;
             }
             held[scale.channel] = model.conditions.get(scale.channel, scale.reference);
-            remark(out, model,
-                   std::string(channel_name(scale.channel)) + " is held at " +
-                       core::format_number(held[scale.channel], 6) + " " + channel_unit(scale.channel) +
-                       (model.conditions.has(scale.channel) ? ", the model's condition" : ", the reference of its scale"));
+            remark(
+                out, model,
+                std::string(channel_name(scale.channel)) + " is held at " +
+                    core::format_number(held[scale.channel], 6) + " " + channel_unit(scale.channel) +
+                    (model.conditions.has(scale.channel) ? ", the model's condition" : ", the reference of its scale"));
         }
     }
 }
@@ -129,13 +150,10 @@ ForcePoints force_points(const Model& declared, const Conditions& given) {
     Conditions held = given;
     const Axes axes = axes_of(model, held);
     hold_scales(model, axes, held, out);
-    std::size_t count = 1;
-    for (const auto& [channel, points] : axes) {
-        count *= points.size();
-        if (count > 1000000) {
-            throw core::InputError("range", "the tables of the model have more than a million set points together",
-                                   {declared.name, {}, {}, {}}, "hold one of their axes, such as --where \"speed=0.5\"");
-        }
+    const std::size_t count = points_of(axes, 1);
+    if (count > most_points) {
+        throw core::InputError("range", "the tables of the model have more than a million set points together",
+                               {declared.name, {}, {}, {}}, "hold one of their axes, such as --where \"speed=0.5\"");
     }
     std::vector<std::vector<double>> columns(axes.size()), forces(quantities.size());
     std::vector<StaticModel> models;

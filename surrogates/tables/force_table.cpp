@@ -31,6 +31,24 @@ const core::Table& ForceTable::points() const { return impl_->points; }
 const std::vector<double>& ForceTable::knots(std::size_t axis) const { return impl_->surface.axis(axis).points(); }
 const std::vector<std::pair<std::string, double>>& ForceTable::conditions() const { return impl_->constants; }
 
+bool ForceTable::is_monotone_interpolation() const {
+    const CubicGrid& surface = impl_->surface;
+    const std::vector<double>& data = surface.hermite();
+    const std::size_t n = surface.dimensions();
+    std::vector<double> values;
+    for (std::size_t node = 0; node < surface.nodes(); ++node) {
+        values.push_back(data[node << n]);
+    }
+    const CubicGrid again(surface.points(), values, SlopeRule::monotone);
+    std::vector<double> size(std::size_t{1} << n, 0.0), off(size);
+    for (std::size_t i = 0; i < data.size(); ++i) {
+        const std::size_t derivative = i & (size.size() - 1);
+        size[derivative] = std::max(size[derivative], std::abs(data[i]));
+        off[derivative] = std::max(off[derivative], std::abs(data[i] - again.hermite()[i]));
+    }
+    return std::equal(off.begin(), off.end(), size.begin(), [](double o, double s) { return o <= 1e-9 * s; });
+}
+
 ForceTable ForceTable::read(const std::filesystem::path& path, const std::string& quantity, const FitOptions& options) {
     return fit(read_points(path), quantity, options);
 }

@@ -84,6 +84,8 @@ public:
     /// Grid lines of the piecewise cubic that value() evaluates along an axis: between two of them it is one cubic. For
     /// interpolated tables these are the axis's points.
     [[nodiscard]] const std::vector<double>& knots(std::size_t axis) const;
+    /// Is value() the monotone interpolation of its values at the grid lines, so that a fit through these alone gives it back?
+    [[nodiscard]] bool is_monotone_interpolation() const;
     /// Columns of the points that held one value throughout (name, SI value): the conditions the table was made under.
     [[nodiscard]] const std::vector<std::pair<std::string, double>>& conditions() const;
 

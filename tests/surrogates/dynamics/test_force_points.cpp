@@ -18,14 +18,42 @@ std::string all_remarks(const ForcePoints& found) {
     return text;
 }
 
+/// REF-A through its points without overshoot, as models take tables by default.
+Model monotone_model() {
+    Model model = test::ref_a_model();
+    model.forces[0].table = tables::ForceTable::fit(test::ref_a_table(), "lift_force",
+                                                    {.kind = tables::FitOptions::Kind::interpolation, .range = {}, .axes = {}});
+    return model;
+}
+
 TEST(ForcePoints, AreTheTableItselfWhereNothingChangesIt) {
-    const ForcePoints found = force_points(test::ref_a_model());
+    const ForcePoints found = force_points(monotone_model());
     const core::Table table = test::ref_a_table();
     EXPECT_EQ(found.points.numbers("gap"), table.numbers("gap"));
     for (std::size_t i = 0; i < table.rows(); ++i) {
         EXPECT_NEAR(found.points.numbers("lift_force")[i], table.numbers("lift_force")[i], 1e-15);
     }
     EXPECT_TRUE(found.remarks.empty());
+}
+
+TEST(ForcePoints, AreDenseEnoughForATableThatIsNoMonotoneInterpolation) {
+    // A spline overshoots between its points; a fit through these alone would not know.
+    const Model model = test::ref_a_model();
+    ASSERT_FALSE(model.forces[0].table.is_monotone_interpolation());
+    tables::FitOptions options;
+    options.kind = tables::FitOptions::Kind::interpolation;
+    const auto again = tables::ForceTable::fit(force_points(model).points, "lift_force", options);
+    const auto through_points = tables::ForceTable::fit(test::ref_a_table(), "lift_force", options);
+    double off = 0, off_through_points = 0;
+    for (double gap = -0.05; gap < 1.8; gap += 0.00137) {
+        Conditions at;
+        at[Channel::gap] = gap;
+        const double force = static_value(model, "lift_force", at);
+        off = std::max(off, std::abs(again.value(&gap) - force));
+        off_through_points = std::max(off_through_points, std::abs(through_points.value(&gap) - force));
+    }
+    EXPECT_LT(off, 0.02 * off_through_points);
+    EXPECT_LT(off, 1e-6);
 }
 
 TEST(ForcePoints, HaveTheRoughnessOfTheGroundInThemAndPointsBetween) {
@@ -42,7 +70,7 @@ TEST(ForcePoints, HaveTheRoughnessOfTheGroundInThemAndPointsBetween) {
 }
 
 TEST(ForcePoints, LeaveOutWhatBelongsToTheRigOrTheMotionAndSaySo) {
-    const Model model = test::ref_a_model()
+    const Model model = monotone_model()
                             .with_effect(make_use("force_bias", {{"bias", 0.01}}))
                             .with_effect(make_use("coulomb_friction", {{"force", 0.01}}));
     const ForcePoints found = force_points(model);
