@@ -1,5 +1,7 @@
 // underbody export: force tables for controllers.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -52,15 +54,35 @@ tables::ExportOptions options_of(const ExportCommand& command) {
         if (!count || *count < 2) {
             throw core::UsageError("parse", "'" + std::string(core::trimmed(part)) + "' is not of the form axis=COUNT", {}, "such as --points gap=40,pitch=9");
         }
-        options.points.emplace_back(std::string(core::trimmed(part.substr(0, equals))), static_cast<std::size_t>(*count));
+        const std::string axis(core::trimmed(part.substr(0, equals)));
+        if (std::any_of(options.points.begin(), options.points.end(), [&](const auto& other) { return other.first == axis; })) {
+            throw core::UsageError("parse", "--points: '" + axis + "' is given twice");
+        }
+        options.points.emplace_back(axis, static_cast<std::size_t>(*count));
     }
     return options;
 }
 
+/// The format asked for, or the one whose files end like this one.
+std::string format_of(const ExportCommand& command) {
+    if (!command.format.empty()) {
+        return command.format;
+    }
+    std::string endings;
+    for (const auto& format : tables::export_formats()) {
+        if (std::filesystem::path(command.out).extension() == format.ending) {
+            return format.name;
+        }
+        endings += (endings.empty() ? "" : ", ") + format.ending;
+    }
+    throw core::UsageError("format", "'" + command.out + "' ends like no export", {}, "say --format, or end it in " + endings);
+}
+
 int run_export(Shell& shell, const ExportCommand& command) {
+    const std::string format = format_of(command);
     const auto options = options_of(command);
     const auto table = command.table.fit(shell);
-    const auto result = tables::export_table(table, command.format, command.out, options, shell.progress());
+    const auto result = tables::export_table(table, format, command.out, options, shell.progress());
     shell.show(result.remarks);
     std::string grid;
     for (const auto points : result.grid) {
@@ -72,7 +94,7 @@ int run_export(Shell& shell, const ExportCommand& command) {
     shell.info(table.quantity() + " on a grid of " + grid +
                (result.error > 0 ? ", within " + core::format_number(result.error, 3) + " " + table.unit() + " of the full table" : ""));
     if (shell.json) {
-        nlohmann::json document{{"format", command.format}, {"grid", result.grid}, {"error", result.error}, {"quantity", table.quantity()}};
+        nlohmann::json document{{"format", format}, {"grid", result.grid}, {"error", result.error}, {"quantity", table.quantity()}};
         document["files"] = nlohmann::json::array();
         for (const auto& file : result.files) {
             document["files"].push_back(file.string());
@@ -92,7 +114,7 @@ void add_export_command(CLI::App& app, Shell& shell) {
     for (const auto& format : tables::export_formats()) {
         formats += (formats.empty() ? "" : " | ") + format.name;
     }
-    sub->add_option("--format", command->format, formats)->required();
+    sub->add_option("--format", command->format, formats + " (default: by the ending of --out)");
     sub->add_option("--out", command->out, "file to write")->required();
     sub->add_option("--name", command->name, "prefix of identifiers (default: the quantity)");
     sub->add_option("--frame", command->frame, "up: lift positive up | ned: body axes, z down")->capture_default_str();

@@ -87,7 +87,7 @@ int run_at(Shell& shell, const AtCommand& command) {
             }
             for (std::size_t k = 0; k < point.size(); ++k) {
                 const auto& axis = table.axes()[k];
-                line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " + table.unit() + "/" + axis.unit + " along " + axis.name;
+                line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " + tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
             }
             if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
                 shell.warn("no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
@@ -124,7 +124,7 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
         text += " +- " + shown(table, found.axis, found.axis_unit, e.sigma, 2);
     }
     if (e.extent > 0) {
-        text += ", all over " + shown(table, found.axis, found.axis_unit, e.extent, 4);
+        text += ", balanced over " + shown(table, found.axis, found.axis_unit, e.extent, 4);
     }
     text += "   stiffness " + core::format_number(e.stiffness, 5) + " N/m";
     if (e.frequency > 0) {

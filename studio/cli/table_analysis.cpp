@@ -217,7 +217,7 @@ int run_compare(Shell& shell, const CompareCommand& command) {
     }
     const auto result = tables::compare_tables(all, options);
     for (std::size_t i = 0; i < result.names.size(); ++i) {
-        shell.print(result.names[i] + ": " + result.measure + " " + number(result.values[i]) + " +- " + number(result.errors[i], 2));
+        shell.print(result.names[i] + ": " + result.measure + " " + number(result.values[i]) + " +- " + number(result.errors[i], 2) + " " + result.unit);
     }
     shell.print(result.winner + " wins by " + result.measure + (result.beyond_error ? ", beyond the errors" : ", but within the errors"));
     if (!command.picture.empty()) {

@@ -165,6 +165,9 @@ std::string text_of(const Collapse& c, std::size_t beyond, std::size_t all, bool
 }  // namespace
 
 Collapse collapse(const core::Table& table, const std::string& quantity, const CollapseOptions& options) {
+    if (!(options.density > 0) || !(options.length >= 0) || !(options.width >= 0)) {
+        throw core::UsageError("range", "density, length and width must be positive to make a coefficient");
+    }
     Collapse result;
     result.quantity = quantity;
     result.by = chosen_level(table, options.by);

@@ -47,7 +47,7 @@ struct Collapse {
     std::vector<double> curve_x, curve_y, curve_sigma;  ///< the reference curve
 };
 
-/// Throws core::InputError when only one level is there, a level is not positive, nothing overlaps; core::UsageError for an unknown `by`.
+/// Throws core::InputError when only one level is there, a level is not positive, nothing overlaps; core::UsageError for an unknown `by`, a density, length or width that is negative.
 Collapse collapse(const core::Table& table, const std::string& quantity, const CollapseOptions& options = {});
 core::Figure collapse_figure(const Collapse& collapse);
 void to_json(nlohmann::json& json, const Collapse& collapse);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "surrogates/tables/figures.h"
 
 namespace underbody::tables {
 
@@ -104,6 +105,9 @@ Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>&
     if (!(result.lower < result.upper)) {
         throw core::UsageError("range", "the tables have no common range of " + result.axis);
     }
+    const std::string& force_unit = tables.front().second.unit();
+    const std::string& axis_unit = tables.front().second.axes()[slices.front().axis].unit;
+    result.unit = options.measure == Measure::restoring_slope ? unit_per(force_unit, axis_unit) : options.measure == Measure::restoring_width ? axis_unit : force_unit;
     for (std::size_t i = 0; i < slices.size(); ++i) {
         result.values.push_back(measured(slices[i], options.measure, result.lower, result.upper));
         double square = 0;
@@ -131,7 +135,7 @@ Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>&
 }
 
 void to_json(nlohmann::json& json, const Comparison& c) {
-    json = nlohmann::json{{"quantity", c.quantity}, {"axis", c.axis}, {"measure", c.measure}, {"range", {c.lower, c.upper}}, {"winner", c.winner}, {"beyond_error", c.beyond_error}};
+    json = nlohmann::json{{"quantity", c.quantity}, {"axis", c.axis}, {"measure", c.measure}, {"unit", c.unit}, {"range", {c.lower, c.upper}}, {"winner", c.winner}, {"beyond_error", c.beyond_error}};
     for (std::size_t i = 0; i < c.names.size(); ++i) {
         json["variants"].push_back({{"name", c.names[i]}, {"value", c.values[i]}, {"sigma", c.errors[i]}});
     }

@@ -38,6 +38,7 @@ struct Comparison {
     std::string quantity, axis, measure;
     double lower = 0, upper = 0;  ///< common range
     std::vector<std::string> names;
+    std::string unit;             ///< of the measure, SI
     std::vector<double> values;   ///< of the measure, one a table
     std::vector<double> errors;   ///< one standard deviation of it, from 40 draws of each table
     std::string winner;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/figures.h"
 #include "surrogates/tables/zero_lines.h"
@@ -41,7 +42,7 @@ public:
             const auto& a = table.axes()[parameter_axis_];
             const double room = 1e-9 * (a.upper - a.lower);
             if (options.lower < a.lower - room || options.upper > a.upper + room) {
-                throw core::UsageError("range", "the table covers " + a.name + " from " + std::to_string(a.lower) + " to " + std::to_string(a.upper) + " " + a.unit + " only");
+                throw core::UsageError("range", "the table covers " + a.name + " from " + core::format_number(a.lower, 6) + " to " + core::format_number(a.upper, 6) + " " + a.unit + " only");
             }
         }
     }
@@ -139,7 +140,17 @@ EquilibriumCurve continue_equilibria(const ForceTable& table, const Continuation
         for (const auto& [gap, parameter] : line) {
             double slope = 0;
             force(gap, parameter, &slope);
-            branch.push_back({parameter, gap, -slope, slope < 0 ? Stability::stable : Stability::unstable});
+            branch.push_back({parameter, gap, 0 - slope, slope < 0 ? Stability::stable : Stability::unstable});
+        }
+        // At an end of the table, or on a stretch without slope, the curve touches the flat: no fold, if it does not go through.
+        double steepest = 0;
+        for (const auto& b : branch) {
+            steepest = std::max(steepest, std::abs(b.stiffness));
+        }
+        for (std::size_t i = 0; i < branch.size() && branch.size() > 1; ++i) {
+            if (std::abs(branch[i].stiffness) <= 1e-12 * steepest) {
+                branch[i].stability = branch[i == 0 ? 1 : i - 1].stability;
+            }
         }
         for (std::size_t i = 0; i + 1 < branch.size(); ++i) {
             if (branch[i].stability != branch[i + 1].stability) {

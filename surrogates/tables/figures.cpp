@@ -193,6 +193,8 @@ std::string shown_unit(const ForceTable& table, const std::string& quantity) {
     return known != nullptr ? known->unit : table.unit();
 }
 
+std::string unit_per(const std::string& unit, const std::string& of) { return unit + "/" + (of.find_first_of("/ ") == std::string::npos ? of : "(" + of + ")"); }
+
 core::Figure curve_figure(const ForceTable& table, const FigureOptions& options) {
     const std::size_t axis = chosen_axis(table, options.axis);
     const auto at = base_point(table, options.held);

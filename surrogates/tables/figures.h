@@ -40,6 +40,9 @@ bool spans_decades(double lower, double upper);
 /// Unit that people read this quantity in here: the one its column was written in, else the SI unit.
 std::string shown_unit(const ForceTable& table, const std::string& quantity);
 
+/// Unit of a slope: "N/m", "N/(m/s)".
+std::string unit_per(const std::string& unit, const std::string& of);
+
 /// Evaluation and table as JSON (SI).
 void to_json(nlohmann::json& json, const ForceTable& table);
 nlohmann::json to_json(const ForceTable& table, const std::vector<double>& point, const Evaluation& evaluation);

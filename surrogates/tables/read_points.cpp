@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/units.h"
+#include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/select.h"
 
 namespace underbody::tables {
@@ -84,6 +85,12 @@ core::Table table_of(const nlohmann::json& json, const std::filesystem::path& pa
 }  // namespace
 
 core::Table read_points(const std::filesystem::path& path) {
+    for (const auto& format : export_formats()) {
+        if (path.extension() == format.ending && format.name != "csv" && format.name != "json") {
+            throw core::InputError("parse", "this is a table exported as " + format.name + ", which is not read back", {path.string(), {}, {}, {}},
+                                   "export it as csv or json too, or read the points it was made of");
+        }
+    }
     if (path.extension() != ".json") {
         return core::read_csv(path);
     }

@@ -63,6 +63,9 @@ core::Table selected_rows(const core::Table& table, const std::string& condition
         }
         const std::string name(core::trimmed(part.substr(0, equals)));
         Condition condition{table.find(name), {}, {}};
+        if (condition.column != nullptr && std::any_of(wanted.begin(), wanted.end(), [&](const Condition& c) { return c.column == condition.column; })) {
+            throw core::UsageError("parse", "'" + name + "' is given twice: " + conditions, {table.source, {}, {}, {}}, name + "=a|b takes either");
+        }
         if (condition.column == nullptr) {
             std::vector<std::string> names;
             for (const auto& column : table.columns()) {

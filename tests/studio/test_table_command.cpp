@@ -55,6 +55,10 @@ TEST(TableCommand, SaysWhatIsWrong) {
     EXPECT_THAT(outside.errors, HasSubstr("outside the table by 100 mm"));
     const auto bare = run_underbody({"table", "at", "lift.csv", "gap=5"}, folder.path());
     EXPECT_THAT(bare.errors, HasSubstr("outside the table by 4900 mm: the end value is held; a bare number is SI, 5 mm would lie inside"));
+    ASSERT_EQ(run_underbody({"export", "lift.csv", "--out", "lift.h"}, folder.path()).exit_code, 0);
+    const auto header = run_underbody({"table", "at", "lift.h", "gap=5mm"}, folder.path());
+    EXPECT_EQ(header.exit_code, 3);
+    EXPECT_THAT(header.errors, HasSubstr("exported as c, which is not read back"));
     // What would be passed over in silence.
     const auto wrong = [&](const std::vector<std::string>& words, const char* message) {
         const auto run = run_underbody(words, folder.path());
@@ -63,6 +67,9 @@ TEST(TableCommand, SaysWhatIsWrong) {
     };
     wrong({"table", "equilibria", "lift.csv", "--held", "gap=5mm"}, "gap cannot be held: it is what varies");
     wrong({"table", "at", "lift.csv", "gap=5mm,gap=6mm"}, "'gap' is given twice");
+    wrong({"table", "fit", "lift.csv", "--where", "gap=5mm,gap=6mm"}, "gap=a|b takes either");
+    wrong({"export", "lift.csv", "--out", "l.h", "--points", "gap=5,gap=6"}, "'gap' is given twice");
+    wrong({"export", "lift.csv", "--out", "l.foo"}, "or end it in .h, .csv, .json");
     wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8"}, "does not say at which speed it was made");
     wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "0"}, "must be positive");
     wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "1", "--exponent", "nan"}, "exponent a number");

@@ -95,6 +95,26 @@ TEST(Pitch, HasItsStableWindowsAndTheTorqueThatTrimsThem) {
     EXPECT_NEAR(windows[0].trim_torque, -0.002, 1e-5);
 }
 
+TEST(Continuation, SeesNoFoldWhereTheForceEndsFlat) {
+    // The monotone cubic has no slope at its last point here.
+    const auto table = monotone(csv("gap [m], lift_force [N]\n1, 1\n2, 0.5\n5, 0.2\n10, 0.1\n20, 0.05\n50, 0.02\n"));
+    const double end = 50;
+    double slope = 1;
+    table.value(&end, &slope);
+    ASSERT_NEAR(slope, 0, 1e-15);
+    ContinuationOptions options;
+    options.parameter = "net_weight";
+    options.lower = 0.01;
+    options.upper = 0.9;
+    const auto curve = continue_equilibria(table, options);
+    ASSERT_EQ(curve.branches.size(), 1u);
+    EXPECT_TRUE(curve.folds.empty());
+    EXPECT_NEAR(std::max(curve.branches[0].front().gap, curve.branches[0].back().gap), 50, 0.2);
+    for (const auto& b : curve.branches[0]) {
+        EXPECT_EQ(b.stability, Stability::stable);
+    }
+}
+
 /// F = 1 - 2 (h - 0.5) + 3 p, M = -0.5 p + 0.2 (h - 0.5): both linear, so one balance for weight 1 at (0.5, 0), with K = [[2, -3], [-0.2, 0.5]].
 core::Table coupled_points() {
     const std::vector<double> h = {0.1, 0.3, 0.5, 0.7, 0.9}, q = {-0.2, -0.1, 0, 0.1, 0.2};
@@ -190,6 +210,7 @@ TEST(Comparison, NamesTheWinnerAndWhereVariantsDifferBeyondTheirErrors) {
     const auto b = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 2, .01\n0.25, 1.5, .01\n0.5, 1, .01\n1, 0, .01\n"));
     const auto result = compare_tables({{"flat", a}, {"steep", b}}, {});
     EXPECT_EQ(result.winner, "steep");
+    EXPECT_EQ(result.unit, "N/m");
     EXPECT_TRUE(result.beyond_error);
     ASSERT_EQ(result.differences.size(), 1u);
     EXPECT_NEAR(result.differences[0].largest, 1, 1e-9);
@@ -266,6 +287,9 @@ TEST(Collapse, PutsJetForcesOnTheSquareOfVoltageOrFlow) {
     }
     CollapseOptions options;
     options.by = "voltage";
+    EXPECT_THROW(collapse(csv(text), "lift_force", options), core::UsageError);
+    options.by = "jet_flow";
+    options.length = -1;
     EXPECT_THROW(collapse(csv(text), "lift_force", options), core::UsageError);
 }
 
