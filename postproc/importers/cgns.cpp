@@ -13,6 +13,7 @@
 #include "postproc/importers/face_orientation.h"
 #include "postproc/importers/hdf5_file.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/steps.h"
 #include "postproc/importers/trial.h"
 #include "postproc/importers/understood.h"
 
@@ -33,6 +34,13 @@ public:
 private:
     bool is_shell();
     void add_notes(Field& field) const;
+    void note_data_sets(const std::vector<CgnsCondition>& conditions) {
+        for (const auto& condition : conditions) {
+            if (condition.data_sets > 0) {
+                with_data_.push_back(condition.name);
+            }
+        }
+    }
     void add_unstructured(const CgnsZone& zone, Field& field);
     void add_structured(const CgnsZone& zone, Field& field);
     void add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
@@ -50,7 +58,9 @@ private:
     const ReadOptions& options_;
     core::Progress& progress_;
     std::string understood_;
-    bool shell_ = false;  ///< its cells are faces in space
+    bool shell_ = false;       ///< its cells are faces in space
+    int solutions_left_ = 0;   ///< of other steps
+    std::vector<std::string> with_data_;  ///< boundaries with values of their own, which are not read
 };
 
 Field Reader::read() {
@@ -62,6 +72,12 @@ Field Reader::read() {
         field.metadata.emplace_back("length unit", core::format_number(file_.base_length()) + " m");
     }
     shell_ = is_shell();
+    if (const auto& times = file_.times(); !times.empty()) {
+        const std::size_t step = options_.time ? step_at(times, *options_.time, name_) : times.size() - 1;
+        file_.choose_step(step);
+        field.metadata.emplace_back("time", core::format_number(times[step]));
+        field.metadata.emplace_back("times", std::to_string(times.size()) + " from " + core::format_number(times.front()) + " to " + core::format_number(times.back()));
+    }
     for (int index = 1; index <= file_.zones(); ++index) {
         progress_.check();
         progress_.report(static_cast<double>(index - 1) / file_.zones(), "reading zone " + std::to_string(index));
@@ -96,6 +112,12 @@ void Reader::add_notes(Field& field) const {
     const auto add = [&](core::Problem::Severity severity, const std::string& text) { field.problems.push_back({severity, text, {name_, {}, {}, {}}}); };
     if (file_.newer_version() > 0) {
         add(core::Problem::Severity::note, "written by CGNS " + core::format_number(file_.newer_version(), 3) + ", later than the library that reads it");
+    }
+    if (solutions_left_ > 0 && !options_.time) {
+        add(core::Problem::Severity::note, "of several solutions in time the last is read");
+    }
+    if (!with_data_.empty()) {
+        add(core::Problem::Severity::warning, "values that boundaries hold for themselves (BCDataSet) are not read: " + listed(with_data_));
     }
     if (file_.bases() > 1) {
         add(core::Problem::Severity::note, "the last of " + std::to_string(file_.bases()) + " bases is read");
@@ -295,7 +317,7 @@ void Reader::add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume
 
 void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
     auto points = file_.points(zone);
-    auto values = file_.solutions(zone, options_, progress_);
+    auto values = file_.solutions(zone, options_, progress_, solutions_left_);
     const auto sections = file_.sections(zone, progress_);
     ElementPart volume = volume_of(zone, sections);
     if (static_cast<std::int64_t>(volume.elements()) != zone.cells[0]) {
@@ -305,7 +327,9 @@ void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
                                   {name_, {}, {}, {}}});
         std::erase_if(values, [](const PartValues& v) { return !v.on_nodes; });
     }
-    std::vector<ElementPart> surfaces = surfaces_of(sections, file_.conditions(zone), volume);
+    const auto conditions = file_.conditions(zone);
+    note_data_sets(conditions);
+    std::vector<ElementPart> surfaces = surfaces_of(sections, conditions, volume);
     const BoundaryFaces faces(surfaces, volume);
     for (auto& surface : surfaces) {
         add_surface(field, points, values, std::move(surface), faces);
@@ -381,10 +405,12 @@ void Reader::add_structured(const CgnsZone& zone, Field& field) {
         file_.fail(zone, "structured zones of " + std::to_string(dimension) + " dimensions are not read");
     }
     auto points = file_.points(zone);
-    auto values = file_.solutions(zone, options_, progress_);
+    auto values = file_.solutions(zone, options_, progress_, solutions_left_);
     ElementPart volume = cells_of_block(zone, dimension, progress_);
     std::vector<ElementPart> surfaces;
-    for (const auto& condition : file_.conditions(zone)) {
+    const auto conditions = file_.conditions(zone);
+    note_data_sets(conditions);
+    for (const auto& condition : conditions) {
         if (condition.range.size() == 6 && dimension == 3) {
             surfaces.push_back(face_of_block(zone, condition));
         }

@@ -184,6 +184,7 @@ CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
         }
         opened(cg_nzones(file_, base_, &zones_), "zones");
         of_base_ = scales_at({});
+        read_times();
     } catch (const core::InputError&) {
         cg_close(file_);
         throw;
@@ -452,6 +453,7 @@ std::vector<CgnsCondition> CgnsFile::conditions(const CgnsZone& zone) const {
         type = type == CGNS_ENUMV(FamilySpecified) ? static_cast<CGNS_ENUMT(BCType_t)>(family_type(zone, b)) : type;
         condition.type = BCTypeName[type];
         condition.kind = kind_of(condition.type);
+        condition.data_sets = data_sets;
         const bool elements = set == CGNS_ENUMV(ElementRange) || set == CGNS_ENUMV(ElementList);
         if (cg_boco_gridlocation_read(file_, base_, zone.index, b, &location) != CG_OK) {
             location = CGNS_ENUMV(Vertex);
@@ -481,8 +483,62 @@ std::vector<CgnsCondition> CgnsFile::conditions(const CgnsZone& zone) const {
     return result;
 }
 
-std::vector<PartValues> CgnsFile::solutions(const CgnsZone& zone, const ReadOptions& options, core::Progress& progress) {
+void CgnsFile::read_times() {
+    std::array<char, 33> name{};
+    int steps = 0;
+    int arrays = 0;
+    if (cg_biter_read(file_, base_, name.data(), &steps) != CG_OK || steps < 1 || static_cast<std::uint64_t>(steps) > most_values_ ||
+        cg_goto(file_, base_, "BaseIterativeData_t", 1, "end") != CG_OK || cg_narrays(&arrays) != CG_OK) {
+        return;
+    }
+    for (int a = 1; a <= arrays; ++a) {
+        CGNS_ENUMT(DataType_t) type{};
+        int dimensions = 0;
+        std::array<cgsize_t, 12> sizes{};
+        if (cg_array_info(a, name.data(), &type, &dimensions, sizes.data()) == CG_OK && std::string_view(name.data()) == "TimeValues" && dimensions == 1 &&
+            sizes[0] == steps) {
+            times_.resize(static_cast<std::size_t>(steps));
+            if (cg_array_read_as(a, CGNS_ENUMV(RealDouble), times_.data()) != CG_OK) {
+                times_.clear();
+            }
+        }
+    }
+    step_ = times_.empty() ? 0 : times_.size() - 1;
+}
+
+/// Names of the solutions of a zone, one a step; empty where the zone does not say.
+std::vector<std::string> CgnsFile::solutions_of_steps(const CgnsZone& zone) const {
+    std::array<char, 33> name{};
+    int arrays = 0;
+    if (times_.empty() || cg_ziter_read(file_, base_, zone.index, name.data()) != CG_OK ||
+        cg_goto(file_, base_, "Zone_t", zone.index, "ZoneIterativeData_t", 1, "end") != CG_OK || cg_narrays(&arrays) != CG_OK) {
+        return {};
+    }
+    for (int a = 1; a <= arrays; ++a) {
+        CGNS_ENUMT(DataType_t) type{};
+        int dimensions = 0;
+        std::array<cgsize_t, 12> sizes{};
+        const bool found = cg_array_info(a, name.data(), &type, &dimensions, sizes.data()) == CG_OK && std::string_view(name.data()) == "FlowSolutionPointers";
+        if (!found || type != CGNS_ENUMV(Character) || dimensions != 2 || sizes[0] != 32 || sizes[1] != static_cast<cgsize_t>(times_.size())) {
+            continue;
+        }
+        std::string text(32 * times_.size(), ' ');
+        if (cg_array_read(a, text.data()) != CG_OK) {
+            return {};
+        }
+        std::vector<std::string> names;
+        for (std::size_t step = 0; step < times_.size(); ++step) {
+            const std::string_view padded = std::string_view(text).substr(32 * step, 32);
+            names.emplace_back(core::trimmed(padded.substr(0, padded.find('\0'))));
+        }
+        return names;
+    }
+    return {};
+}
+
+std::vector<PartValues> CgnsFile::solutions(const CgnsZone& zone, const ReadOptions& options, core::Progress& progress, int& left) {
     std::vector<PartValues> result;
+    const std::vector<std::string> steps = solutions_of_steps(zone);
     int count = 0;
     if (cg_nsols(file_, base_, zone.index, &count) != CG_OK) {
         return result;
@@ -494,6 +550,11 @@ std::vector<PartValues> CgnsFile::solutions(const CgnsZone& zone, const ReadOpti
         if (cg_sol_info(file_, base_, zone.index, s, solution.data(), &location) != CG_OK ||
             cg_nfields(file_, base_, zone.index, s, &fields) != CG_OK ||
             (location != CGNS_ENUMV(Vertex) && location != CGNS_ENUMV(CellCenter))) {
+            continue;
+        }
+        const bool of_a_step = std::find(steps.begin(), steps.end(), solution.data()) != steps.end();
+        if (of_a_step && steps[step_] != solution.data()) {
+            ++left;
             continue;
         }
         const bool nodal = location == CGNS_ENUMV(Vertex);
@@ -525,7 +586,13 @@ std::vector<PartValues> CgnsFile::solutions(const CgnsZone& zone, const ReadOpti
                 converted_[name.data()] = core::format_number(scale) + " " + canonical.unit;
                 std::for_each(values.values.begin(), values.values.end(), [&](double& value) { value *= scale; });
             }
-            result.push_back(std::move(values));
+            const auto before = std::find_if(result.begin(), result.end(), [&](const PartValues& v) { return v.variable == values.variable && v.on_nodes == nodal; });
+            if (before != result.end()) {
+                ++left;
+                *before = std::move(values);
+            } else {
+                result.push_back(std::move(values));
+            }
         }
     }
     return result;

@@ -51,6 +51,7 @@ struct CgnsCondition {
     ZoneKind kind = ZoneKind::unknown;
     std::vector<std::int64_t> elements;  ///< unstructured: element numbers, from 1; none where it names vertices
     std::vector<std::int64_t> range;     ///< structured: low and high corner, node numbers from 1; else empty
+    int data_sets = 0;                   ///< values of its own (BCDataSet), which are not read
 };
 
 /// A file opened for reading, its last base. Every failure is an InputError with file and zone.
@@ -75,8 +76,13 @@ public:
     /// In order of their element numbers; structured zones have none.
     [[nodiscard]] std::vector<CgnsSection> sections(const CgnsZone& zone, core::Progress& progress) const;
     [[nodiscard]] std::vector<CgnsCondition> conditions(const CgnsZone& zone) const;
-    /// Solutions at vertices and cells, only the arrays asked for.
-    [[nodiscard]] std::vector<PartValues> solutions(const CgnsZone& zone, const ReadOptions& options, core::Progress& progress);
+    /// Times of the base's steps, s; empty when the file states none.
+    [[nodiscard]] const std::vector<double>& times() const { return times_; }
+    /// The step to read, a place in `times()`; without it the last one.
+    void choose_step(std::size_t step) { step_ = step; }
+    /// Solutions at vertices and cells, only the arrays asked for: those of the step where the zone says which these are,
+    /// else the last that holds a variable. `left` counts the solutions of other steps.
+    [[nodiscard]] std::vector<PartValues> solutions(const CgnsZone& zone, const ReadOptions& options, core::Progress& progress, int& left);
 
     /// m per unit of length of the base.
     [[nodiscard]] double base_length() const { return of_base_.length; }
@@ -103,6 +109,8 @@ private:
     template <typename... Node>
     Scales scales_at(const Scales& above, Node... node);
     Scales scales_of(const CgnsZone& zone, const char* parent, int index, int array);
+    void read_times();
+    [[nodiscard]] std::vector<std::string> solutions_of_steps(const CgnsZone& zone) const;
     [[nodiscard]] CgnsSection section(const CgnsZone& zone, int index) const;
     [[nodiscard]] int family_type(const CgnsZone& zone, int condition) const;
 
@@ -116,6 +124,8 @@ private:
     int zones_ = 0;
     int cell_dimension_ = 3;
     int physical_dimension_ = 3;
+    std::vector<double> times_;
+    std::size_t step_ = 0;
     Scales of_base_;
     bool units_stated_ = false;
     std::map<std::string, std::string> converted_;

@@ -21,7 +21,7 @@ void FieldOptions::add_to(CLI::App& command, bool with_zones) {
     command.add_option("--length-unit", length_unit, "unit of coordinates that the file does not say (mm, inch ...)");
     command.add_option("--unit", units, "unit of a variable that the file does not say: \"Pressure=Pa\"");
     command.add_option("--mesh", mesh, "the mesh or case file that a results file belongs to")->check(CLI::ExistingFile);
-    command.add_option("--time", time, "which time of a file with several (EnSight, OpenFOAM): a time that it states; default: the last");
+    command.add_option("--time", time, "which time of a file with several (CGNS, EnSight, OpenFOAM): a time that it states; default: the last");
 }
 
 postproc::ReadOptions FieldOptions::read_options() const {

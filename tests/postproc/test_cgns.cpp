@@ -535,6 +535,59 @@ TEST(Cgns, FacesInSpaceAreASurfaceAndOneComponentIsNoVector) {
     EXPECT_NEAR(lift, -1, 1e-12);  // p = z pushes the lid down
 }
 
+TEST(Cgns, ATimeIsChosenAmongTheSolutionsOfSteps) {
+    const core::TemporaryFolder folder;
+    const fs::path path = folder.path() / "steps.cgns";
+    int file = 0;
+    int base = 0;
+    int zone = 0;
+    int index = 0;
+    cg_set_file_type(CG_FILE_HDF5);
+    ASSERT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), CG_OK);
+    cg_set_file_type(CG_FILE_NONE);
+    ASSERT_EQ(cg_base_write(file, "Base", 3, 3, &base), CG_OK);
+    const cgsize_t size[3] = {4, 1, 0};
+    ASSERT_EQ(cg_zone_write(file, base, "water", size, CGNS_ENUMV(Unstructured), &zone), CG_OK);
+    const double x[3][4] = {{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    const char* names[] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
+    for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_EQ(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), names[k], x[k], &index), CG_OK);
+    }
+    const Nodes tetrahedron = {1, 2, 3, 4};
+    ASSERT_EQ(cg_section_write(file, base, zone, "cells", CGNS_ENUMV(TETRA_4), 1, 1, 0, tetrahedron.data(), &index), CG_OK);
+    std::string pointers;
+    for (int step = 1; step <= 3; ++step) {
+        const std::string name = "Solution" + std::to_string(step);
+        int solution = 0;
+        ASSERT_EQ(cg_sol_write(file, base, zone, name.c_str(), CGNS_ENUMV(Vertex), &solution), CG_OK);
+        const double pressure[4] = {10.0 * step, 0, 0, 0};
+        ASSERT_EQ(cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", pressure, &index), CG_OK);
+        pointers += name + std::string(32 - name.size(), ' ');
+    }
+    const double times[3] = {0.5, 1, 1.5};
+    const cgsize_t three = 3;
+    const cgsize_t text[2] = {32, 3};
+    ASSERT_EQ(cg_biter_write(file, base, "Steps", 3), CG_OK);
+    ASSERT_EQ(cg_goto(file, base, "BaseIterativeData_t", 1, "end"), CG_OK);
+    ASSERT_EQ(cg_array_write("TimeValues", CGNS_ENUMV(RealDouble), 1, &three, times), CG_OK);
+    ASSERT_EQ(cg_ziter_write(file, base, zone, "ZoneSteps"), CG_OK);
+    ASSERT_EQ(cg_goto(file, base, "Zone_t", zone, "ZoneIterativeData_t", 1, "end"), CG_OK);
+    ASSERT_EQ(cg_array_write("FlowSolutionPointers", CGNS_ENUMV(Character), 2, text, pointers.c_str()), CG_OK);
+    ASSERT_EQ(cg_close(file), CG_OK);
+    const auto pressure_at = [&](std::optional<double> time) {
+        postproc::ReadOptions options;
+        options.time = time;
+        const auto field = read_field(path, options);
+        return field.zones.at(0).volume->GetPointData()->GetArray("pressure")->GetTuple1(0);
+    };
+    EXPECT_EQ(pressure_at({}), 30);
+    EXPECT_EQ(pressure_at(0.5), 10);
+    EXPECT_EQ(pressure_at(1), 20);
+    postproc::ReadOptions options;
+    options.time = 0.7;
+    EXPECT_THAT(test::refusal(path, options), HasSubstr("0.5"));
+}
+
 TEST(Cgns, EveryValueIsInTheUnitsThatTheFileStates) {
     const core::TemporaryFolder folder;
     {
