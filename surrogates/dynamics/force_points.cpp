@@ -37,13 +37,23 @@ Model of_the_vehicle(const Model& model, ForcePoints& out) {
 using Axes = std::map<Channel, std::vector<double>>;
 
 void take(Axes& axes, const tables::ForceTable& table) {
-    for (std::size_t i = 0; i < table.axes().size(); ++i) {
+    for (const tables::TableAxis& axis : table.axes()) {
         Channel channel{};
-        if (find_channel(table.axes()[i].name, channel)) {
+        if (find_channel(axis.name, channel)) {
             std::vector<double>& points = axes[channel];
-            points.insert(points.end(), table.knots(i).begin(), table.knots(i).end());
+            points.insert(points.end(), axis.points.begin(), axis.points.end());
         }
     }
+}
+
+/// A spline, or an exported table: it goes through its points by slopes that a new fit through them would not take.
+bool has_slopes_of_its_own(const tables::ForceTable& table) {
+    for (std::size_t k = 0; k < table.axes().size(); ++k) {
+        if (table.knots(k) != table.axes()[k].points) {
+            return false;  // smoothed: it does not go through them
+        }
+    }
+    return !table.is_monotone_interpolation();
 }
 
 constexpr std::size_t most_points = 1000000;
@@ -85,11 +95,10 @@ Axes axes_of(const Model& model, const Conditions& held) {
         std::sort(points.begin(), points.end());
         points.erase(std::unique(points.begin(), points.end()), points.end());
     }
-    const bool given_back =
-        model.effects.empty() && std::all_of(model.forces.begin(), model.forces.end(), [](const ForceSource& source) {
-            return source.table.is_monotone_interpolation();
-        });
-    std::size_t parts = given_back ? 1 : 4;
+    const bool bent = !model.effects.empty() ||
+                      std::any_of(model.forces.begin(), model.forces.end(),
+                                  [](const ForceSource& source) { return has_slopes_of_its_own(source.table); });
+    std::size_t parts = bent ? 4 : 1;
     while (parts > 1 && points_of(axes, parts) > most_points) {
         --parts;
     }

@@ -13,9 +13,9 @@ struct ForcePoints {
 };
 
 /// Every quantity that the model has force sources for, with the effects that change the vehicle's own forces
-/// (roughness, exponents, pump curve, corrections), on the grid lines of its tables; up to four times as many between
-/// them when an effect bends the force there, or a table is no monotone interpolation, which a new fit through few
-/// points would not give back. Effects of the rig and those of the motion are left out, and named in the remarks.
+/// (roughness, exponents, pump curve, corrections), on the set points of its tables; up to four times as many between
+/// them when an effect bends the force there, or a table (a spline, an exported one) has slopes of its own there that a
+/// new fit would not give back. Effects of the rig and those of the motion are left out, and named in the remarks.
 /// Beside them columns of one value: what is held, and mass, added mass, net weight, size and density of the model, so
 /// that a table of the points says what it belongs to. A channel that only scales is held at `held`, else at the
 /// model's condition, else at the scale's reference. Throws core::InputError: no force source; more than a million
