@@ -492,31 +492,44 @@ TEST(Cgns, FilesOfALaterLibraryAreRead) {
     }
 }
 
+/// A new HDF5 file with an empty base 1.
+int new_file(const fs::path& path, int cell_dimension) {
+    int file = 0;
+    int base = 0;
+    cg_set_file_type(CG_FILE_HDF5);
+    EXPECT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), CG_OK);
+    cg_set_file_type(CG_FILE_NONE);
+    EXPECT_EQ(cg_base_write(file, "Base", cell_dimension, 3, &base), CG_OK);
+    return file;
+}
+
+/// An unstructured zone with one section of elements of a kind; its number.
+int add_zone(int file, const char* name, const std::array<std::vector<double>, 3>& x, CGNS_ENUMT(ElementType_t) kind, cgsize_t elements, const Nodes& nodes) {
+    int zone = 0;
+    int index = 0;
+    const cgsize_t size[3] = {static_cast<cgsize_t>(x[0].size()), elements, 0};
+    EXPECT_EQ(cg_zone_write(file, 1, name, size, CGNS_ENUMV(Unstructured), &zone), CG_OK);
+    const char* names[] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(cg_coord_write(file, 1, zone, CGNS_ENUMV(RealDouble), names[k], x[k].data(), &index), CG_OK);
+    }
+    EXPECT_EQ(cg_section_write(file, 1, zone, "elements", kind, 1, elements, 0, nodes.data(), &index), CG_OK);
+    return zone;
+}
+
 TEST(Cgns, FacesInSpaceAreASurfaceAndOneComponentIsNoVector) {
     const core::TemporaryFolder folder;
     const fs::path path = folder.path() / "shell.cgns";
-    int file = 0;
-    int base = 0;
-    int zone = 0;
-    int index = 0;
-    cg_set_file_type(CG_FILE_HDF5);
-    ASSERT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), CG_OK);
-    cg_set_file_type(CG_FILE_NONE);
-    ASSERT_EQ(cg_base_write(file, "Surface", 2, 3, &base), CG_OK);
+    const int file = new_file(path, 2);
     // A unit cube, its lower side in a zone of its own, all normals outward.
-    const double x[3][8] = {{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+    const std::array<std::vector<double>, 3> x = {{{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}};
     const auto add = [&](const char* name, const Nodes& quads) {
-        const cgsize_t size[3] = {8, static_cast<cgsize_t>(quads.size() / 4), 0};
-        ASSERT_EQ(cg_zone_write(file, base, name, size, CGNS_ENUMV(Unstructured), &zone), CG_OK);
-        const char* names[] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
-        for (std::size_t k = 0; k < 3; ++k) {
-            ASSERT_EQ(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), names[k], x[k], &index), CG_OK);
-        }
-        ASSERT_EQ(cg_section_write(file, base, zone, "quads", CGNS_ENUMV(QUAD_4), 1, size[1], 0, quads.data(), &index), CG_OK);
+        const int zone = add_zone(file, name, x, CGNS_ENUMV(QUAD_4), static_cast<cgsize_t>(quads.size() / 4), quads);
         int solution = 0;
-        ASSERT_EQ(cg_sol_write(file, base, zone, "Solution", CGNS_ENUMV(Vertex), &solution), CG_OK);
-        ASSERT_EQ(cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", x[2], &index), CG_OK);
-        ASSERT_EQ(cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "VelocityX", x[0], &index), CG_OK);
+        int index = 0;
+        ASSERT_EQ(cg_sol_write(file, 1, zone, "Solution", CGNS_ENUMV(Vertex), &solution), CG_OK);
+        ASSERT_EQ(cg_field_write(file, 1, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", x[2].data(), &index), CG_OK);
+        ASSERT_EQ(cg_field_write(file, 1, zone, solution, CGNS_ENUMV(RealDouble), "VelocityX", x[0].data(), &index), CG_OK);
     };
     add("base", {1, 4, 3, 2});
     add("hull", {5, 6, 7, 8, 1, 2, 6, 5, 2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8});
@@ -538,40 +551,26 @@ TEST(Cgns, FacesInSpaceAreASurfaceAndOneComponentIsNoVector) {
 TEST(Cgns, ATimeIsChosenAmongTheSolutionsOfSteps) {
     const core::TemporaryFolder folder;
     const fs::path path = folder.path() / "steps.cgns";
-    int file = 0;
-    int base = 0;
-    int zone = 0;
+    const int file = new_file(path, 3);
+    const int zone = add_zone(file, "water", {{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, CGNS_ENUMV(TETRA_4), 1, {1, 2, 3, 4});
     int index = 0;
-    cg_set_file_type(CG_FILE_HDF5);
-    ASSERT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), CG_OK);
-    cg_set_file_type(CG_FILE_NONE);
-    ASSERT_EQ(cg_base_write(file, "Base", 3, 3, &base), CG_OK);
-    const cgsize_t size[3] = {4, 1, 0};
-    ASSERT_EQ(cg_zone_write(file, base, "water", size, CGNS_ENUMV(Unstructured), &zone), CG_OK);
-    const double x[3][4] = {{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    const char* names[] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
-    for (std::size_t k = 0; k < 3; ++k) {
-        ASSERT_EQ(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), names[k], x[k], &index), CG_OK);
-    }
-    const Nodes tetrahedron = {1, 2, 3, 4};
-    ASSERT_EQ(cg_section_write(file, base, zone, "cells", CGNS_ENUMV(TETRA_4), 1, 1, 0, tetrahedron.data(), &index), CG_OK);
     std::string pointers;
     for (int step = 1; step <= 3; ++step) {
         const std::string name = "Solution" + std::to_string(step);
         int solution = 0;
-        ASSERT_EQ(cg_sol_write(file, base, zone, name.c_str(), CGNS_ENUMV(Vertex), &solution), CG_OK);
+        ASSERT_EQ(cg_sol_write(file, 1, zone, name.c_str(), CGNS_ENUMV(Vertex), &solution), CG_OK);
         const double pressure[4] = {10.0 * step, 0, 0, 0};
-        ASSERT_EQ(cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", pressure, &index), CG_OK);
+        ASSERT_EQ(cg_field_write(file, 1, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", pressure, &index), CG_OK);
         pointers += name + std::string(32 - name.size(), ' ');
     }
     const double times[3] = {0.5, 1, 1.5};
     const cgsize_t three = 3;
     const cgsize_t text[2] = {32, 3};
-    ASSERT_EQ(cg_biter_write(file, base, "Steps", 3), CG_OK);
-    ASSERT_EQ(cg_goto(file, base, "BaseIterativeData_t", 1, "end"), CG_OK);
+    ASSERT_EQ(cg_biter_write(file, 1, "Steps", 3), CG_OK);
+    ASSERT_EQ(cg_goto(file, 1, "BaseIterativeData_t", 1, "end"), CG_OK);
     ASSERT_EQ(cg_array_write("TimeValues", CGNS_ENUMV(RealDouble), 1, &three, times), CG_OK);
-    ASSERT_EQ(cg_ziter_write(file, base, zone, "ZoneSteps"), CG_OK);
-    ASSERT_EQ(cg_goto(file, base, "Zone_t", zone, "ZoneIterativeData_t", 1, "end"), CG_OK);
+    ASSERT_EQ(cg_ziter_write(file, 1, zone, "ZoneSteps"), CG_OK);
+    ASSERT_EQ(cg_goto(file, 1, "Zone_t", zone, "ZoneIterativeData_t", 1, "end"), CG_OK);
     ASSERT_EQ(cg_array_write("FlowSolutionPointers", CGNS_ENUMV(Character), 2, text, pointers.c_str()), CG_OK);
     ASSERT_EQ(cg_close(file), CG_OK);
     const auto pressure_at = [&](std::optional<double> time) {
