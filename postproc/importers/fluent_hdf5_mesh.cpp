@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <exception>
 #include <cmath>
 #include <numeric>
 
@@ -137,8 +138,20 @@ FaceMesh Reader::read_mesh() {
     if (options_.surfaces_only) {
         read_nodes();
     } else {
-        // Cells are put together from what lies beside the faces: no need to wait for the nodes.
-        core::parallel_for(2, [&](std::size_t part) { part == 0 ? read_nodes() : gather_cell_faces(mesh_, progress_); }, progress_);
+        // Cells are put together from what lies beside the faces: no need to wait for the nodes. Of two errors that of the
+        // nodes is told, whichever came first.
+        std::exception_ptr wrong_faces;
+        const auto gather = [&] {
+            try {
+                gather_cell_faces(mesh_, progress_);
+            } catch (...) {
+                wrong_faces = std::current_exception();
+            }
+        };
+        core::parallel_for(2, [&](std::size_t part) { part == 0 ? read_nodes() : gather(); }, progress_);
+        if (wrong_faces) {
+            std::rethrow_exception(wrong_faces);
+        }
     }
     check_mesh(mesh_, options_.surfaces_only, progress_);
     return std::move(mesh_);
