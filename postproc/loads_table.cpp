@@ -162,7 +162,8 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases)
         const double lift = value_of(one.numbers, "lift_force", one.loads.named.lift_force);
         const double drag = value_of(one.numbers, "drag_force", one.loads.named.drag_force);
         const double side = value_of(one.numbers, "side_force", one.loads.named.side_force);
-        const double force = std::hypot(lift, drag, side);
+        const NamedLoads& own = one.loads.named;
+        const double force = std::max(std::hypot(lift, drag, side), std::hypot(own.lift_force, own.drag_force, own.side_force));
         const double length = std::sqrt(std::max(one.loads.area, 0.0));
         for (const auto& load : table_row(one.loads)) {
             const bool stated = std::any_of(one.numbers.begin(), one.numbers.end(), [&](const auto& n) { return n.first == load.name; });
@@ -171,7 +172,7 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases)
             }
             const double scale = load.unit == "N m" ? force * length : force;
             const double other = value_of(one.numbers, load.name, 0.0);
-            result.push_back({one.file, load.name, {}, load.value, other, scale > 0 ? std::abs(load.value - other) / scale : 0});
+            result.push_back({one.file, load.name, {}, load.value, other, share_of(load.value - other, scale, std::max(std::abs(load.value), std::abs(other)))});
         }
     }
     return result;

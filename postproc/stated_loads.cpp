@@ -372,11 +372,28 @@ std::string label(const LoadsResult& result, const StatedLoad& load) {
     return text;
 }
 
+/// The largest component of the whole force that the same file states of the same zones.
+double largest_stated_force(const std::vector<StatedLoad>& stated, const StatedLoad& like) {
+    double largest = 0;
+    for (const auto& load : stated) {
+        if (!load.moment && load.part == LoadPart::total && load.file == like.file && load.zones == like.zones) {
+            largest = std::max(largest, std::abs(load.value));
+        }
+    }
+    return largest;
+}
+
 }  // namespace
+
+double share_of(double difference, double force, double fallback) {
+    const double scale = force > 0 ? force : fallback;
+    return scale > 0 ? std::abs(difference) / scale : 0;
+}
 
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& notes) {
     std::vector<Comparison> comparisons;
     std::vector<std::string> missing;
+    const double halves = result.mirror_axis >= 0 ? 2 : 1;
     std::size_t cancelled = 0;
     for (const auto& load : stated) {
         if (cancelled_by_symmetry(result, load)) {
@@ -398,9 +415,9 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
         one.quantity = label(result, load);
         one.stated_in = load.file;
         one.value = dot(load.moment ? moment : wrench.force, load.direction);
-        one.stated = (result.mirror_axis >= 0 ? 2 : 1) * load.value;
-        const double scale = norm(body.total.force) * (load.moment ? std::sqrt(body.area) : 1);
-        one.of_force = scale > 0 ? std::abs(one.value - one.stated) / scale : 0;
+        one.stated = halves * load.value;
+        const double force = std::max(norm(body.total.force), halves * largest_stated_force(stated, load));
+        one.of_force = share_of(one.value - one.stated, force * (load.moment ? std::sqrt(body.area) : 1), std::max(std::abs(one.value), std::abs(one.stated)));
         comparisons.push_back(std::move(one));
     }
     if (result.mirror_axis >= 0 && !stated.empty()) {

@@ -105,6 +105,34 @@ TEST_F(StatedLoads, ThatDifferAreSeenWithTheirShareOfTheForce) {
     EXPECT_NEAR(net->of_force, 0.1 / std::hypot(1, 0.2), 1e-12);
 }
 
+TEST_F(StatedLoads, AreFarFromAForceOfNothing) {
+    LoadsResult nothing = loads_of();
+    nothing.total = nothing.pressure = nothing.viscous = {};
+    nothing.named = {};
+    for (auto& zone : nothing.zones) {
+        zone.pressure = zone.viscous = {};
+    }
+    core::Problems notes;
+    const auto comparisons = compare_with_solver(nothing, stated_in_report(written("forces.txt", report)), notes);
+    const auto of = [&](const std::string& quantity) {
+        return std::find_if(comparisons.begin(), comparisons.end(), [&](const Comparison& c) { return c.quantity == quantity; })->of_force;
+    };
+    EXPECT_EQ(of("lift_force"), 1);
+    EXPECT_EQ(of("drag_force"), 0.2);  // of the report's force, the lift of 1 N
+    EXPECT_NEAR(of("moment about (0, 1, 0) at (0, 0, 0) m"), 1 / std::sqrt(nothing.area), 1e-12);
+    // A report of moments alone: then over the moment itself.
+    const std::string moments = report.substr(report.find("Moments"));
+    EXPECT_EQ(compare_with_solver(nothing, stated_in_report(written("moments.txt", moments)), notes)[6].of_force, 1);
+    // A manifest that states a force, and one that states none where there is one.
+    LoadsCase one;
+    one.loads = nothing;
+    one.numbers = {{"lift_force", -1}};
+    EXPECT_EQ(compare_with_stated({one})[0].of_force, 1);
+    one.loads = loads_of();
+    one.numbers = {{"lift_force", 0}, {"drag_force", 0}, {"side_force", 0}};
+    EXPECT_NEAR(compare_with_stated({one})[0].of_force, 1 / std::hypot(1, 0.2), 1e-12);
+}
+
 TEST_F(StatedLoads, OfZonesThatWereNotIntegratedAreLeftOutAloud) {
     const LoadsResult result = loads_of();
     std::string other = report;
