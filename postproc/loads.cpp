@@ -34,6 +34,8 @@ public:
     Integrator(const Field& field, const LoadsOptions& options, core::Progress& progress)
         : field_(field), options_(options), progress_(progress), revolved_(is_body_of_revolution(field, options)), plane_(mirror_plane_from(options.symmetry)) {
         result_.file = field.files.empty() ? "" : field.files.front();
+        const auto time = std::find_if(field.metadata.begin(), field.metadata.end(), [](const auto& entry) { return entry.first == "time"; });
+        result_.time = time == field.metadata.end() ? std::nullopt : core::parse_number(time->second);
         mirror_.axis = plane_.axis;
         set_axes();
     }

@@ -102,6 +102,7 @@ struct LeftOutZone {
 
 struct LoadsResult {
     std::string file;
+    std::optional<double> time;          ///< of the field (s, or the iteration of a steady run), where the file says
     Wrench total;
     Wrench pressure;
     Wrench viscous;

@@ -39,6 +39,9 @@ nlohmann::json json_of(const ZoneLoads& zone) {
 void to_json(nlohmann::json& json, const LoadsResult& result) {
     json = json_of(result.named);
     json["file"] = result.file;
+    if (result.time) {
+        json["time"] = *result.time;
+    }
     json["force"] = result.total.force;
     json["moment"] = result.total.moment;
     json["reference"] = result.reference;

@@ -182,9 +182,18 @@ std::vector<std::string> zones_of(const std::vector<std::string>& patches, const
     return zones.empty() ? patches : zones;
 }
 
+/// The row of the field's time, or the nearest; the last where the field has no time.
+std::size_t row_of(const ForceHistory& history, const LoadsResult& result) {
+    if (!result.time) {
+        return history.time.size() - 1;
+    }
+    const auto nearest = std::min_element(history.time.begin(), history.time.end(), [&](double a, double b) { return std::abs(a - *result.time) < std::abs(b - *result.time); });
+    return static_cast<std::size_t>(nearest - history.time.begin());
+}
+
 /// One named load out of a history; moments about the reference point of `result`.
 StatedLoad from_history(const ForceHistory& history, const NamedAxis& axis, LoadPart part, const LoadsResult& result) {
-    const std::size_t count = history.time.size();
+    const std::size_t count = row_of(history, result) + 1;  // what came later is not of this field
     std::vector<double> values(count, 0);
     const Vector arm = plus(history.centre, result.reference, -1);
     for (std::size_t i = 0; i < count; ++i) {
@@ -207,6 +216,7 @@ StatedLoad from_history(const ForceHistory& history, const NamedAxis& axis, Load
     load.direction = axis.direction;
     load.centre = result.reference;
     load.value = values.back();
+    load.time = history.time[count - 1];
     if (part == LoadPart::total && count >= 8) {
         load.history = iteration_scatter(values);
     }
@@ -372,6 +382,12 @@ std::string label(const LoadsResult& result, const StatedLoad& load) {
     return text;
 }
 
+/// A report of another time than the field's: OpenFOAM writes times with six digits unless told otherwise.
+bool of_another_time(const LoadsResult& result, const StatedLoad& load) {
+    constexpr double written = 1e-5;
+    return result.time && load.time && std::abs(*load.time - *result.time) > written * std::max(std::abs(*load.time), std::abs(*result.time));
+}
+
 /// The largest component of the whole force that the same file states of the same zones.
 double largest_stated_force(const std::vector<StatedLoad>& stated, const StatedLoad& like) {
     double largest = 0;
@@ -393,6 +409,7 @@ double share_of(double difference, double force, double fallback) {
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& notes) {
     std::vector<Comparison> comparisons;
     std::vector<std::string> missing;
+    std::vector<std::string> of_other_times;
     const double halves = result.mirror_axis >= 0 ? 2 : 1;
     std::size_t cancelled = 0;
     for (const auto& load : stated) {
@@ -407,6 +424,11 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
                 notes.push_back({core::Problem::Severity::warning, "the report's zone '" + body.missing + "' is not among those integrated: its rows are not compared", {load.file, {}, {}, {}}});
             }
             continue;
+        }
+        if (of_another_time(result, load) && std::find(of_other_times.begin(), of_other_times.end(), load.file) == of_other_times.end()) {
+            of_other_times.push_back(load.file);
+            notes.push_back({core::Problem::Severity::warning, "there is no row of the field's time " + core::format_number(*result.time, 9) + ": the field is compared with the row of " +
+                                                                   core::format_number(*load.time, 9), {load.file, {}, {}, {}}});
         }
         const Wrench& wrench = load.part == LoadPart::pressure ? body.pressure : load.part == LoadPart::viscous ? body.viscous : body.total;
         const Vector moment = plus(wrench.moment, cross(plus(result.reference, load.centre, -1), wrench.force));

@@ -24,7 +24,8 @@ struct StatedLoad {
     bool moment = false;
     Vector direction{};              ///< unit vector, file axes
     Vector centre{};                 ///< m, file axes: point of a moment
-    double value = 0;                ///< N or N m; of a history: its last value, that of the field
+    double value = 0;                ///< N or N m; of a history: its value at the field's time, or its last
+    std::optional<double> time;      ///< of that value (s, or iteration), where the file says
     std::optional<IterationScatter> history;
 };
 
@@ -49,7 +50,7 @@ std::vector<StatedLoad> stated_in_report(const std::filesystem::path& path);
 StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& result);
 
 /// The forces that OpenFOAM wrote beside the case (see read_openfoam_forces), as the named loads of `result` with
-/// their histories; moments are moved from OpenFOAM's centre to the reference point of `result`, one instant at a time.
+/// their histories up to the time of the field (the nearest row; the last where the field has no time); moments are moved from OpenFOAM's centre to the reference point of `result`, one instant at a time.
 std::vector<StatedLoad> stated_by_openfoam(const std::filesystem::path& case_folder, const LoadsResult& result);
 
 /// The name of a CFD file without its folder and endings: "case.cas.h5" -> "case".
@@ -76,7 +77,7 @@ void to_json(nlohmann::json& json, const Comparison& comparison);
 
 /// The loads against the solver's own. A half model (loads with a symmetry plane) was a half model in the solver too:
 /// its numbers are doubled, and what both halves cancel is left out; `notes` says so, and which rows name zones that
-/// were not integrated.
+/// were not integrated, and where the field's time is not among those of a history.
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& notes);
 
 /// Named load -> standard uncertainty by iteration, of the whole body: from the histories among `stated`.

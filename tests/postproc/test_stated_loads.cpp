@@ -293,6 +293,25 @@ TEST_F(StatedLoads, OfOpenFoamCarryOverRestartsAndMoveToTheReferencePoint) {
     EXPECT_EQ(sigmas.size(), 6U);
 }
 
+TEST_F(StatedLoads, OfOpenFoamAreThoseOfTheFieldsTime) {
+    LoadsResult result = loads_of();
+    EXPECT_FALSE(result.time);
+    write_openfoam(folder_.path(), 1, 100, 0.5);
+    const auto compared = [&](double time, core::Problems& notes) {
+        result.time = time;
+        return compare_with_solver(result, stated_by_openfoam(folder_.path(), result), notes)[0].stated;
+    };
+    core::Problems notes;
+    EXPECT_NEAR(compared(20, notes), -0.5, 1e-12);
+    EXPECT_NEAR(compared(21, notes), -1.5, 1e-12);
+    EXPECT_TRUE(notes.empty());
+    EXPECT_EQ(stated_by_openfoam(folder_.path(), result)[0].history->count + stated_by_openfoam(folder_.path(), result)[0].history->first, 21U);
+    EXPECT_NEAR(compared(22.2, notes), -0.5, 1e-12);  // no such row: the nearest, and said once
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].message, HasSubstr("time 22.2"));
+    EXPECT_THAT(notes[0].message, HasSubstr("row of 22"));
+}
+
 TEST_F(StatedLoads, OfOlderOpenFoamAreReadFromOneFile) {
     const LoadsResult result = loads_of();
     std::string text = "# Forces\n# CofR : (1 0.5 0)\n# Time forces(pressure viscous porous) moment(pressure viscous porous)\n";
