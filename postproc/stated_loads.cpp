@@ -54,6 +54,26 @@ void add_row(std::vector<StatedLoad>& loads, const StatedLoad& like, const Repor
     }
 }
 
+bool same_quantity(const StatedLoad& a, const StatedLoad& b) {
+    return a.moment == b.moment && a.part == b.part && a.direction == b.direction && a.centre == b.centre && a.zones == b.zones;
+}
+
+/// A transcript reports the same thing again and again while the solver runs: the last of each, which is that of the field.
+std::vector<StatedLoad> last_of_each(const std::vector<StatedLoad>& loads) {
+    std::vector<StatedLoad> last;
+    for (const auto& load : loads) {
+        const auto before = std::find_if(last.begin(), last.end(), [&](const StatedLoad& other) { return same_quantity(other, load); });
+        if (before == last.end()) {
+            last.push_back(load);
+            continue;
+        }
+        const std::size_t earlier = before->earlier + 1;
+        *before = load;
+        before->earlier = earlier;
+    }
+    return last;
+}
+
 }  // namespace
 
 std::vector<StatedLoad> stated_in_report(const fs::path& path) {
@@ -82,7 +102,7 @@ std::vector<StatedLoad> stated_in_report(const fs::path& path) {
             add_row(loads, like, *net);
         }
     }
-    return loads;
+    return last_of_each(loads);
 }
 
 MonitorSource monitor_source(const std::string& text) {
@@ -410,12 +430,17 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
     std::vector<Comparison> comparisons;
     std::vector<std::string> missing;
     std::vector<std::string> of_other_times;
+    std::vector<std::string> repeated;
     const double halves = result.mirror_axis >= 0 ? 2 : 1;
     std::size_t cancelled = 0;
     for (const auto& load : stated) {
         if (cancelled_by_symmetry(result, load)) {
             ++cancelled;
             continue;
+        }
+        if (load.earlier > 0 && std::find(repeated.begin(), repeated.end(), load.file) == repeated.end()) {
+            repeated.push_back(load.file);
+            notes.push_back({core::Problem::Severity::note, std::to_string(load.earlier + 1) + " reports of the " + load.quantity + ": the last of each quantity is compared", {load.file, {}, {}, {}}});
         }
         const Covered body = covered_by(result, load.zones);
         if (!body.missing.empty()) {

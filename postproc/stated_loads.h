@@ -26,6 +26,7 @@ struct StatedLoad {
     Vector centre{};                 ///< m, file axes: point of a moment
     double value = 0;                ///< N or N m; of a history: its value at the field's time, or its last
     std::optional<double> time;      ///< of that value (s, or iteration), where the file says
+    std::size_t earlier = 0;         ///< how often the same file stated it before, of other iterations
     std::optional<IterationScatter> history;
 };
 
@@ -41,7 +42,8 @@ struct MonitorSource {
 /// "lift_force=lift.out", "drag_force [lbf]=report.out:drag". Throws core::UsageError for anything else, with the nearest name.
 MonitorSource monitor_source(const std::string& text);
 
-/// Every row of the force and moment reports in a text (Fluent's "Forces - Direction Vector ..."), totals and parts.
+/// Every row of the force and moment reports in a text (Fluent's "Forces - Direction Vector ..."), totals and parts. Of
+/// reports of the same quantity on the same zones (a transcript of a run that reports now and then) the last counts.
 /// Throws core::InputError: no report in the file, a direction without length.
 std::vector<StatedLoad> stated_in_report(const std::filesystem::path& path);
 
@@ -77,7 +79,7 @@ void to_json(nlohmann::json& json, const Comparison& comparison);
 
 /// The loads against the solver's own. A half model (loads with a symmetry plane) was a half model in the solver too:
 /// its numbers are doubled, and what both halves cancel is left out; `notes` says so, and which rows name zones that
-/// were not integrated, and where the field's time is not among those of a history.
+/// were not integrated, how many reports of one quantity there are, and where the field's time is not among those of a history.
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& notes);
 
 /// Named load -> standard uncertainty by iteration, of the whole body: from the histories among `stated`.

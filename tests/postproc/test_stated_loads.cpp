@@ -164,6 +164,25 @@ TEST_F(StatedLoads, OfAHalfModelAreDoubledAndWhatBothHalvesCancelIsLeftOut) {
     EXPECT_THAT(notes[0].message, HasSubstr("9 that both halves cancel"));
 }
 
+TEST_F(StatedLoads, OfATranscriptAreThoseOfItsLastReports) {
+    const LoadsResult result = loads_of();
+    std::string early = report;
+    for (auto at = early.find("-1 "); at != std::string::npos; at = early.find("-1 ")) {
+        early.replace(at, 3, "-9 ");
+    }
+    const auto stated = stated_in_report(written("run.trn", early + "\n" + early + "\n" + report));
+    ASSERT_EQ(stated.size(), 27U);
+    core::Problems notes;
+    for (const auto& one : compare_with_solver(result, stated, notes)) {
+        EXPECT_NEAR(one.value, one.stated, 1e-12) << one.quantity;
+    }
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].message, HasSubstr("3 reports of the force along (0, 0, 1)"));
+    // Reports of other zones along the same direction stand beside each other.
+    const std::string head = "Forces - Direction Vector (0 0 1)\nZone             Pressure         Viscous          Total            Pressure         Viscous          Total\n";
+    EXPECT_EQ(stated_in_report(written("two.txt", head + "base 2 0 2 0 0 0\n\n" + head + "hull -3 0 -3 0 0 0\n")).size(), 6U);
+}
+
 TEST_F(StatedLoads, LieBesideAFileUnderItsName) {
     const LoadsResult result = loads_of();
     EXPECT_TRUE(stated_beside(folder_.path() / "box.csv", result).empty());
