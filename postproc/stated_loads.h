@@ -82,6 +82,9 @@ void to_json(nlohmann::json& json, const Comparison& comparison);
 /// were not integrated, how many reports of one quantity there are, and where the field's time is not among those of a history.
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& notes);
 
+/// Which histories still drift at their end, in words; not those that are nothing but rounding beside the force.
+core::Problems unsettled(const LoadsResult& result, const std::vector<StatedLoad>& stated);
+
 /// Named load -> standard uncertainty by iteration, of the whole body: from the histories among `stated`.
 std::vector<std::pair<std::string, double>> iteration_sigmas(const LoadsResult& result, const std::vector<StatedLoad>& stated);
 

@@ -227,12 +227,9 @@ void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one) {
     for (const auto& load : stated) {
         if (load.history && load.part == postproc::LoadPart::total) {
             shell.detail(load.file + ": " + load.quantity + " " + load.history->text);
-            if (!load.history->settled) {
-                shell.warn(load.file + ": " + load.quantity + " has not settled: " + load.history->text);
-            }
         }
     }
-    core::Problems notes;
+    core::Problems notes = postproc::unsettled(one.loads, stated);
     one.comparisons = postproc::compare_with_solver(one.loads, stated, notes);
     one.scatters = postproc::iteration_sigmas(one.loads, stated);
     shell.show(notes);

@@ -180,7 +180,7 @@ TEST_F(StatedLoads, OfATranscriptAreThoseOfItsLastReports) {
     EXPECT_THAT(notes[0].message, HasSubstr("3 reports of the force along (0, 0, 1)"));
     // Reports of other zones along the same direction stand beside each other.
     const std::string head = "Forces - Direction Vector (0 0 1)\nZone             Pressure         Viscous          Total            Pressure         Viscous          Total\n";
-    EXPECT_EQ(stated_in_report(written("two.txt", head + "base 2 0 2 0 0 0\n\n" + head + "hull -3 0 -3 0 0 0\n")).size(), 6U);
+    EXPECT_EQ(stated_in_report(written("two.txt", head + "base 2 0 2 0 0 0\nNet 2 0 2 0 0 0\n\n" + head + "hull -3 0 -3 0 0 0\nNet -3 0 -3 0 0 0\n")).size(), 6U);
 }
 
 TEST_F(StatedLoads, LieBesideAFileUnderItsName) {
@@ -249,6 +249,27 @@ TEST_F(StatedLoads, OfAMonitorGiveTheirLastValueAndTheScatterOfTheirTail) {
     // Of a half model both count twice.
     const LoadsResult half = loads_of(true);
     EXPECT_NEAR(iteration_sigmas(half, {lift})[0].second, 2 * sigmas[0].second, 1e-15);
+}
+
+TEST_F(StatedLoads, ThatDriftAreWarnedOfUnlessTheyAreRounding) {
+    const LoadsResult result = loads_of();
+    const auto drifting = [&](double size) {
+        std::string text = "(\"Iteration\" \"side\")\n";
+        for (int i = 1; i <= 100; ++i) {
+            text += std::to_string(i) + " " + core::format_number(size * i) + "\n";
+        }
+        return stated_by_monitor(monitor_source("side_force=" + written("side.out", text).string()), result);
+    };
+    const auto warnings = unsettled(result, {drifting(1e-3)});
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_THAT(warnings[0].message, HasSubstr("side_force has not settled"));
+    EXPECT_THAT(warnings[0].place.file, HasSubstr("side.out"));
+    ASSERT_FALSE(drifting(1e-16).history->settled);
+    EXPECT_TRUE(unsettled(result, {drifting(1e-16)}).empty());
+    // Of a body without a force there is nothing that it could be small beside, but what the solver states.
+    LoadsResult nothing = result;
+    nothing.total = {};
+    EXPECT_EQ(unsettled(nothing, {drifting(1e-16)}).size(), 1U);
 }
 
 TEST_F(StatedLoads, OfAMonitorAreRefusedWhenTheyAreNotClear) {
