@@ -7,6 +7,7 @@
 
 #include "core/text.h"
 #include "postproc/face_integral.h"
+#include "postproc/places.h"
 #include "postproc/vector_math.h"
 
 namespace underbody::postproc {
@@ -112,10 +113,8 @@ bool too_large_to_be_balanced(const Group& group, const std::vector<Group>& grou
     return rest && own > clearly * shadow(*rest, group.shape.area_vector);
 }
 
-bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
-    if (!wall.normals_into_fluid || !(wall.volume < 0)) {
-        return false;
-    }
+/// The box of the others lies within that of the wall along two axes at least: a tunnel is open at its ends.
+bool has_the_others_in_its_box(const WallShape& wall, const std::vector<WallShape>& walls) {
     const auto rest = box_around(walls, [&](const WallShape& other) { return &other != &wall; });
     int axes = 0;
     for (std::size_t k = 0; rest && k < 3; ++k) {
@@ -123,6 +122,69 @@ bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& w
         axes += wall.lower[k] < rest->lower[k] - room && wall.upper[k] > rest->upper[k] + room ? 1 : 0;
     }
     return axes >= 2;
+}
+
+Vector seen_from(const Vector& place, const SurfaceArrays& surface, Index node) {
+    const double* x = surface.points().data() + 3 * node;
+    return {x[0] - place[0], x[1] - place[1], x[2] - place[2]};
+}
+
+/// How much of all directions from a place the surface fills: 1 inside a closed one, 0 outside, whichever way its faces
+/// look together (A. Van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30, 1983).
+double share_of_directions(const Vector& place, const SurfaceArrays& surface) {
+    double angle = 0;
+    const auto offsets = surface.offsets();
+    const auto nodes = surface.connectivity();
+    for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
+        const Vector a = seen_from(place, surface, nodes[static_cast<std::size_t>(offsets[f])]);
+        for (Index i = offsets[f] + 1; i + 1 < offsets[f + 1]; ++i) {
+            const Vector b = seen_from(place, surface, nodes[static_cast<std::size_t>(i)]);
+            const Vector c = seen_from(place, surface, nodes[static_cast<std::size_t>(i + 1)]);
+            const double below = norm(a) * norm(b) * norm(c) + dot(a, b) * norm(c) + dot(b, c) * norm(a) + dot(c, a) * norm(b);
+            angle += 2 * std::atan2(dot(a, cross(b, c)), below);
+        }
+    }
+    return std::abs(angle) / (16 * std::atan(1.0));
+}
+
+/// Do all others lie in the hollow of this wall, without an edge in common? The base of a hull lies in its hollow too, but at its rim.
+bool holds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
+    if (wall.surface == nullptr || !has_the_others_in_its_box(wall, walls)) {
+        return false;
+    }
+    Places places(1e-6 * diagonal(wall));
+    const auto points = wall.surface->points();
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+        places.number(points.data() + i);
+    }
+    for (const auto& other : walls) {
+        if (&other == &wall) {
+            continue;
+        }
+        if (other.surface == nullptr || other.surface->nodes() == 0) {
+            return false;
+        }
+        const auto theirs = other.surface->points();
+        for (std::size_t i = 0; i + 2 < theirs.size(); i += 3) {
+            if (places.has(theirs.data() + i)) {
+                return false;
+            }
+        }
+        // A few of its points: half of the directions or more end at the wall.
+        constexpr std::size_t samples = 16;
+        const std::size_t count = other.surface->nodes();
+        for (std::size_t i = 0; i < std::min(samples, count); ++i) {
+            const double* x = theirs.data() + 3 * (i * count / std::min(samples, count));
+            if (share_of_directions({x[0], x[1], x[2]}, *wall.surface) < 0.5) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
+    return wall.normals_into_fluid ? wall.volume < 0 && has_the_others_in_its_box(wall, walls) : holds_the_others(wall, walls);
 }
 
 }  // namespace

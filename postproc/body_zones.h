@@ -19,6 +19,7 @@ struct WallShape {
     std::array<double, 3> area_vector{};     ///< m^2, by the node order of the file
     double volume = 0;                       ///< m^3, of the cones from its faces to the centre of the box, by the node order
     bool normals_into_fluid = false;         ///< the node order is known to look into the fluid
+    const SurfaceArrays* surface = nullptr;  ///< its faces, where they may tell whether other walls lie inside; outlive the shape
     bool closed = false;                     ///< it bounds a volume by itself: not so two sides of a duct, whose area vectors cancel too
 };
 /// `dimension` 2: strips across the plane of the case, open at their ends.
@@ -31,7 +32,8 @@ bool bounds_a_volume(const FaceSums& sums, int dimension = 3);
 /// Walls that cannot be part of one body with the others:
 /// 1. that look one way (within 5 % of their area) and whose area vector is larger than anything in the box around the
 ///    smaller walls can balance (a ground, a tunnel's floor, a lid; flat walls in one plane count as one);
-/// 2. that surround all others with the fluid inside (a tunnel, a tank).
+/// 2. that surround all others with the fluid inside (a tunnel, a tank); where nobody knows on which side their fluid is,
+///    those that have all others inside and touch none of them (`surface` tells).
 /// None when that would leave no wall. An internal flow (a room, a pipe with one wall) has none either.
 std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls);
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "postproc/places.h"
+
 namespace underbody::postproc {
 
 namespace {
@@ -46,56 +48,6 @@ std::vector<Edge> open_edges(const SurfaceArrays& surface, std::uint32_t zone) {
     });
     return edges;
 }
-
-/// Numbers places so that points nearer than the tolerance get one number.
-class Places {
-public:
-    explicit Places(double tolerance) : cell_(2 * tolerance), tolerance_(tolerance) {}
-
-    std::int64_t number(const double* x) {
-        for (int corner = 0; corner < 8; ++corner) {
-            const auto found = cells_.find(hash(x, corner));
-            if (found == cells_.end()) {
-                continue;
-            }
-            for (const auto i : found->second) {
-                const Point& p = points_[static_cast<std::size_t>(i)];
-                if (std::hypot(p[0] - x[0], p[1] - x[1], p[2] - x[2]) <= tolerance_) {
-                    return i;
-                }
-            }
-        }
-        const auto next = static_cast<std::int64_t>(points_.size());
-        points_.push_back({x[0], x[1], x[2]});
-        cells_[own(x)].push_back(next);
-        return next;
-    }
-
-private:
-    [[nodiscard]] std::uint64_t of(std::int64_t i, std::int64_t j, std::int64_t k) const {
-        return static_cast<std::uint64_t>(i) * 73856093ULL ^ static_cast<std::uint64_t>(j) * 19349663ULL ^
-               static_cast<std::uint64_t>(k) * 83492791ULL;
-    }
-    [[nodiscard]] std::uint64_t own(const double* x) const {
-        return of(std::llround(std::floor(x[0] / cell_)), std::llround(std::floor(x[1] / cell_)), std::llround(std::floor(x[2] / cell_)));
-    }
-    /// The eight cells nearest to the point: everything within the tolerance lies in one of them.
-    [[nodiscard]] std::uint64_t hash(const double* x, int corner) const {
-        std::array<std::int64_t, 3> i{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double at = x[k] / cell_;
-            const double cell = std::floor(at);
-            const bool lower = at - cell < 0.5;
-            i[k] = std::llround(cell) + (((corner >> k) & 1) != 0 ? (lower ? -1 : 1) : 0);
-        }
-        return of(i[0], i[1], i[2]);
-    }
-
-    double cell_;
-    double tolerance_;
-    std::vector<Point> points_;
-    std::unordered_map<std::uint64_t, std::vector<std::int64_t>> cells_;
-};
 
 /// Zones that were found to belong together, with the sign of each relative to its root.
 class SignedGroups {

@@ -174,6 +174,7 @@ private:
         std::vector<WallShape> walls;
         for (const auto& part : parts_) {
             walls.push_back(shape_of(part.zone->name, *part.surface, part.zone->normals_into_fluid, field_.dimension));
+            walls.back().surface = part.surface.get();
         }
         const auto is_other = [&](const std::string& name) {
             return std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& zone) { return zone.name == name; });

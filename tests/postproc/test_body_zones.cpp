@@ -124,6 +124,61 @@ TEST(BodyZones, ATunnelAroundTheBodyIsNoneWhenItsFluidIsInside) {
     EXPECT_THAT(walls_beside_body({tunnel(false), hull(false), base(false)}), IsEmpty());  // nobody knows where its fluid is
 }
 
+TEST(BodyZones, ATunnelOfWhichNobodyKnowsTheSideIsKnownByWhatLiesInside) {
+    using Place = std::function<Point(double, double)>;
+    struct Made {
+        vtkNew<vtkPolyData> polygons;
+        std::unique_ptr<SurfaceArrays> arrays;
+    };
+    std::vector<std::unique_ptr<Made>> made;
+    const auto wall = [&](const std::string& name, int columns, int rows, const Place& place) {
+        made.push_back(std::make_unique<Made>());
+        auto& own = *made.back();
+        vtkNew<vtkPoints> points;
+        vtkNew<vtkCellArray> cells;
+        for (int j = 0; j <= rows; ++j) {
+            for (int i = 0; i <= columns; ++i) {
+                points->InsertNextPoint(place(double(i) / columns, double(j) / rows).data());
+                const vtkIdType a = i + (columns + 1) * j;
+                if (i < columns && j < rows) {
+                    cells->InsertNextCell({a, a + 1, a + columns + 2, a + columns + 1});
+                }
+            }
+        }
+        own.polygons->SetPoints(points);
+        own.polygons->SetPolys(cells);
+        own.arrays = std::make_unique<SurfaceArrays>(*own.polygons);
+        WallShape shape = shape_of(name, *own.arrays, false);
+        shape.surface = own.arrays.get();
+        return shape;
+    };
+    const auto ball = [&](const std::string& name, double radius, double at) {
+        return wall(name, 24, 12, [=](double s, double t) {
+            return Point{at + radius * std::sin(M_PI * t) * std::cos(2 * M_PI * s), radius * std::sin(M_PI * t) * std::sin(2 * M_PI * s), radius * std::cos(M_PI * t)};
+        });
+    };
+    const auto tunnel = wall("tunnel", 40, 8, [](double s, double t) { return Point{10 * t - 5, 3 * std::cos(2 * M_PI * s), 3 * std::sin(2 * M_PI * s)}; });
+    EXPECT_THAT(names_of(walls_beside_body({tunnel, ball("body", 1, 0)})), ElementsAre("tunnel"));
+    EXPECT_THAT(names_of(walls_beside_body({ball("body", 1, 0), ball("fin", 0.2, 2), tunnel})), ElementsAre("tunnel"));
+    EXPECT_THAT(names_of(walls_beside_body({ball("tank", 3, 0), ball("body", 1, 0)})), ElementsAre("tank"));
+    // A ring round the hub of a propeller has nothing inside but its own metal.
+    const auto ring = wall("duct", 60, 24, [](double s, double t) {
+        const double r = 2 + 0.3 * std::cos(2 * M_PI * t);
+        return Point{0.8 * std::sin(2 * M_PI * t), r * std::cos(2 * M_PI * s), r * std::sin(2 * M_PI * s)};
+    });
+    EXPECT_THAT(walls_beside_body({ring, ball("hub", 0.5, 0)}), IsEmpty());
+    // The base of a hull, drawn in behind its rim: it lies in the hollow, and touches.
+    const double lowest = std::acos(-0.7);
+    const auto hollow = wall("hull", 24, 12, [=](double s, double t) {
+        return Point{std::sin(t * lowest) * std::cos(2 * M_PI * s), std::sin(t * lowest) * std::sin(2 * M_PI * s), std::cos(t * lowest)};
+    });
+    const auto recess = wall("base", 24, 6, [=](double s, double t) {
+        const double r = std::sin(lowest) * (1 - t);
+        return Point{r * std::cos(2 * M_PI * s), r * std::sin(2 * M_PI * s), -0.7 + t};
+    });
+    EXPECT_THAT(walls_beside_body({hollow, recess}), IsEmpty());
+}
+
 TEST(BodyZones, ARoomOrAChannelWithoutABodyKeepsItsWalls) {
     EXPECT_THAT(walls_beside_body(box(2, true)), IsEmpty());
     EXPECT_THAT(walls_beside_body({flat("floor", -5, 5, -2, 2, -1), flat("ceiling", -5, 5, -2, 2, 1)}), IsEmpty());
