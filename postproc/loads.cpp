@@ -120,6 +120,9 @@ private:
         }
         std::string others;
         for (const auto& zone : result_.left_out) {
+            if (zone.doubled) {
+                continue;
+            }
             others += (others.empty() ? "zone '" : "; zone '") + zone.name + "': " + zone.why;
         }
         constexpr double closed = 1e-3;
@@ -273,7 +276,7 @@ private:
     }
 
     void audit() {
-        if (!result_.left_out.empty()) {
+        if (std::any_of(result_.left_out.begin(), result_.left_out.end(), [](const LeftOutZone& zone) { return !zone.doubled; })) {
             settle_what_was_left_out();
         }
         if (!(result_.closure > 1e-9)) {

@@ -94,10 +94,11 @@ struct LoadsCoefficients {
     std::string lengths_from;  ///< "given" or "bounding box"
 };
 
-/// A wall that was not summed because it is none of the body's.
+/// A wall that was not summed because it is none of the body's, or is summed already.
 struct LeftOutZone {
     std::string name;
     std::string why;
+    bool doubled = false;  ///< it is of the body, but its faces stand in other zones too
 };
 
 struct LoadsResult {
@@ -114,7 +115,7 @@ struct LoadsResult {
     NamedLoads named_pressure;
     NamedLoads named_viscous;
     std::vector<ZoneLoads> zones;
-    std::vector<LeftOutZone> left_out;   ///< a ground, a tunnel; only when no zones were named
+    std::vector<LeftOutZone> left_out;   ///< a ground, a tunnel, a wall that stands twice in the file; only when no zones were named
     double area = 0;                     ///< m^2
     double closure = 0;                  ///< size of the summed area vector over the area: 0 for a closed surface
     Vector force_per_reference_pascal{}; ///< N/Pa: what 1 Pa added to every pressure would add to the force
@@ -132,7 +133,8 @@ struct LoadsResult {
 /// A plane case gives forces per metre depth, an axisymmetric one those on the whole body of revolution.
 /// Deterministic whatever the number of threads. Where no zones are named and some wall cannot be part of a body with
 /// the others (a ground), it is left out if the others close without it; if they do not, nobody can tell what the body
-/// is, and that is an error. Throws core::InputError: no zone fits, a zone without faces or pressure, a value that is missing, an
+/// is, and that is an error. A zone all of whose faces stand in others too (a group beside its members) is left out; named,
+/// it counts twice with a warning. Throws core::InputError: zones that share some of their faces only, no zone fits, a zone without faces or pressure, a value that is missing, an
 /// importer's error (unless accepted), a half model on both sides of its plane, gauge and absolute pressures side by side.
 LoadsResult loads(const Field& field, const LoadsOptions& options = {}, core::Progress& progress = core::Progress::none());
 

@@ -13,6 +13,7 @@
 
 #include "core/text.h"
 #include "postproc/body_zones.h"
+#include "postproc/doubled_faces.h"
 
 namespace underbody::postproc {
 
@@ -153,6 +154,7 @@ private:
             take_shear(part);
         }
         bring_to_one_reference();
+        settle_doubled_zones();
         std::vector<std::string> from;
         for (const auto& part : parts_) {
             std::string word = part.values.pressure_on_nodes ? "nodes" : "faces";
@@ -186,6 +188,30 @@ private:
         if (!bodies.empty()) {
             warn("zones " + quoted(bodies) + " are bodies of their own that lie apart: the loads are the sum over all; name those that are meant with --zones");
         }
+    }
+
+    /// A wall by its name and once more within a group would count twice.
+    void settle_doubled_zones() {
+        std::vector<bool> away(parts_.size(), false);
+        for (const auto& doubled : doubled_zones(parts_)) {
+            const std::string& name = parts_[doubled.zone].zone->name;
+            std::vector<std::string> others;
+            for (const std::size_t other : doubled.others) {
+                others.push_back(parts_[other].zone->name);
+            }
+            const std::string faces = (doubled.whole ? "all " : "") + std::to_string(doubled.faces) + " faces of zone '" + name + "' stand in " + quoted(others) + " too";
+            if (!options_.zones.empty()) {
+                warn(faces + ": what is on them counts twice");
+            } else if (doubled.whole) {
+                away[doubled.zone] = true;
+                result_.left_out.push_back({name, "its faces stand in " + quoted(others) + " too", true});
+                warn("left out of the sum: " + faces);
+            } else {
+                throw InputError("zone", faces + ", and would count twice", place(), "name zones without common faces: --zones");
+            }
+        }
+        std::size_t at = 0;
+        std::erase_if(parts_, [&](const Part&) { return away[at++]; });
     }
 
     /// Absolute pressures among gauge ones would push with the atmosphere on their zones alone.

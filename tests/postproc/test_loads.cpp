@@ -241,6 +241,78 @@ TEST(Loads, AreThoseOfTheBodyAloneWhereAGroundIsAmongTheWalls) {
     EXPECT_EQ(nlohmann::json(result)["left_out"][0]["name"], "ground");
 }
 
+/// A box with a group of its walls: the first so many faces of each zone, in one zone more, moved by `off`.
+Field box_with_group(std::size_t sides, bool base, double off = 0) {
+    Field field = box(false, false);
+    std::vector<Vector> points;
+    std::vector<std::vector<vtkIdType>> faces;
+    std::size_t taken = 0;
+    for (const auto& zone : field.zones) {
+        for (vtkIdType f = 0; f < zone.surface->GetNumberOfPolys(); ++f) {
+            vtkNew<vtkIdList> ids;
+            zone.surface->GetPolys()->GetCellAtId(f, ids);
+            if (zone.name == "base" ? !base : zone.name == "top" || taken++ >= sides) {
+                continue;
+            }
+            faces.emplace_back();
+            for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i) {
+                // Begun at another corner and with nodes of its own.
+                Vector p{};
+                zone.surface->GetPoint(ids->GetId((i + 1) % ids->GetNumberOfIds()), p.data());
+                p[0] += off;
+                faces.back().push_back(static_cast<vtkIdType>(points.size()));
+                points.push_back(p);
+            }
+        }
+    }
+    field.zones.push_back(make_zone("Default", points, faces, [](const Vector& p) { return 1 + p[2]; }));
+    return field;
+}
+
+TEST(Loads, CountFacesOnceThatStandTwiceInTheFile) {
+    const auto alone = loads(box(false, false));
+    for (const bool base : {false, true}) {
+        for (const bool first : {false, true}) {  // the group before its members, or behind them
+            Field field = box_with_group(9, base);
+            if (first) {
+                std::rotate(field.zones.begin(), field.zones.end() - 1, field.zones.end());
+            }
+            const auto result = loads(field, about({0, 0, 0}));
+            EXPECT_NEAR(result.named.lift_force, alone.named.lift_force, 1e-12) << base << first;
+            EXPECT_NEAR(result.area, alone.area, 1e-12);
+            ASSERT_FALSE(result.left_out.empty());
+            EXPECT_EQ(result.left_out[0].name == "Default", !first);
+            EXPECT_TRUE(result.left_out[0].doubled);
+            EXPECT_TRUE(std::any_of(result.problems.begin(), result.problems.end(), [](const auto& p) { return p.message.find("left out of the sum: all ") == 0; }));
+        }
+    }
+    // Named, it counts, and is said to.
+    LoadsOptions all = about({0, 0, 0});
+    all.zones = {"*"};
+    const auto twice = loads(box_with_group(9, true), all);
+    EXPECT_TRUE(std::any_of(twice.problems.begin(), twice.problems.end(), [](const auto& p) { return p.message.find("counts twice") != std::string::npos; }));
+    // Beside the walls it is no double of them.
+    EXPECT_TRUE(loads(box_with_group(9, true, 1e-3), about({0, 0, 0})).left_out.empty());
+}
+
+TEST(Loads, OfZonesThatShareSomeOfTheirFacesAreRefused) {
+    Field field = box(false, false);
+    Zone& sides = field.zones[1];
+    ASSERT_GT(sides.surface->GetNumberOfPolys(), 1);
+    const auto overlap = make_zone("overlap", {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.5}, {0, 0, 0.5}, {0, -1, 0}, {2, -1, 0}}, {{0, 1, 2, 3}, {0, 4, 5, 1}}, [](const Vector& p) { return 1 + p[2]; });
+    field.zones.push_back(overlap);
+    try {
+        loads(field);
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.message(), HasSubstr("1 faces of zone"));
+        EXPECT_THAT(error.message(), HasSubstr("overlap"));
+    }
+    // The other side of a thin wall looks the other way.
+    field.zones.back() = make_zone("overlap", {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.5}, {0, 0, 0.5}, {0, -1, 0}, {2, -1, 0}}, {{3, 2, 1, 0}, {0, 4, 5, 1}}, [](const Vector& p) { return 1 + p[2]; });
+    EXPECT_TRUE(loads(field).left_out.empty());
+}
+
 TEST(Loads, AreRefusedWhereNobodyCanTellWhatTheBodyIs) {
     try {
         loads(box_over_ground(true));
