@@ -163,7 +163,8 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases)
         const double drag = value_of(one.numbers, "drag_force", one.loads.named.drag_force);
         const double side = value_of(one.numbers, "side_force", one.loads.named.side_force);
         const NamedLoads& own = one.loads.named;
-        const double force = std::max(std::hypot(lift, drag, side), std::hypot(own.lift_force, own.drag_force, own.side_force));
+        const double theirs = std::hypot(lift, drag, side);
+        const double force = theirs > 0 ? theirs : std::hypot(own.lift_force, own.drag_force, own.side_force);
         const double length = std::sqrt(std::max(one.loads.area, 0.0));
         for (const auto& load : table_row(one.loads)) {
             const bool stated = std::any_of(one.numbers.begin(), one.numbers.end(), [&](const auto& n) { return n.first == load.name; });

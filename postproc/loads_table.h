@@ -42,7 +42,7 @@ std::vector<LoadsCase> with_iteration_sigmas(const std::vector<LoadsCase>& cases
 std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const std::string& column = "cells");
 
 /// The loads against the same quantities in the conditions (a manifest that holds the solver's own forces). The measure
-/// `of_force` is over the size of the force from lift, drag and side force, own or stated, whichever is larger.
+/// `of_force` is over the size of the stated lift, drag and side force; where they state nothing, of the own.
 std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases);
 
 /// {"files": [loads of each, with "conditions"]}

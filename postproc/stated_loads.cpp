@@ -408,6 +408,9 @@ bool of_another_time(const LoadsResult& result, const StatedLoad& load) {
     return result.time && load.time && std::abs(*load.time - *result.time) > written * std::max(std::abs(*load.time), std::abs(*result.time));
 }
 
+/// What is no more than this share of a force is nothing beside it: symmetry leaves such rests, which never settle.
+constexpr double rounding = 1e-9;
+
 /// The largest component of the whole force that the same file states of the same zones.
 double largest_stated_force(const std::vector<StatedLoad>& stated, const StatedLoad& like) {
     double largest = 0;
@@ -463,7 +466,9 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
         one.stated_in = load.file;
         one.value = dot(load.moment ? moment : wrench.force, load.direction);
         one.stated = halves * load.value;
-        const double force = std::max(norm(body.total.force), halves * largest_stated_force(stated, load));
+        const double own = norm(body.total.force);
+        const double theirs = halves * largest_stated_force(stated, load);
+        const double force = own > rounding * theirs ? own : theirs;  // nought is no measure
         one.of_force = share_of(one.value - one.stated, force * (load.moment ? std::sqrt(body.area) : 1), std::max(std::abs(one.value), std::abs(one.stated)));
         comparisons.push_back(std::move(one));
     }
@@ -482,7 +487,6 @@ void to_json(nlohmann::json& json, const Comparison& c) {
 }
 
 core::Problems unsettled(const LoadsResult& result, const std::vector<StatedLoad>& stated) {
-    constexpr double rounding = 1e-9;  // of the force: what symmetry makes nought never settles
     core::Problems problems;
     for (const auto& load : stated) {
         if (!load.history || load.part != LoadPart::total || load.history->settled) {

@@ -69,10 +69,10 @@ struct Comparison {
     std::string stated_in;  ///< the report; empty: the conditions (manifest)
     double value = 0;
     double stated = 0;      ///< of the whole body: doubled where the report is of a half model
-    double of_force = 0;    ///< |value - stated| over the size of the force on the same zones, own or stated, whichever is larger (moments: times the root of their area)
+    double of_force = 0;    ///< |value - stated| over the size of the force on the same zones, the stated one where the own is nothing (moments: times the root of their area)
 };
 
-/// |difference| over `force`; over `fallback` where there is no force at all (a pure moment): nought is no measure.
+/// |difference| over `force`; over `fallback` where there is no force at all (a pure moment).
 double share_of(double difference, double force, double fallback);
 
 void to_json(nlohmann::json& json, const Comparison& comparison);
