@@ -14,6 +14,7 @@
 #include "core/text.h"
 #include "postproc/body_zones.h"
 #include "postproc/doubled_faces.h"
+#include "postproc/importers/variable_reading.h"
 
 namespace underbody::postproc {
 
@@ -270,6 +271,14 @@ private:
             std::vector<std::string> names;
             for (const auto& info : part.zone->arrays) {
                 names.push_back(info.name);
+            }
+            const auto without_unit = std::find_if(part.zone->arrays.begin(), part.zone->arrays.end(), [](const ArrayInfo& info) {
+                return info.components == 1 && info.name == unstated_name(info.original_name);
+            });
+            if (without_unit != part.zone->arrays.end()) {
+                const std::string& name = without_unit->original_name;
+                throw InputError("missing", "zone '" + part.zone->name + "' has no pressure but '" + name + "', of which the file does not say the unit", place(),
+                                 "say it: --unit " + name + "=Pa, or of p/rho --unit \"" + name + "=m^2/s^2\" with --density");
             }
             throw InputError("missing", "zone '" + part.zone->name + "' has no pressure", place(), core::did_you_mean("pressure", names));
         }

@@ -139,6 +139,9 @@ std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const s
             for (const auto& number : one.numbers) {
                 names.push_back(number.first);
             }
+            if (std::any_of(one.texts.begin(), one.texts.end(), [&](const auto& text) { return text.first == column; })) {
+                throw core::InputError("missing", "the column '" + column + "' is text, for its heading has no unit", {one.file, {}, {}, {}}, "of a number of cells write '" + column + " [1]'");
+            }
             throw core::InputError("missing", "no number of cells '" + column + "' is known of this case", {one.file, {}, {}, {}}, core::did_you_mean(column, names));
         }
         const std::string key = set_point_of(one);

@@ -524,6 +524,22 @@ TEST(Loads, RefuseWhatCannotBeIntegrated) {
     EXPECT_THAT(message(box(false, false), zones), HasSubstr("did you mean 'base'?"));
 }
 
+TEST(Loads, SayHowToGiveTheUnitOfAPressureWithoutOne) {
+    Field field = box(false, false);
+    for (auto& zone : field.zones) {
+        zone.surface->GetPointData()->GetArray("pressure")->SetName("p (unit not stated)");
+        zone.arrays[0] = {"p (unit not stated)", "", "p", "", Location::nodes, 1};
+    }
+    try {
+        loads(field);
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.message(), HasSubstr("has no pressure but 'p'"));
+        EXPECT_THAT(error.hint(), HasSubstr("--unit p=Pa"));
+        EXPECT_THAT(error.hint(), HasSubstr("--unit \"p=m^2/s^2\" with --density"));
+    }
+}
+
 TEST(Loads, GiveCoefficientsAndTheRunningIntegral) {
     LoadsOptions options = about({0, 0, 0});
     options.references = {1000, 2.0, 0.2, 0.16, 0.12};
@@ -774,6 +790,18 @@ TEST(LoadsTable, MakesOneCaseOfItsMeshes) {
     const auto comparisons = compare_with_stated(studies);
     ASSERT_EQ(comparisons.size(), 2U);
     EXPECT_EQ(comparisons[0].of_force, 0);
+}
+
+TEST(LoadsTable, SaysHowANumberOfCellsIsWritten) {
+    LoadsCase one;
+    one.file = "a.csv";
+    one.texts = {{"cells", "8000"}};
+    try {
+        mesh_studies({one}, "cells");
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.hint(), HasSubstr("'cells [1]'"));
+    }
 }
 
 TEST(LoadsTable, HasOneRowACaseWithItsConditions) {
