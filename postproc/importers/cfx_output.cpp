@@ -16,6 +16,7 @@ namespace {
 constexpr std::string_view outer_loop = "OUTER LOOP ITERATION =";
 constexpr std::string_view coefficient_loop = "COEFFICIENT LOOP ITERATION =";
 constexpr std::string_view time_step = "TIME STEP =";
+constexpr std::string_view group_words = "Domain Group:";
 constexpr std::string_view on_walls = "on walls";
 
 /// The cells of "| U-Mom | 0.99 | 1.2E-03 | ... |"; none when the line is no row of a table.
@@ -45,6 +46,7 @@ using Triple = std::array<double, 3>;
 struct WallTable {
     std::int64_t line = 0;  ///< of its title; 0: not there
     std::vector<std::pair<std::string, Triple>> rows;
+    std::vector<std::string> groups;  ///< the domain group of each row; empty where the table names none
 };
 
 struct Kind {
@@ -93,7 +95,8 @@ public:
         units_.take(text, {file_, number, {}, {}});
         if (const auto kind = table_begun_by(text)) {
             table_ = &tables_[kind->moment ? 1 : 0][kind->viscous ? 1 : 0];
-            *table_ = {number, {}};  // a later summary counts
+            *table_ = {number, {}, {}};  // a later summary counts
+            domain_group_.clear();
             group_ = Triple{};
             largest_ = 0;
             ruled_ = false;
@@ -108,10 +111,20 @@ public:
             table_ = table_->rows.empty() ? table_ : nullptr;
             return;
         }
+        if (text.starts_with(group_words)) {
+            if (const auto name = core::trimmed(text.substr(group_words.size())); !name.empty() && !name.starts_with("Totals")) {
+                domain_group_ = name;
+            }
+        }
         row(text, number);
     }
 
-    [[nodiscard]] std::vector<ForceReport> finish() const {
+    [[nodiscard]] std::vector<ForceReport> finish() {
+        for (auto& kind : tables_) {
+            for (auto& table : kind) {
+                tell_apart(table);
+            }
+        }
         std::vector<ForceReport> reports;
         for (const bool moments : {false, true}) {
             const auto& [pressure, viscous] = tables_[moments ? 1 : 0];
@@ -134,6 +147,19 @@ public:
     }
 
 private:
+    /// Walls of one name in several domain groups: "R1: Blade".
+    static void tell_apart(WallTable& table) {
+        std::vector<std::string> names;
+        for (const auto& row : table.rows) {
+            names.push_back(row.first);
+        }
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (std::count(names.begin(), names.end(), names[i]) > 1) {
+                table.rows[i].first = table.groups[i] + ": " + names[i];
+            }
+        }
+    }
+
     void row(std::string_view text, std::int64_t number) {
         if (text.front() == '-' && text.find_first_not_of("- \t") == std::string_view::npos) {
             ruled_ = true;  // a total follows
@@ -165,9 +191,12 @@ private:
         if (name.empty() || lower.starts_with("domain group") || lower.starts_with("x-comp")) {
             fail_in_line(file_, number, "forces without the name of their wall");
         }
-        auto found = std::find_if(table_->rows.begin(), table_->rows.end(), [&](const auto& r) { return r.first == name; });
+        auto found = std::find_if(table_->rows.begin(), table_->rows.end(), [&](const auto& r) {
+            return r.first == name && table_->groups[static_cast<std::size_t>(&r - table_->rows.data())] == domain_group_;
+        });
         if (found == table_->rows.end()) {
             found = table_->rows.insert(table_->rows.end(), {name, Triple{}});
+            table_->groups.push_back(domain_group_);
         }
         for (std::size_t k = 0; k < 3; ++k) {
             found->second[k] += values[k];
@@ -220,6 +249,7 @@ private:
     Triple group_{};      ///< sum of the rows since the last total
     double largest_ = 0;  ///< of the table's numbers
     std::string wrapped_;
+    std::string domain_group_;
     bool ruled_ = false;  ///< the line before was one of dashes
 };
 

@@ -253,6 +253,23 @@ TEST(OutputOfCfx, GivesTheForcesAndMomentsOnEachWall) {
     EXPECT_NEAR(in_feet[4].net()->pressure, 0.009 * 0.45359237 * 0.3048 * 0.3048, 1e-14);
 }
 
+TEST(OutputOfCfx, KeepsWallsOfOneNameInTwoDomainGroupsApart) {
+    const core::TemporaryFolder folder;
+    const auto table = [](const std::string& title) {
+        return " |  " + title + " On Walls  |\n        X-Comp.  Y-Comp.  Z-Comp.\n\n Domain Group: R1\n\n Blade  1 2 3\n Hub Default  4 5 6\n       -----  -----  -----\n"
+               " Domain Group Totals :  5 7 9\n\n Domain Group: S1\n\n Blade  10 20 30\n       -----  -----  -----\n Domain Group Totals :  10 20 30\n\n";
+    };
+    const auto reports = read_force_reports(written(folder, " OUTER LOOP ITERATION =    1    CPU SECONDS = 1.2E+00\n" + table("Pressure Force") + table("Viscous Force")));
+    ASSERT_EQ(reports.size(), 3U);
+    ASSERT_EQ(reports[0].rows.size(), 4U);
+    EXPECT_EQ(reports[0].rows[0].zone, "R1: Blade");
+    EXPECT_EQ(reports[0].rows[0].total, 2);
+    EXPECT_EQ(reports[0].rows[1].zone, "Hub Default");
+    EXPECT_EQ(reports[0].rows[2].zone, "S1: Blade");
+    EXPECT_EQ(reports[0].rows[2].total, 20);
+    EXPECT_EQ(reports[0].net()->total, 30);
+}
+
 TEST(OutputOfCfx, ThatLostLinesIsRefused) {
     const core::TemporaryFolder folder;
     const std::string base = " base                          2.0000E-03    0.0000E+00   -8.6000E-01\n";
