@@ -292,7 +292,13 @@ std::uint64_t Hdf5File::backed_size(std::int64_t dataset, const std::string& pat
     }
     const auto size = static_cast<std::uint64_t>(count);
     const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(dataset), bytes_);
-    if (size / largest_ratio > stored || (size > 0 && stored == 0)) {
+    // What lies there as it is must be there in full: the library copies it without a look at the end.
+    const Hdf5Handle plan(H5Dget_create_plist(dataset), H5Pclose);
+    const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+    const bool packed = plan.good() && H5Pget_layout(plan.get()) == H5D_CHUNKED;
+    const std::uint64_t width = type.good() ? std::max<std::uint64_t>(1, H5Tget_size(type.get())) : 1;
+    const std::uint64_t most = packed ? stored * largest_ratio : stored / width;
+    if (size > most) {
         fail(path,
              "it claims " + std::to_string(size) + " values but has " + std::to_string(stored) + " bytes in the file");
     }

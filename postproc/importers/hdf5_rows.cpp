@@ -66,6 +66,7 @@ public:
     [[noreturn]] void damaged() const { file_.fail(path_, "its values cannot be read"); }
 
 private:
+    void check_plain_chunks() const;
     [[nodiscard]] hsize_t size_of(const Hdf5Chunk& chunk) const;
 
     const Hdf5File& file_;
@@ -93,12 +94,30 @@ DataSet::DataSet(const Hdf5File& file, const std::string& path, bool whole)
     if (kind != H5T_INTEGER && (whole_ || kind != H5T_FLOAT)) {
         file_.fail(path_, whole_ ? "its values are not whole numbers" : "its values are not numbers");
     }
+    if (const std::size_t width = H5Tget_size(type_.get()); width == 0 || width > 16) {
+        file_.fail(path_, "its numbers have " + std::to_string(width) + " bytes each");
+    }
     (void)file_.backed_size(set_.get(), path_);
     rank_ = H5Sget_simple_extent_ndims(space_.get());
     if (rank_ >= 1 && rank_ <= 2 && H5Sget_simple_extent_dims(space_.get(), lengths_, nullptr) >= 0) {
         layout_ = layout_of_chunks(set_.get(), type_.get(), space_.get(), whole_);
+        check_plain_chunks();
     } else {
         rank_ = 0;
+    }
+}
+
+/// Chunks that are not packed and the type of the values must agree: the library takes values out of a chunk without a look
+/// at its end.
+void DataSet::check_plain_chunks() const {
+    const Hdf5Handle plan(H5Dget_create_plist(set_.get()), H5Pclose);
+    hsize_t chunk[2] = {1, 1};
+    if (!plan.good() || H5Pget_layout(plan.get()) != H5D_CHUNKED || H5Pget_nfilters(plan.get()) != 0 || H5Pget_chunk(plan.get(), rank_, chunk) != rank_) {
+        return;
+    }
+    const hsize_t stored = size_of({});
+    if (stored != 0 && stored / H5Tget_size(type_.get()) != chunk[0] * chunk[1]) {
+        file_.fail(path_, "its chunks have " + std::to_string(stored) + " bytes, which are not " + std::to_string(chunk[0] * chunk[1]) + " values");
     }
 }
 

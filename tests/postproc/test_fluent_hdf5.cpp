@@ -467,6 +467,22 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
         H5Dwrite(data, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, list.data());
         H5Dclose(data);
     };
+    // A type wider than any number: what the library would take beside the values is not theirs.
+    EXPECT_THAT(damaged([&](hid_t f) {
+                    const char* name = "/meshes/1/cells/zoneTopology/minId";
+                    H5Ldelete(f, name, H5P_DEFAULT);
+                    const hid_t wide = H5Tcopy(H5T_NATIVE_INT32);
+                    H5Tset_size(wide, 32);
+                    const hsize_t two = 2;
+                    const hid_t space = H5Screate_simple(1, &two, nullptr);
+                    const hid_t data = H5Dcreate2(f, name, wide, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+                    const std::array<char, 64> numbers{};
+                    H5Dwrite(data, wide, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data());
+                    H5Dclose(data);
+                    H5Sclose(space);
+                    H5Tclose(wide);
+                }),
+                HasSubstr("its numbers have 32 bytes each"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 400}); }), HasSubstr("more nodes"));
     EXPECT_THAT(damaged([&](hid_t f) {
                     values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 2000000000});
