@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <set>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -120,19 +121,34 @@ herr_t read_attribute(hid_t object, const char* name, const H5A_info_t* info, vo
     return 0;
 }
 
-herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void* file_bytes) {
-    const Hdf5Handle object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
-    if (object.good()) {
-        H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
+/// What was looked at, and how large the file is.
+struct Looked {
+    std::uint64_t bytes = 0;
+    std::set<haddr_t> objects;  ///< links may go round
+};
+
+void look_at_set(hid_t set, const Looked& looked) {
+    const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+    const Hdf5Handle type(H5Dget_type(set), H5Tclose);
+    hsize_t chunks = 0;
+    H5Dget_num_chunks(set, space.get(), &chunks);  // walks the index of the chunks
+    if (H5Tget_class(type.get()) == H5T_STRING && H5Tis_variable_str(type.get()) > 0) {
+        (void)strings_of_set(set, looked.bytes);
     }
-    if (object.good() && info->type == H5O_TYPE_DATASET) {
-        const Hdf5Handle space(H5Dget_space(object.get()), H5Sclose);
-        const Hdf5Handle type(H5Dget_type(object.get()), H5Tclose);
-        hsize_t chunks = 0;
-        H5Dget_num_chunks(object.get(), space.get(), &chunks);  // walks the index of the chunks
-        if (H5Tget_class(type.get()) == H5T_STRING && H5Tis_variable_str(type.get()) > 0) {
-            (void)strings_of_set(object.get(), *static_cast<std::uint64_t*>(file_bytes));
-        }
+}
+
+herr_t look_at(hid_t group, const char* name, const H5L_info_t* /*info*/, void* looked) {
+    auto& all = *static_cast<Looked*>(looked);
+    const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+    H5O_info_t info{};
+    if (!object.good() || H5Oget_info(object.get(), &info) < 0 || !all.objects.insert(info.addr).second) {
+        return 0;  // the reader meets the same refusal; what comes after it is looked at all the same
+    }
+    H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
+    if (info.type == H5O_TYPE_DATASET) {
+        look_at_set(object.get(), all);
+    } else if (info.type == H5O_TYPE_GROUP) {
+        H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look_at, looked);
     }
     return 0;
 }
@@ -140,10 +156,11 @@ herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void* file_
 /// Everything about the file but the numbers: what damage makes the library stumble over lies there.
 void look_through(const std::filesystem::path& path) {
     std::error_code error;
-    std::uint64_t bytes = std::filesystem::file_size(path, error);
+    Looked looked;
+    looked.bytes = std::filesystem::file_size(path, error);
     const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (file.good()) {
-        H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, look_at, &bytes);
+        H5Literate(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look_at, &looked);
     }
 }
 
