@@ -337,16 +337,22 @@ void Reader::add_zones() {
 /// Where the volume is in the file too, its cells say on which side of a wall the fluid is. True for the parts that are
 /// turned that way.
 std::vector<bool> Reader::turn_walls(std::vector<ElementPart>& parts) {
-    std::vector<bool> settled(parts.size(), false);
+    std::vector<ElementPart*> surfaces;
+    std::vector<const ElementPart*> volumes;
+    std::vector<std::size_t> places;
     for (std::size_t p = 0; p < parts.size() && field_.dimension == 3; ++p) {
-        if (parts[p].dimension() != 2 || !matches_any(options_.zones, parts[p].name)) {
-            continue;
+        const int dimension = parts[p].dimension();
+        if (dimension == 2 && matches_any(options_.zones, parts[p].name)) {
+            surfaces.push_back(&parts[p]);
+            places.push_back(p);
+        } else if (dimension == 3) {
+            volumes.push_back(&parts[p]);
         }
-        // Between two volumes (fluid and solid) neither side is the fluid's for sure.
-        settled[p] = std::count_if(parts.begin(), parts.end(), [&](const ElementPart& volume) {
-                         progress_.check();
-                         return volume.dimension() == 3 && turn_into_volume(parts[p], volume);
-                     }) == 1;
+    }
+    const auto turned = turn_into_one_volume(surfaces, volumes, progress_);
+    std::vector<bool> settled(parts.size(), false);
+    for (std::size_t s = 0; s < places.size(); ++s) {
+        settled[places[s]] = turned[s];
     }
     return settled;
 }

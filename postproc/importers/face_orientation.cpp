@@ -294,52 +294,81 @@ struct PlaceHash {
 
 Vector place_of(const Buffer<double>& points, std::size_t node) { return {points[3 * node], points[3 * node + 1], points[3 * node + 2]}; }
 
-/// For each node of the surface the volume's node at its place; empty when one has none.
-std::vector<std::int64_t> nodes_in_volume(const ElementPart& surface, const ElementPart& volume) {
-    std::unordered_map<Vector, std::int64_t, PlaceHash> places;
-    for (std::size_t i = 0; i < surface.points.size() / 3; ++i) {
-        places.emplace(place_of(surface.points, i), -1);
+using Places = std::unordered_map<Vector, std::int64_t, PlaceHash>;
+
+/// The places of the surfaces' nodes, each with the volume's node there, -1 for none.
+Places places_in_volume(const std::vector<ElementPart*>& surfaces, const ElementPart& volume) {
+    Places places;
+    for (const ElementPart* surface : surfaces) {
+        for (std::size_t i = 0; i < surface->points.size() / 3; ++i) {
+            places.emplace(place_of(surface->points, i), -1);
+        }
     }
     for (std::size_t i = 0; i < volume.points.size() / 3; ++i) {
         if (const auto found = places.find(place_of(volume.points, i)); found != places.end()) {
             found->second = static_cast<std::int64_t>(i);
         }
     }
-    std::vector<std::int64_t> nodes;
-    for (std::size_t i = 0; i < surface.points.size() / 3; ++i) {
-        nodes.push_back(places.at(place_of(surface.points, i)));
+    return places;
+}
+
+/// The faces of a surface with the volume's numbers of nodes; none when a node has no place there, or an element is no
+/// plain face.
+ElementPart in_numbers_of_volume(const ElementPart& surface, const Places& places) {
+    ElementPart faces;
+    const bool plain = std::all_of(surface.types.begin(), surface.types.end(),
+                                   [](unsigned char type) { return type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON; });
+    for (const std::int64_t node : surface.nodes) {
+        const std::int64_t number = plain ? places.at(place_of(surface.points, static_cast<std::size_t>(node))) : -1;
+        if (number < 0) {
+            return {};
+        }
+        faces.nodes.push_back(number);
     }
-    const bool all = std::none_of(surface.nodes.begin(), surface.nodes.end(), [&](std::int64_t node) { return nodes[static_cast<std::size_t>(node)] < 0; });
-    return all ? nodes : std::vector<std::int64_t>();
+    faces.types = surface.types;
+    faces.offsets = surface.offsets;
+    return faces;
 }
 
 }  // namespace
 
-bool turn_into_volume(ElementPart& surface, const ElementPart& volume) {
-    const bool plain = std::all_of(surface.types.begin(), surface.types.end(),
-                                   [](unsigned char type) { return type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON; });
-    const auto nodes = plain ? nodes_in_volume(surface, volume) : std::vector<std::int64_t>();
-    if (nodes.empty()) {
-        return false;
+std::vector<bool> turn_into_volume(const std::vector<ElementPart*>& surfaces, const ElementPart& volume) {
+    const Places places = places_in_volume(surfaces, volume);
+    std::vector<ElementPart> faces;
+    for (const ElementPart* surface : surfaces) {
+        faces.push_back(in_numbers_of_volume(*surface, places));
     }
-    std::vector<ElementPart> faces(1);
-    faces[0].types = surface.types;
-    faces[0].offsets = surface.offsets;
-    for (const std::int64_t node : surface.nodes) {
-        faces[0].nodes.push_back(nodes[static_cast<std::size_t>(node)]);
-    }
-    const std::vector<std::int64_t> before = faces[0].nodes;
-    if (!BoundaryFaces(faces, volume).turn_into_volume(faces[0], volume.points)) {
-        return false;
-    }
-    for (std::size_t i = 0; i < surface.elements(); ++i) {
-        const auto first = static_cast<std::ptrdiff_t>(surface.offsets[i]);
-        const auto end = static_cast<std::ptrdiff_t>(surface.offsets[i + 1]);
-        if (!std::equal(before.begin() + first, before.begin() + end, faces[0].nodes.begin() + first)) {
-            std::reverse(surface.nodes.begin() + first, surface.nodes.begin() + end);
+    const BoundaryFaces boundary(faces, volume);
+    std::vector<bool> settled;
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+        ElementPart& surface = *surfaces[s];
+        const std::vector<std::int64_t> before = faces[s].nodes;
+        settled.push_back(boundary.turn_into_volume(faces[s], volume.points));
+        for (std::size_t i = 0; settled.back() && i < surface.elements(); ++i) {
+            const auto first = static_cast<std::ptrdiff_t>(surface.offsets[i]);
+            const auto end = static_cast<std::ptrdiff_t>(surface.offsets[i + 1]);
+            if (!std::equal(before.begin() + first, before.begin() + end, faces[s].nodes.begin() + first)) {
+                std::reverse(surface.nodes.begin() + first, surface.nodes.begin() + end);
+            }
         }
     }
-    return true;
+    return settled;
+}
+
+std::vector<bool> turn_into_one_volume(const std::vector<ElementPart*>& surfaces, const std::vector<const ElementPart*>& volumes, core::Progress& progress) {
+    std::vector<int> sides(surfaces.size(), 0);
+    for (const ElementPart* volume : volumes) {
+        progress.check();
+        const auto settled = surfaces.empty() ? std::vector<bool>() : turn_into_volume(surfaces, *volume);
+        for (std::size_t s = 0; s < settled.size(); ++s) {
+            sides[s] += settled[s] ? 1 : 0;
+        }
+    }
+    std::vector<bool> one;
+    for (const int count : sides) {
+        one.push_back(count == 1);
+    }
+    return one;
 }
 
 }  // namespace underbody::postproc

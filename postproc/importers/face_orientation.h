@@ -46,8 +46,13 @@ private:
     std::unordered_map<Key, Behind, Hash> cells_;
 };
 
-/// Turns the faces of a surface into a volume with nodes of its own, told by their places (the same numbers, as of one
-/// file). True where BoundaryFaces::turn_into_volume is, and every node has its place in the volume.
-bool turn_into_volume(ElementPart& surface, const ElementPart& volume);
+/// Turns the faces of surfaces into a volume with nodes of its own, told by their places (the same numbers, as of one file).
+/// True for those where BoundaryFaces::turn_into_volume is, and every node has its place in the volume. One look at the
+/// volume serves all surfaces.
+std::vector<bool> turn_into_volume(const std::vector<ElementPart*>& surfaces, const ElementPart& volume);
+
+/// The same with several volumes: true for the surfaces that lie at one of them alone. Between two, fluid and solid,
+/// neither side is the fluid's for sure.
+std::vector<bool> turn_into_one_volume(const std::vector<ElementPart*>& surfaces, const std::vector<const ElementPart*>& volumes, core::Progress& progress);
 
 }  // namespace underbody::postproc

@@ -62,26 +62,35 @@ vtkSmartPointer<vtkCellArray> polygons_of(const ElementPart& part) {
 }  // namespace
 
 void settle_sides(Field& field, core::Progress& progress) {
-    std::vector<ElementPart> volumes;
-    for (const auto& zone : field.zones) {
-        if (zone.volume != nullptr && field.dimension == 3) {
-            volumes.push_back(part_of(*zone.volume));
+    std::vector<Zone*> zones;
+    std::vector<ElementPart> faces;
+    for (auto& zone : field.zones) {
+        const bool open = zone.surface != nullptr && !zone.normals_into_fluid && zone.surface->GetNumberOfPolys() > 0;
+        if (open && zone.surface->GetNumberOfPolys() == zone.surface->GetNumberOfCells()) {
+            zones.push_back(&zone);
+            faces.push_back(part_of(*zone.surface));
         }
     }
-    for (auto& zone : field.zones) {
-        const bool open = zone.surface != nullptr && !zone.normals_into_fluid;
-        if (!open || volumes.empty() || zone.surface->GetNumberOfPolys() == 0 || zone.surface->GetNumberOfPolys() != zone.surface->GetNumberOfCells()) {
-            continue;
+    std::vector<ElementPart> cells;
+    for (const auto& zone : field.zones) {
+        if (zone.volume != nullptr && field.dimension == 3 && !zones.empty()) {
+            cells.push_back(part_of(*zone.volume));
         }
-        ElementPart surface = part_of(*zone.surface);
-        const auto sides = std::count_if(volumes.begin(), volumes.end(), [&](const ElementPart& volume) {
-            progress.check();
-            return turn_into_volume(surface, volume);
-        });
-        if (sides == 1) {
-            zone.surface->SetPolys(polygons_of(surface));
-            zone.surface->Modified();
-            zone.normals_into_fluid = true;
+    }
+    std::vector<ElementPart*> surfaces;
+    for (auto& part : faces) {
+        surfaces.push_back(&part);
+    }
+    std::vector<const ElementPart*> volumes;
+    for (const auto& part : cells) {
+        volumes.push_back(&part);
+    }
+    const auto turned = turn_into_one_volume(surfaces, volumes, progress);
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+        if (turned[z]) {
+            zones[z]->surface->SetPolys(polygons_of(faces[z]));
+            zones[z]->surface->Modified();
+            zones[z]->normals_into_fluid = true;
         }
     }
 }
