@@ -83,6 +83,11 @@ double CgnsFile::Scales::to_si(std::string_view unit) const {
 
 namespace {
 
+/// What the library says of a link that leads nowhere is no damage.
+std::string hint_for(const std::string& why, const char* otherwise) {
+    return core::lower_case(why).find("linked") != std::string::npos ? "it takes a part from another file by a link: that one must lie where it did" : otherwise;
+}
+
 /// Top nodes of a CGNS file, read without a look at its version.
 struct TopNodes {
     float version = 0;
@@ -162,9 +167,7 @@ CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
     most_values_ = hdf5 ? bytes_ * 1032 : bytes_;  // HDF5 may be deflated
     if (cg_open(name_.c_str(), CG_MODE_READ, &file_) != CG_OK && !open_newer(hdf5)) {
         const std::string why = cg_get_error();
-        const bool link = core::lower_case(why).find("linked") != std::string::npos;
-        throw core::InputError("format", "CGNS cannot open it: " + why, {name_, {}, {}, {}},
-                               link ? "it takes a part from another file by a link: that one must lie where it did" : "the file is cut short or damaged; copy it again");
+        throw core::InputError("format", "CGNS cannot open it: " + why, {name_, {}, {}, {}}, hint_for(why, "the file is cut short or damaged; copy it again"));
     }
     try {
         std::array<char, 33> base_name{};
@@ -194,9 +197,7 @@ CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
 CgnsFile::~CgnsFile() { cg_close(file_); }
 
 void CgnsFile::fail(const std::string& what) const {
-    const bool link = core::lower_case(what).find("linked") != std::string::npos;
-    throw core::InputError("format", what, {name_, {}, {}, {}},
-                           link ? "it takes a part from another file by a link: that one must lie where it did" : "the file is damaged or incomplete");
+    throw core::InputError("format", what, {name_, {}, {}, {}}, hint_for(what, "the file is damaged or incomplete"));
 }
 
 void CgnsFile::ok(const CgnsZone& zone, int result, const char* what) const {

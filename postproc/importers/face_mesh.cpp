@@ -115,6 +115,20 @@ void check_beside(const FaceMesh& mesh, const FaceBlock& block, core::Progress& 
 }
 
 /// Do the ranges of the zones fit the numbers that the file declares?
+/// How many places the blocks hold together; none may go beyond those that the file declares.
+template <typename Block>
+std::uint64_t counted(const FaceMesh& mesh, const std::vector<Block>& blocks, std::uint64_t declared, const std::string& what) {
+    std::uint64_t sum = 0;
+    for (const auto& block : blocks) {
+        sum += block.count;
+        if (block.first == 0 || block.first + block.count - 1 > declared) {
+            refuse(mesh, "the " + what + " " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
+                             zone_words(mesh, block.zone) + " go beyond the " + text(declared) + " that the file declares");
+        }
+    }
+    return sum;
+}
+
 void check_ranges(const FaceMesh& mesh, bool surfaces_only) {
     constexpr std::uint64_t most = 0x7fffffffULL;
     if (mesh.dimension != 2 && mesh.dimension != 3) {
@@ -128,27 +142,11 @@ void check_ranges(const FaceMesh& mesh, bool surfaces_only) {
         refuse(mesh,
                "the mesh has " + text(mesh.nodes) + " nodes and " + text(mesh.faces) + " faces: is it cut short?");
     }
-    std::uint64_t faces = 0;
-    for (const auto& block : mesh.face_blocks) {
-        faces += block.count;
-        if (block.first == 0 || block.first + block.count - 1 > mesh.faces) {
-            refuse(mesh, "the faces " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
-                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.faces) +
-                             " that the file declares");
-        }
-    }
+    const std::uint64_t faces = counted(mesh, mesh.face_blocks, mesh.faces, "faces");
     if (!surfaces_only && faces != mesh.faces) {
         refuse(mesh, "the file declares " + text(mesh.faces) + " faces but its zones hold " + text(faces));
     }
-    std::uint64_t cells = 0;
-    for (const auto& block : mesh.cell_blocks) {
-        cells += block.count;
-        if (block.first == 0 || block.first + block.count - 1 > mesh.cells) {
-            refuse(mesh, "the cells " + text(block.first) + " to " + text(block.first + block.count - 1) + " of " +
-                             zone_words(mesh, block.zone) + " go beyond the " + text(mesh.cells) +
-                             " that the file declares");
-        }
-    }
+    const std::uint64_t cells = counted(mesh, mesh.cell_blocks, mesh.cells, "cells");
     if (cells != mesh.cells) {
         refuse(mesh, "the file declares " + text(mesh.cells) + " cells but its zones hold " + text(cells));
     }
