@@ -1,6 +1,7 @@
 #include "postproc/importers/variable_reading.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/text.h"
 
@@ -35,6 +36,9 @@ NameWithUnit parts_of(const std::string& original) {
         return {original, ""};
     }
     const std::string unit(core::trimmed(std::string_view(original).substr(open + 1, original.size() - open - 2)));
+    if (std::none_of(unit.begin(), unit.end(), [](unsigned char c) { return std::isalpha(c) != 0 || c == '%'; })) {
+        return {original, ""};  // an index, "species[2]": no factor of 2
+    }
     try {
         (void)core::si_unit(unit);
         return {std::string(core::trimmed(std::string_view(original).substr(0, open))), unit};

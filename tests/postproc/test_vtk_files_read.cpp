@@ -232,6 +232,20 @@ TEST(TecplotFiles, WithUnitsRepeatCountsOrSharedVariablesAreRefusedInWords) {
     EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", ", varsharelist=([1-3]=1)", "1 2 4\n")), HasSubstr("VARSHARELIST"));
 }
 
+TEST(VtkFiles, BracketsBehindANameAreAUnitOrAnIndex) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(written(folder, "a.vtk",
+                                          "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+                                          "CELL_DATA 1\nFIELD attributes 3\nspecies[2] 1 1 double\n7\nPressure[kPa] 1 1 double\n3\nspecies[3] 1 1 double\n8\n"));
+    const auto value = [&](const char* name) {
+        auto* data = field.zones.at(0).surface->GetCellData()->GetArray(name);
+        return data != nullptr ? data->GetComponent(0, 0) : std::nan("");
+    };
+    EXPECT_EQ(value("species[2]"), 7);
+    EXPECT_EQ(value("species[3]"), 8);
+    EXPECT_EQ(value("pressure"), 3000);
+}
+
 TEST(VtkFiles, NumbersOnThePointsAndFacesOfAPlyAreArrays) {
     const core::TemporaryFolder folder;
     const auto field = read_field(written(
