@@ -331,6 +331,9 @@ void Reader::add_zones() {
         field_.zones.push_back(
             zone_from(std::move(part), std::move(own), field_.dimension, options_, path_.string(), field_.problems));
         field_.zones.back().normals_into_fluid = settled[p];
+        for (auto& info : field_.zones.back().arrays) {
+            info.original_name = name_in_file(info.original_name);
+        }
     }
 }
 

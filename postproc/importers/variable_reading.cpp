@@ -12,6 +12,7 @@ namespace {
 constexpr const char* foam_pressure = "p";
 constexpr const char* foam_shear = "wallShearStress";
 constexpr const char* over_density = "m^2/s^2";
+constexpr std::string_view unstated = " (unit not stated)";
 
 const std::string* stated_unit(const ReadOptions& options, const std::string& variable) {
     const auto found = std::find_if(options.units.begin(), options.units.end(), [&](const auto& stated) { return stated.first == variable; });
@@ -74,7 +75,9 @@ bool unit_must_be_stated(const std::string& original, const ReadOptions& options
            stated_unit(options, original) == nullptr;
 }
 
-std::string unstated_name(const std::string& original) { return original + " (unit not stated)"; }
+std::string unstated_name(const std::string& original) { return original + std::string(unstated); }
+
+std::string name_in_file(const std::string& name) { return name.ends_with(unstated) ? name.substr(0, name.size() - unstated.size()) : name; }
 
 core::Problem unit_is_asked_for(const std::string& original, const core::Place& place) {
     return {core::Problem::Severity::warning,

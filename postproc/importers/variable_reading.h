@@ -25,6 +25,8 @@ VariableReading read_variable_name(const std::string& original, const ReadOption
 bool unit_must_be_stated(const std::string& original, const ReadOptions& options);
 /// The name that such a variable goes by, so that nobody takes it for a pressure: "p (unit not stated)".
 std::string unstated_name(const std::string& original);
+/// The other way: the name in the file; a name of another kind is itself.
+std::string name_in_file(const std::string& name);
 /// The warning that goes with it.
 core::Problem unit_is_asked_for(const std::string& original, const core::Place& place);
 
