@@ -3,56 +3,16 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
-#include <limits>
+#include <iterator>
 #include <new>
-#include <type_traits>
-#include <utility>
 
+#include "postproc/importers/buffer.h"
 #include "postproc/importers/hdf5_handle.h"
 
 namespace underbody::postproc {
 
 namespace {
-
-using Convert = decltype(Hdf5ChunkLayout::convert);
-
-template <typename Stored, typename Wanted>
-Wanted as(Stored value) {
-    if constexpr (std::is_same_v<Wanted, std::uint32_t> && sizeof(Stored) > sizeof(Wanted)) {
-        constexpr Stored most = std::numeric_limits<Wanted>::max();
-        return static_cast<Wanted>(std::clamp<Stored>(value, 0, most));
-    } else {
-        return static_cast<Wanted>(value);
-    }
-}
-
-template <typename Stored, typename Wanted>
-void convert(const unsigned char* stored, std::size_t count, void* out) {
-    auto* wanted = static_cast<Wanted*>(out);
-    for (std::size_t i = 0; i < count; ++i) {
-        Stored value;
-        std::memcpy(&value, stored + i * sizeof(Stored), sizeof(Stored));
-        wanted[i] = as<Stored, Wanted>(value);
-    }
-}
-
-template <typename Wanted>
-Convert convert_to(hid_t type) {
-    const std::pair<hid_t, Convert> known[] = {
-        {H5T_IEEE_F64LE, convert<double, Wanted>},      {H5T_STD_U32LE, convert<std::uint32_t, Wanted>}, {H5T_STD_I32LE, convert<std::int32_t, Wanted>},
-        {H5T_IEEE_F32LE, convert<float, Wanted>},       {H5T_STD_I16LE, convert<std::int16_t, Wanted>},  {H5T_STD_U16LE, convert<std::uint16_t, Wanted>},
-        {H5T_STD_I64LE, convert<std::int64_t, Wanted>}, {H5T_STD_U64LE, convert<std::uint64_t, Wanted>}, {H5T_STD_I8LE, convert<std::int8_t, Wanted>},
-        {H5T_STD_U8LE, convert<std::uint8_t, Wanted>}};
-    for (const auto& [stored, conversion] : known) {
-        if (H5Tequal(stored, type) > 0) {
-            return conversion;
-        }
-    }
-    return nullptr;
-}
 
 /// The values of a chunk, handed out in order.
 class ChunkValues {
@@ -138,42 +98,117 @@ private:
 
 }  // namespace
 
-std::optional<Hdf5ChunkLayout> layout_of_chunks(hid_t set, hid_t type, hid_t space, bool whole) {
-    const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose);
-    Hdf5ChunkLayout layout;
-    layout.rank = H5Sget_simple_extent_ndims(space);
-    unsigned options = 0;
-    if (std::endian::native != std::endian::little || !properties.good() || H5Pget_layout(properties.get()) != H5D_CHUNKED || layout.rank < 1 ||
-        layout.rank > 2 || H5Pget_chunk(properties.get(), layout.rank, layout.chunk) != layout.rank ||
-        H5Sget_simple_extent_dims(space, layout.lengths, nullptr) < 0 || H5Pget_chunk_opts(properties.get(), &options) < 0 || options != 0) {
-        return {};
-    }
-    layout.width = H5Tget_size(type);
-    layout.wanted_width = whole ? sizeof(std::uint32_t) : sizeof(double);
-    layout.convert = whole ? convert_to<std::uint32_t>(type) : convert_to<double>(type);
-    constexpr hsize_t widest = 65536;
-    constexpr hsize_t largest = hsize_t{1} << 32;
-    if (layout.convert == nullptr || layout.chunk[0] == 0 || layout.chunk[1] == 0 || layout.chunk[1] > widest ||
-        layout.chunk[0] > largest / layout.row_bytes()) {
-        return {};
-    }
-    const int filters = H5Pget_nfilters(properties.get());
+namespace {
+
+/// Fills in the filters; false if others were used, or these in another order.
+bool take_filters(hid_t properties, Hdf5ChunkLayout& layout) {
+    const int filters = H5Pget_nfilters(properties);
+    constexpr H5Z_filter_t order[] = {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
+    const H5Z_filter_t* next = order;
     for (int i = 0; i < filters; ++i) {
         unsigned flags = 0;
         unsigned parameters[8] = {};
         std::size_t count = 8;
-        const H5Z_filter_t filter = H5Pget_filter2(properties.get(), static_cast<unsigned>(i), &flags, &count, parameters, 0, nullptr, nullptr);
-        const bool deflate = filter == H5Z_FILTER_DEFLATE && i + 1 == filters;
-        const bool shuffle = filter == H5Z_FILTER_SHUFFLE && i == 0 && count == 1 && parameters[0] == layout.width;
-        if (!deflate && !shuffle) {
-            return {};
+        const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &count, parameters, 0, nullptr, nullptr);
+        next = std::find(next, std::end(order), filter);
+        if (next == std::end(order) || (filter == H5Z_FILTER_SHUFFLE && (count != 1 || parameters[0] != layout.width))) {
+            return false;
         }
+        ++next;
         layout.filters.push_back(filter);
     }
-    if (layout.filters.empty() || layout.filters.back() != H5Z_FILTER_DEFLATE) {
+    return filters >= 0;
+}
+
+}  // namespace
+
+std::optional<Hdf5ChunkLayout> layout_of_chunks(hid_t set, hid_t type, hid_t space, std::string& refusal) {
+    const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose);
+    Hdf5ChunkLayout layout;
+    const int rank = H5Sget_simple_extent_ndims(space);
+    unsigned options = 0;
+    if (!properties.good() || rank < 1 || rank > 2 || H5Pget_chunk(properties.get(), rank, layout.chunk) != rank ||
+        H5Sget_simple_extent_dims(space, layout.lengths, nullptr) < 0 || H5Pget_chunk_opts(properties.get(), &options) < 0 || options != 0) {
+        refusal = "how its chunks lie in the file is not understood";
+        return {};
+    }
+    layout.width = H5Tget_size(type);
+    constexpr hsize_t widest = 65536;
+    constexpr hsize_t largest = (hsize_t{1} << 32) - 1;
+    if (layout.width == 0 || layout.width > widest || layout.chunk[0] == 0 || layout.chunk[1] == 0 || layout.chunk[1] > widest ||
+        layout.chunk[0] > largest / layout.row_bytes()) {
+        refusal = "its chunks of " + std::to_string(layout.chunk[0]) + " x " + std::to_string(layout.chunk[1]) + " values of " + std::to_string(layout.width) + " bytes are too large";
+        return {};
+    }
+    if (!take_filters(properties.get(), layout)) {
+        refusal = "its chunks are packed in another way than deflated (write the file anew: h5repack -f GZIP=1)";
+        return {};
+    }
+    hsize_t chunks = 0;
+    layout.stored_bytes = H5Dget_storage_size(set);
+    // Of what is not packed the library says the size that a chunk should have, and reads as much as the file has.
+    if (layout.filters.empty() && (H5Dget_num_chunks(set, space, &chunks) < 0 || layout.stored_bytes != chunks * layout.chunk_bytes())) {
+        refusal = "its " + std::to_string(chunks) + " chunks have " + std::to_string(layout.stored_bytes) + " bytes, which are not " + std::to_string(layout.chunk[0] * layout.chunk[1]) + " values each";
         return {};
     }
     return layout;
+}
+
+namespace {
+
+/// Does the check sum (Fletcher's of 32 bits, in the last four bytes) agree with the others? Takes it away.
+bool take_check_sum(std::vector<unsigned char>& bytes) {
+    constexpr std::size_t width = 4;
+    constexpr std::uint64_t modulus = 65535;
+    if (bytes.size() < width) {
+        return false;
+    }
+    const unsigned char* sum = bytes.data() + bytes.size() - width;
+    const std::uint64_t stated[2] = {sum[0] + 256U * sum[1], sum[2] + 256U * sum[3]};
+    const std::size_t size = bytes.size() - width;
+    // The sum of all words of two bytes, and the sum of these sums (RFC 1146); 0 and 65535 are the same there.
+    std::uint64_t plain = 0;
+    std::uint64_t summed = 0;
+    for (std::size_t i = 0; i < size; i += 2) {
+        plain = (plain + 256U * bytes[i] + (i + 1 < size ? bytes[i + 1] : 0U)) % modulus;
+        summed = (summed + plain) % modulus;
+    }
+    bytes.resize(size);
+    return stated[0] % modulus == plain && stated[1] % modulus == summed;
+}
+
+}  // namespace
+
+hsize_t stored_size(hid_t set, const Hdf5Chunk& chunk) {
+    const hsize_t offset[2] = {chunk.row, chunk.column};
+    hsize_t size = 0;
+    return H5Dget_chunk_storage_size(set, offset, &size) < 0 ? 0 : size;
+}
+
+std::string load_chunk(hid_t set, const Hdf5ChunkLayout& layout, std::uint64_t file_bytes, Hdf5Chunk& chunk) {
+    const hsize_t size = stored_size(set, chunk);
+    const hsize_t offset[2] = {chunk.row, chunk.column};
+    std::uint32_t skipped = 0;
+    const bool plain = layout.filters.empty();
+    if (size == 0 || size > file_bytes || (plain && (size != layout.chunk_bytes() || layout.stored_bytes > file_bytes))) {
+        return "its values cannot be read";
+    }
+    // A plain chunk may have other bytes in the file than it should, but no more than all have together.
+    Buffer<unsigned char> read(plain ? layout.stored_bytes : size);
+    if (H5Dread_chunk(set, H5P_DEFAULT, offset, &skipped, read.data()) < 0) {
+        return "its values cannot be read";
+    }
+    chunk.bytes.assign(read.data(), read.data() + size);
+    const auto used = [&](H5Z_filter_t filter) {
+        const auto found = std::find(layout.filters.begin(), layout.filters.end(), filter);
+        return found != layout.filters.end() && (skipped >> (found - layout.filters.begin()) & 1U) == 0;
+    };
+    chunk.deflated = used(H5Z_FILTER_DEFLATE);
+    chunk.shuffled = used(H5Z_FILTER_SHUFFLE);
+    if (used(H5Z_FILTER_FLETCHER32) && !take_check_sum(chunk.bytes)) {
+        return "the check sum of row " + std::to_string(chunk.row) + " and those behind it is wrong";
+    }
+    return {};
 }
 
 bool unpack(const Hdf5ChunkLayout& layout, const Hdf5Chunk& chunk, hsize_t end, core::Progress& progress,

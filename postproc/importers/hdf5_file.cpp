@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "postproc/importers/hdf5_chunks.h"
 #include "postproc/importers/hdf5_handle.h"
 #include "postproc/importers/hdf5_rows.h"
 #include "postproc/importers/trial.h"
@@ -75,6 +76,31 @@ std::optional<std::string> string_of_attribute(hid_t attribute) {
     return strings.empty() ? std::nullopt : std::optional(strings.front());
 }
 
+bool in_chunks(hid_t set) {
+    const Hdf5Handle plan(H5Dget_create_plist(set), H5Pclose);
+    return plan.good() && H5Pget_layout(plan.get()) == H5D_CHUNKED;
+}
+
+/// The bytes of a list in chunks, `count` times the width of the type; nothing if they cannot be had.
+std::optional<std::vector<char>> bytes_in_chunks(hid_t set, hid_t type, hid_t space, std::uint64_t file_bytes, std::uint64_t count) {
+    std::string refusal;
+    const auto layout = layout_of_chunks(set, type, space, refusal);
+    if (!layout || layout->lengths[1] != 1 || layout->lengths[0] != count) {
+        return {};
+    }
+    std::vector<char> bytes;
+    bool whole = true;
+    Hdf5Chunk chunk;
+    for (; whole && chunk.row < count; chunk.row += layout->chunk[0]) {
+        const hsize_t end = std::min<hsize_t>(count, chunk.row + layout->chunk[0]);
+        whole = load_chunk(set, *layout, file_bytes, chunk).empty() && unpack(*layout, chunk, end, core::Progress::none(), [&](hsize_t, hsize_t rows, const unsigned char* stored) {
+                    bytes.insert(bytes.end(), stored, stored + rows * layout->width);
+                    return true;
+                });
+    }
+    return whole ? std::optional(std::move(bytes)) : std::nullopt;
+}
+
 /// The strings of a dataset; nothing if it holds something else, more than a file of so many bytes can, or cannot be read.
 std::optional<std::vector<std::string>> strings_of_set(hid_t set, std::uint64_t file_bytes) {
     const Hdf5Handle type(H5Dget_type(set), H5Tclose);
@@ -91,12 +117,20 @@ std::optional<std::vector<std::string>> strings_of_set(hid_t set, std::uint64_t 
     }
     if (H5Tis_variable_str(type.get()) > 0) {
         hsize_t bytes = 0;
-        if (H5Dvlen_get_buf_size(set, type.get(), space.get(), &bytes) < 0 || bytes > file_bytes) {
+        // Out of chunks the library would take references without a look at the chunk's end.
+        if (in_chunks(set) || H5Dvlen_get_buf_size(set, type.get(), space.get(), &bytes) < 0 || bytes > file_bytes) {
             return {};
         }
         auto strings = variable_strings(type.get(), space.get(), count,
                                         [&](char** out) { return H5Dread(set, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); });
         return strings.size() == count ? std::optional(std::move(strings)) : std::nullopt;
+    }
+    if (in_chunks(set)) {
+        const auto bytes = bytes_in_chunks(set, type.get(), space.get(), file_bytes, count);
+        return bytes ? std::optional(fixed_strings(type.get(), *bytes)) : std::nullopt;
+    }
+    if (width * count > stored) {
+        return {};
     }
     std::vector<char> raw(width * count);
     if (count > 0 && H5Dread(set, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) < 0) {
@@ -310,9 +344,8 @@ std::uint64_t Hdf5File::backed_size(std::int64_t dataset, const std::string& pat
     const auto size = static_cast<std::uint64_t>(count);
     const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(dataset), bytes_);
     // What lies there as it is must be there in full: the library copies it without a look at the end.
-    const Hdf5Handle plan(H5Dget_create_plist(dataset), H5Pclose);
     const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
-    const bool packed = plan.good() && H5Pget_layout(plan.get()) == H5D_CHUNKED;
+    const bool packed = in_chunks(dataset);
     const std::uint64_t width = type.good() ? std::max<std::uint64_t>(1, H5Tget_size(type.get())) : 1;
     const std::uint64_t most = packed ? stored * largest_ratio : stored / width;
     if (size > most) {

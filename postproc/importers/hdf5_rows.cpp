@@ -9,14 +9,21 @@
 #include "core/parallel.h"
 #include "postproc/importers/hdf5_chunks.h"
 #include "postproc/importers/hdf5_handle.h"
+#include "postproc/importers/hdf5_numbers.h"
 
 namespace underbody::postproc {
 
 namespace {
 
+/// What becomes of the numbers of a file.
+struct Wanted {
+    Hdf5Convert convert = nullptr;
+    std::size_t width = 1;  ///< bytes
+};
+
 /// Gives the rows that begin at `row` to whom they belong.
-void distribute(const Hdf5ChunkLayout& layout, const Hdf5Chunk& chunk, const std::vector<Hdf5Rows::Share>& shares, hsize_t row, hsize_t rows,
-                const unsigned char* stored) {
+void distribute(const Hdf5ChunkLayout& layout, const Wanted& wanted, const Hdf5Chunk& chunk, const std::vector<Hdf5Rows::Share>& shares, hsize_t row,
+                hsize_t rows, const unsigned char* stored) {
     const hsize_t columns = std::min(layout.chunk[1], layout.lengths[1] - chunk.column);
     for (const auto& share : shares) {
         const hsize_t from = std::max<hsize_t>(row, share.first);
@@ -24,16 +31,16 @@ void distribute(const Hdf5ChunkLayout& layout, const Hdf5Chunk& chunk, const std
         if (from >= to) {
             continue;
         }
-        auto* out = static_cast<unsigned char*>(share.out) + ((from - share.first) * layout.lengths[1] + chunk.column) * layout.wanted_width;
+        auto* out = static_cast<unsigned char*>(share.out) + ((from - share.first) * layout.lengths[1] + chunk.column) * wanted.width;
         const unsigned char* in = stored + (from - row) * layout.row_bytes();
         if (layout.chunk[1] == layout.lengths[1]) {
-            layout.convert(in, (to - from) * columns, out);
+            wanted.convert(in, (to - from) * columns, out);
             continue;
         }
         for (hsize_t i = from; i < to; ++i) {
-            layout.convert(in, columns, out);
+            wanted.convert(in, columns, out);
             in += layout.row_bytes();
-            out += layout.lengths[1] * layout.wanted_width;
+            out += layout.lengths[1] * wanted.width;
         }
     }
 }
@@ -55,19 +62,18 @@ public:
     DataSet(const Hdf5File& file, const std::string& path, bool whole);
 
     [[nodiscard]] const std::optional<Hdf5ChunkLayout>& layout() const { return layout_; }
+    [[nodiscard]] const Wanted& wanted() const { return wanted_; }
     [[nodiscard]] hsize_t rows() const { return lengths_[0]; }
     [[nodiscard]] hsize_t columns() const { return lengths_[1]; }
     void check_rows(std::uint64_t first, std::uint64_t rows) const;
-    /// By the library.
+    /// By the library: what lies in one piece.
     void read(const Hdf5Rows::Share& share) const;
-    /// The chunks of which `shares` want something; nothing if not all of them are in the file.
-    [[nodiscard]] std::optional<std::vector<Hdf5Chunk>> chunks(const std::vector<Hdf5Rows::Share>& shares) const;
+    /// The chunks of which `shares` want something.
+    [[nodiscard]] std::vector<Hdf5Chunk> chunks(const std::vector<Hdf5Rows::Share>& shares) const;
     void load(Hdf5Chunk& chunk) const;
     [[noreturn]] void damaged() const { file_.fail(path_, "its values cannot be read"); }
 
 private:
-    void check_plain_chunks() const;
-    [[nodiscard]] hsize_t size_of(const Hdf5Chunk& chunk) const;
 
     const Hdf5File& file_;
     std::string path_;
@@ -77,6 +83,7 @@ private:
     Hdf5Handle space_;
     int rank_ = 0;
     hsize_t lengths_[2] = {1, 1};
+    Wanted wanted_;
     std::optional<Hdf5ChunkLayout> layout_;
 };
 
@@ -94,30 +101,23 @@ DataSet::DataSet(const Hdf5File& file, const std::string& path, bool whole)
     if (kind != H5T_INTEGER && (whole_ || kind != H5T_FLOAT)) {
         file_.fail(path_, whole_ ? "its values are not whole numbers" : "its values are not numbers");
     }
-    if (const std::size_t width = H5Tget_size(type_.get()); width == 0 || width > 16) {
-        file_.fail(path_, "its numbers have " + std::to_string(width) + " bytes each");
+    wanted_ = {conversion_from(type_.get(), whole_), whole_ ? sizeof(std::uint32_t) : sizeof(double)};
+    if (wanted_.convert == nullptr) {
+        file_.fail(path_, "its numbers of " + std::to_string(H5Tget_size(type_.get())) + " bytes are of no kind that is read");
     }
     (void)file_.backed_size(set_.get(), path_);
     rank_ = H5Sget_simple_extent_ndims(space_.get());
-    if (rank_ >= 1 && rank_ <= 2 && H5Sget_simple_extent_dims(space_.get(), lengths_, nullptr) >= 0) {
-        layout_ = layout_of_chunks(set_.get(), type_.get(), space_.get(), whole_);
-        check_plain_chunks();
-    } else {
+    if (rank_ < 1 || rank_ > 2 || H5Sget_simple_extent_dims(space_.get(), lengths_, nullptr) < 0) {
         rank_ = 0;
-    }
-}
-
-/// Chunks that are not packed and the type of the values must agree: the library takes values out of a chunk without a look
-/// at its end.
-void DataSet::check_plain_chunks() const {
-    const Hdf5Handle plan(H5Dget_create_plist(set_.get()), H5Pclose);
-    hsize_t chunk[2] = {1, 1};
-    if (!plan.good() || H5Pget_layout(plan.get()) != H5D_CHUNKED || H5Pget_nfilters(plan.get()) != 0 || H5Pget_chunk(plan.get(), rank_, chunk) != rank_) {
         return;
     }
-    const hsize_t stored = size_of({});
-    if (stored != 0 && stored / H5Tget_size(type_.get()) != chunk[0] * chunk[1]) {
-        file_.fail(path_, "its chunks have " + std::to_string(stored) + " bytes, which are not " + std::to_string(chunk[0] * chunk[1]) + " values");
+    const Hdf5Handle plan(H5Dget_create_plist(set_.get()), H5Pclose);
+    if (plan.good() && H5Pget_layout(plan.get()) == H5D_CHUNKED) {
+        std::string refusal;
+        layout_ = layout_of_chunks(set_.get(), type_.get(), space_.get(), refusal);
+        if (!layout_) {
+            file_.fail(path_, refusal);
+        }
     }
 }
 
@@ -143,13 +143,7 @@ void DataSet::read(const Hdf5Rows::Share& share) const {
     }
 }
 
-hsize_t DataSet::size_of(const Hdf5Chunk& chunk) const {
-    const hsize_t offset[2] = {chunk.row, chunk.column};
-    hsize_t size = 0;
-    return H5Dget_chunk_storage_size(set_.get(), offset, &size) < 0 ? 0 : size;
-}
-
-std::optional<std::vector<Hdf5Chunk>> DataSet::chunks(const std::vector<Hdf5Rows::Share>& shares) const {
+std::vector<Hdf5Chunk> DataSet::chunks(const std::vector<Hdf5Rows::Share>& shares) const {
     std::vector<Hdf5Chunk> result;
     if (lengths_[1] == 0) {
         return result;
@@ -167,8 +161,8 @@ std::optional<std::vector<Hdf5Chunk>> DataSet::chunks(const std::vector<Hdf5Rows
             Hdf5Chunk chunk;
             chunk.row = row;
             chunk.column = column;
-            if (size_of(chunk) == 0) {
-                return {};
+            if (stored_size(set_.get(), chunk) == 0) {
+                file_.fail(path_, "rows " + std::to_string(row) + " to " + std::to_string(std::min(row + layout_->chunk[0], lengths_[0])) + " were never written");
             }
             result.push_back(std::move(chunk));
         }
@@ -177,22 +171,9 @@ std::optional<std::vector<Hdf5Chunk>> DataSet::chunks(const std::vector<Hdf5Rows
 }
 
 void DataSet::load(Hdf5Chunk& chunk) const {
-    const hsize_t size = size_of(chunk);
-    if (size == 0 || size > file_.bytes()) {
-        damaged();
+    if (const std::string refusal = load_chunk(set_.get(), *layout_, file_.bytes(), chunk); !refusal.empty()) {
+        file_.fail(path_, refusal);
     }
-    chunk.bytes.resize(size);
-    const hsize_t offset[2] = {chunk.row, chunk.column};
-    std::uint32_t skipped = 0;
-    if (H5Dread_chunk(set_.get(), H5P_DEFAULT, offset, &skipped, chunk.bytes.data()) < 0) {
-        damaged();
-    }
-    const auto used = [&](H5Z_filter_t filter) {
-        const auto found = std::find(layout_->filters.begin(), layout_->filters.end(), filter);
-        return found != layout_->filters.end() && (skipped >> (found - layout_->filters.begin()) & 1U) == 0;
-    };
-    chunk.deflated = used(H5Z_FILTER_DEFLATE);
-    chunk.shuffled = used(H5Z_FILTER_SHUFFLE);
 }
 
 /// Chunks that wait to be unpacked.
@@ -215,7 +196,7 @@ public:
                 const Hdf5ChunkLayout& layout = *task.set->layout();
                 const hsize_t end = end_of_wanted(*task.shares, task.chunk.row, std::min(task.chunk.row + layout.chunk[0], layout.lengths[0]));
                 const bool good = unpack(layout, task.chunk, end, progress_, [&](hsize_t row, hsize_t rows, const unsigned char* stored) {
-                    distribute(layout, task.chunk, *task.shares, row, rows, stored);
+                    distribute(layout, task.set->wanted(), task.chunk, *task.shares, row, rows, stored);
                     return true;
                 });
                 if (!good) {
@@ -249,15 +230,15 @@ void each_row_of(const Hdf5File& file, const std::string& path, core::Progress& 
     bool more = true;
     // Chunks that are as wide as the data set can be looked at while they are inflated.
     const bool whole_rows = set.layout() && set.layout()->chunk[1] == columns;
-    auto chunks = whole_rows ? set.chunks({{0, set.rows(), nullptr}}) : std::nullopt;
-    if (chunks) {
-        for (std::size_t i = 0; i < chunks->size() && more; ++i) {
-            Hdf5Chunk chunk = std::move((*chunks)[i]);
+    if (whole_rows) {
+        auto chunks = set.chunks({{0, set.rows(), nullptr}});
+        for (std::size_t i = 0; i < chunks.size() && more; ++i) {
+            Hdf5Chunk chunk = std::move(chunks[i]);
             set.load(chunk);
             const hsize_t end = std::min(chunk.row + set.layout()->chunk[0], set.rows());
             const bool good = unpack(*set.layout(), chunk, end, progress, [&](hsize_t /*row*/, hsize_t rows, const unsigned char* stored) {
                 numbers.resize(rows * columns);
-                set.layout()->convert(stored, rows * columns, numbers.data());
+                set.wanted().convert(stored, rows * columns, numbers.data());
                 return more = take(numbers.data(), rows);
             });
             if (!good) {
@@ -266,11 +247,13 @@ void each_row_of(const Hdf5File& file, const std::string& path, core::Progress& 
         }
         return;
     }
+    Hdf5Rows part(file);
     for (hsize_t row = 0; row < set.rows() && more; row += at_once) {
         progress.check();
         const hsize_t some = std::min(at_once, set.rows() - row);
         numbers.resize(some * columns);
-        set.read({row, some, numbers.data()});
+        part.add(path, row, some, numbers.data());
+        part.read(progress);
         more = take(numbers.data(), some);
     }
 }
@@ -294,12 +277,11 @@ void Hdf5Rows::read(core::Progress& progress) {
         for (const auto& share : request.shares) {
             set.check_rows(share.first, share.rows);
         }
-        auto chunks = set.layout() ? set.chunks(request.shares) : std::nullopt;
-        if (!chunks) {
+        if (!set.layout()) {
             std::for_each(request.shares.begin(), request.shares.end(), [&](const Share& share) { set.read(share); });
             continue;
         }
-        for (auto& chunk : *chunks) {
+        for (auto& chunk : set.chunks(request.shares)) {
             set.load(chunk);
             unpacking.add(set, request.shares, std::move(chunk));
         }

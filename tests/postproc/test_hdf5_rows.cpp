@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <fstream>
+#include <functional>
 #include <numeric>
 
 #include "core/error.h"
@@ -25,7 +26,7 @@ struct Way {
     std::vector<hsize_t> chunk;  ///< none: in one piece
     bool shuffled = false;
     bool deflated = false;
-    bool summed = false;  ///< with a filter that only the library undoes
+    bool summed = false;  ///< with a check sum
     hsize_t user_block = 0;  ///< bytes of somebody else before the file
 };
 
@@ -207,6 +208,108 @@ TEST(Hdf5Rows, DamagedChunksAndWrongRowsAreRefused) {
                 ADD_FAILURE() << "damage at " << at << " was not noticed";
             } catch (const core::InputError& error) {
                 EXPECT_THAT(error.what(), HasSubstr("/values"));
+            }
+        }
+    }
+}
+
+std::string refusal(const fs::path& path, std::size_t count) {
+    const Hdf5File file(path);
+    Hdf5Rows rows(file);
+    std::vector<double> out(count);
+    rows.add("/values", 0, count, out.data());
+    try {
+        rows.read(core::Progress::none());
+    } catch (const core::InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Hdf5Rows, AChangedByteIsFoundByTheCheckSum) {
+    const core::TemporaryFolder folder;
+    const auto path = folder.path() / "values.h5";
+    for (const std::size_t count : {std::size_t{1001}, std::size_t{1000}}) {
+        write(path, {"", {count}, false, false, true}, H5T_STD_U8LE, {count}, std::vector<double>(count, 85));
+        EXPECT_EQ(refusal(path, count), "");
+        std::string bytes = core::read_file(path);
+        bytes[bytes.find("UUUUUUUU") + 500] = 'V';
+        std::ofstream(path, std::ios::binary) << bytes;
+        EXPECT_THAT(refusal(path, count), HasSubstr("check sum of row 0"));
+    }
+}
+
+TEST(Hdf5Rows, ChunksThatOnlyTheLibraryCouldUnpackAreRefused) {
+    const core::TemporaryFolder folder;
+    const auto path = folder.path() / "values.h5";
+    constexpr hsize_t count = 64;
+    const auto made = [&](hid_t type, const std::function<void(hid_t)>& pack, hsize_t written) {
+        const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+        const hid_t space = H5Screate_simple(1, &count, nullptr);
+        const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+        const hsize_t chunk = 16;
+        H5Pset_chunk(properties, 1, &chunk);
+        pack(properties);
+        const hid_t set = H5Dcreate2(file, "values", type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+        const hsize_t from = 0;
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, &from, nullptr, &written, nullptr);
+        const hid_t memory = H5Screate_simple(1, &written, nullptr);
+        H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, counted(count).data());
+        H5Sclose(memory);
+        H5Dclose(set);
+        H5Pclose(properties);
+        H5Sclose(space);
+        H5Fclose(file);
+        return refusal(path, count);
+    };
+    EXPECT_EQ(made(H5T_STD_I32LE, [](hid_t) {}, count), "");
+    EXPECT_THAT(made(H5T_STD_I32LE, [](hid_t) {}, 32), HasSubstr("rows 32 to 48 were never written"));
+    EXPECT_THAT(made(H5T_STD_I32LE, [](hid_t p) { H5Pset_nbit(p); }, count), HasSubstr("h5repack"));
+    EXPECT_THAT(made(H5T_STD_I32LE, [](hid_t p) { H5Pset_deflate(p, 1), H5Pset_shuffle(p); }, count), HasSubstr("packed in another way"));
+    const hid_t odd = H5Tcopy(H5T_STD_I32LE);
+    H5Tset_precision(odd, 24);
+    EXPECT_THAT(made(odd, [](hid_t) {}, count), HasSubstr("4 bytes are of no kind that is read"));
+    H5Tclose(odd);
+}
+
+TEST(Hdf5File, StringsAreTheSameHoweverTheyAreStored) {
+    const core::TemporaryFolder folder;
+    const auto path = folder.path() / "names.h5";
+    const std::vector<std::string> names = {"hull", "", "inlet;outlet", "a longer name than the others have"};
+    constexpr std::size_t width = 40;
+    const hsize_t count = names.size();
+    for (const bool variable : {false, true}) {
+        for (const hsize_t chunk : {hsize_t{0}, hsize_t{3}, hsize_t{4}}) {
+            for (const bool deflated : {false, true}) {
+                if ((deflated && chunk == 0) || (variable && chunk > 0)) {
+                    continue;  // what is variable is refused in chunks
+                }
+                SCOPED_TRACE(std::to_string(variable) + " " + std::to_string(chunk) + " " + std::to_string(deflated));
+                const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+                const hid_t type = H5Tcopy(H5T_C_S1);
+                H5Tset_size(type, variable ? H5T_VARIABLE : width);
+                const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+                if (chunk > 0) {
+                    H5Pset_chunk(properties, 1, &chunk);
+                }
+                if (deflated) {
+                    H5Pset_deflate(properties, 4);
+                }
+                const hid_t space = H5Screate_simple(1, &count, nullptr);
+                const hid_t set = H5Dcreate2(file, "names", type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+                std::string fixed(width * names.size(), '\0');
+                std::vector<const char*> pointers;
+                for (std::size_t i = 0; i < names.size(); ++i) {
+                    fixed.replace(i * width, names[i].size(), names[i]);
+                    pointers.push_back(names[i].c_str());
+                }
+                H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, variable ? static_cast<const void*>(pointers.data()) : fixed.data());
+                H5Dclose(set);
+                H5Sclose(space);
+                H5Pclose(properties);
+                H5Tclose(type);
+                H5Fclose(file);
+                EXPECT_EQ(Hdf5File(path).texts("/names"), names);
             }
         }
     }
