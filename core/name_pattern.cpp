@@ -119,9 +119,11 @@ NamePattern::NamePattern(std::string pattern) : pattern_(std::move(pattern)), pa
 
 bool NamePattern::is_pattern(const std::string& text) { return text.find_first_of("{*?") != std::string::npos; }
 
-std::optional<NamePattern::Match> NamePattern::match(const std::string& text) const {
-    Match found;
-    if (!match_from(parts_, 0, text, found)) {
+namespace {
+
+std::optional<NamePattern::Match> match_all(const std::vector<Part>& parts, const std::string& text) {
+    NamePattern::Match found;
+    if (!match_from(parts, 0, text, found)) {
         return std::nullopt;
     }
     // The recursion collects from the back.
@@ -130,7 +132,29 @@ std::optional<NamePattern::Match> NamePattern::match(const std::string& text) co
     return found;
 }
 
-std::vector<NamePattern::Found> NamePattern::files(const fs::path& root) const {
+}  // namespace
+
+std::optional<NamePattern::Match> NamePattern::match(const std::string& text) const { return match_all(parts_, text); }
+
+std::vector<NamePattern::Found> NamePattern::files(const fs::path& root) const { return files_of(parts_, root); }
+
+std::vector<fs::path> NamePattern::near_misses(const fs::path& root) const {
+    std::vector<Part> loose = parts_;
+    for (auto& part : loose) {
+        part.kind = part.kind == Part::Kind::number ? Part::Kind::text : part.kind;
+    }
+    std::vector<fs::path> missed;
+    for (const auto& found : files_of(loose, root)) {
+        missed.push_back(found.path);
+    }
+    std::sort(missed.begin(), missed.end());
+    for (const auto& found : files(root)) {
+        std::erase(missed, found.path);
+    }
+    return missed;
+}
+
+std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& parts, const fs::path& root) const {
     // Walk from the last folder that stands before the first brace or star.
     const std::size_t first = pattern_.find_first_of("{*?");
     const std::size_t slash = first == std::string::npos ? pattern_.rfind('/') : pattern_.rfind('/', first);
@@ -151,7 +175,7 @@ std::vector<NamePattern::Found> NamePattern::files(const fs::path& root) const {
         }
         const std::string below = entry->path().lexically_relative(start).generic_string();
         const std::string name = fixed.empty() ? (absolute ? "/" + below : below) : fixed + "/" + below;
-        if (auto match_found = match(name)) {
+        if (auto match_found = match_all(parts, name)) {
             found.push_back({entry->path().lexically_normal(), std::move(*match_found)});
         }
     }

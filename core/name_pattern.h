@@ -33,6 +33,10 @@ public:
     /// All files that fit, by their texts, then by their numbers, then by name; the pattern may have several folders. `root` is where a relative pattern starts.
     [[nodiscard]] std::vector<Found> files(const std::filesystem::path& root = ".") const;
 
+    /// Files that would fit if every `{name:unit}` took any text ("run-h5O.csv", "run-h10-old.csv"), by name: what `files` passes over is seldom
+    /// meant to be left out.
+    [[nodiscard]] std::vector<std::filesystem::path> near_misses(const std::filesystem::path& root = ".") const;
+
     /// True when the text has a brace, `*` or `?`.
     static bool is_pattern(const std::string& text);
 
@@ -45,6 +49,8 @@ public:
     [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
 private:
+    std::vector<Found> files_of(const std::vector<Part>& parts, const std::filesystem::path& root) const;
+
     std::string pattern_;
     std::vector<Part> parts_;
 };

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "postproc/field.h"
 
 namespace CLI {
@@ -35,6 +36,7 @@ struct ConditionedFile {
 struct Batch {
     std::vector<ConditionedFile> files;
     std::vector<std::pair<std::string, std::string>> number_units;  ///< condition -> unit it was written in
+    core::Problems problems;  ///< files that a pattern only just passes over
 };
 
 /// Files, shell patterns and name patterns ('{variant}-h{gap:mm}.csv'); `manifest` is a table with a column `file`

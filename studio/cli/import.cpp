@@ -47,6 +47,7 @@ void add_import_command(CLI::App& app, Shell& shell) {
         "  underbody import 'run-*.csv' --out all.vtp      writes all-run-1.vtp, all-run-2.vtp ...");
     shell.on(command, [&shell, options] {
         const Batch batch = find_files(options->files, "");
+        shell.show(batch.problems);
         nlohmann::json written = nlohmann::json::array();
         for (const auto& file : batch.files) {
             postproc::ReadOptions read = options->field.read_options();

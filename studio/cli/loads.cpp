@@ -297,6 +297,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const Options& given, co
 
 int run(Shell& shell, const Options& given) {
     const Batch batch = find_files(given.files, given.manifest);
+    shell.show(batch.problems);
     if (batch.files.empty()) {
         throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");
     }

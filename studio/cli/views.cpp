@@ -149,6 +149,7 @@ void use_density(Shell& shell, const Options& given, postproc::Field& field) {
 
 int run(Shell& shell, const Options& given) {
     const Batch batch = find_files(given.files, "");
+    shell.show(batch.problems);
     std::vector<postproc::Field> fields;
     for (const auto& file : batch.files) {
         fields.push_back(postproc::read_field(file.path, given.field.read_options(), shell.progress()));

@@ -119,6 +119,20 @@ TEST(NamePattern, FindsFilesInFolders) {
     EXPECT_TRUE(NamePattern("none/*.csv").files(folder.path()).empty());
 }
 
+TEST(NamePattern, TellsWhichFilesLackANumber) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a-h1.csv", "a-h2-coarse.csv", "a-hO5.csv", "a-h.csv", "notes.csv", "a-h1.vtk"}) {
+        write_file(folder.path() / name, "1");
+    }
+    const NamePattern pattern("{v}-h{gap:mm}.csv");
+    EXPECT_EQ(pattern.files(folder.path()).size(), 1U);
+    const auto missed = pattern.near_misses(folder.path());
+    ASSERT_EQ(missed.size(), 2U);
+    EXPECT_EQ(missed[0].filename(), "a-h2-coarse.csv");
+    EXPECT_EQ(missed[1].filename(), "a-hO5.csv");
+    EXPECT_TRUE(NamePattern("*.csv").near_misses(folder.path()).empty());
+}
+
 TEST(NamePattern, SortsFilesByTheNumbersInTheirNames) {
     const TemporaryFolder folder;
     for (const char* name : {"b-h1.csv", "a-h10.csv", "a-h2.csv", "a-h1.5.csv", "a-h-3.csv"}) {
