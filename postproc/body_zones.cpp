@@ -187,7 +187,78 @@ bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& w
     return wall.normals_into_fluid ? wall.volume < 0 && has_the_others_in_its_box(wall, walls) : holds_the_others(wall, walls);
 }
 
+/// Words of the last part of a name, without numbers: "Block 1/velocity-inlet2", {"velocity", "inlet"}.
+std::vector<std::string> words_of(const std::string& name) {
+    std::vector<std::string> words(1);
+    char before = ' ';
+    for (const char c : name.substr(name.rfind('/') + 1)) {
+        const bool upper = c >= 'A' && c <= 'Z';
+        const bool after_lower = before >= 'a' && before <= 'z';
+        const bool letter = upper || (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
+        if ((upper && after_lower) || !letter) {
+            words.emplace_back();
+        }
+        if (letter) {
+            words.back() += c;
+        }
+        before = c;
+    }
+    std::erase(words, "");
+    std::transform(words.begin(), words.end(), words.begin(), [](const std::string& word) { return core::lower_case(word); });
+    return words;
+}
+
+bool is_no_wall(ZoneKind kind) {
+    constexpr ZoneKind others[] = {ZoneKind::inlet, ZoneKind::outlet, ZoneKind::symmetry, ZoneKind::periodic, ZoneKind::interface, ZoneKind::interior, ZoneKind::farfield};
+    return std::find(std::begin(others), std::end(others), kind) != std::end(others);
+}
+
 }  // namespace
+
+ZoneKind kind_said_by_name(const std::string& name) {
+    const std::vector<std::string> words = words_of(name);
+    const auto has = [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); };
+    const auto ends = [&](const char* word) { return !words.empty() && words.back() == word; };
+    // A wall is not called by these; the others may stand before it: "inlet duct", "opening door".
+    if (has("symmetry") || has("symmetryplane") || has("symplane") || ends("sym")) {
+        return ZoneKind::symmetry;
+    }
+    if (has("farfield") || has("freestream") || (words.size() >= 2 && words[words.size() - 2] == "far" && ends("field"))) {
+        return ZoneKind::farfield;
+    }
+    return ends("inlet") || ends("inflow")                           ? ZoneKind::inlet
+           : ends("outlet") || ends("outflow") || ends("opening")    ? ZoneKind::outlet
+           : ends("periodic") || ends("cyclic")                      ? ZoneKind::periodic
+           : ends("interior")                                        ? ZoneKind::interior
+                                                                     : ZoneKind::unknown;
+}
+
+ZoneKind kind_or_said(const Zone& zone) { return zone.kind == ZoneKind::unknown ? kind_said_by_name(zone.name) : zone.kind; }
+
+std::vector<const Zone*> possible_walls(const Field& field, std::vector<const Zone*>& said_otherwise) {
+    said_otherwise.clear();
+    std::vector<const Zone*> surfaces;
+    std::vector<const Zone*> walls;
+    for (const auto& zone : field.zones) {
+        if (zone.surface == nullptr || zone.volume != nullptr) {
+            continue;
+        }
+        surfaces.push_back(&zone);
+        if (zone.kind == ZoneKind::wall) {
+            walls.push_back(&zone);
+        }
+    }
+    if (!walls.empty()) {
+        return walls;
+    }
+    for (const Zone* zone : surfaces) {
+        (is_no_wall(kind_or_said(*zone)) ? said_otherwise : walls).push_back(zone);
+    }
+    if (walls.empty()) {
+        std::swap(walls, said_otherwise);
+    }
+    return walls;
+}
 
 bool bounds_a_volume(const FaceSums& sums, int dimension) {
     constexpr double rim = 1e-3;

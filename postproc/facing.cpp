@@ -78,7 +78,8 @@ private:
 
 class Settler {
 public:
-    Settler(const std::vector<FacingZone>& zones, int symmetry, const Point& origin) : zones_(zones), symmetry_(symmetry), origin_(origin) {
+    Settler(const std::vector<FacingZone>& zones, int symmetry, const Point& origin, int dimension)
+        : zones_(zones), symmetry_(symmetry), origin_(origin), dimension_(dimension) {
         facing_.signs.assign(zones.size(), 1.0);
         for (const auto& zone : zones) {
             area_ += zone.sums.area;
@@ -112,15 +113,27 @@ private:
         return area_ > 0 ? std::sqrt(square) / area_ : 0;
     }
 
-    /// Volume by the axes that close.
-    [[nodiscard]] double volume(const std::vector<double>& signs) const {
-        double sum = 0;
+    /// Volume along each of the axes that close; what bounds one gives the same along all.
+    [[nodiscard]] std::vector<double> volumes(const std::vector<double>& signs) const {
+        std::vector<double> all;
         for (int k = 0; k < 3; ++k) {
-            for (std::size_t i = 0; k != symmetry_ && i < zones_.size(); ++i) {
+            double sum = 0;
+            for (std::size_t i = 0; i < zones_.size(); ++i) {
                 sum += signs[i] * zones_[i].sums.flux_of_place[static_cast<std::size_t>(k)];
             }
+            if (k != symmetry_) {
+                all.push_back(sum);
+            }
         }
-        return sum / (symmetry_ >= 0 ? 2 : 3);
+        return all;
+    }
+
+    /// Nothing bounds a duct at its ends: along it the volume is none.
+    [[nodiscard]] bool is_duct(const std::vector<double>& volumes) const {
+        constexpr double alike = 0.5;
+        const auto [low, high] = std::minmax_element(volumes.begin(), volumes.end());
+        const double largest = std::max(std::abs(*low), std::abs(*high));
+        return dimension_ == 3 && largest > tiny_volume() && !(*low > alike * largest || *high < -alike * largest);
     }
 
     /// True when one choice of signs closes the surface and no other comes near it.
@@ -158,7 +171,14 @@ private:
         if (best > closed || second < 4 * best + 1e-9) {
             return false;
         }
-        const double enclosed = volume(best_signs);
+        const std::vector<double> along = volumes(best_signs);
+        const double enclosed = std::accumulate(along.begin(), along.end(), 0.0) / static_cast<double>(along.size());
+        if (!anchored && is_duct(along)) {
+            facing_.problems.push_back({core::Problem::Severity::warning,
+                                        "the walls are open at both ends, as those of a duct are: on which side their fluid is cannot be told from their shape, "
+                                        "and outside is taken; for a flow inside give the side, --fluid file or --fluid reversed", {}});
+            return false;
+        }
         if (!anchored && std::abs(enclosed) < tiny_volume()) {
             return false;
         }
@@ -305,14 +325,15 @@ private:
     const std::vector<FacingZone>& zones_;
     int symmetry_;
     Point origin_;
+    int dimension_;
     double area_ = 0;
     Facing facing_;
 };
 
 }  // namespace
 
-Facing settle_facing(const std::vector<FacingZone>& zones, int symmetry, const std::array<double, 3>& origin) {
-    return Settler(zones, symmetry, origin).settle();
+Facing settle_facing(const std::vector<FacingZone>& zones, int symmetry, const std::array<double, 3>& origin, int dimension) {
+    return Settler(zones, symmetry, origin, dimension).settle();
 }
 
 }  // namespace underbody::postproc

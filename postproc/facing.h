@@ -27,7 +27,8 @@ struct Facing {
 /// 1. known zones stay; 2. the signs that close the surface (axis `symmetry`, 0..2 or -1, need not close);
 /// 3. for open surfaces, zones that share edges by place run along them opposite ways;
 /// 4. then the enclosed volume is positive (open edges are closed toward their own centre, which is exact for half models).
-/// `origin` is the one of the sums.
-Facing settle_facing(const std::vector<FacingZone>& zones, int symmetry, const std::array<double, 3>& origin);
+/// A duct's walls are open although their area vectors cancel: taken as a body's, with a warning.
+/// `origin` is the one of the sums; `dimension` 2: strips across a plane case.
+Facing settle_facing(const std::vector<FacingZone>& zones, int symmetry, const std::array<double, 3>& origin, int dimension = 3);
 
 }  // namespace underbody::postproc

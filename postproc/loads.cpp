@@ -120,7 +120,7 @@ private:
         }
         std::string others;
         for (const auto& zone : result_.left_out) {
-            if (zone.doubled) {
+            if (zone.by != LeftOutZone::By::shape) {
                 continue;
             }
             others += (others.empty() ? "zone '" : "; zone '") + zone.name + "': " + zone.why;
@@ -209,7 +209,7 @@ private:
         for (const auto& part : parts_) {
             zones.push_back({part.zone->name, part.surface.get(), part.sums, part.zone->normals_into_fluid});
         }
-        const Facing facing = settle_facing(zones, revolved_ ? 1 : mirror_.axis < 0 && field_.dimension == 2 ? 2 : mirror_.axis, half_reference_);
+        const Facing facing = settle_facing(zones, revolved_ ? 1 : mirror_.axis < 0 && field_.dimension == 2 ? 2 : mirror_.axis, half_reference_, field_.dimension);
         result_.orientation = facing.how;
         result_.problems.insert(result_.problems.end(), facing.problems.begin(), facing.problems.end());
         for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -276,7 +276,7 @@ private:
     }
 
     void audit() {
-        if (std::any_of(result_.left_out.begin(), result_.left_out.end(), [](const LeftOutZone& zone) { return !zone.doubled; })) {
+        if (std::any_of(result_.left_out.begin(), result_.left_out.end(), [](const LeftOutZone& zone) { return zone.by == LeftOutZone::By::shape; })) {
             settle_what_was_left_out();
         }
         if (!(result_.closure > 1e-9)) {

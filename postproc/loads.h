@@ -94,11 +94,12 @@ struct LoadsCoefficients {
     std::string lengths_from;  ///< "given" or "bounding box"
 };
 
-/// A wall that was not summed because it is none of the body's, or is summed already.
+/// A surface that was not summed because it is none of the body's, or is summed already.
 struct LeftOutZone {
+    enum class By { shape, name, doubled };
     std::string name;
     std::string why;
-    bool doubled = false;  ///< it is of the body, but its faces stand in other zones too
+    By by = By::shape;  ///< `doubled`: it is of the body, but its faces stand in other zones too
 };
 
 struct LoadsResult {
@@ -115,7 +116,7 @@ struct LoadsResult {
     NamedLoads named_pressure;
     NamedLoads named_viscous;
     std::vector<ZoneLoads> zones;
-    std::vector<LeftOutZone> left_out;   ///< a ground, a tunnel, a wall that stands twice in the file; only when no zones were named
+    std::vector<LeftOutZone> left_out;   ///< a ground, a tunnel, an inlet, a wall that stands twice in the file; only when no zones were named
     double area = 0;                     ///< m^2
     double closure = 0;                  ///< size of the summed area vector over the area: 0 for a closed surface
     Vector force_per_reference_pascal{}; ///< N/Pa: what 1 Pa added to every pressure would add to the force

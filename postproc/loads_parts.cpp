@@ -110,14 +110,12 @@ private:
         return result;
     }
 
-    [[nodiscard]] std::vector<const Zone*> wanted_zones() const {
+    [[nodiscard]] std::vector<const Zone*> named_zones() const {
         std::vector<const Zone*> zones;
         std::vector<std::string> names;
-        const bool walls = std::any_of(field_.zones.begin(), field_.zones.end(), [](const Zone& z) { return z.kind == ZoneKind::wall; });
         for (const auto& zone : field_.zones) {
             names.push_back(zone.name);
-            const bool by_kind = walls ? zone.kind == ZoneKind::wall : zone.surface != nullptr && zone.volume == nullptr && (zone.kind != ZoneKind::line || field_.dimension == 2);
-            if (options_.zones.empty() ? by_kind : matches_any(options_.zones, zone.name)) {
+            if (matches_any(options_.zones, zone.name)) {
                 zones.push_back(&zone);
             }
         }
@@ -126,6 +124,22 @@ private:
                 throw InputError("zone", "no zone fits '" + pattern + "'", place(), core::did_you_mean(pattern, names));
             }
         }
+        return zones;
+    }
+
+    /// Those of the body, when nobody names any.
+    std::vector<const Zone*> unnamed_zones() {
+        std::vector<const Zone*> said_otherwise;
+        std::vector<const Zone*> zones = possible_walls(field_, said_otherwise);
+        std::erase_if(zones, [&](const Zone* zone) { return zone->kind == ZoneKind::line && field_.dimension != 2; });
+        for (const Zone* zone : zones.empty() ? std::vector<const Zone*>{} : said_otherwise) {
+            result_.left_out.push_back({zone->name, std::string(zone->kind == ZoneKind::unknown ? "its name says that it is no wall: " : "it is no wall: ") + to_string(kind_or_said(*zone)), LeftOutZone::By::name});
+        }
+        return zones;
+    }
+
+    std::vector<const Zone*> wanted_zones() {
+        std::vector<const Zone*> zones = options_.zones.empty() ? unnamed_zones() : named_zones();
         if (zones.empty()) {
             const bool lines = std::any_of(field_.zones.begin(), field_.zones.end(), [](const Zone& zone) { return zone.kind == ZoneKind::line; });
             throw InputError("zone", "the file holds no surface to integrate over", place(), lines ? lines_hint : "zones: underbody info FILE");
@@ -182,7 +196,9 @@ private:
         const auto is_other = [&](const std::string& name) {
             return std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& zone) { return zone.name == name; });
         };
-        result_.left_out = walls_beside_body(walls);
+        for (auto& other : walls_beside_body(walls)) {
+            result_.left_out.push_back(std::move(other));
+        }
         std::erase_if(parts_, [&](const Part& part) { return is_other(part.zone->name); });
         std::erase_if(walls, [&](const WallShape& wall) { return is_other(wall.name); });
         const auto bodies = separate_bodies(walls);
@@ -205,7 +221,7 @@ private:
                 warn(faces + ": what is on them counts twice");
             } else if (doubled.whole) {
                 away[doubled.zone] = true;
-                result_.left_out.push_back({name, "its faces stand in " + quoted(others) + " too", true});
+                result_.left_out.push_back({name, "its faces stand in " + quoted(others) + " too", LeftOutZone::By::doubled});
                 warn("left out of the sum: " + faces);
             } else {
                 throw InputError("zone", faces + ", and would count twice", place(), "name zones without common faces: --zones");

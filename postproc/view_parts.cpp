@@ -18,6 +18,7 @@
 #include <cmath>
 #include <limits>
 
+#include "postproc/body_zones.h"
 #include "postproc/node_values.h"
 #include "postproc/surface_arrays.h"
 #include "postproc/vector_math.h"
@@ -46,15 +47,18 @@ void widen(Box& box, const Box& other) {
 double diagonal(const Box& box) { return std::hypot(box[1] - box[0], box[3] - box[2], box[5] - box[4]); }
 
 std::vector<const Zone*> body_zones(const Field& field, const std::vector<std::string>& patterns) {
-    const bool walls = std::any_of(field.zones.begin(), field.zones.end(), [](const Zone& z) { return z.kind == ZoneKind::wall; });
     std::vector<const Zone*> zones;
-    for (const auto& zone : field.zones) {
-        const bool surface = zone.surface != nullptr && zone.volume == nullptr && zone.surface->GetNumberOfPolys() > 0;
-        const bool by_kind = walls ? zone.kind == ZoneKind::wall : true;
-        if (surface && (patterns.empty() ? by_kind : matches_any(patterns, zone.name))) {
-            zones.push_back(&zone);
+    if (patterns.empty()) {
+        std::vector<const Zone*> said_otherwise;
+        zones = possible_walls(field, said_otherwise);
+    } else {
+        for (const auto& zone : field.zones) {
+            if (zone.surface != nullptr && zone.volume == nullptr && matches_any(patterns, zone.name)) {
+                zones.push_back(&zone);
+            }
         }
     }
+    std::erase_if(zones, [](const Zone* zone) { return zone->surface->GetNumberOfPolys() == 0; });
     return zones;
 }
 

@@ -28,7 +28,7 @@ void widen(Box& box, const Point& point);
 void widen(Box& box, const Box& other);
 double diagonal(const Box& box);
 
-/// The body's surface zones, as `loads` chooses them: patterns, else walls, else every surface with pressure.
+/// The body's surface zones, as `loads` chooses them: patterns, else what may be a wall (`possible_walls`).
 std::vector<const Zone*> body_zones(const Field& field, const std::vector<std::string>& patterns);
 
 /// A zone's polygons as triangles with the array's values at their points: node values as they are, face values averaged

@@ -9,9 +9,11 @@
 #include <QShortcut>
 #include <QSignalBlocker>
 #include <QStackedLayout>
+#include <algorithm>
 
 #include "core/error.h"
 #include "core/file.h"
+#include "postproc/body_zones.h"
 #include "postproc/field.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/scene.h"
@@ -22,19 +24,14 @@ namespace {
 
 QString qt(const std::string& text) { return QString::fromStdString(text); }
 
-/// Zones that are the body: those of the case's patterns, else walls (and what has no kind) but not the ground.
-bool is_body(const postproc::Zone& zone, const std::vector<std::string>& patterns) {
-    using postproc::ZoneKind;
+/// Zones that are the body: those of the case's patterns, else what may be a wall but not the ground.
+bool is_body(const postproc::Field& field, const postproc::Zone& zone, const std::vector<std::string>& patterns) {
     if (!patterns.empty()) {
-        for (const auto& pattern : patterns) {
-            if (postproc::matches(pattern, zone.name)) {
-                return true;
-            }
-        }
-        return false;
+        return postproc::matches_any(patterns, zone.name);
     }
-    return (zone.kind == ZoneKind::wall || zone.kind == ZoneKind::unknown || zone.kind == ZoneKind::other) &&
-           !postproc::matches("*ground*", zone.name);
+    std::vector<const postproc::Zone*> said_otherwise;
+    const auto walls = postproc::possible_walls(field, said_otherwise);
+    return std::find(walls.begin(), walls.end(), &zone) != walls.end() && !postproc::matches("*ground*", zone.name);
 }
 
 }  // namespace
@@ -183,7 +180,7 @@ void BodyPanel::fill_zones() {
         auto* item = new QListWidgetItem(qt(zone.name), zones_);
         const bool drawn = zone.surface && zone.surface->GetNumberOfCells() > 0;
         item->setFlags(drawn ? Qt::ItemIsEnabled | Qt::ItemIsUserCheckable | Qt::ItemIsSelectable : Qt::NoItemFlags);
-        item->setCheckState(drawn && is_body(zone, wanted_zones_) ? Qt::Checked : Qt::Unchecked);
+        item->setCheckState(drawn && is_body(*scene_->field(), zone, wanted_zones_) ? Qt::Checked : Qt::Unchecked);
         item->setToolTip(QString("%1, %2 faces")
                              .arg(qt(postproc::to_string(zone.kind)))
                              .arg(drawn ? static_cast<qlonglong>(zone.surface->GetNumberOfCells()) : 0));

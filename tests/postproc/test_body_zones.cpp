@@ -7,7 +7,9 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/random.h"
 
@@ -227,6 +229,47 @@ TEST(BodyZones, DuctsAreNoBodiesThoughTheirWallsCancel) {
     };
     EXPECT_THAT(separate_bodies({pipe("inlet-duct", 0), pipe("outlet-duct", 3)}), IsEmpty());
     EXPECT_THAT(walls_beside_body({pipe("inlet-duct", 0), pipe("outlet-duct", 3)}), IsEmpty());
+}
+
+TEST(ZoneNames, SayWhatIsPlainlyNoWall) {
+    const std::pair<const char*, ZoneKind> said[] = {
+        {"inlet", ZoneKind::inlet},       {"Block 1/velocity-inlet-2", ZoneKind::inlet}, {"INFLOW", ZoneKind::inlet},       {"pressure_outlet3", ZoneKind::outlet},
+        {"opening", ZoneKind::outlet},    {"symmetryPlane", ZoneKind::symmetry},         {"sym", ZoneKind::symmetry},       {"Symmetry top", ZoneKind::symmetry},
+        {"farField", ZoneKind::farfield}, {"far_field", ZoneKind::farfield},             {"FREESTREAM", ZoneKind::farfield}, {"cyclic1", ZoneKind::periodic}};
+    for (const auto& [name, kind] : said) {
+        EXPECT_EQ(kind_said_by_name(name), kind) << name;
+    }
+    for (const char* name : {"hull", "inlet-duct", "outlet flange", "opening_door", "interiors-panel", "asymmetry", "", "7", "wall", "ground", "inlet/hull"}) {
+        EXPECT_EQ(kind_said_by_name(name), ZoneKind::unknown) << name;
+    }
+}
+
+TEST(ZoneNames, ChooseTheBodyOnlyWhereTheFileDoesNotSayWhatIsAWall) {
+    const auto chosen = [](std::initializer_list<std::pair<const char*, ZoneKind>> zones, std::vector<std::string>& otherwise) {
+        Field field;
+        for (const auto& [name, kind] : zones) {
+            field.zones.emplace_back();
+            field.zones.back().name = name;
+            field.zones.back().kind = kind;
+            field.zones.back().surface = vtkSmartPointer<vtkPolyData>::New();
+        }
+        const auto names_of = [](const std::vector<const Zone*>& some) {
+            std::vector<std::string> names;
+            std::transform(some.begin(), some.end(), std::back_inserter(names), [](const Zone* zone) { return zone->name; });
+            return names;
+        };
+        std::vector<const Zone*> said_otherwise;
+        const auto names = names_of(possible_walls(field, said_otherwise));
+        otherwise = names_of(said_otherwise);
+        return names;
+    };
+    std::vector<std::string> otherwise;
+    EXPECT_THAT(chosen({{"hull", ZoneKind::unknown}, {"inlet", ZoneKind::unknown}, {"a", ZoneKind::outlet}}, otherwise), ElementsAre("hull"));
+    EXPECT_THAT(otherwise, ElementsAre("inlet", "a"));
+    EXPECT_THAT(chosen({{"hull", ZoneKind::unknown}, {"inlet", ZoneKind::wall}}, otherwise), ElementsAre("inlet"));
+    EXPECT_THAT(otherwise, IsEmpty());
+    EXPECT_THAT(chosen({{"inlet", ZoneKind::unknown}, {"outlet", ZoneKind::unknown}}, otherwise), ElementsAre("inlet", "outlet"));
+    EXPECT_THAT(otherwise, IsEmpty());
 }
 
 }  // namespace

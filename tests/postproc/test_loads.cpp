@@ -241,6 +241,26 @@ TEST(Loads, AreThoseOfTheBodyAloneWhereAGroundIsAmongTheWalls) {
     EXPECT_EQ(nlohmann::json(result)["left_out"][0]["name"], "ground");
 }
 
+TEST(Loads, LeaveOutWhatIsCalledAnInletWhereTheFileNamesNoWalls) {
+    Field field = box(false, false, true);
+    for (const char* name : {"inlet", "Outlet 2"}) {
+        const double x = *name == 'i' ? -3 : 5;
+        field.zones.push_back(make_zone(name, {{x, -1, 0}, {x, 1, 0}, {x, 1, 2}, {x, -1, 2}}, {{0, 1, 2, 3}}, [](const Vector&) { return 7.0; }));
+    }
+    for (auto& zone : field.zones) {
+        zone.kind = ZoneKind::unknown;
+    }
+    const auto alone = loads(box(false, false, true));
+    const auto result = loads(field);
+    EXPECT_EQ(result.total.force, alone.total.force);
+    ASSERT_EQ(result.left_out.size(), 2U);
+    EXPECT_EQ(result.left_out[1].name, "Outlet 2");
+    EXPECT_THAT(result.left_out[1].why, HasSubstr("its name says that it is no wall: outlet"));
+    LoadsOptions all;
+    all.zones = {"*"};
+    EXPECT_EQ(loads(field, all).zones.size(), field.zones.size());
+}
+
 /// A box with a group of its walls: the first so many faces of each zone, in one zone more, moved by `off`.
 Field box_with_group(std::size_t sides, bool base, double off = 0) {
     Field field = box(false, false);
@@ -282,7 +302,7 @@ TEST(Loads, CountFacesOnceThatStandTwiceInTheFile) {
             EXPECT_NEAR(result.area, alone.area, 1e-12);
             ASSERT_FALSE(result.left_out.empty());
             EXPECT_EQ(result.left_out[0].name == "Default", !first);
-            EXPECT_TRUE(result.left_out[0].doubled);
+            EXPECT_EQ(result.left_out[0].by, LeftOutZone::By::doubled);
             EXPECT_TRUE(std::any_of(result.problems.begin(), result.problems.end(), [](const auto& p) { return p.message.find("left out of the sum: all ") == 0; }));
         }
     }
@@ -352,6 +372,26 @@ TEST(Loads, SeeNoGroundInAPipeWithAFlange) {
     const auto result = loads(field_of({make_zone("pipe", points, faces, p), make_zone("flange", {{3, -2, -2}, {3, 2, -2}, {3, 2, 2}, {3, -2, 2}}, {{0, 1, 2, 3}}, p)}), all);
     ASSERT_FALSE(result.problems.empty());
     EXPECT_THAT(result.problems.back().message, testing::AllOf(HasSubstr("not closed"), testing::Not(HasSubstr("a ground?"))));
+}
+
+TEST(Loads, SayThatTheSideOfADuctIsNotKnown) {
+    for (const bool turned : {false, true}) {
+        Field duct = box(false, false);
+        duct.zones = {duct.zones[1]};  // open below and above
+        if (turned) {
+            duct.zones[0].surface->GetPolys()->ReverseCellAtId(0);
+            duct.zones[0].surface->GetPolys()->ReverseCellAtId(1);
+            duct.zones[0].surface->GetPolys()->ReverseCellAtId(2);
+            duct.zones[0].surface->GetPolys()->ReverseCellAtId(3);
+        }
+        const auto result = loads(duct, about({0, 0, 0}));
+        ASSERT_FALSE(result.problems.empty());
+        EXPECT_THAT(result.problems.front().message, testing::AllOf(HasSubstr("as those of a duct"), HasSubstr("--fluid file")));
+        EXPECT_EQ(result.zones[0].turned, turned);
+        EXPECT_THAT(result.orientation, testing::Not(HasSubstr("closes")));
+    }
+    const auto closed = loads(box(true, false), about({0, 0, 0}));
+    EXPECT_TRUE(std::none_of(closed.problems.begin(), closed.problems.end(), [](const auto& p) { return p.message.find("duct") != std::string::npos; }));
 }
 
 TEST(Loads, TakeTheSidesAsToldWhenTold) {
