@@ -194,11 +194,14 @@ std::string load_chunk(hid_t set, const Hdf5ChunkLayout& layout, std::uint64_t f
         return "its values cannot be read";
     }
     // A plain chunk may have other bytes in the file than it should, but no more than all have together.
-    Buffer<unsigned char> read(plain ? layout.stored_bytes : size);
-    if (H5Dread_chunk(set, H5P_DEFAULT, offset, &skipped, read.data()) < 0) {
+    Buffer<unsigned char> room(plain ? layout.stored_bytes : 0);
+    chunk.bytes.resize(plain ? 0 : size);
+    if (H5Dread_chunk(set, H5P_DEFAULT, offset, &skipped, plain ? room.data() : chunk.bytes.data()) < 0) {
         return "its values cannot be read";
     }
-    chunk.bytes.assign(read.data(), read.data() + size);
+    if (plain) {
+        chunk.bytes.assign(room.data(), room.data() + size);
+    }
     const auto used = [&](H5Z_filter_t filter) {
         const auto found = std::find(layout.filters.begin(), layout.filters.end(), filter);
         return found != layout.filters.end() && (skipped >> (found - layout.filters.begin()) & 1U) == 0;
