@@ -62,7 +62,7 @@ void add_pattern(const std::string& text, Batch& batch) {
         throw core::InputError("file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; near it: " + missed), {}, "patterns may hold *, ?, {name} and {name:unit}");
     }
     if (!missed.empty()) {
-        batch.problems.push_back({core::Problem::Severity::note, "not of the batch, for want of a number where '" + text + "' has one: " + missed, {}});
+        batch.problems.push_back({core::Problem::Severity::warning, "not of the batch, for want of a number where '" + text + "' has one: " + missed, {}});
     }
     for (const auto& [path, match] : found) {
         batch.files.push_back({path.string(), match.numbers, match.texts});

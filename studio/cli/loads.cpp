@@ -14,6 +14,7 @@
 #include "core/units.h"
 #include "postproc/loads_table.h"
 #include "postproc/stated_loads.h"
+#include "studio/cli/batch_problems.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
@@ -211,7 +212,7 @@ std::string beside(const std::string& report, const std::string& file) {
 }
 
 /// What the solver states of a case: beside the file, in the reports and monitors that were named; the later counts.
-void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one) {
+void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one, core::Problems& problems) {
     auto stated = postproc::stated_beside(one.file, one.loads);
     for (const auto& report : given.reports) {
         const std::string path = beside(report, one.file);
@@ -232,15 +233,15 @@ void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one) {
     core::Problems notes = postproc::unsettled(one.loads, stated);
     one.comparisons = postproc::compare_with_solver(one.loads, stated, notes);
     one.scatters = postproc::iteration_sigmas(one.loads, stated);
-    shell.show(notes);
+    problems.insert(problems.end(), notes.begin(), notes.end());
 }
 
-postproc::LoadsCase case_of(Shell& shell, const Options& given, const ConditionedFile& file, postproc::LoadsOptions options) {
+postproc::LoadsCase case_of(Shell& shell, const Options& given, const ConditionedFile& file, postproc::LoadsOptions options, core::Problems& problems) {
     postproc::ReadOptions read = given.field.read_options();
     read.zones = given.field.zones;
     read.surfaces_only = true;
     const postproc::Field field = postproc::read_field(file.path, read, shell.progress());
-    shell.show(field.problems);
+    problems = field.problems;
     options.reference = reference_of(given.reference, file);
     if (!options.references.speed) {
         options.references.speed = condition_of(file, "speed");
@@ -250,8 +251,8 @@ postproc::LoadsCase case_of(Shell& shell, const Options& given, const Conditione
     }
     postproc::LoadsCase one{file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {}, {}};
     std::erase_if(one.numbers, [](const auto& entry) { return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z"; });
-    shell.show(one.loads.problems);
-    take_stated(shell, given, one);
+    problems.insert(problems.end(), one.loads.problems.begin(), one.loads.problems.end());
+    take_stated(shell, given, one, problems);
     return one;
 }
 
@@ -274,19 +275,29 @@ struct Failure {
 std::vector<postproc::LoadsCase> cases_of(Shell& shell, const Options& given, const Batch& batch, std::vector<Failure>& failures) {
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
+    BatchProblems said;
     for (std::size_t i = 0; i < batch.files.size(); ++i) {
         shell.progress().check();
         shell.progress().report(static_cast<double>(i) / static_cast<double>(batch.files.size()), batch.files[i].path);
+        core::Problems problems;
         try {
-            cases.push_back(case_of(shell, given, batch.files[i], options));
+            cases.push_back(case_of(shell, given, batch.files[i], options, problems));
+            said.add(batch.files[i].path, problems);
         } catch (const core::InputError& error) {
             if (batch.files.size() == 1) {
+                shell.show(problems);
                 throw;
             }
             const bool named = std::string(error.what()).find(batch.files[i].path) != std::string::npos;
             failures.push_back({batch.files[i].path, (named ? "" : batch.files[i].path + ": ") + error.what()});
             shell.warn(failures.back().message);
         }
+        if (batch.files.size() == 1) {
+            shell.show(problems);
+        }
+    }
+    if (batch.files.size() > 1) {
+        shell.show(said.gathered(shell.verbose));
     }
     if (!failures.empty() && (cases.empty() || !given.keep_going)) {
         throw core::InputError("file", std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) + " files cannot be used (the first: '" + failures.front().file + "'); nothing was written", {},

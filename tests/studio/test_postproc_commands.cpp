@@ -48,6 +48,27 @@ TEST_F(PostprocCommands, InfoSaysWhatAFileHolds) {
     EXPECT_THAT(run({"info", "a-h5.csv"}).output, testing::HasSubstr("hull"));
 }
 
+TEST_F(PostprocCommands, ABatchSaysOnceWhatItsFilesHaveAlike) {
+    const std::string open_csv = box_csv.substr(0, box_csv.rfind("4,5,6,7"));
+    for (const char* name : {"o-h1.csv", "o-h2.csv", "o-hO3.csv"}) {
+        core::write_file(folder_.path() / name, open_csv);
+    }
+    const auto count = [](const std::string& text, const std::string& part) {
+        int found = 0;
+        for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+            ++found;
+        }
+        return found;
+    };
+    const auto batch = run({"loads", "o-h{gap:mm}.csv"});
+    EXPECT_EQ(batch.exit_code, 0);
+    EXPECT_EQ(count(batch.errors, "is not closed"), 1) << batch.errors;
+    EXPECT_THAT(batch.errors, testing::AllOf(testing::HasSubstr("o-h1.csv: the surface is not closed"), testing::HasSubstr("(and alike in 1 other file)"),
+                                             testing::HasSubstr("for want of a number"), testing::HasSubstr("o-hO3.csv")));
+    EXPECT_EQ(count(run({"--verbose", "loads", "o-h{gap:mm}.csv"}).errors, "is not closed"), 2);
+    EXPECT_EQ(count(run({"loads", "o-h1.csv"}).errors, "alike"), 0);
+}
+
 TEST_F(PostprocCommands, InfoSaysWhatAReportOfTheSolverHolds) {
     std::string monitor = "\"lift-rfile\"\n\"Iteration\" \"lift\"\n(\"Iteration\" \"lift\")\n";
     for (int i = 1; i <= 20; ++i) {
