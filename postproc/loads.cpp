@@ -77,6 +77,7 @@ private:
         if (revolved_ && mirror_.axis >= 0) {
             throw core::UsageError("usage", "an axisymmetric case is whole already", {}, "leave --symmetry away");
         }
+        result_.dimension = field_.dimension;
         if (field_.dimension == 2) {
             result_.depth = revolved_ ? "of the whole body of revolution" : "per metre depth";
             note(revolved_ ? "axisymmetric: forces are those on the whole body of revolution about the x axis; across it they cancel"

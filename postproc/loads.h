@@ -105,6 +105,7 @@ struct LeftOutZone {
 struct LoadsResult {
     std::string file;
     std::optional<double> time;          ///< of the field (s, or the iteration of a steady run), where the file says
+    int dimension = 3;                   ///< of the case: 2 for a plane or an axisymmetric one, whose faces are lines
     Wrench total;
     Wrench pressure;
     Wrench viscous;

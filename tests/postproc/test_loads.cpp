@@ -631,6 +631,7 @@ TEST(Loads, OfAPlaneCaseArePerMetreDepth) {
         EXPECT_NEAR(result.total.force[1], rho * g * area, 1e-9);
         EXPECT_NEAR(result.named.lift_force, rho * g * area, 1e-9);
         EXPECT_LT(result.closure, 1e-12);
+        EXPECT_EQ(result.dimension, 2);
         EXPECT_EQ(result.values_from, "faces");
     }
 }
