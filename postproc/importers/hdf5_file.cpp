@@ -254,7 +254,8 @@ bool Hdf5File::has(const std::string& path) const {
             return false;
         }
         if (slash == std::string::npos) {
-            return H5Oexists_by_name(file_, path.c_str(), H5P_DEFAULT) > 0;
+            // What cannot be opened was not looked through either: its attributes are not safe to touch.
+            return Hdf5Handle(H5Oopen(file_, path.c_str(), H5P_DEFAULT), H5Oclose).good();
         }
     }
 }
