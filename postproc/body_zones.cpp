@@ -99,20 +99,6 @@ std::optional<WallShape> box_around(const Walls& walls, Wanted&& wanted) {
 /// Larger by so much cannot be a matter of rounding or of a rim.
 constexpr double clearly = 1.05;
 
-bool too_large_to_be_balanced(const Group& group, const std::vector<Group>& groups) {
-    const double own = norm(group.shape.area_vector);
-    constexpr double one_sided = 0.95;  // a ground may be uneven; the open half of a hull is rounder
-    if (own < one_sided * group.shape.area) {
-        return false;
-    }
-    const auto rest = box_around(groups, [&](const Group& other) {
-        // What is as large (the ceiling over a floor) might balance it in a closed box, but not around a body.
-        const bool as_large = norm(other.shape.area_vector) > own / clearly;
-        return &other != &group && !as_large;
-    });
-    return rest && own > clearly * shadow(*rest, group.shape.area_vector);
-}
-
 /// The box of the others lies within that of the wall along two axes at least: a tunnel is open at its ends.
 bool has_the_others_in_its_box(const WallShape& wall, const std::vector<WallShape>& walls) {
     const auto rest = box_around(walls, [&](const WallShape& other) { return &other != &wall; });
@@ -147,29 +133,81 @@ double share_of_directions(const Vector& place, const SurfaceArrays& surface) {
     return std::abs(angle) / (16 * std::atan(1.0));
 }
 
-/// Do all others lie in the hollow of this wall, without an edge in common? The base of a hull lies in its hollow too, but at its rim.
-bool holds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
-    if (wall.surface == nullptr || !has_the_others_in_its_box(wall, walls)) {
-        return false;
-    }
+/// Places of a wall's nodes.
+Places places_of(const WallShape& wall) {
     Places places(1e-6 * diagonal(wall));
     const auto points = wall.surface->points();
     for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
         places.number(points.data() + i);
     }
+    return places;
+}
+
+bool touches(const Places& places, const WallShape& other) {
+    const auto theirs = other.surface->points();
+    for (std::size_t i = 0; i + 2 < theirs.size(); i += 3) {
+        if (places.has(theirs.data() + i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool looks_one_way(const Group& group) {
+    constexpr double one_sided = 0.95;  // a ground may be uneven; the open half of a hull is rounder
+    return norm(group.shape.area_vector) >= one_sided * group.shape.area;
+}
+
+/// Do two groups have nodes in common, as a base and its hull at their rim?
+bool meet(const Group& group, const Group& other, const std::vector<WallShape>& walls) {
+    for (const std::size_t i : group.members) {
+        if (walls[i].surface == nullptr) {
+            continue;
+        }
+        const Places places = places_of(walls[i]);
+        for (const std::size_t k : other.members) {
+            if (walls[k].surface != nullptr && touches(places, walls[k])) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Two sides of a closed box that are as large look as if they balanced each other, the ceiling over a floor: but nothing
+/// between them does. A flat hull over its base does, and meets it.
+bool only_seems_to_balance(const Group& group, const Group& other, const std::vector<WallShape>& walls) {
+    const double own = norm(group.shape.area_vector);
+    const double theirs = norm(other.shape.area_vector);
+    if (theirs <= own / clearly || !looks_one_way(other)) {
+        return false;
+    }
+    const bool across = std::abs(dot(group.shape.area_vector, other.shape.area_vector)) < 0.95 * own * theirs;
+    return across || !meet(group, other, walls);
+}
+
+bool too_large_to_be_balanced(const Group& group, const std::vector<Group>& groups, const std::vector<WallShape>& walls) {
+    if (!looks_one_way(group)) {
+        return false;
+    }
+    const auto rest = box_around(groups, [&](const Group& other) { return &other != &group && !only_seems_to_balance(group, other, walls); });
+    return rest && norm(group.shape.area_vector) > clearly * shadow(*rest, group.shape.area_vector);
+}
+
+/// Do all others lie in the hollow of this wall, without an edge in common? The base of a hull lies in its hollow too, but at its rim.
+bool holds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
+    if (wall.surface == nullptr || !has_the_others_in_its_box(wall, walls)) {
+        return false;
+    }
+    const Places places = places_of(wall);
     for (const auto& other : walls) {
         if (&other == &wall) {
             continue;
         }
-        if (other.surface == nullptr || other.surface->nodes() == 0) {
+        if (other.surface == nullptr || other.surface->nodes() == 0 || touches(places, other)) {
             return false;
         }
         const auto theirs = other.surface->points();
-        for (std::size_t i = 0; i + 2 < theirs.size(); i += 3) {
-            if (places.has(theirs.data() + i)) {
-                return false;
-            }
-        }
         // A few of its points: half of the directions or more end at the wall.
         constexpr std::size_t samples = 16;
         const std::size_t count = other.surface->nodes();
@@ -297,7 +335,7 @@ std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls) 
     std::vector<LeftOutZone> others;
     const auto groups = groups_of(walls);
     for (const auto& group : groups) {
-        if (too_large_to_be_balanced(group, groups)) {
+        if (too_large_to_be_balanced(group, groups, walls)) {
             for (const std::size_t i : group.members) {
                 others.push_back({walls[i].name, std::string(is_flat(walls[i]) ? "a plane" : "a one-sided wall") + " of " + core::format_number(walls[i].area, 3) +
                                                      " m^2, too large to be part of a body with the others"});

@@ -59,6 +59,43 @@ private:
         return pi * std::max(y, 0.0);
     }
 
+    /// The same without points that no face has: a surface cut out of another may bring all points of that, and what lies
+    /// elsewhere is not where the body ends.
+    [[nodiscard]] static vtkSmartPointer<vtkPolyData> with_used_points(const vtkSmartPointer<vtkPolyData>& surface) {
+        const SurfaceArrays arrays(*surface);
+        std::vector<bool> used(arrays.nodes(), false);
+        for (const Index node : arrays.connectivity()) {
+            used[static_cast<std::size_t>(node)] = true;
+        }
+        if (std::find(used.begin(), used.end(), false) == used.end()) {
+            return surface;
+        }
+        auto result = vtkSmartPointer<vtkPolyData>::New();
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        result->GetPointData()->CopyAllocate(surface->GetPointData());
+        std::vector<vtkIdType> place(arrays.nodes(), 0);
+        for (std::size_t i = 0; i < used.size(); ++i) {
+            if (used[i]) {
+                place[i] = points->InsertNextPoint(arrays.points().data() + 3 * i);
+                result->GetPointData()->CopyData(surface->GetPointData(), static_cast<vtkIdType>(i), place[i]);
+            }
+        }
+        vtkNew<vtkCellArray> faces;
+        result->GetCellData()->CopyAllocate(surface->GetCellData());
+        const vtkIdType first = surface->GetNumberOfVerts() + surface->GetNumberOfLines();  // their values come before
+        for (std::size_t f = 0; f < arrays.faces(); ++f) {
+            result->GetCellData()->CopyData(surface->GetCellData(), first + static_cast<vtkIdType>(f), static_cast<vtkIdType>(f));
+            faces->InsertNextCell(static_cast<int>(arrays.offsets()[f + 1] - arrays.offsets()[f]));
+            for (Index i = arrays.offsets()[f]; i < arrays.offsets()[f + 1]; ++i) {
+                faces->InsertCellPoint(place[static_cast<std::size_t>(arrays.connectivity()[static_cast<std::size_t>(i)])]);
+            }
+        }
+        result->SetPoints(points);
+        result->SetPolys(faces);
+        return result;
+    }
+
     /// The lines of a plane case as a strip. The normal of a line n0 -> n1 that looks into the fluid is z x t.
     [[nodiscard]] vtkSmartPointer<vtkPolyData> extruded(const Zone& zone) const {
         vtkPolyData& lines = *zone.surface;
@@ -110,21 +147,46 @@ private:
         return result;
     }
 
-    [[nodiscard]] std::vector<const Zone*> named_zones() const {
-        std::vector<const Zone*> zones;
+    /// Those that fit the patterns. A pattern with * or ? means walls where it fits any; a name means whatever bears it.
+    std::vector<const Zone*> named_zones() {
+        std::vector<const Zone*> said_otherwise;
+        const std::vector<const Zone*> walls = possible_walls(field_, said_otherwise);
         std::vector<std::string> names;
+        std::vector<const Zone*> chosen;
         for (const auto& zone : field_.zones) {
             names.push_back(zone.name);
-            if (matches_any(options_.zones, zone.name)) {
-                zones.push_back(&zone);
-            }
         }
         for (const auto& pattern : options_.zones) {
-            if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches(pattern, name); })) {
+            const auto fits = [&](const Zone* zone) { return matches(pattern, zone->name); };
+            const bool name = pattern.find_first_of("*?") == std::string::npos || std::find(names.begin(), names.end(), pattern) != names.end();
+            const bool walls_alone = !name && std::any_of(walls.begin(), walls.end(), fits);
+            bool any = false;
+            for (const auto& zone : field_.zones) {
+                const bool fit = fits(&zone);
+                any = any || fit;
+                if (fit && walls_alone && std::find(walls.begin(), walls.end(), &zone) == walls.end()) {
+                    passed_over(zone, pattern);
+                } else if (fit && std::find(chosen.begin(), chosen.end(), &zone) == chosen.end()) {
+                    chosen.push_back(&zone);
+                }
+            }
+            if (!any) {
                 throw InputError("zone", "no zone fits '" + pattern + "'", place(), core::did_you_mean(pattern, names));
             }
         }
-        return zones;
+        std::erase_if(result_.left_out, [&](const LeftOutZone& zone) {
+            return std::any_of(chosen.begin(), chosen.end(), [&](const Zone* other) { return other->name == zone.name; });
+        });
+        std::sort(chosen.begin(), chosen.end());  // as in the file
+        return chosen;
+    }
+
+    /// A surface that a pattern fits though it is no wall.
+    void passed_over(const Zone& zone, const std::string& pattern) {
+        const bool known = std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& other) { return other.name == zone.name; });
+        if (zone.surface != nullptr && zone.volume == nullptr && !known) {
+            result_.left_out.push_back({zone.name, "'" + pattern + "' takes walls, and this is " + to_string(kind_or_said(zone)) + ": its own name takes it", LeftOutZone::By::name});
+        }
     }
 
     /// Those of the body, when nobody names any.
@@ -157,7 +219,7 @@ private:
             }
             Part part;
             part.zone = zone;
-            part.polygons = has_polygons(*zone) ? zone->surface : extruded(*zone);
+            part.polygons = has_polygons(*zone) ? with_used_points(zone->surface) : extruded(*zone);
             part.surface = std::make_unique<SurfaceArrays>(*part.polygons);
             parts_.push_back(std::move(part));
         }

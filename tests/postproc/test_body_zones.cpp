@@ -42,6 +42,41 @@ WallShape sheet(const std::string& name, int columns, int rows, const std::funct
     return shape_of(name, SurfaceArrays(*surface), known);
 }
 
+/// Walls that keep their faces, so that one can look which of them meet; their sides are not known.
+class Walls {
+public:
+    using Place = std::function<Point(double, double)>;
+    WallShape make(const std::string& name, int columns, int rows, const Place& place) {
+        made_.push_back(std::make_unique<Made>());
+        auto& own = *made_.back();
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        vtkNew<vtkCellArray> cells;
+        for (int j = 0; j <= rows; ++j) {
+            for (int i = 0; i <= columns; ++i) {
+                points->InsertNextPoint(place(double(i) / columns, double(j) / rows).data());
+                const vtkIdType a = i + (columns + 1) * j;
+                if (i < columns && j < rows) {
+                    cells->InsertNextCell({a, a + 1, a + columns + 2, a + columns + 1});
+                }
+            }
+        }
+        own.polygons->SetPoints(points);
+        own.polygons->SetPolys(cells);
+        own.arrays = std::make_unique<SurfaceArrays>(*own.polygons);
+        WallShape shape = shape_of(name, *own.arrays, false);
+        shape.surface = own.arrays.get();
+        return shape;
+    }
+
+private:
+    struct Made {
+        vtkNew<vtkPolyData> polygons;
+        std::unique_ptr<SurfaceArrays> arrays;
+    };
+    std::vector<std::unique_ptr<Made>> made_;
+};
+
 WallShape flat(const std::string& name, double x0, double x1, double y0, double y1, double z) {
     return sheet(name, 4, 4, [=](double s, double t) { return Point{x0 + s * (x1 - x0), y0 + t * (y1 - y0), z}; });
 }
@@ -112,6 +147,25 @@ TEST(BodyZones, AGroundIsNoneOfThem) {
     }
 }
 
+TEST(BodyZones, AThirdWallOnTheBodyTakesNothingFromIt) {
+    for (const bool half : {false, true}) {
+        const double from = half ? 0 : -3;
+        const auto nozzle = sheet("protrusion", 8, 4, [=](double s, double t) {
+            const double phi = (half ? M_PI : 2 * M_PI) * s;
+            return Point{0.3 + 0.05 * std::cos(phi), 0.05 * std::sin(phi), -0.35 - 0.03 * t};
+        });
+        EXPECT_THAT(walls_beside_body({hull(half), base(half), nozzle}), IsEmpty()) << half;
+        EXPECT_THAT(names_of(walls_beside_body({nozzle, flat("ground", -3, 3, from, 3, -0.4), base(half), hull(half)})), ElementsAre("ground")) << half;
+    }
+    // A hull so flat that it looks one way as its base does: they meet at the rim.
+    Walls made;
+    const auto disc = [&](const std::string& name, double height) {
+        return made.make(name, 40, 10, [=](double s, double t) { return Point{t * std::cos(2 * M_PI * s), t * std::sin(2 * M_PI * s), height * (1 - t * t)}; });
+    };
+    const auto fin = made.make("fin", 4, 4, [](double s, double t) { return Point{0.1 * s, 0, 0.05 + 0.1 * t}; });
+    EXPECT_THAT(walls_beside_body({disc("hull", 0.1), disc("base", 0), fin}), IsEmpty());
+}
+
 TEST(BodyZones, FloorAndCeilingOfAChannelAreNoneEither) {
     const std::vector<WallShape> walls = {flat("floor", -5, 5, -2, 2, -1), flat("ceiling", -5, 5, -2, 2, 1), hull(false), base(false)};
     EXPECT_THAT(names_of(walls_beside_body(walls)), ElementsAre("floor", "ceiling"));
@@ -127,33 +181,8 @@ TEST(BodyZones, ATunnelAroundTheBodyIsNoneWhenItsFluidIsInside) {
 }
 
 TEST(BodyZones, ATunnelOfWhichNobodyKnowsTheSideIsKnownByWhatLiesInside) {
-    using Place = std::function<Point(double, double)>;
-    struct Made {
-        vtkNew<vtkPolyData> polygons;
-        std::unique_ptr<SurfaceArrays> arrays;
-    };
-    std::vector<std::unique_ptr<Made>> made;
-    const auto wall = [&](const std::string& name, int columns, int rows, const Place& place) {
-        made.push_back(std::make_unique<Made>());
-        auto& own = *made.back();
-        vtkNew<vtkPoints> points;
-        vtkNew<vtkCellArray> cells;
-        for (int j = 0; j <= rows; ++j) {
-            for (int i = 0; i <= columns; ++i) {
-                points->InsertNextPoint(place(double(i) / columns, double(j) / rows).data());
-                const vtkIdType a = i + (columns + 1) * j;
-                if (i < columns && j < rows) {
-                    cells->InsertNextCell({a, a + 1, a + columns + 2, a + columns + 1});
-                }
-            }
-        }
-        own.polygons->SetPoints(points);
-        own.polygons->SetPolys(cells);
-        own.arrays = std::make_unique<SurfaceArrays>(*own.polygons);
-        WallShape shape = shape_of(name, *own.arrays, false);
-        shape.surface = own.arrays.get();
-        return shape;
-    };
+    Walls walls_made;
+    const auto wall = [&](const std::string& name, int columns, int rows, const Walls::Place& place) { return walls_made.make(name, columns, rows, place); };
     const auto ball = [&](const std::string& name, double radius, double at) {
         return wall(name, 24, 12, [=](double s, double t) {
             return Point{at + radius * std::sin(M_PI * t) * std::cos(2 * M_PI * s), radius * std::sin(M_PI * t) * std::sin(2 * M_PI * s), radius * std::cos(M_PI * t)};

@@ -256,9 +256,31 @@ TEST(Loads, LeaveOutWhatIsCalledAnInletWhereTheFileNamesNoWalls) {
     ASSERT_EQ(result.left_out.size(), 2U);
     EXPECT_EQ(result.left_out[1].name, "Outlet 2");
     EXPECT_THAT(result.left_out[1].why, HasSubstr("its name says that it is no wall: outlet"));
-    LoadsOptions all;
-    all.zones = {"*"};
-    EXPECT_EQ(loads(field, all).zones.size(), field.zones.size());
+    LoadsOptions named;
+    named.zones = {"*"};
+    EXPECT_EQ(loads(field, named).total.force, alone.total.force);
+    EXPECT_THAT(loads(field, named).left_out.at(0).why, HasSubstr("'*' takes walls, and this is inlet"));
+    named.zones = {"*", "inlet"};
+    EXPECT_EQ(loads(field, named).zones.size(), field.zones.size() - 1);
+    named.zones = {"*let*"};  // no wall fits: it means these
+    EXPECT_EQ(loads(field, named).zones.size(), 2U);
+}
+
+TEST(Loads, DoNotSeePointsThatNoFaceHas) {
+    const auto alone = loads(box(false, false), {});
+    Field field = box(false, false);
+    for (auto& zone : field.zones) {
+        zone.surface->GetPoints()->InsertNextPoint(-50, 20, -7);
+        for (const char* name : {"pressure", "wall_shear"}) {
+            auto* values = zone.surface->GetPointData()->GetArray(name);
+            values->InsertNextTuple(std::vector<double>(3, 1e9).data());
+        }
+    }
+    const auto result = loads(field, {});
+    EXPECT_EQ(result.reference, alone.reference);
+    EXPECT_EQ(result.total.force, alone.total.force);
+    EXPECT_EQ(result.total.moment, alone.total.moment);
+    EXPECT_EQ(result.centre_of_pressure, alone.centre_of_pressure);
 }
 
 /// A box with a group of its walls: the first so many faces of each zone, in one zone more, moved by `off`.
@@ -788,6 +810,12 @@ TEST(Loads, TakeTheValuesOfFacesBehindThoseOfLines) {
         }
         zone.surface->GetCellData()->AddArray(on_cells);
         zone.arrays[0].on = Location::faces;
+    }
+    EXPECT_NEAR(loads(field).named.lift_force, 20, 1e-12);
+    for (auto& zone : field.zones) {  // with a point that no face has, too
+        zone.surface->GetPoints()->InsertNextPoint(-50, 20, -7);
+        zone.surface->GetPointData()->GetArray("wall_shear")->InsertNextTuple3(0, 0, 0);
+        zone.surface->GetPointData()->RemoveArray("pressure");
     }
     EXPECT_NEAR(loads(field).named.lift_force, 20, 1e-12);
 }
