@@ -47,6 +47,49 @@ TEST(MeshUncertainty, FindsTheOrderOfAPowerLawForAnyRefinement) {
     }
 }
 
+TEST(MeshUncertainty, FindsTheOrderWhateverTheTwoRefinements) {
+    for (const auto& [r21, r32] : {std::pair{1.15, 1.6}, {1.2, 2.0}, {2.0, 1.5}, {1.05, 4.0}, {1.5, 1.5}}) {
+        for (const double order : {0.5, 1.0, 1.5, 1.9}) {
+            const auto result = mesh_uncertainty(power_law({1, r21, r21 * r32}, 4, 0.3, order));
+            EXPECT_NEAR(result.observed_order, order, 1e-9) << r21 << " " << r32;
+            EXPECT_NEAR(result.expanded_uncertainty, 1.25 * 0.3, 1e-9);
+            EXPECT_THAT(result.text, testing::Not(testing::HasSubstr("agree")));
+        }
+    }
+    // 3, 2 and half a million cells, first order: the reported uncertainty covers the error of 0.2.
+    const auto cells = [](double count) { return MeshValue{mesh_size(count), 2 + 0.2 * std::cbrt(3e6 / count)}; };
+    const auto result = mesh_uncertainty(std::vector<MeshValue>{cells(3e6), cells(2e6), cells(5e5)});
+    EXPECT_NEAR(result.observed_order, 1, 1e-9);
+    EXPECT_NEAR(result.expanded_uncertainty, 0.25, 1e-9);
+    // Differences that are the same over unlike refinements have an order too, where the coarser refinement is the smaller.
+    const auto even = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {2, 1.1}, {3, 1.2}});
+    EXPECT_NEAR(even.observed_order, 1, 1e-9);
+    EXPECT_NEAR(even.extrapolated, 0.9, 1e-9);
+}
+
+TEST(MeshUncertainty, RecoversRandomPowerLawsAndCoversTheirError) {
+    core::Random random(17);
+    for (int i = 0; i < 5000; ++i) {
+        const double order = 0.5 + 2.5 * random.uniform();
+        const double r21 = 1.1 + 1.4 * random.uniform();
+        const double r32 = 1.1 + 1.4 * random.uniform();
+        const double slope = 2 * random.uniform() - 1;
+        const auto result = mesh_uncertainty(power_law({1, r21, r21 * r32}, 3, slope, order));
+        ASSERT_EQ(result.verdict, MeshVerdict::monotone) << order << " " << r21 << " " << r32;
+        EXPECT_NEAR(result.observed_order, order, 1e-7 / std::abs(slope)) << r21 << " " << r32;
+        EXPECT_GE(result.expanded_uncertainty, std::abs(result.value - 3)) << order << " " << r21 << " " << r32;
+    }
+}
+
+TEST(MeshUncertainty, SaysThatMeshesAgreeOnlyWhenTheyDo) {
+    const auto agreeing = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {2, 1.0}, {4, 1.3}});
+    EXPECT_THAT(agreeing.text, testing::HasSubstr("the finest two meshes agree"));
+    const auto nearly = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {2, 1.0 + 1e-15}, {4, 1.3}});
+    EXPECT_THAT(nearly.text, testing::HasSubstr("observed order 47.9"));
+    const auto slow = mesh_uncertainty(power_law({1, 2, 4}, 1, 0.1, 0.05));
+    EXPECT_THAT(slow.text, testing::HasSubstr("observed order 0.05 (order 0.1 used)"));
+}
+
 TEST(MeshUncertainty, DoesNotBelieveOrdersAboveTheFormalOne) {
     const auto result = mesh_uncertainty(power_law({1.0, 2.0, 4.0}, 1.0, 0.01, 5.0));
     EXPECT_NEAR(result.observed_order, 5, 1e-6);
