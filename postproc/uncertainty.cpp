@@ -1,6 +1,7 @@
 #include "postproc/uncertainty.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -64,7 +65,8 @@ void set_interval(MeshUncertainty& result, double half_width, const std::string&
 
 /// In words; of a value of nothing there is no share.
 std::string gci_of(const MeshUncertainty& result) {
-    return std::isfinite(result.gci_fine) ? "GCI " + percent(result.gci_fine) : "uncertainty " + core::format_number(result.expanded_uncertainty, 3) + " about 0";
+    return std::isfinite(result.gci_fine) ? "GCI " + percent(result.gci_fine)
+                                          : "uncertainty " + core::format_number(result.expanded_uncertainty, 3) + " about 0";
 }
 
 double range_of(const std::vector<MeshValue>& values) {
@@ -97,15 +99,19 @@ void three_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUnce
     result.used_order = nan;
     if (e21 != 0 && e32 / e21 < 0) {
         result.verdict = std::abs(e32) > std::abs(e21) ? MeshVerdict::oscillating : MeshVerdict::diverging;
-        const double half = result.verdict == MeshVerdict::oscillating ? range / 2 : range;
-        set_interval(result, half, result.verdict == MeshVerdict::oscillating
-                                       ? "values oscillate with the mesh: half their range, " + core::format_number(half, 3) + ", is the interval"
-                                       : "values oscillate with growing differences: no convergence, their range, " + core::format_number(half, 3) + ", is the interval");
+        const bool shrinking = result.verdict == MeshVerdict::oscillating;
+        const double half = shrinking ? range / 2 : range;
+        set_interval(result, half,
+                     (shrinking ? "values oscillate with the mesh: half their range, "
+                                : "values oscillate with growing differences: no convergence, their range, ") +
+                         core::format_number(half, 3) + ", is the interval");
         return;
     }
     if (!shrinks) {
         result.verdict = MeshVerdict::diverging;
-        set_interval(result, range, "differences grow as the mesh gets finer: no convergence, the range of the values, " + core::format_number(range, 3) + ", is the interval");
+        set_interval(result, range,
+                     "differences grow as the mesh gets finer: no convergence, the range of the values, " + core::format_number(range, 3) +
+                         ", is the interval");
         return;
     }
     result.verdict = MeshVerdict::monotone;
@@ -133,43 +139,71 @@ void three_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUnce
                   ", " + gci_of(result);
 }
 
-/// phi = phi0 + alpha size^p by weighted least squares for a given p; weights 1/size (finer meshes count more).
-struct PowerFit {
-    double phi0 = 0, alpha = 0, deviation = 0;
+// ---- more than three: least squares after Eça and Hoekstra ----
+
+/// value = phi0 + sum of slopes[k] (size / finest)^orders[k], and what it says of the finest mesh.
+struct Fit {
+    std::vector<double> orders;
+    double phi0 = 0;
+    double error = 0;      ///< |terms at the finest mesh|: their delta
+    double off = 0;        ///< |value - fit| there
+    double deviation = 0;  ///< standard deviation of the fit
 };
 
-PowerFit fit_power(const std::vector<MeshValue>& v, double p) {
-    double w = 0, x = 0, y = 0, xx = 0, xy = 0;
+/// Weighted least squares for given orders (one or two); weights 1 / size, or all alike. `unknowns`: those of the fit, for
+/// its degrees of freedom.
+Fit fit_of(const std::vector<MeshValue>& v, const std::vector<double>& orders, bool weighted, std::size_t unknowns) {
+    const auto count = static_cast<double>(v.size());
+    const auto weight = [&](const MeshValue& one) { return weighted ? v[0].size / one.size : 1; };
+    const auto term = [&](const MeshValue& one, std::size_t k) { return k < orders.size() ? std::pow(one.size / v[0].size, orders[k]) : 0; };
+    double all = 0;
+    std::array<double, 2> middle{};
+    double mean = 0;
     for (const auto& one : v) {
-        const double weight = v[0].size / one.size;
-        const double t = std::pow(one.size / v[0].size, p);
-        w += weight;
-        x += weight * t;
-        y += weight * one.value;
-        xx += weight * t * t;
-        xy += weight * t * one.value;
+        all += weight(one);
+        mean += weight(one) * one.value;
+        middle = {middle[0] + weight(one) * term(one, 0), middle[1] + weight(one) * term(one, 1)};
     }
-    PowerFit fit;
-    fit.alpha = (w * xy - x * y) / (w * xx - x * x);
-    fit.phi0 = (y - fit.alpha * x) / w;
+    mean /= all;
+    middle = {middle[0] / all, middle[1] / all};
+    double aa = 0, ab = 0, bb = 0, ay = 0, by = 0;  // about the middle: no large numbers that cancel
+    for (const auto& one : v) {
+        const double a = term(one, 0) - middle[0];
+        const double b = term(one, 1) - middle[1];
+        aa += weight(one) * a * a;
+        ab += weight(one) * a * b;
+        bb += weight(one) * b * b;
+        ay += weight(one) * a * (one.value - mean);
+        by += weight(one) * b * (one.value - mean);
+    }
+    const double determinant = aa * bb - ab * ab;
+    const bool two = orders.size() > 1;
+    const std::array<double, 2> slopes = {two ? (ay * bb - by * ab) / determinant : ay / aa, two ? (by * aa - ay * ab) / determinant : 0};
+    Fit fit;
+    fit.orders = orders;
+    fit.phi0 = mean - slopes[0] * middle[0] - slopes[1] * middle[1];
+    const auto residual = [&](const MeshValue& one) { return one.value - fit.phi0 - slopes[0] * term(one, 0) - slopes[1] * term(one, 1); };
+    fit.error = std::abs(slopes[0] + slopes[1]);
+    fit.off = std::abs(residual(v[0]));
     double square = 0;
     for (const auto& one : v) {
-        const double off = one.value - fit.phi0 - fit.alpha * std::pow(one.size / v[0].size, p);
-        square += v[0].size / one.size / w * static_cast<double>(v.size()) * off * off;
+        square += count * weight(one) / all * residual(one) * residual(one);
     }
-    fit.deviation = std::sqrt(square / static_cast<double>(std::max<std::size_t>(1, v.size() - 3)));
+    fit.deviation = std::sqrt(square / (count - static_cast<double>(unknowns)));
     return fit;
 }
 
+constexpr double lowest_order = 0.05;  ///< of the search: at this end the values do not converge
+constexpr double highest_order = 8;
+
 /// The order that leaves the least deviation: a coarse search, then the golden section.
-double best_order(const std::vector<MeshValue>& v) {
-    constexpr double low = 0.05;
-    constexpr double high = 8;
+double best_order(const std::vector<MeshValue>& v, bool weighted) {
     constexpr int steps = 160;
-    const auto at = [&](int i) { return low + (high - low) * i / steps; };
+    const auto at = [&](int i) { return lowest_order + (highest_order - lowest_order) * i / steps; };
+    const auto deviation = [&](double p) { return fit_of(v, {p}, weighted, 3).deviation; };
     int best = 0;
     for (int i = 1; i <= steps; ++i) {
-        best = fit_power(v, at(i)).deviation < fit_power(v, at(best)).deviation ? i : best;
+        best = deviation(at(i)) < deviation(at(best)) ? i : best;
     }
     double a = at(std::max(0, best - 1));
     double b = at(std::min(steps, best + 1));
@@ -177,36 +211,76 @@ double best_order(const std::vector<MeshValue>& v) {
     for (int i = 0; i < 60; ++i) {
         const double c = b - ratio * (b - a);
         const double d = a + ratio * (b - a);
-        (fit_power(v, c).deviation < fit_power(v, d).deviation ? b : a) = fit_power(v, c).deviation < fit_power(v, d).deviation ? d : c;
+        const bool left = deviation(c) < deviation(d);
+        (left ? b : a) = left ? d : c;
     }
     return 0.5 * (a + b);
 }
 
-void many_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
-    const double p = best_order(v);
-    result.observed_order = p;
-    const bool plausible = p >= 0.5 && p <= formal_order + 0.1;
-    result.used_order = plausible ? p : std::clamp(p, 1.0, formal_order);
-    const PowerFit fit = fit_power(v, result.used_order);
-    const double mean_change = range_of(v) / static_cast<double>(v.size() - 1);
-    const double error = std::abs(v[0].value - fit.phi0);
-    const double off = std::abs(v[0].value - fit.phi0 - fit.alpha);
-    const bool good = plausible && fit.deviation < mean_change;
-    result.extrapolated = fit.phi0;
-    // Eça and Hoekstra, equations 18 and 19.
-    result.expanded_uncertainty = good ? 1.25 * error + fit.deviation + off : 3 * fit.deviation / std::max(mean_change, 1e-300) * (error + fit.deviation + off);
-    if (!good) {
-        result.expanded_uncertainty = std::max(result.expanded_uncertainty, 3 * error + fit.deviation + off);
+/// The better of the fits with and without weights, by their deviation.
+Fit better_fit(const std::vector<MeshValue>& v, const std::vector<std::vector<double>>& choices) {
+    Fit best;
+    for (const auto& orders : choices) {
+        for (const bool weighted : {true, false}) {
+            const Fit fit = fit_of(v, orders, weighted, 1 + orders.size());
+            best = best.orders.empty() || fit.deviation < best.deviation ? fit : best;
+        }
     }
+    return best;
+}
+
+std::string named_orders(const Fit& fit) {
+    const std::string first = core::format_number(fit.orders[0], 3);
+    return fit.orders.size() == 1 ? "order " + first : "orders " + first + " and " + core::format_number(fit.orders[1], 3) + " together";
+}
+
+/// Their section 3: the free order, with and without weights, counts from 0.5 to the formal one; above it the first or the
+/// formal order is fitted, whichever leaves less, below it these or both together. The factor is 1.25 for orders from 0.5
+/// to 0.1 above the formal one, else 3; where the fit is worse than the values differ (sigma >= their mean change), all of
+/// it is blown up by how much.
+void many_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
+    constexpr double least_plausible = 0.5;
+    constexpr double excess = 0.1;
+    Fit fit;
+    for (const bool weighted : {true, false}) {
+        const Fit one = fit_of(v, {best_order(v, weighted)}, weighted, 3);
+        fit = fit.orders.empty() || one.deviation < fit.deviation ? one : fit;
+    }
+    const double p = fit.orders[0];
+    const bool found = p > 2 * lowest_order && p < highest_order - lowest_order;  // not at an end of the search
+    result.observed_order = found ? p : nan;
+    const bool believed = p >= least_plausible && p <= formal_order;
+    if (!believed) {
+        std::vector<std::vector<double>> choices = {{formal_order}};
+        if (formal_order > 1) {
+            choices.push_back({1});
+        }
+        if (formal_order > 1 && p < least_plausible) {
+            choices.push_back({1, formal_order});
+        }
+        fit = better_fit(v, choices);
+    }
+    result.used_order = fit.orders.size() == 1 ? fit.orders[0] : nan;
+    const double mean_change = range_of(v) / static_cast<double>(v.size() - 1);
+    const bool plausible = p >= least_plausible && p < formal_order + excess;
+    const bool good = fit.deviation < mean_change;
+    const double factor = plausible ? 1.25 : 3;
+    result.expanded_uncertainty = good ? factor * fit.error + fit.deviation + fit.off
+                                       : 3 * fit.deviation / mean_change * (fit.error + fit.deviation + fit.off);
     int changes = 0;
     for (std::size_t i = 2; i < v.size(); ++i) {
         changes += (v[i].value - v[i - 1].value) * (v[i - 1].value - v[i - 2].value) < 0 ? 1 : 0;
     }
-    result.verdict = changes > 0 && !good ? MeshVerdict::oscillating : p < 0.1 ? MeshVerdict::diverging : MeshVerdict::monotone;
+    result.verdict = changes > 0 && !(plausible && good) ? MeshVerdict::oscillating
+                     : p < 2 * lowest_order                ? MeshVerdict::diverging
+                                                           : MeshVerdict::monotone;
+    result.extrapolated = result.verdict == MeshVerdict::diverging ? result.value : fit.phi0;
     result.standard_uncertainty = result.expanded_uncertainty / 2;
     result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
-    result.text = std::to_string(v.size()) + " meshes, least squares: " + to_string(result.verdict) + ", observed order " + core::format_number(p, 3) +
-                  (plausible ? "" : " (not plausible: order " + core::format_number(result.used_order, 3) + " and factor 3 used)") + ", " + gci_of(result);
+    result.text = std::to_string(v.size()) + " meshes, least squares: " + to_string(result.verdict) +
+                  (found ? ", observed order " + core::format_number(p, 3) : std::string(", no observed order")) +
+                  (believed ? "" : " (" + named_orders(fit) + " used)") +
+                  (good ? ", factor " + core::format_number(factor, 3) : ", scatters about its fit") + ", " + gci_of(result);
 }
 
 }  // namespace
@@ -257,7 +331,8 @@ MeshUncertainty mesh_uncertainty(std::span<const MeshValue> given, double formal
     }
     const double refinement = values[1].size / values[0].size;
     if (result.verdict != MeshVerdict::same && refinement < 1.1) {
-        result.text += "; the finest two meshes differ by a factor of " + core::format_number(refinement, 3) + " only, 1.3 is advised: what they differ by may be chance";
+        result.text += "; the finest two meshes differ by a factor of " + core::format_number(refinement, 3) +
+                       " only, 1.3 is advised: what they differ by may be chance";
     }
     return result;
 }

@@ -30,15 +30,16 @@ std::string to_string(MeshVerdict verdict);
 ///
 /// Three meshes: Celik, Ghia, Roache, Freitas, Coleman, Raad (J. Fluids Eng. 130, 078001, 2008), safety factor 1.25,
 /// orders above `formal_order` are not believed in the GCI: then that order is used, and the difference of the coarser
-/// pair where it makes the larger error (two meshes that agree by luck are no proof). Two: Roache's factor 3 at the formal order. More than
-/// three: least squares after Eça and Hoekstra (J. Comput. Phys. 262, 2014, section 3), on all meshes.
+/// pair where it makes the larger error (two meshes that agree by luck are no proof). Two: Roache's factor 3 at the formal
+/// order. More than three: least squares after Eça and Hoekstra (J. Comput. Phys. 262, 2014, section 3), on all meshes:
+/// an order that is not plausible gives way to a fit with the first and the formal one, with factor 3.
 /// Oscillating: the half range of the values is the interval (Stern et al. 2001); diverging: their whole range. Both
-/// are taken as evenly distributed.
+/// are taken as evenly distributed. (Of more than three meshes these are words only: the fit's scatter says it.)
 struct MeshUncertainty {
     MeshVerdict verdict = MeshVerdict::same;
     double value = 0;                  ///< on the finest mesh
     double observed_order = 0;         ///< NaN when none can be had
-    double used_order = 0;             ///< what the index was computed with
+    double used_order = 0;             ///< what the index was computed with; NaN for none, or two orders together
     double extrapolated = 0;           ///< value at size zero; the finest value when there is no order
     double relative_change = 0;        ///< |finest - next| / |finest|
     double gci_fine = 0;               ///< relative, between the finest two meshes (or the interval over |value|)

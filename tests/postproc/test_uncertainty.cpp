@@ -173,9 +173,33 @@ TEST(MeshUncertainty, NamesFourMeshesThatDoNotConverge) {
     const auto growing = mesh_uncertainty(std::vector<MeshValue>{{1, 2.0}, {2, 1.3}, {4, 1.1}, {8, 1.0}});
     EXPECT_EQ(growing.verdict, MeshVerdict::diverging);
     EXPECT_GT(growing.expanded_uncertainty, 1.0);
+    EXPECT_TRUE(std::isnan(growing.observed_order));
+    EXPECT_EQ(growing.extrapolated, 2.0);
     const auto swinging = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {2, 1.1}, {4, 0.95}, {8, 1.12}});
     EXPECT_EQ(swinging.verdict, MeshVerdict::oscillating);
     EXPECT_GT(swinging.expanded_uncertainty, 0.08);
+}
+
+/// Values of a second implementation of Eça and Hoekstra's procedure (numpy's least squares, orders in steps of 0.0005).
+TEST(MeshUncertainty, OfManyMeshesFitsFixedOrdersWhereTheFreeOneIsNotPlausible) {
+    const std::vector<double> sizes = {1, 1.25, 1.6, 2, 2.6};
+    struct Known {
+        std::vector<MeshValue> values;
+        double order, used, limit, uncertainty;
+    };
+    for (const Known& known : {Known{power_law(sizes, 1, 0.01, 5), 5, 2, 0.728056, 0.809945},
+                               {power_law(sizes, 1, 0.05, 3), 3, 2, 0.880197, 0.493187},
+                               {power_law(sizes, 1, 0.5, 0.2), 0.2, NAN, 1.395300, 0.317205},  // both orders together
+                               {{{1, 1.02}, {1.5, 1.05}, {2, 1.07}, {3, 1.16}, {4, 1.21}}, 1.1737, 1.1737, 0.97083, 0.07188},  // without weights
+                               {{{1, 1.0}, {2, 1.1}, {4, 0.95}, {8, 1.12}}, NAN, 2, 1.018710, 0.384810}}) {
+        const auto result = mesh_uncertainty(known.values);
+        EXPECT_THAT(result.observed_order, testing::NanSensitiveDoubleNear(known.order, 1e-3)) << result.text;
+        EXPECT_THAT(result.used_order, testing::NanSensitiveDoubleNear(known.used, 1e-3)) << result.text;
+        EXPECT_NEAR(result.extrapolated, known.limit, 3e-5) << result.text;
+        EXPECT_NEAR(result.expanded_uncertainty, known.uncertainty, 3e-5) << result.text;
+    }
+    EXPECT_THAT(mesh_uncertainty(power_law(sizes, 1, 0.01, 5)).text, testing::HasSubstr("(order 2 used), factor 3"));
+    EXPECT_THAT(mesh_uncertainty(power_law(sizes, 1, 0.5, 0.2)).text, testing::HasSubstr("(orders 1 and 2 together used), factor 3"));
 }
 
 TEST(MeshUncertainty, RefusesWhatIsNoStudy) {
