@@ -17,6 +17,9 @@ namespace {
 // Small enough that two cores share evenly, large enough that the loop is all that counts.
 constexpr std::size_t chunk_size = std::size_t{2} << 20;
 
+// Of the number of a node: more would not fit into an Index.
+constexpr std::ptrdiff_t most_digits = 15;
+
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 /// A tab between columns is no blank.
@@ -218,12 +221,12 @@ IndexRows index_chunk(std::string_view text, char separator, std::size_t least, 
             ++p;
             continue;
         }
-        const char* bare = p;  // a row of nothing but separators is a blank line of a spreadsheet
-        while (bare < end && (*bare == separator || is_blank(*bare))) {
-            ++bare;
+        const char* behind = p;  // a row of nothing but separators is a blank line of a spreadsheet
+        while (behind < end && (*behind == separator || is_blank(*behind))) {
+            ++behind;
         }
-        if (*p == '#' || bare == end || *bare == '\n') {
-            p = line_end(bare, end) + 1;
+        if (*p == '#' || behind == end || *behind == '\n') {
+            p = line_end(behind, end) + 1;
             continue;
         }
         const char* row_start = p;
@@ -231,10 +234,10 @@ IndexRows index_chunk(std::string_view text, char separator, std::size_t least, 
         while (true) {
             Index value = 0;
             const char* start = p;
-            while (p < end && static_cast<unsigned char>(*p - '0') < 10) {
+            while (p < end && p - start <= most_digits && static_cast<unsigned char>(*p - '0') < 10) {
                 value = value * 10 + (*p++ - '0');
             }
-            if (p == start || p - start > 15) {
+            if (p == start || p - start > most_digits) {
                 throw RowError{start, "'" + std::string(token_at(start, end, separator).substr(0, 40)) +
                                           "' is not a node number", "faces name their nodes by whole numbers from 0"};
             }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <unordered_map>
 
 #include "core/text.h"
 
@@ -24,11 +25,13 @@ std::string_view bare(std::string_view line) {
 }
 
 std::string_view first_line(std::string_view body) {
-    for (const auto line : core::split(body, '\n')) {
-        const std::string_view text = bare(line);
+    while (!body.empty()) {
+        const std::size_t end = std::min(body.find('\n'), body.size());
+        const std::string_view text = bare(body.substr(0, end));
         if (!text.empty() && text.front() != '#') {
             return text;
         }
+        body.remove_prefix(std::min(end + 1, body.size()));
     }
     return {};
 }
@@ -56,12 +59,20 @@ char separator_of(std::string_view header) {
 }
 
 Place CsvText::place_of(const char* at, bool with_column) const {
-    const std::string_view before(file_.bytes().data(), static_cast<std::size_t>(at - file_.bytes().data()));
-    const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-    const auto start = before.rfind('\n');
-    Place place{name_, line, {}, {}};
+    if (last_place_.start == nullptr) {
+        last_place_.start = file_.bytes().data();
+    }
+    const char* known = last_place_.start;
+    const auto between = std::count(std::min(at, known), std::max(at, known), '\n');
+    if (between > 0) {
+        last_place_.number += at < known ? -between : between;
+        const char* begin = file_.bytes().data();
+        const auto before = std::string_view(begin, static_cast<std::size_t>(at - begin)).rfind('\n');
+        last_place_.start = before == std::string_view::npos ? begin : begin + before + 1;
+    }
+    Place place{name_, last_place_.number, {}, {}};
     if (with_column) {
-        place.column = static_cast<std::int64_t>(start == std::string_view::npos ? before.size() : before.size() - start - 1) + 1;
+        place.column = at - last_place_.start + 1;
     }
     return place;
 }
@@ -120,18 +131,18 @@ std::vector<CsvBlock> CsvText::blocks(core::Problems& problems, core::Progress& 
 }
 
 void CsvText::check_names(std::vector<CsvBlock>& blocks) const {
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-        if (blocks[i].name.empty()) {
-            if (blocks[i].named) {
-                throw InputError("zone", "[Name] without a name", place_of(blocks[i].name_at, false));
+    std::unordered_map<std::string, const char*> places;
+    for (auto& block : blocks) {
+        if (block.name.empty()) {
+            if (block.named) {
+                throw InputError("zone", "[Name] without a name", place_of(block.name_at, false));
             }
-            blocks[i].name = std::filesystem::path(name_).stem().string();
+            block.name = std::filesystem::path(name_).stem().string();
         }
-        for (std::size_t j = 0; j < i; ++j) {
-            if (blocks[j].name == blocks[i].name) {
-                throw InputError("zone", "two zones are called '" + blocks[i].name + "'", place_of(blocks[i].name_at, false),
-                                 "the first stands in line " + std::to_string(*place_of(blocks[j].name_at).line));
-            }
+        const auto [first, is_new] = places.emplace(block.name, block.name_at);
+        if (!is_new) {
+            throw InputError("zone", "two zones are called '" + block.name + "'", place_of(block.name_at, false),
+                             "the first stands in line " + std::to_string(*place_of(first->second).line));
         }
     }
 }
