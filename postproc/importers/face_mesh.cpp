@@ -114,7 +114,6 @@ void check_beside(const FaceMesh& mesh, const FaceBlock& block, core::Progress& 
     }
 }
 
-/// Do the ranges of the zones fit the numbers that the file declares?
 /// How many places the blocks hold together; none may go beyond those that the file declares.
 template <typename Block>
 std::uint64_t counted(const FaceMesh& mesh, const std::vector<Block>& blocks, std::uint64_t declared, const std::string& what) {
@@ -126,9 +125,24 @@ std::uint64_t counted(const FaceMesh& mesh, const std::vector<Block>& blocks, st
                              zone_words(mesh, block.zone) + " go beyond the " + text(declared) + " that the file declares");
         }
     }
+    std::vector<std::pair<std::uint64_t, std::size_t>> in_order;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        if (blocks[i].count > 0) {
+            in_order.emplace_back(blocks[i].first, i);
+        }
+    }
+    std::sort(in_order.begin(), in_order.end());
+    for (std::size_t i = 1; i < in_order.size(); ++i) {
+        const auto& before = blocks[in_order[i - 1].second];
+        if (before.first + before.count > in_order[i].first) {
+            refuse(mesh, "the " + what + " of " + zone_words(mesh, before.zone) + " and " + zone_words(mesh, blocks[in_order[i].second].zone) + " have numbers in common, from " +
+                             text(in_order[i].first) + " on");
+        }
+    }
     return sum;
 }
 
+/// Do the ranges of the zones fit the numbers that the file declares?
 void check_ranges(const FaceMesh& mesh, bool surfaces_only) {
     constexpr std::uint64_t most = 0x7fffffffULL;
     if (mesh.dimension != 2 && mesh.dimension != 3) {

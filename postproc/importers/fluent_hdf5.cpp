@@ -35,11 +35,11 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
     fs::path data_path = options.companion;
     const bool asked_for = !has_mesh || !options.companion.empty();
     if (has_mesh && data_path.empty()) {
-        data_path = partner_by_name(path, {".cas.h5"}, {".dat.h5"});
+        data_path = partner_by_name(path, {".cas.h5"}, {".dat.h5"}, false);
     }
     if (!has_mesh) {
         data_path = path;
-        mesh_path = options.companion.empty() ? partner_by_name(path, {".dat.h5"}, {".cas.h5"}) : options.companion;
+        mesh_path = options.companion.empty() ? partner_by_name(path, {".dat.h5"}, {".cas.h5"}, true) : options.companion;
         if (mesh_path.empty()) {
             const std::string named = file_name_in(Hdf5File(path).text("/settings/Case File"));
             const fs::path beside = path.parent_path() / named;

@@ -69,7 +69,7 @@ std::vector<ValueBlock> DataReader::read(FluentSettings& settings, core::Problem
         other_case("its cells end at " + number(most_cell_) + ", the case has " + number(mesh_.cells));
     }
     rows_.read(progress_);
-    settings.variables += file_.text("/settings/Data Variables");
+    settings.variables.insert(0, file_.text("/settings/Data Variables"));  // the run knows its own time better than the case does
     const std::string named = file_name_in(file_.text("/settings/Case File"));
     const std::string ours = fs::path(mesh_.file).filename().string();
     if (!named.empty() && named != ours) {

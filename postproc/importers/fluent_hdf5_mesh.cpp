@@ -86,6 +86,11 @@ std::uint64_t Reader::count(const std::string& name) const {
     if (!value || *value < 0) {
         refuse(root_, "its attribute " + name + " is missing");
     }
+    // Each node, face and cell has a number of four bytes at least, deflated as far as that goes.
+    constexpr std::uint64_t largest_ratio = 1032;
+    if (static_cast<std::uint64_t>(*value) / largest_ratio > file_.bytes()) {
+        refuse(root_, name + " is " + std::to_string(*value) + ", more than a file of " + number(file_.bytes()) + " bytes can hold");
+    }
     return static_cast<std::uint64_t>(*value);
 }
 
@@ -102,6 +107,12 @@ std::vector<Part> Reader::parts(const std::string& path) const {
             refuse(inner, "ids " + std::to_string(*first) + " to " + std::to_string(*last));
         }
         result.push_back({inner, static_cast<std::uint64_t>(*first), static_cast<std::uint64_t>(*last - *first + 1)});
+    }
+    std::sort(result.begin(), result.end(), [](const Part& a, const Part& b) { return a.first < b.first; });
+    for (std::size_t i = 1; i < result.size(); ++i) {
+        if (result[i].first < result[i - 1].first + result[i - 1].count) {
+            refuse(result[i].path, "its ids begin at " + number(result[i].first) + ", those of " + result[i - 1].path + " end behind that");
+        }
     }
     return result;
 }
@@ -258,6 +269,7 @@ void Reader::read_cells() {
     if (first.size() != ids.size() || last.size() != ids.size()) {
         refuse(topology, "its lists differ in length");
     }
+    std::uint64_t total = 0;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         constexpr std::uint32_t solid = 17;
         CellBlock block;
@@ -265,7 +277,8 @@ void Reader::read_cells() {
         block.first = first[i];
         block.count = last[i] >= first[i] ? last[i] - first[i] + 1 : 0;
         block.element = i < element.size() ? static_cast<int>(std::min<std::uint32_t>(element[i], 255)) : 0;
-        if (block.count > mesh_.cells || block.first == 0) {
+        total += block.count;
+        if (total > mesh_.cells || block.first == 0) {
             refuse(topology, "cells beyond the " + number(mesh_.cells) + " of the mesh");
         }
         mesh_.labels.push_back({block.zone, i < type.size() && type[i] == solid ? "solid" : "fluid",

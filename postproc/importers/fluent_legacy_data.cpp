@@ -105,7 +105,8 @@ private:
     void solution(std::uint64_t index, std::size_t size);
     void values(ValueBlock& block, std::size_t size);
     void unknown(std::uint64_t index, bool binary);
-    void check_zone(const ValueBlock& block, const ZoneRanges& zone, std::uint64_t last) const;
+    void check_zone(const ValueBlock& block, const Announced& said, const ZoneRanges& zone, std::uint64_t last) const;
+    void keep(ValueBlock&& block);
     [[noreturn]] void other_case(const std::string& what) const {
         throw core::InputError("mismatch", "these data belong to another case than " + mesh_.file + ": " + what,
                                in_.place(), "give the case they were written with");
@@ -173,7 +174,7 @@ void DataReader::section() {
         case 33:
             return grid_size();
         case 37:
-            settings_.variables += text_.inside(std::size_t{16} << 20);
+            settings_.variables.insert(0, text_.inside(std::size_t{16} << 20));  // the run knows its own time better than the case does
             return;
         case 300:
             return solution(index, 0);
@@ -207,12 +208,11 @@ void DataReader::grid_size() {
     }
 }
 
-void DataReader::check_zone(const ValueBlock& block, const ZoneRanges& zone, std::uint64_t last) const {
+void DataReader::check_zone(const ValueBlock& block, const Announced& said, const ZoneRanges& zone, std::uint64_t last) const {
     if (!zone.holds(block.first, last)) {
         other_case(block.variable + " is given for ids " + std::to_string(block.first) + " to " + std::to_string(last) +
                    " of zone " + std::to_string(block.zone) + ", which has others");
     }
-    const Announced said = announced(comment_);
     const ZoneLabel* label = mesh_.label(block.zone);
     if (said.zone == block.zone && label != nullptr && !said.zone_type.empty()) {
         const bool said_cells = said.zone_type == "cell" || said.zone_type == "fluid" || said.zone_type == "solid";
@@ -226,7 +226,11 @@ void DataReader::check_zone(const ValueBlock& block, const ZoneRanges& zone, std
 
 void DataReader::solution(std::uint64_t index, std::size_t size) {
     const auto header = text_.header(10, 7);
-    const Announced said = announced(comment_);
+    // A comment speaks of the section behind it alone, and of its own zone.
+    Announced said = announced(std::exchange(comment_, {}));
+    if (said.zone != 0 && static_cast<std::uint64_t>(said.zone) != header[1]) {
+        said = {};
+    }
     ValueBlock block;
     const auto small = [](std::uint64_t v) {
         return static_cast<int>(std::min<std::uint64_t>(v, std::numeric_limits<int>::max()));
@@ -252,16 +256,16 @@ void DataReader::solution(std::uint64_t index, std::size_t size) {
     const auto zone = zones_.find(block.zone);
     const bool known = zone != zones_.end();
     if (block.count > 0 && known) {
-        check_zone(block, zone->second, last);
+        check_zone(block, said, zone->second, last);
     }
     // With surfaces alone, zones inside the mesh are not known here; their values are passed over.
     if (!known && !options_.surfaces_only && mesh_.label(block.zone) == nullptr) {
         other_case("zone " + std::to_string(block.zone) + " of " + block.variable + " is not there");
     }
     text_.expect('(');
-    const bool keep = known && !zone->second.inner && !(zone->second.cells && options_.surfaces_only) &&
+    const bool wanted = known && !zone->second.inner && !(zone->second.cells && options_.surfaces_only) &&
                       block.count > 0 && wants_variable(options_, block.variable);
-    if (keep) {
+    if (wanted) {
         block.on_cells = zone->second.cells;
         block.values.grow_to(block.count * components);
         values(block, size);
@@ -278,9 +282,21 @@ void DataReader::solution(std::uint64_t index, std::size_t size) {
         text_.close_binary_body(index);
     }
     ++sections_;
-    if (keep) {
-        values_.push_back(std::move(block));
+    if (wanted) {
+        keep(std::move(block));
     }
+}
+
+void DataReader::keep(ValueBlock&& block) {
+    const bool known = std::any_of(values_.begin(), values_.end(), [&](const ValueBlock& other) {
+        return other.zone == block.zone && other.phase == block.phase && other.variable == block.variable && other.first <= block.first + block.count - 1 &&
+               block.first <= other.first + other.count - 1;
+    });
+    if (known) {
+        problems_.push_back({core::Problem::Severity::warning, last_variable_ + " stands twice in the data: the first counts", in_.place()});
+        return;
+    }
+    values_.push_back(std::move(block));
 }
 
 void DataReader::values(ValueBlock& block, std::size_t size) {

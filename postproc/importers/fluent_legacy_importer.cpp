@@ -62,7 +62,7 @@ Files files_of(const fs::path& path, const ReadOptions& options) {
     if (is_data(path)) {
         fs::path mesh = options.companion;
         if (mesh.empty()) {
-            mesh = partner_by_name(path, {".dat", ".dat.gz"}, {".cas", ".cas.gz"});
+            mesh = partner_by_name(path, {".dat", ".dat.gz"}, {".cas", ".cas.gz"}, true);
         }
         if (mesh.empty()) {
             throw core::InputError("missing", "these are solution data without a mesh", {path.string(), {}, {}, {}},
@@ -73,7 +73,7 @@ Files files_of(const fs::path& path, const ReadOptions& options) {
     if (!options.companion.empty()) {
         return {path, options.companion, true};
     }
-    return {path, partner_by_name(path, {".cas", ".cas.gz"}, {".dat", ".dat.gz"}), false};
+    return {path, partner_by_name(path, {".cas", ".cas.gz"}, {".dat", ".dat.gz"}, false), false};
 }
 
 Field read(const fs::path& path, const ReadOptions& options, core::Progress& progress) {

@@ -105,7 +105,7 @@ void MeshReader::section() {
         const std::string comment = text_.comment();
         for (const char* words :
              {"Units: Meters", "Units: Millimeters", "Units: Inches", "Units: Feet", "Units: Centimeters"}) {
-            if (comment.find(words) != std::string::npos) {
+            if (comment.find(words) != std::string::npos && !result_.mesh.length_unit_known) {
                 result_.mesh.length_unit = words[7] == 'F' ? "foot" : words[7] == 'I' ? "inch" : words + 7;
                 result_.mesh.length_unit[0] = static_cast<char>(std::tolower(result_.mesh.length_unit[0]));
                 if (result_.mesh.length_unit.back() == 's') {
@@ -114,7 +114,8 @@ void MeshReader::section() {
             }
         }
         if (result_.settings.writer.empty() && comment.size() > 8) {
-            result_.settings.writer = comment.substr(1, comment.find_last_of('"') - 1);
+            const std::size_t first = comment.front() == '"' ? 1 : 0;
+            result_.settings.writer = comment.substr(first, std::min(comment.find_last_of('"'), comment.size()) - first);
         }
         return;
     }

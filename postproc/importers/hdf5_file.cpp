@@ -370,7 +370,16 @@ Buffer<std::uint32_t> Hdf5File::numbers(const std::string& path) const {
 
 std::vector<std::string> Hdf5File::texts(const std::string& path) const {
     const Hdf5Handle set(has(path) ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
-    return set.good() ? strings_of_set(set.get(), bytes_).value_or(std::vector<std::string>()) : std::vector<std::string>();
+    if (!set.good()) {
+        return {};
+    }
+    auto strings = strings_of_set(set.get(), bytes_);
+    const Hdf5Handle type(H5Dget_type(set.get()), H5Tclose);
+    if (!strings && type.good() && H5Tget_class(type.get()) == H5T_STRING) {
+        const bool variable = in_chunks(set.get()) && H5Tis_variable_str(type.get()) > 0;
+        fail(path, variable ? "strings of variable length in chunks are not read (write the file anew: h5repack -l CONTI)" : "its strings cannot be read");
+    }
+    return std::move(strings).value_or(std::vector<std::string>());
 }
 
 std::string Hdf5File::text(const std::string& path) const {

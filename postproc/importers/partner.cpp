@@ -7,7 +7,7 @@ namespace underbody::postproc {
 namespace fs = std::filesystem;
 
 fs::path partner_by_name(const fs::path& path, const std::vector<std::string>& endings,
-                         const std::vector<std::string>& others) {
+                         const std::vector<std::string>& others, bool earlier) {
     const std::string name = path.filename().string();
     std::string stem;
     for (const auto& ending : endings) {
@@ -23,6 +23,9 @@ fs::path partner_by_name(const fs::path& path, const std::vector<std::string>& e
             if (fs::is_regular_file(candidate, error)) {
                 return candidate;
             }
+        }
+        if (!earlier) {
+            break;
         }
         // name-1-00010 -> name-1 -> name
         const std::size_t dash = stem.find_last_of('-');

@@ -96,9 +96,9 @@ Field read_surface(const fs::path& path, const ReadOptions& options, core::Progr
     if (head_of(path).starts_with("ply")) {
         field = field_from_vtk(path, "surface (PLY)", ply_surface(path), options, progress);
     } else if (ending == ".obj") {
-        field = field_from_vtk(path, "surface (OBJ)", output_of<vtkOBJReader>(path), options, progress);
+        field = field_from_vtk(path, "surface (OBJ)", output_of<vtkOBJReader>(path, progress), options, progress);
     } else {
-        field = field_from_vtk(path, "surface (STL)", output_of<vtkSTLReader>(path), options, progress);
+        field = field_from_vtk(path, "surface (STL)", output_of<vtkSTLReader>(path, progress), options, progress);
     }
     return field;
 }

@@ -73,7 +73,7 @@ Field read_tecplot(const fs::path& path, const ReadOptions& options, core::Progr
             variables.emplace_back(reader.GetDataArrayName(i));
         }
     };
-    const auto object = output_of<vtkTecplotReader>(path, prepare);
+    const auto object = output_of<vtkTecplotReader>(path, progress, prepare);
     check_coordinates(path, variables);
     return field_from_vtk(path, "Tecplot ASCII", object, options, progress);
 }

@@ -1,5 +1,7 @@
 #include "postproc/importers/trial.h"
 
+#include <poll.h>
+#include <sys/syscall.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -55,9 +57,31 @@ void limit([[maybe_unused]] std::uintmax_t size) {
 #endif
 }
 
+/// Waits for the child; ends it when the waiting is cancelled. The status that waitpid gives.
+int wait_for(pid_t child, core::Progress& progress) {
+    int status = 0;
+    const int handle = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
+    while (handle >= 0 && !progress.cancelled()) {
+        pollfd wanted{handle, POLLIN, 0};
+        constexpr int milliseconds = 50;
+        if (::poll(&wanted, 1, milliseconds) > 0) {
+            break;
+        }
+    }
+    if (handle >= 0) {
+        ::close(handle);
+    }
+    if (progress.cancelled()) {
+        ::kill(child, SIGKILL);
+    }
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return status;
+}
+
 }  // namespace
 
-void try_in_child(const std::filesystem::path& path, const std::function<void()>& read) {
+void try_in_child(const std::filesystem::path& path, const std::function<void()>& read, core::Progress& progress) {
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
     const pid_t child = ::fork();
@@ -82,14 +106,16 @@ void try_in_child(const std::filesystem::path& path, const std::function<void()>
         }
         ::_exit(code);
     }
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    const int status = wait_for(child, progress);
+    progress.check();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
         return;
     }
     const bool memory = WIFEXITED(status) && WEXITSTATUS(status) == 2;
-    const bool time = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGALRM);
+    const bool time = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
+        throw core::SystemError("process", "the process that tries the file was ended by the system: is there memory left?", {path.string(), {}, {}, {}});
+    }
     throw core::InputError("format",
                            std::string("the reader ") +
                                (memory ? "asks for more memory than the file can justify"

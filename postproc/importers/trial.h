@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/progress.h"
+
 namespace underbody::postproc {
 
 /// Runs `read` in a child process, with time and memory that the size of `path` justifies. Throws InputError when the
-/// child crashes or exceeds them; whether `read` throws is not looked at.
-void try_in_child(const std::filesystem::path& path, const std::function<void()>& read);
+/// child crashes or exceeds them; whether `read` throws is not looked at. Throws core::Cancelled, and ends the child, when
+/// `progress` is cancelled.
+void try_in_child(const std::filesystem::path& path, const std::function<void()>& read, core::Progress& progress = core::Progress::none());
 
 }  // namespace underbody::postproc

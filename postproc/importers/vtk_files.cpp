@@ -20,9 +20,9 @@ bool is_xml(std::string_view head, const fs::path& /*path*/) {
 }
 Field read_xml(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
     if (core::lower_case(path.extension().string()) == ".vtm") {
-        return field_from_vtk(path, "VTK XML", output_of<vtkXMLMultiBlockDataReader>(path), options, progress);
+        return field_from_vtk(path, "VTK XML", output_of<vtkXMLMultiBlockDataReader>(path, progress), options, progress);
     }
-    return field_from_vtk(path, "VTK XML", output_of<vtkXMLGenericDataObjectReader>(path), options, progress);
+    return field_from_vtk(path, "VTK XML", output_of<vtkXMLGenericDataObjectReader>(path, progress), options, progress);
 }
 
 bool is_legacy(std::string_view head, const fs::path& /*path*/) { return head.starts_with("# vtk DataFile"); }
@@ -33,7 +33,7 @@ Field read_legacy(const fs::path& path, const ReadOptions& options, core::Progre
         reader.ReadAllVectorsOn();
         reader.ReadAllFieldsOn();
     };
-    return field_from_vtk(path, "VTK legacy", output_of<vtkGenericDataObjectReader>(path, prepare), options, progress);
+    return field_from_vtk(path, "VTK legacy", output_of<vtkGenericDataObjectReader>(path, progress, prepare), options, progress);
 }
 
 }  // namespace

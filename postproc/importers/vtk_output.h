@@ -21,14 +21,14 @@ void check_leaves(const std::filesystem::path& path, vtkDataObject* object);
 /// Read in a process of its own first. `prepare` makes a reader ready, file name included; it is called for the trial and for
 /// the reading proper.
 template <typename Reader, typename Prepare>
-vtkSmartPointer<vtkDataObject> output_of(const std::filesystem::path& path, Prepare&& prepare) {
+vtkSmartPointer<vtkDataObject> output_of(const std::filesystem::path& path, core::Progress& progress, Prepare&& prepare) {
     try_in_child(path, [&] {
         auto reader = vtkSmartPointer<Reader>::New();
         const VtkProblems problems;
         prepare(*reader);
         reader->Update();
         check_leaves(path, reader->GetOutputDataObject(0));
-    });
+    }, progress);
     auto reader = vtkSmartPointer<Reader>::New();
     const VtkProblems problems;
     prepare(*reader);
@@ -42,8 +42,8 @@ vtkSmartPointer<vtkDataObject> output_of(const std::filesystem::path& path, Prep
 }
 
 template <typename Reader>
-vtkSmartPointer<vtkDataObject> output_of(const std::filesystem::path& path) {
-    return output_of<Reader>(path, [&](Reader& reader) { reader.SetFileName(path.c_str()); });
+vtkSmartPointer<vtkDataObject> output_of(const std::filesystem::path& path, core::Progress& progress) {
+    return output_of<Reader>(path, progress, [&](Reader& reader) { reader.SetFileName(path.c_str()); });
 }
 
 }  // namespace underbody::postproc

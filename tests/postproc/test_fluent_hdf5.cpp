@@ -438,6 +438,18 @@ TEST(FluentHdf5, AFileCutAnywhereIsRefusedOrWhole) {
     }
 }
 
+TEST(FluentHdf5, ACaseTakesNoDataOfAnotherRun) {
+    const core::TemporaryFolder folder;
+    write_case(folder.path() / "wing-10.cas.h5");
+    write_case(folder.path() / "run.cas.h5");
+    write_data(folder.path() / "wing.dat.h5");
+    write_data(folder.path() / "run-1-00010.dat.h5");
+    EXPECT_EQ(read_field(folder.path() / "wing-10.cas.h5").files.size(), 1U);
+    const auto later = read_field(folder.path() / "run-1-00010.dat.h5");  // results of a series belong to the case they began with
+    ASSERT_EQ(later.files.size(), 2U);
+    EXPECT_THAT(later.files[0], HasSubstr("run.cas.h5"));
+}
+
 TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
     const core::TemporaryFolder folder;
     const auto path = folder.path() / "wrong.cas.h5";
@@ -485,10 +497,21 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
                 HasSubstr("its numbers of 32 bytes are of no kind that is read"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 400}); }), HasSubstr("more nodes"));
     EXPECT_THAT(damaged([&](hid_t f) {
-                    values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 2000000000});
-                    set(f, "/meshes/1", "cellCount", 2000000000);
+                    values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 2000000});
+                    set(f, "/meshes/1", "cellCount", 2000000);
                 }),
-                HasSubstr("2000000000 cells, but its faces have only"));
+                HasSubstr("2000000 cells, but its faces have only"));
+    EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1", "cellCount", 2000000000); }), HasSubstr("cellCount is 2000000000, more than a file of"));
+    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/cells/zoneTopology/maxId", {2, 2}); }), HasSubstr("cells beyond the 2"));
+    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/zoneTopology/minId", {1, 1, 10, 11}), values(f, "/meshes/1/faces/zoneTopology/maxId", {1, 8, 10, 11}); }),
+                HasSubstr("have numbers in common, from 1 on"));
+    // Nodes 9 to 12 twice, 5 to 8 never: their sum is right.
+    write_case(path, 3);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    set(file, "/meshes/1/nodes/coords/2", "minId", 9);
+    set(file, "/meshes/1/nodes/coords/2", "maxId", 12);
+    H5Fclose(file);
+    EXPECT_THAT(test::refusal(path), HasSubstr("its ids begin at 9"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/c1/1", {-7}); }), HasSubstr("names cell"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/c0/1", {2, 1, 1, 1, 1, 2, 2, 2, 2, 1, 77}); }), HasSubstr("names cell 77"));
 }

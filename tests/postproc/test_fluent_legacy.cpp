@@ -249,6 +249,34 @@ TEST(FluentLegacy, DataOfAnotherCaseAreRefused) {
     EXPECT_THAT(test::refusal(alone(folder, whole, "lonely.dat")), HasSubstr("without a mesh"));
 }
 
+TEST(FluentLegacy, ACommentSpeaksOfTheSectionBehindItAlone) {
+    const core::TemporaryFolder folder;
+    ReadOptions options;
+    options.companion = data("ascii.cas");
+    const std::string whole = core::read_file(data("ascii.dat"));
+    const std::string temperature = "(300 (3 10 1 0 1 5 7)(300 301 302))\n";
+    const auto range = [&](const std::string& text, const char* array) {
+        const auto field = read_field(alone(folder, text, "more.dat"), options);
+        return test::range_of(*field.find("floor")->surface, array);
+    };
+    EXPECT_EQ(range(whole + temperature, "temperature").high, 302);
+    EXPECT_LT(range(whole + temperature, "pressure").high, 100);
+    // Nor does one that speaks of another zone.
+    EXPECT_EQ(range(whole + "(0 \"SV_P, domain 1, cell zone 2, 5 cells:\")\n" + temperature, "temperature").low, 300);
+    const auto twice = read_field(alone(folder, whole + temperature + temperature, "twice.dat"), options);
+    EXPECT_TRUE(std::any_of(twice.problems.begin(), twice.problems.end(), [](const auto& p) { return p.message == "SV_T on zone 10 stands twice in the data: the first counts"; }));
+}
+
+TEST(FluentLegacy, TheRunKnowsItsOwnTime) {
+    const core::TemporaryFolder folder;
+    std::string text = core::read_file(data("ascii.cas"));
+    text += "(37 (\n(flow-time 0)\n))\n";
+    ReadOptions options;
+    options.companion = data("ascii.dat");
+    const auto field = read_field(alone(folder, text, "begun.cas"), options);
+    EXPECT_THAT(field.metadata, ::testing::Contains(std::pair<std::string, std::string>("flow-time", "1.5")));
+}
+
 TEST(FluentLegacy, ParentsOfAdaptedFacesAndCellsAreHidden) {
     // The same mesh with the cube declared split into a child that has its faces.
     const core::TemporaryFolder folder;
