@@ -385,8 +385,9 @@ private:
         const auto extent = [&](const Vector& axis) {
             double size = 0;
             for (std::size_t k = 0; k < 3; ++k) {
+                // With its mirror image the body reaches as far on the other side; its half need not begin at the plane.
                 const bool doubled = static_cast<int>(k) == mirror_.axis;
-                size += std::abs(axis[k]) * (extent_.upper[k] - extent_.lower[k]) * (doubled ? 2 : 1);
+                size += std::abs(axis[k]) * (doubled ? 2 * std::max(extent_.upper[k] - mirror_.at, mirror_.at - extent_.lower[k]) : extent_.upper[k] - extent_.lower[k]);
             }
             return size;
         };

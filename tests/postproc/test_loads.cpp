@@ -620,6 +620,24 @@ TEST(Loads, GiveCoefficientsAndTheRunningIntegral) {
     EXPECT_EQ(json["pressure"]["force"].size(), 3U);
 }
 
+TEST(Loads, OfTwoHullsSideBySideHaveTheWidthOfBoth) {
+    LoadsOptions options = about({0, 0, 0});
+    options.symmetry = "y=0";
+    options.references.density = 1000;
+    options.references.speed = 1;
+    Field twin = box(false, false);  // y from 0 to 1: moved to 2 to 3, its image from -3 to -2
+    for (auto& zone : twin.zones) {
+        for (vtkIdType i = 0; i < zone.surface->GetNumberOfPoints(); ++i) {
+            double x[3];
+            zone.surface->GetPoint(i, x);
+            zone.surface->GetPoints()->SetPoint(i, x[0], x[1] + 2, x[2]);
+        }
+    }
+    const auto result = loads(twin, options);
+    ASSERT_TRUE(result.coefficients);
+    EXPECT_NEAR(result.coefficients->width, 6, 1e-12);
+}
+
 TEST(Loads, OfAPlaneCaseArePerMetreDepth) {
     // A circle of lines, p = -rho g y: buoyancy per metre is rho g times the polygon's area.
     constexpr int count = 90;
