@@ -272,11 +272,13 @@ void Reader::read_cells() {
     std::uint64_t total = 0;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         constexpr std::uint32_t solid = 17;
+        constexpr std::uint32_t parent_type = 32;
         CellBlock block;
         block.zone = static_cast<int>(ids[i] & 0x7fffffffU);
         block.first = first[i];
         block.count = last[i] >= first[i] ? last[i] - first[i] + 1 : 0;
         block.element = i < element.size() ? static_cast<int>(std::min<std::uint32_t>(element[i], 255)) : 0;
+        block.parents = i < type.size() && type[i] == parent_type;
         total += block.count;
         if (total > mesh_.cells || block.first == 0) {
             refuse(topology, "cells beyond the " + number(mesh_.cells) + " of the mesh");

@@ -438,6 +438,19 @@ TEST(FluentHdf5, AFileCutAnywhereIsRefusedOrWhole) {
     }
 }
 
+TEST(FluentHdf5, AZoneOfParentsIsNoPartOfTheMesh) {
+    const core::TemporaryFolder folder;
+    const auto path = folder.path() / "split.cas.h5";
+    write_case(path);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t types = H5Dopen2(file, "/meshes/1/cells/zoneTopology/zoneType", H5P_DEFAULT);
+    const std::array<std::int32_t, 2> fluid_and_parents = {1, 32};
+    H5Dwrite(types, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, fluid_and_parents.data());
+    H5Dclose(types);
+    H5Fclose(file);
+    EXPECT_EQ(test::cells_of(read_field(path)), 1);
+}
+
 TEST(FluentHdf5, ACaseTakesNoDataOfAnotherRun) {
     const core::TemporaryFolder folder;
     write_case(folder.path() / "wing-10.cas.h5");
