@@ -18,6 +18,7 @@
 #include "postproc/mirror_plane.h"
 #include "postproc/probe.h"
 #include "postproc/surface_arrays.h"
+#include "postproc/vehicle_axes.h"
 #include "postproc/vector_math.h"
 #include "postproc/view_parts.h"
 
@@ -104,7 +105,7 @@ void keep_what_spreading_lost(vtkUnstructuredGrid& volume, const std::string& na
 /// Base, axes and volume, ready for cuts.
 class Gap {
 public:
-    Gap(const Field& field, const GapOptions& options) : options_(options), starboard_(cross(options.forward, options.up)) {
+    Gap(const Field& field, const GapOptions& options) : axes_(vehicle_axes(options.forward, options.up)) {
         for (const auto& zone : field.zones) {
             if (zone.surface != nullptr && zone.surface->GetNumberOfPolys() > 0 && matches(options.base, zone.name)) {
                 base_.push_back(&zone);
@@ -113,6 +114,7 @@ public:
         if (base_.empty()) {
             throw core::InputError("zone", "no zone fits '" + options.base + "' as the base above the gap", place_of(field), "name it with --base");
         }
+        place_mirror_by_body(field, options);
         volume_ = volume_with(field, {"velocity", "pressure"});
         if (volume_ == nullptr || volume_->GetPointData()->GetArray("velocity") == nullptr) {
             throw core::InputError("missing", "the flow through the gap needs a volume with a velocity", place_of(field), "CFD-Post surfaces do not hold one");
@@ -125,13 +127,15 @@ public:
             widen(box_, one);
         }
         centre_ = {0.5 * (box_[0] + box_[1]), 0.5 * (box_[2] + box_[3]), 0.5 * (box_[4] + box_[5])};
-        half_ = 0.5 * std::abs(dot({box_[1] - box_[0], box_[3] - box_[2], box_[5] - box_[4]}, options.forward));
+        half_ = 0.5 * std::abs(dot({box_[1] - box_[0], box_[3] - box_[2], box_[5] - box_[4]}, axes_.forward));
     }
 
     [[nodiscard]] double half_length() const { return half_; }
     [[nodiscard]] const Point& centre() const { return centre_; }
     [[nodiscard]] vtkUnstructuredGrid& volume() const { return *volume_; }
-    [[nodiscard]] const Point& starboard() const { return starboard_; }
+    [[nodiscard]] const VehicleAxes& axes() const { return axes_; }
+    [[nodiscard]] const std::vector<std::string>& said() const { return said_; }  ///< of the plane, where nobody said where it lies
+    [[nodiscard]] bool is_half() const { return mirror_.axis >= 0; }
 
     /// Extent of the base across the station: its sides and its highest point there.
     struct Section {
@@ -149,15 +153,15 @@ public:
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Point& a = drawn.points[static_cast<std::size_t>(triangle[k])];
                     const Point& b = drawn.points[static_cast<std::size_t>(triangle[(k + 1) % 3])];
-                    const double da = dot(plus(a, centre_, -1), options_.forward) - position;
-                    const double db = dot(plus(b, centre_, -1), options_.forward) - position;
+                    const double da = dot(plus(a, centre_, -1), axes_.forward) - position;
+                    const double db = dot(plus(b, centre_, -1), axes_.forward) - position;
                     if ((da <= 0) == (db <= 0)) {
                         continue;
                     }
                     const Point p = plus(a, plus(b, a, -1), da / (da - db));
-                    s.left = std::min(s.left, dot(p, starboard_));
-                    s.right = std::max(s.right, dot(p, starboard_));
-                    s.height = std::max(s.height, dot(p, options_.up));
+                    s.left = std::min(s.left, dot(p, axes_.starboard));
+                    s.right = std::max(s.right, dot(p, axes_.starboard));
+                    s.height = std::max(s.height, dot(p, axes_.up));
                     s.found = true;
                 }
             }
@@ -167,9 +171,9 @@ public:
 
     [[nodiscard]] Sums flow_at(double position, const Section& section) const {
         vtkNew<vtkPlane> plane;
-        const Point through = plus(centre_, options_.forward, position);
+        const Point through = plus(centre_, axes_.forward, position);
         plane->SetOrigin(through.data());
-        plane->SetNormal(options_.forward.data());
+        plane->SetNormal(axes_.forward.data());
         vtkNew<vtkCutter> cutter;
         cutter->SetInputData(volume_);
         cutter->SetCutFunction(plane);
@@ -197,7 +201,7 @@ public:
                 Point v{};
                 velocity->GetTuple(node, v.data());
                 v = plus(v, more_velocity);
-                polygon.push_back({dot({x[0], x[1], x[2]}, starboard_), dot({x[0], x[1], x[2]}, options_.up), -dot(v, options_.forward), std::sqrt(dot(v, v)),
+                polygon.push_back({dot({x[0], x[1], x[2]}, axes_.starboard), dot({x[0], x[1], x[2]}, axes_.up), -dot(v, axes_.forward), std::sqrt(dot(v, v)),
                                    pressure == nullptr ? 0 : pressure->GetComponent(node, 0) + more_pressure});
             }
             polygon = clipped(polygon, &Corner::side, section.left, -1);
@@ -207,9 +211,38 @@ public:
         return sums;
     }
 
+    /// To starboard: the middle of the section of the whole base, just inside the water of half a model.
+    [[nodiscard]] double middle_of(const Section& section) const {
+        if (!is_half()) {
+            return 0.5 * (section.left + section.right);
+        }
+        const double plane = mirror_.at * axes_.starboard[static_cast<std::size_t>(mirror_.axis)];
+        const double inside = section.left + section.right > 2 * plane ? 1 : -1;
+        return plane + inside * 1e-3 * std::max(std::abs(section.left - plane), std::abs(section.right - plane));
+    }
+
 private:
-    const GapOptions& options_;
-    Point starboard_;
+    void place_mirror_by_body(const Field& field, const GapOptions& options) {
+        std::vector<const Zone*> body = surfaces_of_body(field, options.zones, options.base);
+        for (const Zone* zone : base_) {
+            if (std::find(body.begin(), body.end(), zone) == body.end()) {
+                body.push_back(zone);
+            }
+        }
+        core::Problems problems;
+        mirror_ = mirror_of(options.symmetry, body, field, problems);
+        for (const auto& problem : problems) {
+            said_.push_back(problem.message);
+        }
+        if (is_half() && std::abs(axes_.starboard[static_cast<std::size_t>(mirror_.axis)]) < 0.999) {
+            throw core::UsageError("usage", "the symmetry plane of a half model looks to its side, not along '" + options.symmetry + "'", {},
+                                   "the flow under the base is that of both halves, port and starboard");
+        }
+    }
+
+    VehicleAxes axes_;
+    PlacedMirror mirror_;
+    std::vector<std::string> said_;
     std::vector<const Zone*> base_;
     vtkSmartPointer<vtkUnstructuredGrid> volume_;
     Box box_ = empty_box();
@@ -224,7 +257,7 @@ core::Table gap_flow(const Field& field, const GapOptions& options, core::Progre
         throw core::UsageError("usage", "one station at least");
     }
     const Gap gap(field, options);
-    const double halves = mirror_plane_from(options.symmetry).is_half() ? 2 : 1;
+    const double halves = gap.is_half() ? 2 : 1;
     const auto density = options.density ? options.density : field.density;
     std::vector<double> position, width, area, flow, mass, bulk, speed, pressure, bulk_pressure;
     for (int i = 0; i < options.stations; ++i) {
@@ -246,6 +279,7 @@ core::Table gap_flow(const Field& field, const GapOptions& options, core::Progre
         bulk_pressure.push_back(sums.flow != 0 ? sums.flow_pressure / sums.flow : std::numeric_limits<double>::quiet_NaN());
     }
     core::Table table;
+    table.comments = gap.said();
     table.add_numbers("position", "m", position);
     table.add_numbers("width", "m", width);
     table.add_numbers("area", "m^2", area);
@@ -264,12 +298,15 @@ core::Table gap_flow(const Field& field, const GapOptions& options, core::Progre
 
 core::Figure gap_profile_figure(const Field& field, const GapOptions& options, core::Progress& progress) {
     const Gap gap(field, options);
-    const double ground = lowest(gap.volume(), options.up);
+    const double ground = lowest(gap.volume(), gap.axes().up);
     core::Figure figure;
     figure.title = "velocity across the gap at places along the base (+: forward of its middle)";
     figure.x = {"velocity of the stream", "m/s"};
     figure.y = {"height over the ground", "mm"};
     figure.caption = "Velocity against the forward axis between ground and base, in the middle plane, at stations along the base (position from its centre, forward positive).";
+    for (const auto& said : gap.said()) {
+        figure.caption += " Note: " + said + ".";
+    }
     std::size_t colour = 0;
     for (const double share : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
         progress.check();
@@ -278,25 +315,21 @@ core::Figure gap_profile_figure(const Field& field, const GapOptions& options, c
         if (!section.found) {
             continue;
         }
-        // Just beside the middle plane: a half model ends there.
-        const bool half = mirror_plane_from(options.symmetry).is_half();
-        const double reach = std::max(std::abs(section.left), std::abs(section.right));
-        const double side = half ? (section.right > -section.left ? 1.0 : -1.0) * 1e-3 * reach : 0.5 * (section.left + section.right);
-        Point foot = plus(gap.centre(), options.forward, at);
-        foot = plus(foot, gap.starboard(), side - dot(foot, gap.starboard()));
-        foot = plus(foot, options.up, ground - dot(foot, options.up));
+        Point foot = plus(gap.centre(), gap.axes().forward, at);
+        foot = plus(foot, gap.axes().starboard, gap.middle_of(section) - dot(foot, gap.axes().starboard));
+        foot = plus(foot, gap.axes().up, ground - dot(foot, gap.axes().up));
         ProbeOptions arrays;
         arrays.arrays = {"velocity"};
         constexpr int count = 61;
         const double gap_height = section.height - ground;
-        const core::Table line = probe_line(field, plus(foot, options.up, 1e-4 * gap_height), plus(foot, options.up, (1 - 1e-4) * gap_height), count, arrays, progress);
+        const core::Table line = probe_line(field, plus(foot, gap.axes().up, 1e-4 * gap_height), plus(foot, gap.axes().up, (1 - 1e-4) * gap_height), count, arrays, progress);
         core::FigureCurve curve;
-        curve.name = (at > 0 ? "+" : "") + core::format_number(1000 * at, 3) + " mm";
+        curve.name = std::string(at > 0 ? "+" : "") + core::format_number(1000 * at, 3) + " mm";
         curve.colour = core::palette(colour++);
         for (std::size_t i = 0; i < count; ++i) {
             const Point v = {line.numbers("velocity_x")[i], line.numbers("velocity_y")[i], line.numbers("velocity_z")[i]};
             if (std::isfinite(v[0])) {
-                curve.x.push_back(-dot(v, options.forward));
+                curve.x.push_back(-dot(v, gap.axes().forward));
                 curve.y.push_back(1000 * gap_height * (1e-4 + (1 - 2e-4) * static_cast<double>(i) / (count - 1)));
             }
         }

@@ -41,7 +41,8 @@ core::Table probe_plane(const Field& field, const std::array<double, 3>& origin,
 struct GapOptions {
     std::array<double, 3> forward{1, 0, 0};  ///< file axes
     std::array<double, 3> up{0, 0, 1};
-    std::string symmetry;                    ///< half model: flows are those of both halves
+    std::string symmetry;                    ///< half model: flows are those of both halves; its plane as for `loads`
+    std::vector<std::string> zones;          ///< surfaces of the body, by which the plane is placed; empty: as `loads` chooses them
     std::string base = "*base*";             ///< zone above the gap
     int stations = 9;                        ///< along the base, evenly between its ends
     std::optional<double> density;           ///< kg/m^3; default: the field's own; none: no mass flow
@@ -51,7 +52,8 @@ struct GapOptions {
 /// the centre of the base), width [m] and area [m^2] of the section under the base, volume_flow [m^3/s] and
 /// mass_flow [kg/s] (when the density is known), positive against forward (as the stream runs), bulk_velocity [m/s] =
 /// volume_flow / area, mean_speed [m/s], mean_pressure [Pa] (area means), bulk_pressure [Pa] (flow means).
-/// Throws core::InputError without a volume with velocity or without a base.
+/// Throws core::InputError without a volume with velocity or without a base, or for a half model on both sides of its
+/// plane; core::UsageError for axes that are not perpendicular, or a symmetry plane that does not look to starboard.
 core::Table gap_flow(const Field& field, const GapOptions& options = {}, core::Progress& progress = core::Progress::none());
 
 /// Velocity against the forward axis over the height between ground and base, at a few stations in the middle plane.

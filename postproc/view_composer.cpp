@@ -10,7 +10,6 @@
 
 #include "core/text.h"
 #include "postproc/colours.h"
-#include "postproc/mirror_plane.h"
 #include "postproc/stated_loads.h"
 #include "postproc/vector_math.h"
 
@@ -64,20 +63,19 @@ std::vector<RangeKey> range_keys() {
 }
 
 ViewComposer::ViewComposer(const Field& field, const ViewOptions& options)
-    : field_(field), options_(options), zones_(body_zones(field, options.zones)), starboard_(cross(options.forward, options.up)) {
+    : field_(field), options_(options), axes_(vehicle_axes(options.forward, options.up)), zones_(surfaces_of_body(field, options.zones, options.base)) {
     for (const Zone* zone : zones_) {
+        widen(body_, box_of(*zone));
         if (matches(options.base, zone->name)) {
             widen(base_box_, box_of(*zone));
             has_base_ = true;
         }
     }
-    if (options.zones.empty()) {  // a ground is a wall too, but it would hide the body
-        std::erase_if(zones_, [&](const Zone* zone) { return !near_body(*zone); });
+    core::Problems problems;
+    mirror_ = mirror_of(options.symmetry, zones_, field, problems);
+    for (const auto& problem : problems) {
+        mirror_said_ += " Note: " + problem.message + ".";
     }
-    for (const Zone* zone : zones_) {
-        widen(body_, box_of(*zone));
-    }
-    find_mirror();
     if (mirror_.axis < 0) {
         find_symmetry_zone();
     }
@@ -133,18 +131,6 @@ bool ViewComposer::volume_has(const std::string& array) const {
     });
 }
 
-void ViewComposer::find_mirror() {
-    const MirrorPlane plane = mirror_plane_from(options_.symmetry);
-    mirror_.axis = plane.axis;
-    if (plane.at) {
-        mirror_.at = *plane.at;
-    } else if (plane.is_half() && !zones_.empty()) {
-        const double low = body_[static_cast<std::size_t>(2 * mirror_.axis)];
-        const double high = body_[static_cast<std::size_t>(2 * mirror_.axis + 1)];
-        mirror_.at = std::abs(low) < std::abs(high) ? low : high;
-    }
-}
-
 void ViewComposer::find_symmetry_zone() {
     int found = 0;
     for (const auto& zone : field_.zones) {
@@ -164,20 +150,13 @@ void ViewComposer::find_symmetry_zone() {
     }
 }
 
-bool ViewComposer::near_body(const Zone& zone) const { return !has_base_ || diagonal(box_of(zone)) < 4 * diagonal(base_box_); }
-
 Point ViewComposer::base_centre() const {
     const Box& b = has_base_ ? base_box_ : body_;
     return {0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5])};
 }
 
 Box ViewComposer::whole_body() const {
-    Box box = empty_box();
-    for (const Zone* zone : zones_) {
-        if (near_body(*zone)) {
-            widen(box, box_of(*zone));
-        }
-    }
+    Box box = body_;
     if (mirror_.axis >= 0) {
         const auto k = static_cast<std::size_t>(mirror_.axis);
         const double reach = std::max(std::abs(box[2 * k] - mirror_.at), std::abs(box[2 * k + 1] - mirror_.at));
@@ -189,8 +168,8 @@ Box ViewComposer::whole_body() const {
 
 Camera ViewComposer::from_below() const {
     Camera camera;
-    camera.towards = options_.up;
-    camera.up = starboard_;
+    camera.towards = axes_.up;
+    camera.up = axes_.starboard;
     camera.box = options_.box;
     return camera;
 }
@@ -217,6 +196,7 @@ void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {
     if (scene.range) {
         scene.range = drawn_range(*scene.range, scene.colours);
     }
+    composed.caption += mirror_said_;
 }
 
 std::pair<double, double> telling_range(std::vector<double> values, std::string& extremes, const std::string& unit) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "postproc/field.h"
+#include "postproc/vehicle_axes.h"
 #include "postproc/view_parts.h"
 #include "postproc/views.h"
 
@@ -43,7 +44,8 @@ std::pair<double, double> range_of(const Scene& scene);
 /// What a case has to show, and from where it is looked at. Lives shorter than field and options.
 class ViewComposer {
 public:
-    /// Throws core::UsageError: a symmetry plane that is none, a range for a view that nobody knows.
+    /// Throws core::UsageError: a symmetry plane that is none, axes that are not perpendicular, a range for a view that
+    /// nobody knows; core::InputError: zones that are not there, a half model that is none (`place_mirror`).
     ViewComposer(const Field& field, const ViewOptions& options);
 
     [[nodiscard]] std::vector<std::string> possible() const;
@@ -52,7 +54,7 @@ public:
     [[nodiscard]] ComposedView compose(const std::string& name) const;
 
     [[nodiscard]] const std::vector<const Zone*>& zones() const { return zones_; }  ///< of the body, without a ground
-    [[nodiscard]] const ViewMirror& mirror() const { return mirror_; }
+    [[nodiscard]] const PlacedMirror& mirror() const { return mirror_; }
     [[nodiscard]] const std::string& case_name() const { return name_; }
     [[nodiscard]] Point base_centre() const;  ///< m, of what there is of it: half a model has half a base
     [[nodiscard]] Box whole_body() const;     ///< both halves
@@ -84,12 +86,10 @@ private:
     [[nodiscard]] ComposedView plane_view(const std::string& array) const;
     [[nodiscard]] ComposedView surface_view(const std::string& array, bool base_range) const;
 
-    void find_mirror();
     void find_symmetry_zone();
     [[nodiscard]] std::string file() const { return field_.files.empty() ? "" : field_.files.front(); }
     [[nodiscard]] bool has_array(const std::string& array) const;
     [[nodiscard]] bool volume_has(const std::string& array) const;
-    [[nodiscard]] bool near_body(const Zone& zone) const;
     [[nodiscard]] std::pair<Point, Point> middle_plane() const;
     [[nodiscard]] Box surroundings(const DrawnSurface& plane) const;
     [[nodiscard]] std::vector<Point> gap_seeds(double gap) const;
@@ -97,13 +97,14 @@ private:
 
     const Field& field_;
     const ViewOptions& options_;
+    VehicleAxes axes_;
     std::vector<const Zone*> zones_;
-    Point starboard_{};
     Box body_ = empty_box();
     Box base_box_ = empty_box();
     bool has_base_ = false;
-    ViewMirror mirror_;
-    ViewMirror symmetry_zone_;  ///< a flat boundary that the file calls a symmetry, when no mirror was asked for
+    PlacedMirror mirror_;
+    std::string mirror_said_;     ///< for the captions: where nobody said that the plane lies
+    PlacedMirror symmetry_zone_;  ///< a flat boundary that the file calls a symmetry, when no mirror was asked for
     std::string name_;
 };
 

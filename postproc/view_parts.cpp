@@ -46,20 +46,63 @@ void widen(Box& box, const Box& other) {
 
 double diagonal(const Box& box) { return std::hypot(box[1] - box[0], box[3] - box[2], box[5] - box[4]); }
 
-std::vector<const Zone*> body_zones(const Field& field, const std::vector<std::string>& patterns) {
+namespace {
+
+std::vector<const Zone*> named_surfaces(const Field& field, const std::vector<std::string>& patterns) {
     std::vector<const Zone*> zones;
-    if (patterns.empty()) {
-        std::vector<const Zone*> said_otherwise;
-        zones = possible_walls(field, said_otherwise);
-    } else {
-        for (const auto& zone : field.zones) {
-            if (zone.surface != nullptr && zone.volume == nullptr && matches_any(patterns, zone.name)) {
+    std::vector<std::string> names;
+    for (const auto& zone : field.zones) {
+        if (zone.surface != nullptr && zone.volume == nullptr) {
+            names.push_back(zone.name);
+            if (matches_any(patterns, zone.name)) {
                 zones.push_back(&zone);
             }
         }
     }
-    std::erase_if(zones, [](const Zone* zone) { return zone->surface->GetNumberOfPolys() == 0; });
+    for (const auto& pattern : patterns) {
+        if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches(pattern, name); })) {
+            throw core::InputError("zone", "no surface fits '" + pattern + "'", {field.files.empty() ? "" : field.files.front(), {}, {}, {}}, core::did_you_mean(pattern, names));
+        }
+    }
     return zones;
+}
+
+void leave_out_other_walls(std::vector<const Zone*>& zones, const std::string& base, int dimension) {
+    std::vector<SurfaceArrays> surfaces;
+    std::vector<WallShape> walls;
+    surfaces.reserve(zones.size());
+    for (const Zone* zone : zones) {
+        surfaces.emplace_back(*zone->surface);
+        walls.push_back(shape_of(zone->name, surfaces.back(), zone->normals_into_fluid, dimension));
+        walls.back().surface = &surfaces.back();
+    }
+    const auto others = walls_beside_body(walls);
+    std::erase_if(zones, [&](const Zone* zone) {
+        return !matches(base, zone->name) && std::any_of(others.begin(), others.end(), [&](const LeftOutZone& other) { return other.name == zone->name; });
+    });
+}
+
+}  // namespace
+
+std::vector<const Zone*> surfaces_of_body(const Field& field, const std::vector<std::string>& patterns, const std::string& base) {
+    std::vector<const Zone*> said_otherwise;
+    std::vector<const Zone*> zones = patterns.empty() ? possible_walls(field, said_otherwise) : named_surfaces(field, patterns);
+    std::erase_if(zones, [](const Zone* zone) { return zone->surface->GetNumberOfPolys() == 0; });
+    if (patterns.empty() && zones.size() > 1) {
+        leave_out_other_walls(zones, base, field.dimension);
+    }
+    return zones;
+}
+
+PlacedMirror mirror_of(const std::string& symmetry, const std::vector<const Zone*>& body, const Field& field, core::Problems& problems) {
+    std::vector<SurfaceArrays> surfaces;
+    surfaces.reserve(body.size());
+    std::vector<const SurfaceArrays*> all;
+    for (const Zone* zone : body) {
+        surfaces.emplace_back(*zone->surface);
+        all.push_back(&surfaces.back());
+    }
+    return place_mirror(mirror_plane_from(symmetry), all, {field.files.empty() ? "" : field.files.front(), {}, {}, {}}, problems);
 }
 
 namespace {
@@ -148,7 +191,7 @@ DrawnSurface drawn_surface(const Zone& zone, const std::string& array) {
     return drawn;
 }
 
-void mirror_into(DrawnSurface& surface, const ViewMirror& mirror) {
+void mirror_into(DrawnSurface& surface, const PlacedMirror& mirror) {
     if (mirror.axis < 0) {
         return;
     }
@@ -170,7 +213,7 @@ void mirror_into(DrawnSurface& surface, const ViewMirror& mirror) {
     }
 }
 
-DrawnLine mirrored(const DrawnLine& line, const ViewMirror& mirror) {
+DrawnLine mirrored(const DrawnLine& line, const PlacedMirror& mirror) {
     DrawnLine other = line;
     for (auto& p : other.points) {
         p[static_cast<std::size_t>(mirror.axis)] = 2 * mirror.at - p[static_cast<std::size_t>(mirror.axis)];
@@ -321,7 +364,7 @@ DrawnSurface plane_cells(vtkUnstructuredGrid& volume, const std::string& array) 
 namespace {
 
 /// The velocity without its part through the mirror plane at the plane's own nodes (averages of cells leave some there).
-vtkSmartPointer<vtkDataArray> velocity_along(vtkUnstructuredGrid& volume, const ViewMirror& mirror) {
+vtkSmartPointer<vtkDataArray> velocity_along(vtkUnstructuredGrid& volume, const PlacedMirror& mirror) {
     auto* velocity = volume.GetPointData()->GetArray("velocity");
     if (velocity == nullptr || mirror.axis < 0) {
         return velocity;
@@ -356,7 +399,7 @@ DrawnLine line_of(vtkPolyData& traced, vtkIdType cell) {
 
 }  // namespace
 
-std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest, const ViewMirror& mirror) {
+std::vector<DrawnLine> streamlines(vtkUnstructuredGrid& volume, const std::vector<Point>& seeds, double longest, const PlacedMirror& mirror) {
     vtkNew<vtkPoints> points;
     for (const auto& seed : seeds) {
         points->InsertNextPoint(seed.data());

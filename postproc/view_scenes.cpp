@@ -81,9 +81,9 @@ ComposedView ViewComposer::underbody_view(const std::string& array) const {
 
 ComposedView ViewComposer::hull_view(const std::string& array) const {
     ComposedView composed = surface_view(array, false);
-    const Point eye = plus(plus(options_.forward, starboard_, -0.9), options_.up, 0.55);
+    const Point eye = plus(plus(axes_.forward, axes_.starboard, -0.9), axes_.up, 0.55);
     composed.scene.camera.towards = {-eye[0], -eye[1], -eye[2]};
-    composed.scene.camera.up = options_.up;
+    composed.scene.camera.up = axes_.up;
     composed.scene.camera.box = options_.box;
     composed.scene.title = view_label(array) + " on the hull";
     composed.caption = "Seen from above the bow, port side." + composed.caption;
@@ -143,10 +143,10 @@ ComposedView ViewComposer::plane_view(const std::string& array) const {
 
 /// A point of the plane through the middle of the body, and the direction in which one looks at it.
 std::pair<Point, Point> ViewComposer::middle_plane() const {
-    const ViewMirror& plane = mirror_.axis >= 0 ? mirror_ : symmetry_zone_;
+    const PlacedMirror& plane = mirror_.axis >= 0 ? mirror_ : symmetry_zone_;
     Point through = base_centre();
     if (plane.axis < 0) {
-        return {through, {-starboard_[0], -starboard_[1], -starboard_[2]}};
+        return {through, {-axes_.starboard[0], -axes_.starboard[1], -axes_.starboard[2]}};
     }
     const auto k = static_cast<std::size_t>(plane.axis);
     const double inside = 0.5 * (body_[2 * k] + body_[2 * k + 1]) > plane.at ? 1 : -1;
@@ -169,15 +169,13 @@ ComposedView ViewComposer::symmetry_view(const std::string& array) const {
     plane.contours = 14;
     scene.surfaces.push_back(std::move(plane));
     for (const Zone* zone : zones_) {
-        if (near_body(*zone)) {
-            DrawnSurface body = behind(drawn_surface(*zone, ""), through, normal);
-            body.colour = {0.80, 0.81, 0.83};
-            body.smooth = false;
-            scene.surfaces.push_back(std::move(body));
-        }
+        DrawnSurface body = behind(drawn_surface(*zone, ""), through, normal);
+        body.colour = {0.80, 0.81, 0.83};
+        body.smooth = false;
+        scene.surfaces.push_back(std::move(body));
     }
     scene.camera.towards = normal;
-    scene.camera.up = options_.up;
+    scene.camera.up = axes_.up;
     scene.camera.box = box;
     const bool symmetry = mirror_.axis >= 0 || symmetry_zone_.axis >= 0;
     scene.title = view_label(array) + (symmetry ? " in the symmetry plane" : " in the middle plane");
@@ -187,19 +185,11 @@ ComposedView ViewComposer::symmetry_view(const std::string& array) const {
 
 /// The body with some room, not beyond what there is.
 Box ViewComposer::surroundings(const DrawnSurface& plane) const {
-    Box box = empty_box();
-    for (const Zone* zone : zones_) {
-        if (near_body(*zone)) {
-            Box one{};
-            zone->surface->GetBounds(one.data());
-            widen(box, one);
-        }
-    }
-    box = options_.box.value_or(box);
+    Box box = options_.box.value_or(body_);
     const double length = diagonal(box);
     const Box all = box_of(plane);
     for (std::size_t k = 0; k < 3; ++k) {
-        const double share = std::abs(options_.forward[k]) > 0.5 || std::abs(options_.up[k]) > 0.5 ? 0.30 : 0;
+        const double share = std::abs(axes_.forward[k]) > 0.5 || std::abs(axes_.up[k]) > 0.5 ? 0.30 : 0;
         box[2 * k] = std::max(box[2 * k] - share * length, std::min(all[2 * k], box[2 * k]));
         box[2 * k + 1] = std::min(box[2 * k + 1] + share * length, std::max(all[2 * k + 1], box[2 * k + 1]));
     }
@@ -210,18 +200,18 @@ Box ViewComposer::surroundings(const DrawnSurface& plane) const {
 /// between ground and base.
 std::vector<Point> ViewComposer::gap_seeds(double gap) const {
     const bool half = mirror_.axis >= 0;
-    const double half_length = 0.5 * extent(base_box_, options_.forward);
-    const double width = extent(base_box_, starboard_) * (half ? 1.0 : 0.5);
-    Point middle = plus(base_centre(), options_.up, -0.5 * gap);
+    const double half_length = 0.5 * extent(base_box_, axes_.forward);
+    const double width = extent(base_box_, axes_.starboard) * (half ? 1.0 : 0.5);
+    Point middle = plus(base_centre(), axes_.up, -0.5 * gap);
     if (half) {
         middle[static_cast<std::size_t>(mirror_.axis)] = mirror_.at;
     }
-    const Point side = half ? middle_plane().second : starboard_;
+    const Point side = half ? middle_plane().second : axes_.starboard;
     std::vector<Point> seeds;
     for (const auto& [station, across] : {std::pair{0.0, 22}, std::pair{-0.6, 7}}) {
         for (int i = 0; i < across; ++i) {
             const double share = station < 0 ? 0.75 + 0.3 * (i + 0.5) / across : (i + 0.5) / across;
-            const Point at = plus(middle, options_.forward, station * half_length);
+            const Point at = plus(middle, axes_.forward, station * half_length);
             seeds.push_back(plus(at, side, share * width));
             if (!half) {
                 seeds.push_back(plus(at, side, -share * width));
@@ -235,7 +225,7 @@ ComposedView ViewComposer::gap_view(const std::string& array) const {
     ComposedView composed;
     Scene& scene = composed.scene;
     const auto volume = volume_with(field_, {array});
-    const double gap = dot(base_centre(), options_.up) - lowest(*volume, options_.up);
+    const double gap = dot(base_centre(), axes_.up) - lowest(*volume, axes_.up);
     for (auto& line : streamlines(*volume, gap_seeds(gap), 3 * diagonal(base_box_), mirror_)) {
         line.width = 2;
         if (mirror_.axis >= 0) {
@@ -244,13 +234,11 @@ ComposedView ViewComposer::gap_view(const std::string& array) const {
         scene.lines.push_back(std::move(line));
     }
     for (const Zone* zone : zones_) {
-        if (near_body(*zone)) {
-            DrawnSurface body = drawn_surface(*zone, "");
-            const bool base = matches(options_.base, zone->name);
-            body.colour = base ? Point{0.88, 0.89, 0.91} : Point{0.76, 0.78, 0.81};
-            mirror_into(body, mirror_);
-            scene.surfaces.push_back(std::move(body));
-        }
+        DrawnSurface body = drawn_surface(*zone, "");
+        const bool base = matches(options_.base, zone->name);
+        body.colour = base ? Point{0.88, 0.89, 0.91} : Point{0.76, 0.78, 0.81};
+        mirror_into(body, mirror_);
+        scene.surfaces.push_back(std::move(body));
     }
     scene.camera = from_below();
     scene.camera.box = options_.box.value_or(whole_body());

@@ -80,8 +80,8 @@ void end_drawing();
 struct ViewOptions {
     std::array<double, 3> forward{1, 0, 0};  ///< file axes
     std::array<double, 3> up{0, 0, 1};
-    std::string symmetry;                    ///< half model: its plane's normal axis; the mirror image is drawn too
-    std::vector<std::string> zones;          ///< surfaces of the body; empty: walls, or all surfaces with pressure
+    std::string symmetry;                    ///< half model: its plane, "y" or "y=0.1"; the mirror image is drawn too. A body on both sides of it is refused
+    std::vector<std::string> zones;          ///< surfaces of the body; empty: as `loads` chooses them, without a ground or a tunnel
     std::string base = "*base*";             ///< zone seen from below
     std::string case_name;                   ///< for the subtitle; default: the file's name
     double speed = 0;                        ///< m/s, for pressure coefficients in subtitles; 0: unknown

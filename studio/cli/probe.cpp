@@ -61,6 +61,7 @@ core::Table look(const postproc::Field& field, const Options& given, Shell& shel
         gap.forward = postproc::axis_from(given.forward);
         gap.up = postproc::axis_from(given.up);
         gap.symmetry = given.symmetry;
+        gap.zones = given.field.zones;
         gap.base = given.base;
         gap.stations = given.gap;
         if (!given.density.empty()) {

@@ -127,6 +127,7 @@ void draw_case(Shell& shell, const Options& given, const postproc::Field& field,
             gap.forward = options.forward;
             gap.up = options.up;
             gap.symmetry = options.symmetry;
+            gap.zones = options.zones;
             gap.base = options.base;
             core::Figure figure = postproc::gap_profile_figure(field, gap, shell.progress());
             figure.title += ", " + options.case_name;

@@ -23,8 +23,8 @@ namespace {
 using Vector = std::array<double, 3>;
 
 /// A gap of 1 m x 0.4 m x 0.1 m under a flat base: velocity -(1 + 20 z) along x, p = 5 x + z.
-/// `in_cells`: the values at the middle of the cells, as a finite-volume solver has them.
-Field gap_block(bool in_cells = false, const std::function<Vector(const Vector&)>& stream = [](const Vector& p) { return Vector{-(1 + 20 * p[2]), 0, 0}; }) {
+/// `in_cells`: the values at the middle of the cells, as a finite-volume solver has them. `beside`: all moved along y.
+Field gap_block(bool in_cells = false, const std::function<Vector(const Vector&)>& stream = [](const Vector& p) { return Vector{-(1 + 20 * p[2]), 0, 0}; }, double beside = 0) {
     constexpr std::array<int, 3> n = {10, 8, 6};
     constexpr std::array<double, 3> size = {1, 0.4, 0.1};
     Zone volume;
@@ -43,7 +43,7 @@ Field gap_block(bool in_cells = false, const std::function<Vector(const Vector&)
         for (int j = 0; j <= n[1]; ++j) {
             for (int i = 0; i <= n[0]; ++i) {
                 const double x = size[0] * (static_cast<double>(i) / n[0] - 0.5);
-                const double y = size[1] * (static_cast<double>(j) / n[1] - 0.5);
+                const double y = beside + size[1] * (static_cast<double>(j) / n[1] - 0.5);
                 const double z = size[2] * k / n[2];
                 points->InsertNextPoint(x, y, z);
                 if (!in_cells) {
@@ -83,7 +83,7 @@ Field gap_block(bool in_cells = false, const std::function<Vector(const Vector&)
     base.surface = vtkSmartPointer<vtkPolyData>::New();
     vtkNew<vtkPoints> corners;  // narrower than the water: 0.8 m x 0.2 m
     for (const auto& [x, y] : {std::pair{-0.4, -0.1}, {0.4, -0.1}, {0.4, 0.1}, {-0.4, 0.1}}) {
-        corners->InsertNextPoint(x, y, 0.1);
+        corners->InsertNextPoint(x, beside + y, 0.1);
     }
     vtkNew<vtkCellArray> face;
     face->InsertNextCell({0, 3, 2, 1});
@@ -133,6 +133,37 @@ TEST(Probe, GivesTheFlowThroughTheGapInClosedForm) {
         // Flow mean of z: integral of (1 + 20 z) z over integral of (1 + 20 z), height 0.1.
         EXPECT_NEAR(flow.numbers("bulk_pressure")[i], 5 * x + (0.005 + 20 * 1e-3 / 3) / 0.2, 1e-6);
     }
+}
+
+/// Half a gap: base and water begin at a plane that is not y = 0.
+Field half_gap(double plane) {
+    return gap_block(false, [](const Vector& p) { return Vector{-(1 + 20 * p[2]), 0, 0}; }, plane + 0.1);
+}
+
+TEST(Probe, CountsBothHalvesOfAHalfModelAlone) {
+    GapOptions options;
+    options.stations = 1;
+    for (const char* symmetry : {"y", "y=0.3"}) {
+        options.symmetry = symmetry;
+        const core::Table flow = gap_flow(half_gap(0.3), options);
+        EXPECT_NEAR(flow.numbers("width")[0], 0.4, 1e-7);
+        EXPECT_NEAR(flow.numbers("volume_flow")[0], 0.08, 1e-8);
+        EXPECT_EQ(flow.comments.size(), symmetry == std::string("y") ? 1U : 0U);  // nobody said where it lies
+    }
+    for (const char* symmetry : {"y", "y=0.05"}) {  // the whole model is no half
+        options.symmetry = symmetry;
+        EXPECT_THROW(gap_flow(gap_block(), options), core::InputError);
+        EXPECT_THROW(gap_profile_figure(gap_block(), options), core::InputError);
+    }
+    options.symmetry = "z";  // the halves would lie above each other
+    EXPECT_THROW(gap_flow(half_gap(0.3), options), core::UsageError);
+}
+
+TEST(Probe, RefusesAxesThatAreNone) {
+    GapOptions options;
+    options.forward = options.up;
+    EXPECT_THROW(gap_flow(gap_block(), options), core::UsageError);
+    EXPECT_THROW(gap_profile_figure(gap_block(), options), core::UsageError);
 }
 
 TEST(Probe, GivesTheFlowOfCellValuesAsTheCellsHaveIt) {
@@ -208,6 +239,17 @@ TEST(Probe, DrawsTheProfileAcrossTheGap) {
         EXPECT_NEAR(curve.x[i], 1 + 20 * curve.y[i] / 1000, 1e-9);
     }
     EXPECT_GT(curve.x.size(), 55U);
+}
+
+TEST(Probe, DrawsTheProfileWhereTheMiddleOfAHalfModelLies) {
+    GapOptions options;
+    for (const double plane : {0.3, -0.4}) {
+        options.symmetry = "y=" + std::to_string(plane);
+        for (const auto& curve : gap_profile_figure(half_gap(plane), options).curves) {
+            ASSERT_GT(curve.x.size(), 55U) << plane;
+            EXPECT_NEAR(curve.x.back(), 1 + 20 * curve.y.back() / 1000, 1e-9);
+        }
+    }
 }
 
 }  // namespace

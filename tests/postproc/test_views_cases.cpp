@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "postproc/field.h"
+#include "postproc/loads.h"
 #include "postproc/views.h"
 #include "tests/support/support.h"
 
@@ -90,12 +91,12 @@ TEST(ViewsOfAVolume, LeaveAGroundOutThatWouldHideTheBody) {
 }
 
 /// Half a box from y = 0 to `width`, 2 m long, over z = 0.1; pressure `level` + 3 x, wall shear of size 2 + y. `base`: its
-/// lower side is a zone of its own.
-Field half_box(double width, double level, bool base = true) {
+/// lower side is a zone of its own. `from`: all moved along y, pressure and shear with it.
+Field half_box(double width, double level, bool base = true, double from = 0) {
     const auto rows = [&](std::initializer_list<std::array<double, 3>> places) {
         std::string text = "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa ]\n";
         for (const auto& [x, share, z] : places) {
-            text += std::to_string(x) + "," + std::to_string(share * width) + "," + std::to_string(z) + "," + std::to_string(level + 3 * x) + "," + std::to_string(2 + share * width) + ",0,0\n";
+            text += std::to_string(x) + "," + std::to_string(from + share * width) + "," + std::to_string(z) + "," + std::to_string(level + 3 * x) + "," + std::to_string(2 + share * width) + ",0,0\n";
         }
         return text;
     };
@@ -135,20 +136,95 @@ TEST(ViewsOfASurface, ShowTheShearOfABodyWithoutABaseOnItsHull) {
     EXPECT_THAT(possible_views(half_box(0.5, 0, false)), testing::ElementsAre("pressure-hull", "shear-hull"));
 }
 
-TEST(ViewsOfAHalfModel, TakeTheirPlaneWithItsUnit) {
-    const Field field = half_box(0.5, 0);
-    ViewOptions metres;
-    metres.symmetry = "y=-0.1";
-    ViewOptions millimetres;
-    millimetres.symmetry = "y=-100 mm";
-    ViewOptions zero;
-    zero.symmetry = "y";
+ViewOptions with_symmetry(const std::string& symmetry) {
+    ViewOptions options;
+    options.symmetry = symmetry;
+    return options;
+}
+
+ViewOptions of_zones(std::vector<std::string> zones) {
+    ViewOptions options;
+    options.zones = std::move(zones);
+    return options;
+}
+
+std::string refusal(const Field& field, const std::string& symmetry) {
+    try {
+        view(field, "pressure-underbody", with_symmetry(symmetry));
+    } catch (const core::Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(ViewsOfAHalfModel, TakeTheirPlaneWithItsUnitOrWhereTheSurfaceIsOpen) {
+    const Field field = half_box(0.5, 0, true, -1);
+    const ViewOptions metres = with_symmetry("y=-1");
+    const ViewOptions millimetres = with_symmetry("y=-1000 mm");
+    const ViewOptions open = with_symmetry("y");  // nearer to 0 lies the other side
     const std::string png = view(field, "pressure-underbody", metres).png;
     EXPECT_EQ(png, view(field, "pressure-underbody", millimetres).png);
-    EXPECT_NE(png, view(field, "pressure-underbody", zero).png);
-    ViewOptions none;
-    none.symmetry = "q";
-    EXPECT_THROW(view(field, "pressure-underbody", none), core::UsageError);
+    EXPECT_EQ(png, view(field, "pressure-underbody", open).png);
+    EXPECT_THAT(view(field, "pressure-underbody", open).caption, testing::HasSubstr("taken at y = -1 m"));
+    EXPECT_THAT(view(field, "pressure-underbody", metres).caption, testing::Not(testing::HasSubstr("taken at")));
+    EXPECT_THROW(view(field, "pressure-underbody", with_symmetry("q")), core::UsageError);
+}
+
+TEST(ViewsOfAHalfModel, RefuseAPlaneThatItDoesNotHave) {
+    EXPECT_THAT(refusal(half_box(0.5, 0), "y=0.2"), testing::HasSubstr("both sides of y = 0.2 m"));
+    EXPECT_THAT(refusal(half_box(0.5, 0, true, -0.25), "y"), testing::HasSubstr("both sides of y = 0 m"));
+    EXPECT_THAT(refusal(half_box(0.5, 0), "y=-1"), testing::HasSubstr("open at y = 0 m"));
+}
+
+TEST(Views, RefuseAxesThatAreNone) {
+    ViewOptions parallel;
+    parallel.up = parallel.forward;
+    EXPECT_THROW(view(half_box(0.5, 0), "pressure-underbody", parallel), core::UsageError);
+}
+
+TEST(Views, NameTheZoneThatIsMeant) {
+    try {
+        view(half_box(0.5, 0), "pressure-hull", of_zones({"base", "hul"}));
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("'hul'"));
+        EXPECT_EQ(error.hint(), "did you mean 'hull'?");
+    }
+}
+
+/// A box of 1 x 0.2 x 0.2 m, z from 0.1, with p = 100 z; a hatch of 0.2 x 0.08 m in its lower side is the base. A ground under it.
+Field box_with_a_small_base() {
+    const auto rows = [](std::initializer_list<std::array<double, 3>> places) {
+        std::string text = "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n";
+        for (const auto& [x, y, z] : places) {
+            text += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z) + "," + std::to_string(100 * z) + "\n";
+        }
+        return text;
+    };
+    const std::string csv =
+        "[Name]\nbase\n\n[Data]\n" + rows({{-0.1, -0.04, 0.1}, {0.1, -0.04, 0.1}, {0.1, 0.04, 0.1}, {-0.1, 0.04, 0.1}}) + "\n[Faces]\n0,3,2,1\n\n" +
+        "[Name]\nhull\n\n[Data]\n" +
+        rows({{-0.1, -0.04, 0.1}, {0.1, -0.04, 0.1}, {0.1, 0.04, 0.1}, {-0.1, 0.04, 0.1}, {-0.5, -0.1, 0.1}, {0.5, -0.1, 0.1}, {0.5, 0.1, 0.1}, {-0.5, 0.1, 0.1},
+              {-0.5, -0.1, 0.3}, {0.5, -0.1, 0.3}, {0.5, 0.1, 0.3}, {-0.5, 0.1, 0.3}}) +
+        "\n[Faces]\n0,1,5,4\n1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,9,8\n5,6,10,9\n6,7,11,10\n7,4,8,11\n8,9,10,11\n\n" +
+        "[Name]\nground\n\n[Data]\n" + rows({{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}}) + "\n[Faces]\n0,1,2,3\n";
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "box.csv", csv);
+    return read_field(folder.path() / "box.csv");
+}
+
+TEST(ViewsOfASurface, ShowTheBodyThatLoadsAreSummedOver) {
+    const Field field = box_with_a_small_base();
+    const View hull = view(field, "pressure-hull");
+    EXPECT_NEAR(hull.range.first, 10, 1e-9);
+    EXPECT_NEAR(hull.range.second, 30, 1e-9);
+    EXPECT_EQ(hull.png, view(field, "pressure-hull", of_zones({"base", "hull"})).png);
+    EXPECT_NEAR(view(field, "pressure-hull", of_zones({"*"})).range.first, 0, 1e-9);  // what is named is shown
+    std::vector<std::string> summed;
+    for (const auto& zone : loads(field).zones) {
+        summed.push_back(zone.name);
+    }
+    EXPECT_THAT(summed, testing::ElementsAre("base", "hull"));
 }
 
 TEST(ViewsOfTwoCases, CompareWhereTheBodiesMeet) {
