@@ -108,6 +108,7 @@ private:
     void check_room(const CgnsZone& zone, double count) const;
     template <typename... Node>
     Scales scales_at(const Scales& above, Node... node);
+    void read_units_of_base();
     Scales scales_of(const CgnsZone& zone, const char* parent, int index, int array);
     void read_times();
     [[nodiscard]] std::vector<std::string> solutions_of_steps(const CgnsZone& zone) const;
