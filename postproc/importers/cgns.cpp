@@ -8,7 +8,9 @@
 #include <unordered_map>
 
 #include "core/text.h"
+#include "postproc/importers/cgns_block.h"
 #include "postproc/importers/cgns_file.h"
+#include "postproc/importers/cgns_surfaces.h"
 #include "postproc/importers/element_zone.h"
 #include "postproc/importers/face_orientation.h"
 #include "postproc/importers/hdf5_file.h"
@@ -46,12 +48,10 @@ private:
     void add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
                      ElementPart&& surface, const BoundaryFaces& volume);
     void add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume, Buffer<double>&& points, std::vector<PartValues>&& values);
-    [[nodiscard]] ElementPart volume_of(const CgnsZone& zone, const std::vector<CgnsSection>& sections) const;
-    [[nodiscard]] std::vector<ElementPart> surfaces_of(const std::vector<CgnsSection>& sections, const std::vector<CgnsCondition>& conditions,
-                                                       const ElementPart& volume) const;
-    void add_polyhedra(const CgnsZone& zone, ElementPart& volume, const CgnsSection& cells,
-                       const std::map<std::int64_t, const CgnsSection*>& faces) const;
-    [[nodiscard]] ElementPart face_of_block(const CgnsZone& zone, const CgnsCondition& condition) const;
+    [[nodiscard]] ElementPart volume_of(const CgnsZone& zone, const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const;
+    void add_polyhedra(const CgnsZone& zone, ElementPart& volume, const CgnsSection& cells, const std::map<std::int64_t, std::size_t>& polygons,
+                       const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const;
+    void warn_of_missing(Field& field, const CgnsZone& zone, const CgnsCondition& condition, const std::string& why) const;
 
     CgnsFile file_;
     std::string name_;
@@ -134,30 +134,30 @@ void Reader::add_notes(Field& field) const {
     }
 }
 
-void Reader::add_polyhedra(const CgnsZone& zone, ElementPart& volume, const CgnsSection& cells,
-                           const std::map<std::int64_t, const CgnsSection*>& faces) const {
+/// `polygons`: sections of polygons by their first number.
+void Reader::add_polyhedra(const CgnsZone& zone, ElementPart& volume, const CgnsSection& cells, const std::map<std::int64_t, std::size_t>& polygons,
+                           const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const {
     for (const auto& cell : cells.elements) {
         std::vector<std::int64_t> corners;
         volume.polyhedra.push_back(static_cast<std::int64_t>(cell.count));
         for (std::size_t k = 0; k < cell.count; ++k) {
             const std::int64_t signed_face = cells.nodes[cell.first + k];
             const std::int64_t number = std::abs(signed_face);
-            auto found = faces.upper_bound(number);
-            if (found == faces.begin() || number < 1) {
+            const auto after = polygons.upper_bound(number);
+            const std::size_t s = after == polygons.begin() ? 0 : std::prev(after)->second;
+            const auto place = static_cast<std::size_t>(number - sections[s].first);
+            if (after == polygons.begin() || number < 1 || place >= sections[s].elements.size()) {
                 file_.fail(zone, "a cell names face " + std::to_string(number) + ", which is not there");
             }
-            const CgnsSection& polygons = *std::prev(found)->second;
-            const auto place = static_cast<std::size_t>(number - polygons.first);
-            if (place >= polygons.elements.size()) {
-                file_.fail(zone, "a cell names face " + std::to_string(number) + ", which is not there");
-            }
-            const CgnsSection::Element& face = polygons.elements[place];
+            const CgnsSection::Element& face = sections[s].elements[place];
             volume.polyhedra.push_back(static_cast<std::int64_t>(face.count));
             for (std::size_t i = 0; i < face.count; ++i) {
                 const std::size_t turned = signed_face > 0 ? i : face.count - 1 - i;
-                volume.polyhedra.push_back(polygons.nodes[face.first + turned]);
-                corners.push_back(polygons.nodes[face.first + i]);
+                volume.polyhedra.push_back(sections[s].nodes[face.first + turned]);
+                corners.push_back(sections[s].nodes[face.first + i]);
             }
+            auto& count = cells_of_polygons[s][place];
+            count = static_cast<unsigned char>(std::min(2, count + 1));
         }
         std::sort(corners.begin(), corners.end());
         corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
@@ -165,19 +165,24 @@ void Reader::add_polyhedra(const CgnsZone& zone, ElementPart& volume, const Cgns
     }
 }
 
-ElementPart Reader::volume_of(const CgnsZone& zone, const std::vector<CgnsSection>& sections) const {
+ElementPart Reader::volume_of(const CgnsZone& zone, const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const {
     ElementPart volume;
-    std::map<std::int64_t, const CgnsSection*> faces;  // by their first number
-    for (const auto& section : sections) {
-        if (section.polygons) {
-            faces[section.first] = &section;
+    std::map<std::int64_t, std::size_t> polygons;
+    cells_of_polygons.resize(sections.size());
+    const bool polyhedra = std::any_of(sections.begin(), sections.end(), [](const CgnsSection& section) { return section.polyhedra; });
+    for (std::size_t s = 0; s < sections.size(); ++s) {
+        if (sections[s].polygons && polyhedra) {
+            polygons[sections[s].first] = s;
+            cells_of_polygons[s].resize(sections[s].elements.size());
         }
     }
     for (const auto& section : sections) {
         if (section.polyhedra) {
-            add_polyhedra(zone, volume, section, faces);
-        } else if (section.dimension() == file_.cell_dimension() && !(section.polygons && file_.cell_dimension() == 3)) {
-            for (const auto& element : section.elements) {
+            add_polyhedra(zone, volume, section, polygons, sections, cells_of_polygons);
+            continue;
+        }
+        for (const auto& element : section.elements) {
+            if (element.dimension() == file_.cell_dimension()) {
                 volume.add(element.type, section.nodes.data() + element.first, element.count);
             }
         }
@@ -253,51 +258,12 @@ void Reader::add_surface(Field& field, const Buffer<double>& points, const std::
     field.zones.push_back(std::move(zone));
 }
 
-/// Boundary conditions with the elements they name, then sections of faces that none of them names.
-std::vector<ElementPart> Reader::surfaces_of(const std::vector<CgnsSection>& sections, const std::vector<CgnsCondition>& conditions,
-                                             const ElementPart& volume) const {
-    const int dimension = file_.cell_dimension();
-    std::vector<ElementPart> surfaces;
-    std::vector<bool> shown(sections.size());
-    for (const auto& condition : conditions) {
-        ElementPart part;
-        part.name = condition.name;
-        part.kind = condition.kind;
-        part.original_kind = condition.type;
-        for (const std::int64_t number : condition.elements) {
-            for (std::size_t s = 0; s < sections.size(); ++s) {
-                const CgnsSection& section = sections[s];
-                if (number >= section.first && number <= section.last && !section.polyhedra &&
-                    section.dimension() < dimension + (section.polygons ? 1 : 0)) {
-                    const auto& element = section.elements[static_cast<std::size_t>(number - section.first)];
-                    part.add(element.type, section.nodes.data() + element.first, element.count);
-                    shown[s] = true;
-                }
-            }
-        }
-        surfaces.push_back(std::move(part));
+void Reader::warn_of_missing(Field& field, const CgnsZone& zone, const CgnsCondition& condition, const std::string& why) const {
+    if (!condition.type.starts_with("BCDegenerate")) {  // points and lines are all that these have
+        field.problems.push_back({core::Problem::Severity::warning,
+                                  "zone '" + zone.name + "': boundary condition '" + condition.name + "' (" + condition.type + ") is not there or not whole: " + why,
+                                  {name_, {}, {}, {}}});
     }
-    for (std::size_t s = 0; s < sections.size(); ++s) {
-        const CgnsSection& section = sections[s];
-        // Polygons without a condition are the faces of the polyhedra.
-        const bool of_polyhedra = section.polygons && dimension == 3 && !volume.polyhedra.empty();
-        if (shown[s] || section.polyhedra || of_polyhedra || section.dimension() != dimension - 1) {
-            continue;
-        }
-        ElementPart part;
-        part.name = section.name;
-        for (const auto& condition : conditions) {
-            if (condition.name == part.name) {
-                part.kind = condition.kind;
-                part.original_kind = condition.type;
-            }
-        }
-        for (const auto& element : section.elements) {
-            part.add(element.type, section.nodes.data() + element.first, element.count);
-        }
-        surfaces.push_back(std::move(part));
-    }
-    return surfaces;
 }
 
 void Reader::add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume, Buffer<double>&& points, std::vector<PartValues>&& values) {
@@ -319,7 +285,8 @@ void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
     auto points = file_.points(zone);
     auto values = file_.solutions(zone, options_, progress_, solutions_left_);
     const auto sections = file_.sections(zone, progress_);
-    ElementPart volume = volume_of(zone, sections);
+    CellsOfPolygons cells_of_polygons;
+    ElementPart volume = volume_of(zone, sections, cells_of_polygons);
     if (static_cast<std::int64_t>(volume.elements()) != zone.cells[0]) {
         field.problems.push_back({core::Problem::Severity::warning,
                                   "zone '" + zone.name + "': it declares " + std::to_string(zone.cells[0]) +
@@ -329,74 +296,15 @@ void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
     }
     const auto conditions = file_.conditions(zone);
     note_data_sets(conditions);
-    std::vector<ElementPart> surfaces = surfaces_of(sections, conditions, volume);
-    const BoundaryFaces faces(surfaces, volume);
-    for (auto& surface : surfaces) {
+    CgnsSurfaces surfaces = surfaces_of(sections, conditions, cells_of_polygons, file_.cell_dimension());
+    for (const auto& [condition, why] : surfaces.missing) {
+        warn_of_missing(field, zone, *condition, why);
+    }
+    const BoundaryFaces faces(surfaces.parts, volume);
+    for (auto& surface : surfaces.parts) {
         add_surface(field, points, values, std::move(surface), faces);
     }
     add_volume(zone, field, std::move(volume), std::move(points), std::move(values));
-}
-
-/// The cells of a block, or of a plane one.
-ElementPart cells_of_block(const CgnsZone& zone, int dimension, core::Progress& progress) {
-    const std::int64_t ni = zone.nodes[0];
-    const std::int64_t nj = zone.nodes[1];
-    const std::int64_t nk = zone.nodes[2];
-    const auto node = [&](std::int64_t i, std::int64_t j, std::int64_t k) { return (k * nj + j) * ni + i; };
-    ElementPart volume;
-    const std::int64_t layers = dimension == 3 ? nk - 1 : 1;
-    for (std::int64_t k = 0; k < layers; ++k) {
-        progress.check();
-        for (std::int64_t j = 0; j + 1 < nj; ++j) {
-            for (std::int64_t i = 0; i + 1 < ni; ++i) {
-                std::array<std::int64_t, 8> n = {
-                    node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k), 0, 0, 0, 0};
-                for (std::size_t c = 0; c < 4; ++c) {
-                    n[c + 4] = n[c] + ni * nj;
-                }
-                dimension == 3 ? volume.add(VTK_HEXAHEDRON, n.data(), 8) : volume.add(VTK_QUAD, n.data(), 4);
-            }
-        }
-    }
-    return volume;
-}
-
-/// The side of a block that a condition names; nothing if its range is none.
-ElementPart Reader::face_of_block(const CgnsZone& zone, const CgnsCondition& condition) const {
-    ElementPart part;
-    part.name = zone.name + "/" + condition.name;
-    part.kind = condition.kind;
-    part.original_kind = condition.type;
-    std::array<std::int64_t, 3> low{};
-    std::array<std::int64_t, 3> high{};
-    int flat = -1;
-    for (std::size_t d = 0; d < 3; ++d) {
-        low[d] = std::min(condition.range[d], condition.range[d + 3]) - 1;
-        high[d] = std::max(condition.range[d], condition.range[d + 3]) - 1;
-        if (low[d] < 0 || high[d] >= zone.nodes[d]) {
-            file_.fail(zone, "condition '" + condition.name + "' lies outside the zone");
-        }
-        flat = low[d] == high[d] ? static_cast<int>(d) : flat;
-    }
-    if (flat < 0) {
-        return part;
-    }
-    const auto a = static_cast<std::size_t>((flat + 1) % 3);
-    const auto b = static_cast<std::size_t>((flat + 2) % 3);
-    for (std::int64_t v = low[b]; v < high[b]; ++v) {
-        for (std::int64_t u = low[a]; u < high[a]; ++u) {
-            std::array<std::int64_t, 4> quad{};
-            const std::array<std::pair<int, int>, 4> steps = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-            for (std::size_t c = 0; c < 4; ++c) {
-                std::array<std::int64_t, 3> at = low;
-                at[a] = u + steps[c].first;
-                at[b] = v + steps[c].second;
-                quad[c] = (at[2] * zone.nodes[1] + at[1]) * zone.nodes[0] + at[0];
-            }
-            part.add(VTK_QUAD, quad.data(), 4);
-        }
-    }
-    return part;
 }
 
 void Reader::add_structured(const CgnsZone& zone, Field& field) {
@@ -411,9 +319,11 @@ void Reader::add_structured(const CgnsZone& zone, Field& field) {
     const auto conditions = file_.conditions(zone);
     note_data_sets(conditions);
     for (const auto& condition : conditions) {
-        if (condition.range.size() == 6 && dimension == 3) {
-            surfaces.push_back(face_of_block(zone, condition));
+        BlockFaces faces = faces_of_block(file_, zone, condition);
+        if (!faces.missing.empty()) {
+            warn_of_missing(field, zone, condition, faces.missing);
         }
+        surfaces.push_back(std::move(faces.part));
     }
     const BoundaryFaces faces(surfaces, volume);
     for (auto& surface : surfaces) {

@@ -17,6 +17,20 @@ ZoneKind kind_of(std::string_view name) {
            : name == "BCFarfield"                                       ? ZoneKind::farfield
                                                                         : ZoneKind::unknown;
 }
+
+constexpr std::array across = {CGNS_ENUMV(IFaceCenter), CGNS_ENUMV(JFaceCenter), CGNS_ENUMV(KFaceCenter)};
+
+bool across_an_index(CGNS_ENUMT(GridLocation_t) location) { return std::find(across.begin(), across.end(), location) != across.end(); }
+
+/// The index across the faces of a structured zone, by their location, else by the normal into it; -1: neither says.
+int index_across(CGNS_ENUMT(GridLocation_t) location, const std::array<int, 3>& inward) {
+    if (across_an_index(location)) {
+        return static_cast<int>(std::find(across.begin(), across.end(), location) - across.begin());
+    }
+    const auto stated = std::find_if(inward.begin(), inward.end(), [](int k) { return k != 0; });
+    return stated == inward.end() ? -1 : static_cast<int>(stated - inward.begin());
+}
+
 }  // namespace
 
 /// The condition that the family of a boundary has.
@@ -40,6 +54,40 @@ int CgnsFile::family_type(const CgnsZone& zone, int condition) const {
     return type;
 }
 
+CgnsCondition CgnsFile::condition(const CgnsZone& zone, int index) const {
+    std::array<char, 33> name{};
+    CGNS_ENUMT(BCType_t) type{};
+    CGNS_ENUMT(PointSetType_t) set{};
+    CGNS_ENUMT(DataType_t) normal_type{};
+    CGNS_ENUMT(GridLocation_t) location{};
+    cgsize_t points = 0;
+    cgsize_t normals = 0;
+    std::array<int, 3> inward{};
+    CgnsCondition condition;
+    ok(zone, cg_boco_info(file_, base_, zone.index, index, name.data(), &type, &set, &points, inward.data(), &normals, &normal_type, &condition.data_sets), "condition");
+    condition.name = name.data();
+    type = type == CGNS_ENUMV(FamilySpecified) ? static_cast<CGNS_ENUMT(BCType_t)>(family_type(zone, index)) : type;
+    condition.type = BCTypeName[type];
+    condition.kind = kind_of(condition.type);
+    if (cg_boco_gridlocation_read(file_, base_, zone.index, index, &location) != CG_OK) {
+        location = CGNS_ENUMV(Vertex);
+    }
+    condition.normal = zone.structured ? index_across(location, inward) : -1;
+    const bool elements = set == CGNS_ENUMV(ElementRange) || set == CGNS_ENUMV(ElementList);
+    const bool faces = location == CGNS_ENUMV(FaceCenter) || (cell_dimension_ == 2 && location == CGNS_ENUMV(EdgeCenter)) ||
+                       (zone.structured ? across_an_index(location) : elements);
+    const int indices = zone.structured ? cell_dimension_ : 1;
+    check_room(zone, static_cast<double>(points) * indices);
+    std::vector<cgsize_t> raw(static_cast<std::size_t>(std::max<cgsize_t>(0, points)) * static_cast<std::size_t>(indices));
+    const bool known = faces || (location == CGNS_ENUMV(Vertex) && !elements);
+    if (known && !raw.empty() && cg_boco_read(file_, base_, zone.index, index, raw.data(), nullptr) == CG_OK) {
+        condition.where = faces ? CgnsCondition::Where::faces : CgnsCondition::Where::vertices;
+        condition.range = set == CGNS_ENUMV(PointRange) || set == CGNS_ENUMV(ElementRange);
+        condition.numbers.assign(raw.begin(), raw.end());
+    }
+    return condition;
+}
+
 std::vector<CgnsCondition> CgnsFile::conditions(const CgnsZone& zone) const {
     std::vector<CgnsCondition> result;
     int count = 0;
@@ -47,50 +95,7 @@ std::vector<CgnsCondition> CgnsFile::conditions(const CgnsZone& zone) const {
         return result;
     }
     for (int b = 1; b <= count; ++b) {
-        std::array<char, 33> name{};
-        CGNS_ENUMT(BCType_t) type{};
-        CGNS_ENUMT(PointSetType_t) set{};
-        CGNS_ENUMT(DataType_t) normal_type{};
-        CGNS_ENUMT(GridLocation_t) location{};
-        cgsize_t points = 0;
-        cgsize_t normals = 0;
-        int data_sets = 0;
-        std::array<int, 3> normal_index{};
-        if (cg_boco_info(file_, base_, zone.index, b, name.data(), &type, &set, &points, normal_index.data(), &normals,
-                         &normal_type, &data_sets) != CG_OK) {
-            continue;
-        }
-        CgnsCondition condition;
-        condition.name = name.data();
-        type = type == CGNS_ENUMV(FamilySpecified) ? static_cast<CGNS_ENUMT(BCType_t)>(family_type(zone, b)) : type;
-        condition.type = BCTypeName[type];
-        condition.kind = kind_of(condition.type);
-        condition.data_sets = data_sets;
-        const bool elements = set == CGNS_ENUMV(ElementRange) || set == CGNS_ENUMV(ElementList);
-        if (cg_boco_gridlocation_read(file_, base_, zone.index, b, &location) != CG_OK) {
-            location = CGNS_ENUMV(Vertex);
-        }
-        const bool edges_bound = cell_dimension_ == 2 && location == CGNS_ENUMV(EdgeCenter);
-        const bool faces = elements || edges_bound || location == CGNS_ENUMV(FaceCenter);
-        const int indices = zone.structured ? cell_dimension_ : 1;
-        check_room(zone, static_cast<double>(points) * indices);
-        std::vector<cgsize_t> raw(static_cast<std::size_t>(std::max<cgsize_t>(0, points)) *
-                                  static_cast<std::size_t>(indices));
-        const bool range = set == CGNS_ENUMV(PointRange) || set == CGNS_ENUMV(ElementRange);
-        const bool wanted = zone.structured ? range && points == 2 : faces;
-        if (wanted && !raw.empty() && cg_boco_read(file_, base_, zone.index, b, raw.data(), nullptr) == CG_OK) {
-            if (zone.structured) {
-                condition.range.assign(raw.begin(), raw.end());
-            } else if (range && raw.size() == 2) {
-                check_room(zone, static_cast<double>(raw[1]) - raw[0]);
-                for (std::int64_t e = raw[0]; e <= raw[1]; ++e) {
-                    condition.elements.push_back(e);
-                }
-            } else {
-                condition.elements.assign(raw.begin(), raw.end());
-            }
-        }
-        result.push_back(std::move(condition));
+        result.push_back(condition(zone, b));
     }
     return result;
 }

@@ -36,19 +36,16 @@ const Kind* find_kind(CGNS_ENUMT(ElementType_t) type) {
     }
     return nullptr;
 }
+
 }  // namespace
 
-int CgnsSection::dimension() const {
-    int most = polyhedra ? 3 : 0;
-    for (const auto& element : elements) {
-        const unsigned char t = element.type;
-        most = std::max(most, t == VTK_VERTEX                                          ? 0
-                              : t == VTK_LINE                                          ? 1
-                              : t == VTK_TRIANGLE || t == VTK_QUAD || t == VTK_POLYGON ? 2
-                                                                                       : 3);
-    }
-    return most;
+int CgnsSection::Element::dimension() const {
+    return type == VTK_VERTEX                                                ? 0
+           : type == VTK_LINE                                                ? 1
+           : type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON ? 2
+                                                                             : 3;
 }
+
 CgnsSection CgnsFile::section(const CgnsZone& zone, int index) const {
     CgnsSection result;
     std::array<char, 33> section_name{};

@@ -31,6 +31,7 @@ struct CgnsSection {
         unsigned char type = 0;  ///< VTK's
         std::size_t first = 0;   ///< of its corners in `nodes`
         std::size_t count = 0;
+        [[nodiscard]] int dimension() const;  ///< 0 a vertex, 1 a line, 2 a face, 3 a cell
     };
     std::string name;
     std::int64_t first = 1;
@@ -39,19 +40,19 @@ struct CgnsSection {
     bool polyhedra = false;  ///< NFACE
     std::vector<Element> elements;
     std::vector<std::int64_t> nodes;  ///< from 0; NFACE: signed element numbers of faces
-
-    /// The most of its elements: 0 vertices, 1 lines, 2 faces, 3 cells.
-    [[nodiscard]] int dimension() const;
 };
 
-/// A boundary condition that names faces.
+/// A boundary condition, with the faces or the vertices that it names.
 struct CgnsCondition {
+    enum class Where { nowhere, vertices, faces };
     std::string name;
     std::string type;  ///< "BCWall", of its family where it leaves it to that
     ZoneKind kind = ZoneKind::unknown;
-    std::vector<std::int64_t> elements;  ///< unstructured: element numbers, from 1; none where it names vertices
-    std::vector<std::int64_t> range;     ///< structured: low and high corner, node numbers from 1; else empty
-    int data_sets = 0;                   ///< values of its own (BCDataSet), which are not read
+    Where where = Where::nowhere;
+    int normal = -1;                    ///< structured: the index across its faces, 0 to 2; -1: the file does not say
+    bool range = false;                 ///< `numbers` are the first and the last of what it names, for all between
+    std::vector<std::int64_t> numbers;  ///< from 1: elements or nodes; structured: an index in each direction
+    int data_sets = 0;                  ///< values of its own (BCDataSet), which are not read
 };
 
 /// A file opened for reading, its last base. Every failure is an InputError with file and zone.
@@ -112,6 +113,7 @@ private:
     Scales scales_of(const CgnsZone& zone, const char* parent, int index, int array);
     void read_times();
     [[nodiscard]] std::vector<std::string> solutions_of_steps(const CgnsZone& zone) const;
+    [[nodiscard]] CgnsCondition condition(const CgnsZone& zone, int index) const;
     [[nodiscard]] CgnsSection section(const CgnsZone& zone, int index) const;
     [[nodiscard]] int family_type(const CgnsZone& zone, int condition) const;
 

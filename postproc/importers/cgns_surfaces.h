@@ -1,0 +1,26 @@
+// Boundaries of an unstructured zone: which faces belong to which condition.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "postproc/importers/cgns_file.h"
+
+namespace underbody::postproc {
+
+/// By section and element: how many cells have a polygon; empty for a section without polygons, or without cells of these.
+using CellsOfPolygons = std::vector<std::vector<unsigned char>>;
+
+struct CgnsSurfaces {
+    std::vector<ElementPart> parts;  ///< nodes as in the zone, no points yet
+    std::vector<std::pair<const CgnsCondition*, std::string>> missing;  ///< condition -> what of it gives no faces
+};
+
+/// A surface for each condition with the faces that it names: by their numbers, else by the section of its name, else by
+/// vertices, which stand for the faces that have no others. Then the faces that no condition names, by section.
+/// `sections` in order of their numbers; faces have one dimension less than `dimension`.
+CgnsSurfaces surfaces_of(const std::vector<CgnsSection>& sections, const std::vector<CgnsCondition>& conditions, const CellsOfPolygons& cells_of_polygons,
+                         int dimension);
+
+}  // namespace underbody::postproc
