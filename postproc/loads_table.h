@@ -26,24 +26,30 @@ struct LoadsCase {
 };
 
 /// Texts, numbers, loads (table_row) with their NAME_sigma, coefficients where some case has them, the reference point,
-/// values_from, file: one row a case. A condition or coefficient that a case does not have is missing there. `written_units`: condition -> the unit to write it in. A
-/// condition called like a load (a manifest that already has lift_force) is kept as NAME_stated.
+/// values_from, file: one row a case. A condition or coefficient that a case does not have is missing there.
+/// `written_units`: condition -> the unit to write it in. A condition called like a column of what was found (the table of
+/// an earlier run as the manifest) is kept as NAME_stated.
 core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<std::pair<std::string, std::string>>& written_units = {});
 
+/// Throws core::InputError at `place` when a load's NAME_scatter is negative.
+void check_scatters(const std::vector<std::pair<std::string, double>>& numbers, const core::Place& place);
+
 /// The cases with the standard uncertainty of each load from its iteration alone: `scatters`, else the condition
-/// NAME_scatter. Loads without either get none.
+/// NAME_scatter. Loads without either get none. Throws core::InputError: a negative NAME_scatter.
 std::vector<LoadsCase> with_iteration_sigmas(const std::vector<LoadsCase>& cases);
 
 /// Cases that differ in their mesh alone (the number of cells in condition `column`, or "faces": of the surface that was
-/// integrated; same texts but `mesh`, same set points: gap, pitch, speed ...) become one, that of the finest mesh, with
-/// the uncertainty of each load from mesh_uncertainty(), that of the iteration added in. Cases with one mesh stay, with
-/// the sigma of the iteration when it is known. Throws core::InputError: a case without the column, two cases of one
-/// set point with the same number.
-std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const std::string& column = "cells");
+/// integrated; same texts but `mesh`, same numbers but those of the mesh and of results) become one, that of the finest mesh,
+/// with the uncertainty of each load from mesh_uncertainty(), that of the iteration added in. Sizes are those of volumes, of
+/// plane cases those of areas (cells) and lines (faces). Cases with one mesh stay, with the sigma of the iteration when it is
+/// known. `notes`: cases kept apart by a number that may as well follow from the mesh; that there is no study at all.
+/// Throws core::InputError: a case without the column, two cases of one set point with the same number, a negative NAME_scatter.
+std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const std::string& column, core::Problems& notes);
 
 /// The loads against the same quantities in the conditions (a manifest that holds the solver's own forces). The measure
-/// `of_force` is over the size of the stated lift, drag and side force; where they state nothing, of the own.
-std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases);
+/// `of_force` is over the size of the stated lift, drag and side force; where they state nothing, of the own. A value that
+/// is missing is not compared; `notes` says so.
+std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases, core::Problems& notes);
 
 /// {"files": [loads of each, with "conditions"]}
 nlohmann::json loads_table_json(const std::vector<LoadsCase>& cases);

@@ -177,7 +177,9 @@ void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
 
 /// The loads against those that somebody states; exit code 4 when one is further off than allowed.
 int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double allowed) {
-    auto comparisons = postproc::compare_with_stated(cases);
+    core::Problems notes;
+    auto comparisons = postproc::compare_with_stated(cases, notes);
+    shell.show(notes);
     for (const auto& one : cases) {
         comparisons.insert(comparisons.end(), one.comparisons.begin(), one.comparisons.end());
     }
@@ -315,7 +317,9 @@ int run(Shell& shell, const Options& given) {
     std::vector<Failure> failures;
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
     int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
-    cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study);
+    core::Problems notes;
+    cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study, notes);
+    shell.show(notes);
     show_studies(shell, cases);
     const bool table = batch.files.size() > 1 || !given.manifest.empty() || !given.out.empty();
     if (!given.out.empty()) {

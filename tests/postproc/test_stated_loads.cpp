@@ -127,10 +127,10 @@ TEST_F(StatedLoads, AreFarFromAForceOfNothing) {
     LoadsCase one;
     one.loads = nothing;
     one.numbers = {{"lift_force", -1}};
-    EXPECT_EQ(compare_with_stated({one})[0].of_force, 1);
+    EXPECT_EQ(compare_with_stated({one}, notes)[0].of_force, 1);
     one.loads = loads_of();
     one.numbers = {{"lift_force", 0}, {"drag_force", 0}, {"side_force", 0}};
-    EXPECT_NEAR(compare_with_stated({one})[0].of_force, 1 / std::hypot(1, 0.2), 1e-12);
+    EXPECT_NEAR(compare_with_stated({one}, notes)[0].of_force, 1 / std::hypot(1, 0.2), 1e-12);
 }
 
 TEST_F(StatedLoads, OfZonesThatWereNotIntegratedAreLeftOutAloud) {
@@ -388,13 +388,14 @@ TEST_F(StatedLoads, BecomeSigmasOfTheTableTogetherWithTheMesh) {
     EXPECT_EQ(alone.numbers("reference_x")[0], 1);
     EXPECT_EQ(alone.text("values_from")[0], "nodes");
     // Two meshes, ratio 2, order 2: 3 * 0.03 / 3 is the 95 % interval.
-    const auto both = loads_table(mesh_studies({one, fine}));
+    core::Problems notes;
+    const auto both = loads_table(mesh_studies({one, fine}, "cells", notes));
     ASSERT_EQ(both.rows(), 1U);
     EXPECT_NEAR(both.numbers("lift_force_sigma")[0], std::hypot(0.015, 0.01), 1e-12);
     EXPECT_EQ(both.find("side_force_sigma"), nullptr);  // nought on both meshes
     // By the faces of the surface: the same number of them is no study, and the error names both files.
     try {
-        mesh_studies({one, fine}, "faces");
+        mesh_studies({one, fine}, "faces", notes);
         FAIL() << "accepted";
     } catch (const core::InputError& error) {
         EXPECT_THAT(error.what(), HasSubstr("'b.csv' and 'a.csv'"));
