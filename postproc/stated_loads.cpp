@@ -231,6 +231,7 @@ StatedLoad from_history(const ForceHistory& history, const NamedAxis& axis, Load
     load.file = history.files.front();
     load.quantity = axis.name;
     load.zones = zones_of(history.patches, result);
+    load.zones_unknown = history.patches.empty();
     load.part = part;
     load.moment = axis.moment;
     load.direction = axis.direction;
@@ -433,6 +434,7 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
     std::vector<Comparison> comparisons;
     std::vector<std::string> missing;
     std::vector<std::string> of_other_times;
+    std::vector<std::string> of_unknown_zones;
     std::vector<std::string> repeated;
     const double halves = result.mirror_axis >= 0 ? 2 : 1;
     std::size_t cancelled = 0;
@@ -444,6 +446,12 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
         if (load.earlier > 0 && std::find(repeated.begin(), repeated.end(), load.file) == repeated.end()) {
             repeated.push_back(load.file);
             notes.push_back({core::Problem::Severity::note, std::to_string(load.earlier + 1) + " reports of the " + load.quantity + ": the last of each quantity is compared", {load.file, {}, {}, {}}});
+        }
+        if (load.zones_unknown && std::find(of_unknown_zones.begin(), of_unknown_zones.end(), load.file) == of_unknown_zones.end()) {
+            of_unknown_zones.push_back(load.file);
+            notes.push_back({core::Problem::Severity::warning,
+                             "system/controlDict does not say which patches these forces are of: compared with those on all zones summed",
+                             {load.file, {}, {}, {}}});
         }
         const Covered body = covered_by(result, load.zones);
         if (!body.missing.empty()) {

@@ -20,6 +20,7 @@ struct StatedLoad {
     std::string file;                ///< where it stands
     std::string quantity;            ///< "lift_force", ... or "force along (1, 0, 0)": for people and for sigmas
     std::vector<std::string> zones;  ///< what it covers, by name; empty: the whole body
+    bool zones_unknown = false;      ///< the file does not say what it covers: taken for the whole body
     LoadPart part = LoadPart::total;
     bool moment = false;
     Vector direction{};              ///< unit vector, file axes
@@ -79,7 +80,8 @@ void to_json(nlohmann::json& json, const Comparison& comparison);
 
 /// The loads against the solver's own. A half model (loads with a symmetry plane) was a half model in the solver too:
 /// its numbers are doubled, and what both halves cancel is left out; `notes` says so, and which rows name zones that
-/// were not integrated, how many reports of one quantity there are, and where the field's time is not among those of a history.
+/// were not integrated, how many reports of one quantity there are, where the field's time is not among those of a history,
+/// and where nobody says which zones the forces are of.
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& notes);
 
 /// Which histories still drift at their end, in words; not those that are nothing but rounding beside the force.

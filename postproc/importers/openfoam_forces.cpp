@@ -80,7 +80,8 @@ Part read_part(const fs::path& path) {
         const std::size_t groups = (values.size() - 1) / 3;
         const bool fits = !values.empty() && values.size() == 1 + 3 * groups && (both ? groups == 4 || groups == 6 : groups == 3 || groups == 4);
         if (!fits) {
-            throw core::InputError("format", "a row of " + std::to_string(values.size()) + " numbers, which is no time with its forces", {mapped.name(), number, {}, {}},
+            throw core::InputError("format", "a row of " + std::to_string(values.size()) + " numbers, which is no time with its forces",
+                                   {mapped.name(), number, {}, {}},
                                    heading.empty() ? "the line of headings '# Time ...' is missing" : "");
         }
         Row row;
@@ -96,42 +97,76 @@ Part read_part(const fs::path& path) {
     return part;
 }
 
-/// The words of `patches ( ... )` within the entry `name { ... }` of a dictionary; empty when it is not there.
+/// Words, "quoted texts" (with their first quote, so that they are no punctuation) and { } ( ) ; of a dictionary without
+/// its comments. A bracket within a word is part of it, as in OpenFOAM.
+std::vector<std::string> tokens_of(std::string_view text) {
+    std::vector<std::string> tokens;
+    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+    for (std::size_t i = 0; i < text.size();) {
+        if (blank(text[i])) {
+            ++i;
+        } else if (text.substr(i, 2) == "//") {
+            i = std::min(text.find('\n', i), text.size());
+        } else if (text.substr(i, 2) == "/*") {
+            const std::size_t end = text.find("*/", i + 2);
+            i = end == std::string_view::npos ? text.size() : end + 2;
+        } else if (text[i] == '"') {
+            const std::size_t end = std::min(text.find('"', i + 1), text.size());
+            tokens.emplace_back(text.substr(i, end - i));
+            i = std::min(end + 1, text.size());
+        } else if (std::string_view("{}();").find(text[i]) != std::string_view::npos) {
+            tokens.emplace_back(1, text[i++]);
+        } else {
+            const std::size_t first = i;
+            for (int open = 0; i < text.size() && !blank(text[i]) && std::string_view("{};\"").find(text[i]) == std::string_view::npos; ++i) {
+                open += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
+                if (open < 0 || (open > 0 && text.substr(first, i - first) == "patches")) {
+                    break;
+                }
+            }
+            tokens.emplace_back(text.substr(first, i - first));
+        }
+    }
+    return tokens;
+}
+
+/// The words of `patches ( ... )` in the entry that opens with the brace at `at`, not those of dictionaries within it.
+std::vector<std::string> patches_in(const std::vector<std::string>& tokens, std::size_t at) {
+    int depth = 0;
+    for (std::size_t i = at; i + 1 < tokens.size(); ++i) {
+        depth += tokens[i] == "{" ? 1 : tokens[i] == "}" ? -1 : 0;
+        if (depth == 0) {
+            break;
+        }
+        if (depth != 1 || tokens[i] != "patches" || tokens[i + 1] != "(") {
+            continue;
+        }
+        std::vector<std::string> words;
+        for (std::size_t k = i + 2; k < tokens.size() && tokens[k] != ")"; ++k) {
+            if (tokens[k].front() == '$') {
+                return {};  // stands elsewhere
+            }
+            words.push_back(tokens[k].front() == '"' ? tokens[k].substr(1) : tokens[k]);
+        }
+        return words;
+    }
+    return {};
+}
+
+/// The patches of the entry `name { ... }` of a dictionary; empty when they are not there.
 std::vector<std::string> patches_of(const fs::path& dictionary, const std::string& name) {
     std::error_code ignored;
     if (!fs::is_regular_file(dictionary, ignored)) {
         return {};
     }
-    std::string text;
-    for (const auto line : core::split(core::read_file(dictionary), '\n')) {
-        text += std::string(line.substr(0, line.find("//"))) + ' ';
-    }
-    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
-        const std::size_t open = text.find_first_not_of(" \t\r\"", at + name.size());
-        if (open == std::string::npos || text[open] != '{') {
-            continue;
-        }
-        const std::size_t patches = text.find("patches", open);
-        const std::size_t close = text.find('}', open);
-        if (patches == std::string::npos || patches > close) {
-            return {};
-        }
-        const std::size_t first = text.find('(', patches);
-        // Patterns hold brackets of their own: the list ends with the bracket before the semicolon.
-        const std::size_t semicolon = text.find(';', patches);
-        const std::size_t last = semicolon == std::string::npos ? semicolon : text.rfind(')', semicolon);
-        if (first == std::string::npos || last == std::string::npos || first > last) {
-            return {};
-        }
-        std::vector<std::string> words;
-        for (const auto word : core::split(std::string_view(text).substr(first + 1, last - first - 1), ' ')) {
-            std::string bare(core::trimmed(word));
-            std::erase(bare, '"');
-            if (!bare.empty()) {
-                words.push_back(bare);
+    const std::vector<std::string> tokens = tokens_of(core::read_file(dictionary));
+    for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
+        if ((tokens[i] == name || tokens[i] == '"' + name) && tokens[i + 1] == "{") {
+            auto words = patches_in(tokens, i + 1);
+            if (!words.empty()) {
+                return words;
             }
         }
-        return words;
     }
     return {};
 }

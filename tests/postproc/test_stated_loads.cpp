@@ -337,6 +337,7 @@ TEST_F(StatedLoads, OfOpenFoamAreThoseOfTheFieldsTime) {
     LoadsResult result = loads_of();
     EXPECT_FALSE(result.time);
     write_openfoam(folder_.path(), 1, 100, 0.5);
+    core::write_file(folder_.path() / "system" / "controlDict", "functions { forces { type forces; patches (base hull); } }\n");
     const auto compared = [&](double time, core::Problems& notes) {
         result.time = time;
         return compare_with_solver(result, stated_by_openfoam(folder_.path(), result), notes)[0].stated;
@@ -350,6 +351,32 @@ TEST_F(StatedLoads, OfOpenFoamAreThoseOfTheFieldsTime) {
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_THAT(notes[0].message, HasSubstr("time 22.2"));
     EXPECT_THAT(notes[0].message, HasSubstr("row of 22"));
+}
+
+TEST_F(StatedLoads, OfOpenFoamAreOfThePatchesOfTheirEntry) {
+    const LoadsResult result = loads_of();
+    write_openfoam(folder_.path(), 1, 10, 0.5);
+    const auto zones = [&](const std::string& functions, core::Problems& notes) {
+        core::write_file(folder_.path() / "system" / "controlDict", functions);
+        const auto stated = stated_by_openfoam(folder_.path(), result);
+        compare_with_solver(result, stated, notes);
+        return stated[0].zones;
+    };
+    core::Problems notes;
+    // A dictionary within, before the patches; an entry whose name ends alike; a comment; brackets of patterns and names.
+    EXPECT_THAT(zones("functions { forces { type forces; binData { nBin 20; patches (keel); } patches (base); } }\n", notes), testing::ElementsAre("base"));
+    EXPECT_THAT(zones("functions { myforces { patches (hull); } forces { patches (base); } }\n", notes), testing::ElementsAre("base"));
+    EXPECT_THAT(zones("functions { /* forces { patches (base); } */ forces { patches\n(\n\"(hull|keel)\" );\n} }\n", notes), testing::ElementsAre("hull"));
+    EXPECT_THAT(zones("functions { \"forces\" { patches(base hull); rho rhoInf; } }\n", notes), testing::ElementsAre("base", "hull"));
+    EXPECT_TRUE(notes.empty());
+    EXPECT_THAT(zones("functions { forces { patches (wall(1) base); } }\n", notes), testing::ElementsAre("base"));
+    // What is said elsewhere, or not at all, is said once.
+    for (const char* elsewhere : {"functions { #include \"forces\" }\n", "functions { forces { patches $walls; } }\n", "functions { forces { patches ($walls); } }\n"}) {
+        notes.clear();
+        EXPECT_TRUE(zones(elsewhere, notes).empty());
+        ASSERT_EQ(notes.size(), 1U) << elsewhere;
+        EXPECT_THAT(notes[0].message, HasSubstr("does not say which patches"));
+    }
 }
 
 TEST_F(StatedLoads, OfOlderOpenFoamAreReadFromOneFile) {
