@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "core/text.h"
 #include "postproc/face_integral.h"
 #include "postproc/places.h"
+#include "postproc/rim_edges.h"
 #include "postproc/vector_math.h"
 
 namespace underbody::postproc {
@@ -99,25 +101,14 @@ std::optional<WallShape> box_around(const Walls& walls, Wanted&& wanted) {
 /// Larger by so much cannot be a matter of rounding or of a rim.
 constexpr double clearly = 1.05;
 
-/// The box of the others lies within that of the wall along two axes at least: a tunnel is open at its ends.
-bool has_the_others_in_its_box(const WallShape& wall, const std::vector<WallShape>& walls) {
-    const auto rest = box_around(walls, [&](const WallShape& other) { return &other != &wall; });
-    int axes = 0;
-    for (std::size_t k = 0; rest && k < 3; ++k) {
-        const double room = 0.02 * (wall.upper[k] - wall.lower[k]);
-        axes += wall.lower[k] < rest->lower[k] - room && wall.upper[k] > rest->upper[k] + room ? 1 : 0;
-    }
-    return axes >= 2;
-}
-
 Vector seen_from(const Vector& place, const SurfaceArrays& surface, Index node) {
     const double* x = surface.points().data() + 3 * node;
     return {x[0] - place[0], x[1] - place[1], x[2] - place[2]};
 }
 
-/// How much of all directions from a place the surface fills: 1 inside a closed one, 0 outside, whichever way its faces
-/// look together (A. Van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30, 1983).
-double share_of_directions(const Vector& place, const SurfaceArrays& surface) {
+/// The solid angle that a surface fills, with a sign by the way its faces look (A. Van Oosterom, J. Strackee, IEEE Trans.
+/// Biomed. Eng. 30, 1983).
+double solid_angle(const Vector& place, const SurfaceArrays& surface) {
     double angle = 0;
     const auto offsets = surface.offsets();
     const auto nodes = surface.connectivity();
@@ -130,27 +121,44 @@ double share_of_directions(const Vector& place, const SurfaceArrays& surface) {
             angle += 2 * std::atan2(dot(a, cross(b, c)), below);
         }
     }
-    return std::abs(angle) / (16 * std::atan(1.0));
+    return angle;
 }
 
-/// Places of a wall's nodes.
-Places places_of(const WallShape& wall) {
-    Places places(1e-6 * diagonal(wall));
+/// The nodes of a wall that lie in a box.
+std::vector<const double*> nodes_within(const WallShape& wall, const Vector& lower, const Vector& upper) {
+    std::vector<const double*> nodes;
     const auto points = wall.surface->points();
     for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
-        places.number(points.data() + i);
-    }
-    return places;
-}
-
-bool touches(const Places& places, const WallShape& other) {
-    const auto theirs = other.surface->points();
-    for (std::size_t i = 0; i + 2 < theirs.size(); i += 3) {
-        if (places.has(theirs.data() + i)) {
-            return true;
+        const double* x = points.data() + i;
+        if (x[0] >= lower[0] && x[0] <= upper[0] && x[1] >= lower[1] && x[1] <= upper[1] && x[2] >= lower[2] && x[2] <= upper[2]) {
+            nodes.push_back(x);
         }
     }
-    return false;
+    return nodes;
+}
+
+/// Do two walls have a node in common, as a base and its hull at their rim? It must lie where their boxes overlap.
+bool touch(const WallShape& a, const WallShape& b) {
+    if (a.surface == nullptr || b.surface == nullptr) {
+        return false;
+    }
+    const double tolerance = 1e-6 * std::min(diagonal(a), diagonal(b));
+    Vector lower{};
+    Vector upper{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        lower[k] = std::max(a.lower[k], b.lower[k]) - tolerance;
+        upper[k] = std::min(a.upper[k], b.upper[k]) + tolerance;
+    }
+    auto few = nodes_within(a, lower, upper);
+    auto many = nodes_within(b, lower, upper);
+    if (few.size() > many.size()) {
+        std::swap(few, many);
+    }
+    Places places(tolerance);
+    for (const double* node : few) {
+        places.number(node);
+    }
+    return !few.empty() && std::any_of(many.begin(), many.end(), [&](const double* node) { return places.has(node); });
 }
 
 bool looks_one_way(const Group& group) {
@@ -158,20 +166,10 @@ bool looks_one_way(const Group& group) {
     return norm(group.shape.area_vector) >= one_sided * group.shape.area;
 }
 
-/// Do two groups have nodes in common, as a base and its hull at their rim?
 bool meet(const Group& group, const Group& other, const std::vector<WallShape>& walls) {
-    for (const std::size_t i : group.members) {
-        if (walls[i].surface == nullptr) {
-            continue;
-        }
-        const Places places = places_of(walls[i]);
-        for (const std::size_t k : other.members) {
-            if (walls[k].surface != nullptr && touches(places, walls[k])) {
-                return true;
-            }
-        }
-    }
-    return false;
+    return std::any_of(group.members.begin(), group.members.end(), [&](std::size_t i) {
+        return std::any_of(other.members.begin(), other.members.end(), [&](std::size_t k) { return touch(walls[i], walls[k]); });
+    });
 }
 
 /// Two sides of a closed box that are as large look as if they balanced each other, the ceiling over a floor: but nothing
@@ -194,35 +192,123 @@ bool too_large_to_be_balanced(const Group& group, const std::vector<Group>& grou
     return rest && norm(group.shape.area_vector) > clearly * shadow(*rest, group.shape.area_vector);
 }
 
-/// Do all others lie in the hollow of this wall, without an edge in common? The base of a hull lies in its hollow too, but at its rim.
-bool holds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
-    if (wall.surface == nullptr || !has_the_others_in_its_box(wall, walls)) {
-        return false;
-    }
-    const Places places = places_of(wall);
-    for (const auto& other : walls) {
-        if (&other == &wall) {
-            continue;
+/// Walls that hang together: those that have nodes in common, whatever they are called.
+using Cluster = std::vector<const WallShape*>;
+
+std::vector<Cluster> clusters_of(const std::vector<WallShape>& walls) {
+    std::vector<std::size_t> root(walls.size());
+    std::iota(root.begin(), root.end(), std::size_t{0});
+    const auto find = [&](std::size_t i) {
+        while (root[i] != i) {
+            i = root[i];
         }
-        if (other.surface == nullptr || other.surface->nodes() == 0 || touches(places, other)) {
+        return i;
+    };
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+        for (std::size_t k = i + 1; k < walls.size(); ++k) {
+            if (find(i) != find(k) && touch(walls[i], walls[k])) {
+                root[find(k)] = find(i);
+            }
+        }
+    }
+    std::vector<Cluster> clusters(walls.size());
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+        clusters[find(i)].push_back(&walls[i]);
+    }
+    std::erase_if(clusters, [](const Cluster& cluster) { return cluster.empty(); });
+    return clusters;
+}
+
+WallShape box_of(const Cluster& cluster) {
+    WallShape box = *cluster.front();
+    for (const WallShape* wall : cluster) {
+        widen(box, *wall);
+    }
+    return box;
+}
+
+/// The box of the others lies within that of these walls along two axes at least: a tunnel is open at its ends.
+bool is_around(const WallShape& box, const WallShape& others) {
+    int axes = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double room = 0.02 * (box.upper[k] - box.lower[k]);
+        axes += box.lower[k] < others.lower[k] - room && box.upper[k] > others.upper[k] + room ? 1 : 0;
+    }
+    return axes >= 2;
+}
+
+/// The volume of the cones from the faces to one place.
+double volume_from(const Cluster& cluster, const WallShape& box) {
+    double volume = 0;
+    for (const WallShape* wall : cluster) {
+        volume += wall->volume;
+        for (std::size_t k = 0; k < 3; ++k) {
+            volume += 0.5 * (wall->lower[k] + wall->upper[k] - box.lower[k] - box.upper[k]) * wall->area_vector[k] / 3;
+        }
+    }
+    return volume;
+}
+
+/// Do the others lie in the hollow of these walls? Half of all directions from there end at the walls, 1 inside what is
+/// closed, 0 outside. The base of a hull lies in its hollow too, but hangs on it.
+bool hold(const Cluster& cluster, const WallShape& box, const std::vector<Cluster>& others, bool half) {
+    std::vector<const SurfaceArrays*> surfaces;
+    for (const WallShape* wall : cluster) {
+        if (wall->surface == nullptr) {
             return false;
         }
-        const auto theirs = other.surface->points();
-        // A few of its points: half of the directions or more end at the wall.
-        constexpr std::size_t samples = 16;
-        const std::size_t count = other.surface->nodes();
-        for (std::size_t i = 0; i < std::min(samples, count); ++i) {
-            const double* x = theirs.data() + 3 * (i * count / std::min(samples, count));
-            if (share_of_directions({x[0], x[1], x[2]}, *wall.surface) < 0.5) {
+        surfaces.push_back(wall->surface);
+    }
+    const SignedGroups groups = joined_along_rims(surfaces, diagonal(box));
+    const auto share_of_directions = [&](const Vector& place) {
+        std::vector<double> angles(surfaces.size(), 0);  // of each group, at its root
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            const auto [root, sign] = groups.root(i);
+            angles[root] += sign * solid_angle(place, *surfaces[i]);
+        }
+        double all = 0;
+        for (const double angle : angles) {
+            all += std::abs(angle);
+        }
+        return all / (16 * std::atan(1.0));
+    };
+    const double enough = half ? 0.25 : 0.5;  // half a tunnel fills half of what the whole one does
+    for (const auto& other : others) {
+        for (const WallShape* wall : other) {
+            if (other.front() == cluster.front()) {
+                break;
+            }
+            if (wall->surface == nullptr || wall->surface->nodes() == 0) {
                 return false;
+            }
+            // A few of its points.
+            constexpr std::size_t samples = 16;
+            const std::size_t count = wall->surface->nodes();
+            for (std::size_t i = 0; i < std::min(samples, count); ++i) {
+                const double* x = wall->surface->points().data() + 3 * (i * count / std::min(samples, count));
+                if (share_of_directions({x[0], x[1], x[2]}) < enough) {
+                    return false;
+                }
             }
         }
     }
     return true;
 }
 
-bool surrounds_the_others(const WallShape& wall, const std::vector<WallShape>& walls) {
-    return wall.normals_into_fluid ? wall.volume < 0 && has_the_others_in_its_box(wall, walls) : holds_the_others(wall, walls);
+bool surrounds(const Cluster& cluster, const std::vector<Cluster>& clusters, bool half) {
+    const WallShape box = box_of(cluster);
+    std::optional<WallShape> rest;
+    for (const auto& other : clusters) {
+        if (other.front() != cluster.front()) {
+            const WallShape theirs = box_of(other);
+            rest ? widen(*rest, theirs) : void(rest = theirs);
+        }
+    }
+    if (!rest || !is_around(box, *rest)) {
+        return false;
+    }
+    const bool known = std::all_of(cluster.begin(), cluster.end(), [](const WallShape* wall) { return wall->normals_into_fluid; });
+    return known ? volume_from(cluster, box) < 0 : hold(cluster, box, clusters, half);
 }
 
 /// Words of the last part of a name, without numbers: "Block 1/velocity-inlet2", {"velocity", "inlet"}.
@@ -331,8 +417,21 @@ WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool n
     return wall;
 }
 
-std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls) {
+std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& all, bool half) {
     std::vector<LeftOutZone> others;
+    std::vector<WallShape> walls = all;
+    std::vector<Cluster> clusters = clusters_of(all);
+    for (bool more = true; more && clusters.size() > 1;) {
+        const auto outer = std::find_if(clusters.begin(), clusters.end(), [&](const Cluster& cluster) { return surrounds(cluster, clusters, half); });
+        more = outer != clusters.end();
+        if (more) {
+            for (const WallShape* wall : *outer) {
+                others.push_back({wall->name, outer->size() > 1 ? "with its neighbours it surrounds the others, with the fluid inside" : "it surrounds the others, with the fluid inside"});
+                std::erase_if(walls, [&](const WallShape& other) { return other.name == wall->name; });
+            }
+            clusters.erase(outer);
+        }
+    }
     const auto groups = groups_of(walls);
     for (const auto& group : groups) {
         if (too_large_to_be_balanced(group, groups, walls)) {
@@ -342,13 +441,7 @@ std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls) 
             }
         }
     }
-    for (const auto& wall : walls) {
-        const bool named = std::any_of(others.begin(), others.end(), [&](const LeftOutZone& other) { return other.name == wall.name; });
-        if (!named && surrounds_the_others(wall, walls)) {
-            others.push_back({wall.name, "it surrounds the others, with the fluid inside"});
-        }
-    }
-    return others.size() < walls.size() ? others : std::vector<LeftOutZone>{};
+    return others.size() < all.size() ? others : std::vector<LeftOutZone>{};
 }
 
 std::vector<std::string> separate_bodies(const std::vector<WallShape>& walls) {

@@ -43,12 +43,12 @@ WallShape shape_of(const std::string& name, const SurfaceArrays& surface, bool n
 bool bounds_a_volume(const FaceSums& sums, int dimension = 3);
 
 /// Walls that cannot be part of one body with the others:
-/// 1. that look one way (within 5 % of their area) and whose area vector is larger than anything in the box around the
-///    smaller walls can balance (a ground, a tunnel's floor, a lid; flat walls in one plane count as one);
-/// 2. that surround all others with the fluid inside (a tunnel, a tank); where nobody knows on which side their fluid is,
-///    those that have all others inside and touch none of them (`surface` tells).
-/// None when that would leave no wall. An internal flow (a room, a pipe with one wall) has none either.
-std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls);
+/// 1. that hang together and surround all others with the fluid inside (a tunnel, a tank, a box of far boundaries); where
+///    nobody knows on which side their fluid is, those in whose hollow all others lie (`surface` tells);
+/// 2. that look one way (within 5 % of their area) and whose area vector is larger than anything in the box around the
+///    smaller walls can balance (a ground, a floor and a lid; flat walls in one plane count as one).
+/// None when that would leave no wall. An internal flow (a room, a pipe with one wall) has none either. `half`: a half model.
+std::vector<LeftOutZone> walls_beside_body(const std::vector<WallShape>& walls, bool half = false);
 
 /// Names of walls that are closed bodies of their own and lie apart from each other; fewer than two: empty.
 std::vector<std::string> separate_bodies(const std::vector<WallShape>& walls);

@@ -2,79 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
 
-#include "postproc/places.h"
+#include "postproc/rim_edges.h"
 
 namespace underbody::postproc {
 
 namespace {
 
 using Point = std::array<double, 3>;
-
-struct Edge {
-    std::uint32_t zone;
-    Index a, b;
-};
-
-/// Edges with one face, in the way their face runs along them.
-std::vector<Edge> open_edges(const SurfaceArrays& surface, std::uint32_t zone) {
-    // A directed edge is looked for in the other direction; hash keyed by both nodes.
-    const auto key = [](Index a, Index b) { return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b); };
-    std::unordered_map<std::uint64_t, int> seen;
-    seen.reserve(surface.connectivity().size());
-    const auto offsets = surface.offsets();
-    const auto nodes = surface.connectivity();
-    const auto for_edges = [&](auto&& act) {
-        for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
-            for (Index i = offsets[f]; i < offsets[f + 1]; ++i) {
-                const Index a = nodes[static_cast<std::size_t>(i)];
-                const Index b = nodes[static_cast<std::size_t>(i + 1 < offsets[f + 1] ? i + 1 : offsets[f])];
-                if (a != b) {
-                    act(a, b);
-                }
-            }
-        }
-    };
-    for_edges([&](Index a, Index b) { ++seen[key(std::min(a, b), std::max(a, b))]; });
-    std::vector<Edge> edges;
-    for_edges([&](Index a, Index b) {
-        if (seen[key(std::min(a, b), std::max(a, b))] == 1) {
-            edges.push_back({zone, a, b});
-        }
-    });
-    return edges;
-}
-
-/// Zones that were found to belong together, with the sign of each relative to its root.
-class SignedGroups {
-public:
-    explicit SignedGroups(std::size_t count) : parent_(count), sign_(count, 1.0) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-
-    std::pair<std::size_t, double> root(std::size_t i) const {
-        double sign = 1;
-        while (parent_[i] != i) {
-            sign *= sign_[i];
-            i = parent_[i];
-        }
-        return {i, sign};
-    }
-    void join(std::size_t i, std::size_t j, double relative) {
-        const auto [a, sa] = root(i);
-        const auto [b, sb] = root(j);
-        if (a != b) {
-            parent_[b] = a;
-            sign_[b] = relative * sa * sb;
-        }
-    }
-
-private:
-    std::vector<std::size_t> parent_;
-    std::vector<double> sign_;
-};
 
 class Settler {
 public:
@@ -195,12 +132,12 @@ private:
 
     /// Open surfaces: relative signs from shared edges, the sign of each group from the volume toward its own opening.
     void settle_open() {
-        std::vector<std::vector<Edge>> edges;
-        for (std::size_t i = 0; i < zones_.size(); ++i) {
-            edges.push_back(open_edges(*zones_[i].surface, static_cast<std::uint32_t>(i)));
+        std::vector<const SurfaceArrays*> surfaces;
+        for (const auto& zone : zones_) {
+            surfaces.push_back(zone.surface);
         }
-        std::vector<std::vector<Edge>> unmatched;
-        const SignedGroups groups = join_by_edges(edges, unmatched);
+        std::vector<std::vector<RimEdge>> unmatched;
+        const SignedGroups groups = joined_along_rims(surfaces, size(), &unmatched);
         facing_.how = "zones that share edges agree; the fluid is outside the volume toward the centre of the open edges";
         for (std::size_t root = 0; root < zones_.size(); ++root) {
             if (groups.root(root).first == root) {
@@ -209,44 +146,7 @@ private:
         }
     }
 
-    SignedGroups join_by_edges(const std::vector<std::vector<Edge>>& edges, std::vector<std::vector<Edge>>& unmatched) const {
-        Places places(1e-6 * size());
-        struct Seen {
-            std::uint32_t zone;
-            std::size_t index;
-            bool forward;
-        };
-        std::unordered_map<std::uint64_t, std::vector<Seen>> by_place;
-        for (std::size_t z = 0; z < edges.size(); ++z) {
-            for (std::size_t e = 0; e < edges[z].size(); ++e) {
-                const double* points = zones_[z].surface->points().data();
-                const auto a = static_cast<std::uint64_t>(places.number(points + 3 * edges[z][e].a));
-                const auto b = static_cast<std::uint64_t>(places.number(points + 3 * edges[z][e].b));
-                by_place[(std::min(a, b) << 32) | std::max(a, b)].push_back({static_cast<std::uint32_t>(z), e, a < b});
-            }
-        }
-        unmatched.assign(edges.size(), {});
-        std::vector<std::vector<double>> votes(edges.size(), std::vector<double>(edges.size(), 0));
-        for (const auto& [key, seen] : by_place) {
-            if (seen.size() == 2 && seen[0].zone != seen[1].zone) {
-                votes[seen[0].zone][seen[1].zone] += seen[0].forward == seen[1].forward ? -1 : 1;
-                votes[seen[1].zone][seen[0].zone] += seen[0].forward == seen[1].forward ? -1 : 1;
-            } else if (seen.size() == 1) {
-                unmatched[seen[0].zone].push_back(edges[seen[0].zone][seen[0].index]);
-            }
-        }
-        SignedGroups groups(edges.size());
-        for (std::size_t i = 0; i < edges.size(); ++i) {
-            for (std::size_t j = i + 1; j < edges.size(); ++j) {
-                if (votes[i][j] != 0) {
-                    groups.join(i, j, votes[i][j] > 0 ? 1.0 : -1.0);
-                }
-            }
-        }
-        return groups;
-    }
-
-    void settle_group(const SignedGroups& groups, std::size_t root, const std::vector<std::vector<Edge>>& unmatched) {
+    void settle_group(const SignedGroups& groups, std::size_t root, const std::vector<std::vector<RimEdge>>& unmatched) {
         std::vector<std::size_t> members;
         double anchored = 0;
         for (std::size_t i = 0; i < zones_.size(); ++i) {
@@ -284,7 +184,7 @@ private:
         return sum / 3;
     }
 
-    [[nodiscard]] Point centre_of_edges(const std::vector<std::size_t>& members, const std::vector<std::vector<Edge>>& edges) const {
+    [[nodiscard]] Point centre_of_edges(const std::vector<std::size_t>& members, const std::vector<std::vector<RimEdge>>& edges) const {
         Point sum{};
         double weight = 0;
         for (const auto i : members) {

@@ -15,6 +15,7 @@
 #include "postproc/body_zones.h"
 #include "postproc/doubled_faces.h"
 #include "postproc/importers/variable_reading.h"
+#include "postproc/mirror_plane.h"
 
 namespace underbody::postproc {
 
@@ -258,7 +259,7 @@ private:
         const auto is_other = [&](const std::string& name) {
             return std::any_of(result_.left_out.begin(), result_.left_out.end(), [&](const LeftOutZone& zone) { return zone.name == name; });
         };
-        for (auto& other : walls_beside_body(walls)) {
+        for (auto& other : walls_beside_body(walls, mirror_plane_from(options_.symmetry).is_half())) {
             result_.left_out.push_back(std::move(other));
         }
         std::erase_if(parts_, [&](const Part& part) { return is_other(part.zone->name); });

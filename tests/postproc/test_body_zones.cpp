@@ -210,6 +210,60 @@ TEST(BodyZones, ATunnelOfWhichNobodyKnowsTheSideIsKnownByWhatLiesInside) {
     EXPECT_THAT(walls_beside_body({hollow, recess}), IsEmpty());
 }
 
+TEST(BodyZones, WallsThatSurroundTheBodyTogetherAreNoneOfIt) {
+    Walls made;
+    // Faces of a block from `low` to `high`, normals outward or inward, each a zone of its own; some left away.
+    const auto block = [&](const Point& low, const Point& high, const std::string& without, bool inward, bool known) {
+        std::vector<WallShape> walls;
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const bool upper : {false, true}) {
+                const std::string name = std::string(upper ? "+" : "-") + "xyz"[axis];
+                if (without.find(name) != std::string::npos) {
+                    continue;
+                }
+                walls.push_back(made.make(name, 3, 3, [=](double s, double t) {
+                    Point p{};
+                    const auto a = std::size_t(axis), b = std::size_t(axis + 1) % 3, c = std::size_t(axis + 2) % 3;
+                    const double u = upper != inward ? s : 1 - s;
+                    p[a] = upper ? high[a] : low[a];
+                    p[b] = low[b] + u * (high[b] - low[b]);
+                    p[c] = low[c] + t * (high[c] - low[c]);
+                    return p;
+                }));
+                walls.back().normals_into_fluid = known;
+            }
+        }
+        return walls;
+    };
+    const auto body = [&](double from, bool known) {
+        auto walls = block({-0.2, from, 0.1}, {0.2, 0.1, 0.2}, from == 0 ? "-y" : "", false, known);
+        for (auto& wall : walls) {
+            wall.name = "body" + wall.name;
+        }
+        return walls;
+    };
+    for (const bool known : {false, true}) {
+        for (const char* open : {"-x+x", "", "+z", "-x+x+z"}) {  // a tunnel, a tank, a basin, a channel
+            auto walls = body(-0.1, known);
+            const auto around = block({-2, -1, 0}, {3, 1, 1.5}, open, true, known);
+            walls.insert(walls.begin() + 3, around.begin(), around.end());
+            const auto others = names_of(walls_beside_body(walls));
+            EXPECT_EQ(others.size(), around.size()) << known << open;
+            EXPECT_TRUE(std::none_of(others.begin(), others.end(), [](const auto& name) { return name.starts_with("body"); })) << known << open;
+        }
+        auto half = body(0, known);
+        const auto around = block({-2, 0, 0}, {3, 1, 1.5}, "-y-x+x", true, known);
+        half.insert(half.end(), around.begin(), around.end());
+        EXPECT_THAT(names_of(walls_beside_body(half, true)), testing::UnorderedElementsAre("+y", "-z", "+z")) << known;
+        // A small block under a large one lies between its sides, and in no hollow.
+        auto two = block({-2, -1, 1}, {3, 1, 1.5}, "", false, known);
+        const auto small = body(-0.1, known);
+        two.insert(two.end(), small.begin(), small.end());
+        const auto others = walls_beside_body(two);
+        EXPECT_TRUE(std::none_of(others.begin(), others.end(), [](const auto& other) { return other.why.find("surrounds") != std::string::npos; })) << known;
+    }
+}
+
 TEST(BodyZones, ARoomOrAChannelWithoutABodyKeepsItsWalls) {
     EXPECT_THAT(walls_beside_body(box(2, true)), IsEmpty());
     EXPECT_THAT(walls_beside_body({flat("floor", -5, 5, -2, 2, -1), flat("ceiling", -5, 5, -2, 2, 1)}), IsEmpty());
