@@ -70,6 +70,7 @@ private:
     void read_mesh(FoamPiece& piece);
     [[nodiscard]] fs::path mesh_file(const FoamPiece& piece, const std::string& name) const;
     void read_points(const FoamPiece& piece, std::vector<std::uint32_t>& place);
+    void check_neighbour(const FoamPatch& patch, const FoamInput& in) const;
     void read_patches(FoamPiece& piece, std::uint64_t inner, std::uint64_t faces);
     void cut_faces(FoamPiece& piece, const Buffer<std::uint32_t>& offsets, const Buffer<std::uint32_t>& nodes,
                    const Buffer<std::uint32_t>& owner, const Buffer<std::uint32_t>& neighbour,
@@ -113,8 +114,18 @@ void Reader::find_pieces() {
             return;
         }
     }
-    for (int p = 0; is_folder(folder_ / ("processor" + std::to_string(p))); ++p) {
-        pieces_.push_back({folder_ / ("processor" + std::to_string(p)), {}, 0, 0, 0, {}});
+    const auto share = [&](std::size_t number) { return folder_ / ("processor" + std::to_string(number)); };
+    for (std::size_t p = 0; is_folder(share(p)); ++p) {
+        pieces_.push_back({share(p), {}, 0, 0, 0, {}});
+    }
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder_, error)) {
+        const std::string name = entry.path().filename().string();
+        const auto number = name.starts_with("processor") ? core::parse_number(std::string_view(name).substr(9)) : std::nullopt;
+        if (number && *number > static_cast<double>(pieces_.size()) && is_folder(entry.path() / "constant")) {
+            throw core::InputError("missing", "there is '" + name + "', but no " + share(pieces_.size()).filename().string() + ": a share of the case is lost", {folder_.string(), {}, {}, {}},
+                                   "copy all its processor folders, or put the case together where it ran (reconstructPar)");
+        }
     }
     if (pieces_.empty()) {
         pieces_.push_back({folder_, {}, 0, 0, 0, {}});
@@ -204,6 +215,15 @@ void Reader::read_points(const FoamPiece& piece, std::vector<std::uint32_t>& pla
     mesh_.nodes = last;
 }
 
+/// The share of the processor beyond these faces must be there too.
+void Reader::check_neighbour(const FoamPatch& patch, const FoamInput& in) const {
+    if (pieces_.front().folder != folder_ && patch.count > 0 && !patch.neighbour_processor.empty() &&
+        !is_folder(folder_ / ("processor" + patch.neighbour_processor))) {
+        throw core::InputError("missing", "'" + patch.name + "' leads to processor" + patch.neighbour_processor + ", which is not there: a share of the case is lost", in.place(),
+                               "copy the folder processor" + patch.neighbour_processor + ", or put the case together where it ran (reconstructPar)");
+    }
+}
+
 void Reader::read_patches(FoamPiece& piece, std::uint64_t inner, std::uint64_t faces) {
     FoamInput in(mesh_file(piece, "boundary"));
     if (!in.accept('(')) {
@@ -224,10 +244,22 @@ void Reader::read_patches(FoamPiece& piece, std::uint64_t inner, std::uint64_t f
             } else if (key == "nFaces" || key == "startFace") {
                 (key == "nFaces" ? patch.count : patch.start) = in.count();
                 in.expect(";");
+            } else if (key == "neighbProcNo") {
+                patch.neighbour_processor = in.token();
+                in.expect(";");
+            } else if (key == "inGroups") {  // "2(hull wall);", "(hull wall);"
+                for (std::string word = in.token(); word != ";"; word = in.token()) {
+                    if (word.empty()) {
+                        in.fail("the file ends within the groups of patch '" + patch.name + "'");
+                    }
+                    patch.groups.push_back(word);
+                }
             } else {
                 in.skip_entry();
             }
         }
+        patch.groups.emplace_back(patch.type == "mappedWall" ? "wall" : patch.type);
+        check_neighbour(patch, in);
         piece.patches.push_back(std::move(patch));
     }
     std::uint64_t next = inner;
@@ -409,6 +441,7 @@ Field Reader::read() {
         }
     }
     kinematic_ = fields.kinematic();
+    problems_.insert(problems_.end(), fields.problems().begin(), fields.problems().end());
     Field field = field_from(std::move(mesh_), std::move(values_), options_, progress_);
     finish(field);
     find_density(field);

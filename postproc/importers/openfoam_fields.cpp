@@ -31,6 +31,11 @@ std::string unit_of(const std::vector<double>& powers) {
     return unit.empty() ? "1" : unit;
 }
 
+/// Patches whose kind is their boundary condition.
+bool is_constraint(const std::string& type) {
+    return type.starts_with("symmetry") || type.starts_with("cyclic") || type.starts_with("processor") || type == "empty" || type == "wedge" || type == "overset";
+}
+
 }  // namespace
 
 /// What the numbers are, out of the dimensions that the file states.
@@ -73,11 +78,49 @@ FoamFields::PatchValues FoamFields::patch_values(FoamInput& in, std::size_t comp
             }
         } else if (key.starts_with("#")) {
             in.skip_directive();
+            values.elsewhere = true;
         } else {
+            values.elsewhere = values.elsewhere || key.starts_with("$");
             in.skip_entry();
         }
     }
     return values;
+}
+
+/// The entry "boundaryField" behind its key.
+FoamFields::BoundaryValues FoamFields::boundary_values(FoamInput& in, std::size_t components) {
+    BoundaryValues boundary;
+    in.expect("{");
+    for (std::string name = in.token(); name != "}" || in.was_quoted(); name = in.token()) {
+        if (name.empty()) {
+            in.fail("the file ends within the boundary field");
+        }
+        if (!in.was_quoted() && name.starts_with("#")) {
+            in.skip_directive();  // boundary conditions of "setConstraintTypes" state no values
+            boundary.elsewhere = true;
+            continue;
+        }
+        try {
+            boundary.keys.emplace_back(name, in.was_quoted());
+        } catch (const core::InputError& error) {
+            in.fail(error.message());
+        }
+        boundary.values.push_back(patch_values(in, components));
+    }
+    return boundary;
+}
+
+/// A boundary condition whose values may not be those of the cells, though these are taken.
+void FoamFields::tell_guess(const FoamPatch& patch, const PatchValues* given, const std::string& variable, const fs::path& file) {
+    const std::string& type = given != nullptr ? given->type : patch.type;
+    if (is_constraint(patch.type) || (given != nullptr && (given->one_a_face || !given->uniform.empty() || type == "noSlip" || !given->elsewhere))) {
+        return;
+    }
+    problems_.push_back({core::Problem::Severity::warning,
+                         "patch '" + patch.name + "' " +
+                             (given == nullptr ? "has no entry in '" + variable + "'" : "takes its entry in '" + variable + "' from another, which is not read") +
+                             ": its values are those of the cells beside it",
+                         {file.string(), {}, {}, {}}});
 }
 
 /// Boundary conditions that state no value take it from the cell beside the face.
@@ -209,7 +252,7 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
     block.count = piece.cells;
     std::vector<double> dimensions;
     Buffer<double> inner;
-    std::map<std::string, PatchValues> patches;
+    BoundaryValues boundary;
     bool closed = false;
     for (std::string key = in.token(); !key.empty(); key = in.token()) {
         if (key == "dimensions") {
@@ -221,17 +264,7 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
         } else if (key == "internalField") {
             inner = inner_values(in, components, piece.cells);
         } else if (key == "boundaryField") {
-            in.expect("{");
-            for (std::string name = in.token(); name != "}"; name = in.token()) {
-                if (name.empty()) {
-                    in.fail("the file ends within the boundary field");
-                }
-                if (name.starts_with("#")) {
-                    in.skip_directive();  // boundary conditions of "setConstraintTypes" state no values
-                } else {
-                    patches[name] = patch_values(in, components);
-                }
-            }
+            boundary = boundary_values(in, components);
             closed = true;
         } else if (key.starts_with("#")) {
             in.skip_directive();
@@ -245,9 +278,14 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
     // The function object's wall shear stress acts on the fluid; ours on the body.
     const double sign = block.canonical.ends_with("wall_shear") ? -1 : 1;
     for (std::size_t p = 0; p < piece.patches.size(); ++p) {
-        const auto found = patches.find(piece.patches[p].name);
+        const FoamPatch& patch = piece.patches[p];
+        const int key = key_for_patch(boundary.keys, patch.name, patch.groups);
+        const PatchValues* given = key >= 0 ? &boundary.values[static_cast<std::size_t>(key)] : nullptr;
         const std::size_t before = values_.size();
-        add_patch(piece, p, block, found != patches.end() ? &found->second : nullptr, inner, file);
+        add_patch(piece, p, block, given, inner, file);
+        if (values_.size() > before && (given != nullptr || !boundary.elsewhere)) {
+            tell_guess(patch, given, block.variable, file);
+        }
         for (std::size_t v = before; v < values_.size() && sign < 0; ++v) {
             for (double& x : values_[v].values) {
                 x = -x;

@@ -8,6 +8,7 @@
 
 #include "postproc/importers/face_mesh.h"
 #include "postproc/importers/openfoam_input.h"
+#include "postproc/importers/openfoam_keys.h"
 
 namespace underbody::postproc {
 
@@ -18,6 +19,8 @@ constexpr int foam_patch_code = 4;
 struct FoamPatch {
     std::string name;
     std::string type;
+    std::vector<std::string> groups;  ///< that it is in, its kind among them
+    std::string neighbour_processor;  ///< of faces between processors: the number of the other one
     std::uint64_t start = 0;
     std::uint64_t count = 0;
 };
@@ -43,6 +46,8 @@ public:
     void read(const FoamPiece& piece, const std::filesystem::path& time);
     /// Is the pressure one over density?
     [[nodiscard]] bool kinematic() const { return kinematic_; }
+    /// What was not read of the fields.
+    [[nodiscard]] const core::Problems& problems() const { return problems_; }
 
 private:
     /// What a field file gives to one patch.
@@ -51,6 +56,12 @@ private:
         std::vector<double> uniform;
         Buffer<double> list;
         bool one_a_face = false;  ///< `list` is what the file states, even when it is empty
+        bool elsewhere = false;   ///< some of it stands in another file or entry, which is not read
+    };
+    struct BoundaryValues {
+        std::vector<FoamKey> keys;
+        std::vector<PatchValues> values;  ///< one a key
+        bool elsewhere = false;
     };
 
     void read_field(const FoamPiece& piece, const std::filesystem::path& file);
@@ -60,11 +71,14 @@ private:
     static Buffer<double> inner_values(FoamInput& in, std::size_t components, std::uint64_t cells);
     static void name_quantity(ValueBlock& block, const std::vector<double>& dimensions);
     static PatchValues patch_values(FoamInput& in, std::size_t components);
+    static BoundaryValues boundary_values(FoamInput& in, std::size_t components);
+    void tell_guess(const FoamPatch& patch, const PatchValues* given, const std::string& variable, const std::filesystem::path& file);
 
     const FaceMesh& mesh_;
     const ReadOptions& options_;
     core::Progress& progress_;
     std::vector<ValueBlock>& values_;
+    core::Problems problems_;
     bool kinematic_ = false;
 };
 

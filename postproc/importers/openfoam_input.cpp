@@ -67,6 +67,7 @@ int FoamInput::next() {
 
 std::string FoamInput::token() {
     int c = next();
+    quoted_ = c == '"';
     if (c < 0) {
         return {};
     }

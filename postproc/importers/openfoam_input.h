@@ -27,6 +27,8 @@ public:
 
     /// A word, a quoted text without its quotes, or one of (){}[]; and "" at the end. Comments are passed over.
     std::string token();
+    /// Was the last token a quoted text? As a keyword it is a pattern then.
+    [[nodiscard]] bool was_quoted() const { return quoted_; }
     void expect(const std::string& wanted);
     bool accept(char c);
     /// Does a word come next, no number and no bracket?
@@ -54,6 +56,7 @@ public:
     /// How many numbers "List<vector>" or "volVectorField" have a place; 0: no such type.
     static std::size_t components_of(const std::string& type);
 
+    [[nodiscard]] core::Place place() const { return in_.place(); }
     [[noreturn]] void fail(const std::string& what) const;
 
 private:
@@ -68,6 +71,7 @@ private:
 
     ByteStream in_;
     std::string class_;
+    bool quoted_ = false;
     bool binary_ = false;
     bool swapped_ = false;
     std::size_t label_bytes_ = 4;

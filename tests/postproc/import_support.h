@@ -38,4 +38,7 @@ double volume_of(const postproc::Field& field);
 /// The message of the InputError that reading the file throws; "" when it throws none.
 std::string refusal(const std::filesystem::path& path, const postproc::ReadOptions& options = {});
 
+/// What a field says of itself, one message a line.
+std::string told(const postproc::Field& field);
+
 }  // namespace underbody::test

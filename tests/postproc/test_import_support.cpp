@@ -195,4 +195,12 @@ std::string refusal(const std::filesystem::path& path, const postproc::ReadOptio
     return {};
 }
 
+std::string told(const postproc::Field& field) {
+    std::string text;
+    for (const auto& problem : field.problems) {
+        text += problem.message + "\n";
+    }
+    return text;
+}
+
 }  // namespace underbody::test

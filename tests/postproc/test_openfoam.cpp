@@ -171,6 +171,80 @@ TEST(OpenFoam, APatchWithoutFacesOnAProcessorStatesAnEmptyListWithoutItsType) {
     EXPECT_THAT(test::refusal(box), HasSubstr("'movingWall' has 0 values for 4 faces"));
 }
 
+/// The box with another boundary field for its pressure.
+void state_boundary(const fs::path& box, const std::string& boundary) {
+    std::string text = core::read_file(data("ascii") / "0.005/p");
+    std::ofstream(box / "0.005/p", std::ios::binary) << text.substr(0, text.find("boundaryField")) << "boundaryField\n{\n" << boundary << "}\n";
+}
+
+double pressure_on(const postproc::Field& field, const std::string& patch) {
+    return field.find(patch)->surface->GetCellData()->GetArray("kinematic_pressure")->GetComponent(3, 0);
+}
+
+TEST(OpenFoam, QuotedKeysArePatternsOfWhichTheLastCountsUnlessAPlainKeyIsThere) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const auto value = [](const std::string& key, int number) { return key + " { type fixedValue; value uniform " + std::to_string(number) + "; }\n"; };
+    state_boundary(box, value("\".*\"", 5) + value("\"(moving|other)Wall\"", 7));
+    EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 7);
+    EXPECT_EQ(pressure_on(read_field(box), "fixedWalls"), 5);
+    state_boundary(box, value("\"(moving|other)Wall\"", 7) + value("\".*\"", 5));
+    EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 5);
+    state_boundary(box, value("movingWall", 3) + value("\".*\"", 5));
+    EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 3);
+    // A pattern is for the whole name.
+    state_boundary(box, value("\".*\"", 5) + value("\"moving\"", 7));
+    EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 5);
+    state_boundary(box, value("\"(moving\"", 7));
+    EXPECT_THAT(test::refusal(box), HasSubstr("'(moving' is in quotation marks, but no regular expression"));
+    state_boundary(box, value('"' + std::string(20000, '(') + '"', 7));
+    EXPECT_THAT(test::refusal(box), HasSubstr("a pattern of 20000 characters"));
+    // Time must not grow with the expression's wickedness.
+    state_boundary(box, value("\".*\"", 5) + value("\"((m*)*)*b|(((.?){40}){40}){40}\"", 7));
+    EXPECT_THAT(test::refusal(box), HasSubstr("no regular expression"));
+}
+
+TEST(OpenFoam, KeysMayBeGroupsOfPatches) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const fs::path file = box / "constant/polyMesh/boundary";
+    std::string text = core::read_file(file);
+    const std::size_t at = text.find('{', text.find("movingWall")) + 1;
+    std::ofstream(file, std::ios::binary) << text.insert(at, "\n        inGroups List<word> 2(lids moving);");
+    state_boundary(box, "lids { type fixedValue; value uniform 7; }\nwall { type fixedValue; value uniform 5; }\n\".*\" { type fixedValue; value uniform 3; }\n");
+    EXPECT_EQ(pressure_on(read_field(box), "fixedWalls"), 5);  // walls are a group that nobody has to name
+    EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 5);  // the last one
+    state_boundary(box, "wall { type fixedValue; value uniform 5; }\nlids { type fixedValue; value uniform 7; }\n");
+    EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 7);
+    state_boundary(box, "wall { type fixedValue; value uniform 5; }\nmovingWall { type fixedValue; value uniform 9; }\n");
+    EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 9);
+}
+
+TEST(OpenFoam, ValuesThatAreGuessedAreTold) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    state_boundary(box, "movingWall { type zeroGradient; }\nfrontAndBack { type empty; }\n");
+    EXPECT_THAT(test::told(read_field(box)), HasSubstr("patch 'fixedWalls' has no entry in 'p': its values are those of the cells beside it"));
+    state_boundary(box, "movingWall { $common; }\nfixedWalls { type zeroGradient; }\nfrontAndBack { type empty; }\n");
+    const std::string told = test::told(read_field(box));
+    EXPECT_THAT(told, HasSubstr("patch 'movingWall' takes its entry in 'p' from another, which is not read"));
+    EXPECT_THAT(told, testing::Not(HasSubstr("fixedWalls")));
+    EXPECT_THAT(test::told(read_field(data("ascii"))), testing::Not(HasSubstr("cells beside")));
+}
+
+TEST(OpenFoam, ALostShareOfADecomposedCaseIsNamed) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("decomposed"), box);
+    fs::rename(box / "processor1", box / "processor2");
+    EXPECT_THAT(test::refusal(box), HasSubstr("there is 'processor2', but no processor1"));
+    fs::remove_all(box / "processor2");
+    EXPECT_THAT(test::refusal(box), HasSubstr("leads to processor1, which is not there"));
+}
+
 TEST(OpenFoam, FilesThatAFieldIncludesArePassedOver) {
     const core::TemporaryFolder folder;
     const fs::path box = folder.path() / "box";
