@@ -15,7 +15,6 @@
 #include "postproc/importers/face_orientation.h"
 #include "postproc/importers/hdf5_file.h"
 #include "postproc/importers/importer.h"
-#include "postproc/importers/steps.h"
 #include "postproc/importers/trial.h"
 #include "postproc/importers/understood.h"
 
@@ -26,7 +25,7 @@ namespace {
 class Reader {
 public:
     Reader(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress)
-        : file_(path), name_(path.string()), options_(options), progress_(progress) {}
+        : file_(path, options.time), name_(path.string()), options_(options), progress_(progress) {}
 
     Field read();
     [[nodiscard]] std::string understood() const {
@@ -73,14 +72,16 @@ Field Reader::read() {
     }
     shell_ = is_shell();
     if (const auto& times = file_.times(); !times.empty()) {
-        const std::size_t step = options_.time ? step_at(times, *options_.time, name_) : times.size() - 1;
-        file_.choose_step(step);
-        field.metadata.emplace_back("time", core::format_number(times[step]));
-        field.metadata.emplace_back("times", std::to_string(times.size()) + " from " + core::format_number(times.front()) + " to " + core::format_number(times.back()));
+        if (file_.time()) {
+            field.metadata.emplace_back("time", core::format_number(*file_.time()));
+        }
+        const auto [first, last] = std::minmax_element(times.begin(), times.end());
+        field.metadata.emplace_back("times", std::to_string(times.size()) + " from " + core::format_number(*first) + " to " + core::format_number(*last));
     }
-    for (int index = 1; index <= file_.zones(); ++index) {
+    double zones_read = 0;
+    for (const int index : file_.zones()) {
         progress_.check();
-        progress_.report(static_cast<double>(index - 1) / file_.zones(), "reading zone " + std::to_string(index));
+        progress_.report(zones_read++ / static_cast<double>(file_.zones().size()), "reading zone " + std::to_string(index));
         const CgnsZone zone = file_.zone(index);
         zone.structured ? add_structured(zone, field) : add_unstructured(zone, field);
         understood_ += (understood_.empty() ? "" : ", ") + zone.name;
@@ -95,7 +96,7 @@ bool Reader::is_shell() {
         return false;
     }
     std::optional<double> z;
-    for (int index = 1; index <= file_.zones(); ++index) {
+    for (const int index : file_.zones()) {
         const auto points = file_.points(file_.zone(index));
         for (std::size_t i = 2; i < points.size(); i += 3) {
             if (points[i] != z.value_or(points[i])) {
@@ -120,7 +121,10 @@ void Reader::add_notes(Field& field) const {
         add(core::Problem::Severity::warning, "values that boundaries hold for themselves (BCDataSet) are not read: " + listed(with_data_));
     }
     if (file_.bases() > 1) {
-        add(core::Problem::Severity::note, "the last of " + std::to_string(file_.bases()) + " bases is read");
+        add(core::Problem::Severity::note, "of " + std::to_string(file_.bases()) + " bases '" + file_.base_name() + "' is read");
+    }
+    for (const auto& warning : file_.warnings()) {
+        add(core::Problem::Severity::warning, warning);
     }
     if (const std::string data = file_.dimensionless_class(); !data.empty()) {
         add(core::Problem::Severity::warning, "the file says that its values have no dimensions (" + data +

@@ -87,7 +87,7 @@ bool CgnsFile::open_newer(bool hdf5) {
     return linked && cg_open(own.c_str(), CG_MODE_READ, &file_) == CG_OK;
 }
 
-CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
+CgnsFile::CgnsFile(const std::filesystem::path& path, std::optional<double> time) : name_(path.string()) {
     std::error_code error;
     bytes_ = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
@@ -110,14 +110,14 @@ CgnsFile::CgnsFile(const std::filesystem::path& path) : name_(path.string()) {
         if (bases_ < 1) {
             fail("there is no base in the file");
         }
-        base_ = bases_;
+        choose_step(time);
         opened(cg_base_read(file_, base_, base_name.data(), &cell_dimension_, &physical_dimension_), "base");
         if (cell_dimension_ < 1 || cell_dimension_ > 3) {
             fail("its cells have " + std::to_string(cell_dimension_) + " dimensions");
         }
-        opened(cg_nzones(file_, base_, &zones_), "zones");
+        base_name_ = base_name.data();
+        find_zones_of_step();
         read_units_of_base();
-        read_times();
     } catch (const core::InputError&) {
         cg_close(file_);
         throw;
@@ -128,6 +128,12 @@ CgnsFile::~CgnsFile() { cg_close(file_); }
 
 void CgnsFile::fail(const std::string& what) const {
     throw core::InputError("format", what, {name_, {}, {}, {}}, hint_for(what, "the file is damaged or incomplete"));
+}
+
+void CgnsFile::warn(const std::string& what) {
+    if (std::find(warnings_.begin(), warnings_.end(), what) == warnings_.end()) {
+        warnings_.push_back(what);
+    }
 }
 
 void CgnsFile::ok(const CgnsZone& zone, int result, const char* what) const {

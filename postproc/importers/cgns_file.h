@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,10 +56,12 @@ struct CgnsCondition {
     int data_sets = 0;                  ///< values of its own (BCDataSet), which are not read
 };
 
-/// A file opened for reading, its last base. Every failure is an InputError with file and zone.
+/// A file opened for reading, one base of it at one step in time. Every failure is an InputError with file and zone.
 class CgnsFile {
 public:
-    explicit CgnsFile(const std::filesystem::path& path);
+    /// The base and step of `time` [s]; without it the last base, or the latest of those that state times, and its last
+    /// step. A time that the file does not state is refused.
+    explicit CgnsFile(const std::filesystem::path& path, std::optional<double> time = {});
     ~CgnsFile();
     CgnsFile(const CgnsFile&) = delete;
     CgnsFile& operator=(const CgnsFile&) = delete;
@@ -66,24 +69,27 @@ public:
     /// Of the library that wrote the file, where it is later than the one here; 0 otherwise.
     [[nodiscard]] float newer_version() const { return version_; }
     [[nodiscard]] int bases() const { return bases_; }
+    [[nodiscard]] const std::string& base_name() const { return base_name_; }
     [[nodiscard]] int cell_dimension() const { return cell_dimension_; }
     [[nodiscard]] int physical_dimension() const { return physical_dimension_; }
-    [[nodiscard]] int zones() const { return zones_; }
-    /// Zone 1 to `zones()`.
+    /// The numbers of the zones that are there at the step, from 1.
+    [[nodiscard]] const std::vector<int>& zones() const { return zones_; }
     [[nodiscard]] CgnsZone zone(int index) const;
 
-    /// Three coordinates a node, in m; what the file does not have is 0.
+    /// Three coordinates a node of the grid at the step, in m; what the file does not have is 0.
     [[nodiscard]] Buffer<double> points(const CgnsZone& zone);
     /// In order of their element numbers; structured zones have none.
     [[nodiscard]] std::vector<CgnsSection> sections(const CgnsZone& zone, core::Progress& progress) const;
     [[nodiscard]] std::vector<CgnsCondition> conditions(const CgnsZone& zone) const;
-    /// Times of the base's steps, s; empty when the file states none.
+    /// Times of the steps of all bases, s; empty when the file states none.
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
-    /// The step to read, a place in `times()`; without it the last one.
-    void choose_step(std::size_t step) { step_ = step; }
+    /// That of the step, where the file states it.
+    [[nodiscard]] std::optional<double> time() const { return time_; }
     /// Solutions at vertices and cells, only the arrays asked for: those of the step where the zone says which these are,
     /// else the last that holds a variable. `left` counts the solutions of other steps.
     [[nodiscard]] std::vector<PartValues> solutions(const CgnsZone& zone, const ReadOptions& options, core::Progress& progress, int& left);
+    /// What to tell of all that was read so far.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
     /// m per unit of length of the base.
     [[nodiscard]] double base_length() const { return of_base_.length; }
@@ -111,8 +117,24 @@ private:
     Scales scales_at(const Scales& above, Node... node);
     void read_units_of_base();
     Scales scales_of(const CgnsZone& zone, const char* parent, int index, int array);
-    void read_times();
-    [[nodiscard]] std::vector<std::string> solutions_of_steps(const CgnsZone& zone) const;
+    struct Steps {
+        int count = 0;
+        std::vector<double> times;  ///< s; as many, or none
+    };
+    struct Choice;
+    void warn(const std::string& what);
+    [[noreturn]] void refuse_time(const std::string& why) const;
+    [[nodiscard]] Steps steps_of_base(int base) const;
+    void choose_step(std::optional<double> time);
+    void find_zones_of_step();
+    static bool names_something(std::string_view pointer);
+    [[nodiscard]] std::vector<std::string> names_by_step(std::string_view array) const;
+    [[nodiscard]] std::vector<std::vector<std::string>> pointers(const CgnsZone& zone, const std::vector<std::string_view>& arrays) const;
+    [[nodiscard]] int grid_of_step(const CgnsZone& zone);
+    void read_nodes(const CgnsZone& zone, int array, Buffer<double>& column) const;
+    static void choose(std::vector<Choice>& choices, Choice&& found);
+    void tell_of_unsaid_times(const CgnsZone& zone, const std::vector<Choice>& choices, bool says);
+    [[nodiscard]] std::vector<Choice> choices(const CgnsZone& zone, const ReadOptions& options, int& left);
     [[nodiscard]] CgnsCondition condition(const CgnsZone& zone, int index) const;
     [[nodiscard]] CgnsSection section(const CgnsZone& zone, int index) const;
     [[nodiscard]] int family_type(const CgnsZone& zone, int condition) const;
@@ -124,11 +146,17 @@ private:
     int file_ = -1;
     int bases_ = 0;
     int base_ = 1;
-    int zones_ = 0;
+    std::string base_name_;
+    std::vector<int> zones_;
+    bool zones_by_step_ = false;  ///< the file says which zones are there at a step
     int cell_dimension_ = 3;
     int physical_dimension_ = 3;
     std::vector<double> times_;
-    std::size_t step_ = 0;
+    std::optional<double> time_;
+    bool time_asked_ = false;
+    std::size_t steps_ = 0;  ///< of the base
+    std::size_t step_ = 0;   ///< of these
+    std::vector<std::string> warnings_;
     Scales of_base_;
     bool units_stated_ = false;
     std::map<std::string, std::string> converted_;
