@@ -1,4 +1,5 @@
 // What the many programs call the same field variable.
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "core/text.h"
 #include "postproc/field.h"
+#include "postproc/names.h"
 
 namespace underbody::postproc {
 
@@ -141,6 +143,26 @@ CanonicalName canonical_name(const std::string& original) {
         }
     }
     return {original, ""};
+}
+
+int spelling_rank(const std::string& original, const std::string& canonical) {
+    const std::string key = folded(original);
+    if (original == canonical || key == folded(canonical)) {
+        return original == canonical ? 0 : 1;
+    }
+    std::vector<std::string> readings = {key};
+    for (const auto& component : component_readings(key)) {
+        readings.push_back(component.base);
+    }
+    constexpr int plainest = 2;
+    constexpr int unknown = 1000;
+    for (const auto& reading : readings) {
+        if (const auto found = by_spelling().find(reading); found != by_spelling().end()) {
+            const auto words = core::split(found->second->spellings, ' ');
+            return plainest + static_cast<int>(std::find(words.begin(), words.end(), reading) - words.begin());
+        }
+    }
+    return unknown;
 }
 
 std::optional<VectorComponent> vector_component(const std::string& name) {

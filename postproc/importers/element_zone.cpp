@@ -5,11 +5,11 @@
 #include <vtkPointData.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <array>
-#include <limits>
+#include <iterator>
+#include <map>
 
+#include "postproc/importers/array_names.h"
 #include "postproc/importers/variable_reading.h"
 #include "postproc/importers/vtk_arrays.h"
 
@@ -161,77 +161,104 @@ struct Named {
     bool on_nodes = true;
 };
 
-/// Vectors, on nodes or not, of which there are x and y at least: a plane flow has no z.
-std::set<std::pair<std::string, bool>> whole_vectors(const std::vector<PartValues>& values, const ReadOptions& options) {
-    std::map<std::pair<std::string, bool>, int> found;
-    for (const auto& entry : values) {
-        const auto component = entry.components == 1 ? vector_component(read_variable_name(entry.variable, options, {}).name) : std::nullopt;
-        if (component) {
-            found[{component->vector, entry.on_nodes}] |= 1 << component->index;
-        }
-    }
-    std::set<std::pair<std::string, bool>> whole;
-    for (const auto& [vector, components] : found) {
-        if ((components & 3) == 3) {
-            whole.insert(vector);
-        }
-    }
-    return whole;
-}
+/// What the values of a part on its nodes, or on its elements, become.
+class Naming {
+public:
+    Naming(const std::string& file, const ReadOptions& options, core::Problems& problems) : place_{file, {}, {}, {}}, options_(options), problems_(problems) {}
 
-/// Arrays with their names in SI, components joined.
-std::vector<Named> named_values(std::vector<PartValues>&& values, const ReadOptions& options, bool cells,
-                                const std::string& file) {
-    std::vector<Named> arrays;
-    const std::set<std::pair<std::string, bool>> vectors = whole_vectors(values, options);
-    for (auto& entry : values) {
-        VariableReading reading = read_variable_name(entry.variable, options, {file, {}, {}, {}});
-        auto component = entry.components == 1 ? vector_component(reading.name) : std::nullopt;
-        if (component && !vectors.contains({component->vector, entry.on_nodes})) {
-            component.reset();  // what the file does not state is not nought
+    /// Of `count` nodes or elements; in SI, components joined. Throws InputError where there are more or fewer values.
+    std::vector<Named> named(std::vector<PartValues*> values, Location on, std::size_t count, const std::string& zone, int dimension) {
+        std::vector<VariableReading> readings;
+        std::vector<ArrayPlan> plans;
+        for (const PartValues* entry : values) {
+            readings.push_back(reading_of(*entry));
+            plans.push_back({readings.back().own, readings.back().name, entry->components});
         }
-        if (entry.components == 1 && vector_component(reading.name + "_x")) {
-            reading.name += "_magnitude";
-        }
-        Named named;
-        named.info.name = component ? component->vector : reading.name;
-        named.info.unit = reading.unit;
-        named.info.original_name = entry.variable;
-        named.info.original_unit = reading.original_unit;
-        named.info.components = entry.components;
-        named.info.on = entry.on_nodes ? Location::nodes : cells ? Location::cells : Location::faces;
-        named.on_nodes = entry.on_nodes;
-        if (!options.arrays.empty() && !matches_any(options.arrays, named.info.name) &&
-            !matches_any(options.arrays, entry.variable)) {
-            continue;
-        }
-        if (!reading.convert.is_identity()) {
-            for (double& value : entry.values) {
-                value = reading.convert(value);
+        settle_names(plans, place_, problems_);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (!is_wanted(options_, values[i]->variable, plans[i].name)) {
+                plans[i].name.clear();
             }
         }
-        if (component) {
-            auto joined = std::find_if(arrays.begin(), arrays.end(), [&](const Named& n) {
-                return n.info.name == named.info.name && n.on_nodes == named.on_nodes && n.info.components == 3;
-            });
-            if (joined == arrays.end()) {
-                named.info.components = 3;
-                named.values.grow_to(3 * entry.values.size());
-                named.values.fill(0);
-                arrays.push_back(std::move(named));
-                joined = std::prev(arrays.end());
+        join_components(plans, dimension, options_, place_, problems_);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (!plans[i].name.empty()) {
+                check_count(*values[i], count, zone);
+                convert(values[i]->values, readings[i].convert);
+            }
+        }
+        std::vector<Named> arrays;
+        std::map<std::string, std::size_t> vectors;  // places in them
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (plans[i].name.empty()) {
+                continue;
+            }
+            PartValues& entry = *values[i];
+            ArrayInfo info{plans[i].name, readings[i].unit, entry.variable, readings[i].original_unit, on, entry.components};
+            if (plans[i].component < 0) {
+                arrays.push_back({std::move(info), std::move(entry.values), on == Location::nodes});
+                continue;
+            }
+            const auto [found, is_new] = vectors.emplace(plans[i].name, arrays.size());
+            if (is_new) {
+                info.components = 3;
+                arrays.push_back({std::move(info), interleaved(parts_of(plans[i].name, plans, values), count), on == Location::nodes});
             } else {
-                joined->info.original_name += ", " + entry.variable;
+                arrays[found->second].info.original_name += ", " + entry.variable;
             }
-            const std::size_t count = std::min(entry.values.size(), joined->values.size() / 3);
-            for (std::size_t i = 0; i < count; ++i) {
-                joined->values[3 * i + static_cast<std::size_t>(component->index)] = entry.values[i];
-            }
-            continue;
         }
-        named.values = std::move(entry.values);
-        arrays.push_back(std::move(named));
+        return arrays;
     }
+
+private:
+    VariableReading reading_of(const PartValues& entry) {
+        VariableReading reading = read_variable_name(entry.variable, options_, place_, problems_);
+        if (entry.components == 1) {
+            reading.name = named_as_scalar({reading.name, reading.unit}).name;
+        }
+        return reading;
+    }
+
+    static void convert(Buffer<double>& values, const core::Conversion& conversion) {
+        if (!conversion.is_identity()) {
+            std::for_each(values.begin(), values.end(), [&](double& value) { value = conversion(value); });
+        }
+    }
+
+    void check_count(const PartValues& entry, std::size_t count, const std::string& zone) const {
+        const std::size_t expected = count * static_cast<std::size_t>(entry.components);
+        if (entry.values.size() != expected) {
+            throw core::InputError("format",
+                                   entry.variable + " has " + std::to_string(entry.values.size()) + " values on zone " + zone + ", which wants " +
+                                       std::to_string(expected),
+                                   place_);
+        }
+    }
+
+    static std::array<const Buffer<double>*, 3> parts_of(const std::string& vector, const std::vector<ArrayPlan>& plans, const std::vector<PartValues*>& values) {
+        std::array<const Buffer<double>*, 3> parts{};
+        for (std::size_t i = 0; i < plans.size(); ++i) {
+            if (plans[i].name == vector && plans[i].component >= 0) {
+                parts[static_cast<std::size_t>(plans[i].component)] = &values[i]->values;
+            }
+        }
+        return parts;
+    }
+
+    core::Place place_;
+    const ReadOptions& options_;
+    core::Problems& problems_;
+};
+
+std::vector<Named> all_named(std::vector<PartValues>&& values, bool cells, std::size_t nodes, std::size_t elements, const std::string& zone, int dimension,
+                             Naming naming) {
+    std::array<std::vector<PartValues*>, 2> places;  // on elements, on nodes
+    for (auto& entry : values) {
+        places[entry.on_nodes ? 1 : 0].push_back(&entry);
+    }
+    std::vector<Named> arrays = naming.named(places[1], Location::nodes, nodes, zone, dimension);
+    std::vector<Named> others = naming.named(places[0], cells ? Location::cells : Location::faces, elements, zone, dimension);
+    std::move(others.begin(), others.end(), std::back_inserter(arrays));
     return arrays;
 }
 
@@ -316,15 +343,8 @@ Zone zone_from(ElementPart&& part, std::vector<PartValues>&& values, int volume_
         cell_data = zone.surface->GetCellData();
         point_data = zone.surface->GetPointData();
     }
-    for (auto& named : named_values(std::move(values), options, volume, file)) {
+    for (auto& named : all_named(std::move(values), volume, all_nodes, all_elements, zone.name, volume_dimension, Naming(file, options, problems))) {
         const auto n = static_cast<std::size_t>(named.info.components);
-        const std::size_t expected = (named.on_nodes ? all_nodes : all_elements) * n;
-        if (named.values.size() != expected) {
-            throw core::InputError("format",
-                                   named.info.original_name + " has " + std::to_string(named.values.size()) +
-                                       " values on zone " + zone.name + ", which wants " + std::to_string(expected),
-                                   {file, {}, {}, {}});
-        }
         if (!named.on_nodes && chosen.left_out > 0) {
             Buffer<double> kept(chosen.places.size() * n);
             for (std::size_t i = 0; i < chosen.places.size(); ++i) {

@@ -48,8 +48,8 @@ struct PartValues {
 std::int64_t turn_inverted_cells(ElementPart& part);
 
 /// A volume zone if the part has cells of `volume_dimension` (3, or 2 in a plane case), else a surface zone.
-/// Values become arrays with canonical names: components are joined, `options.units` are applied, and with
-/// `options.arrays` only those asked for are kept. Cells that no volume or surface can hold are left out and told.
+/// Values become arrays with canonical names (array_names.h): `options.units` are applied, with `options.arrays` only
+/// those asked for are kept, components are joined. Cells that no volume or surface can hold are left out and told.
 Zone zone_from(ElementPart&& part, std::vector<PartValues>&& values, int volume_dimension, const ReadOptions& options,
                const std::string& file, core::Problems& problems);
 

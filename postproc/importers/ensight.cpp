@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/text.h"
+#include "postproc/importers/array_names.h"
 #include "postproc/importers/element_zone.h"
 #include "postproc/importers/ensight_case.h"
 #include "postproc/importers/ensight_geometry.h"
@@ -284,8 +285,7 @@ private:
 void Reader::read_variable(const EnsightVariable& variable) {
     progress_.check();
     const CanonicalName canonical = canonical_name(variable.name);
-    if (!options_.arrays.empty() && !matches_any(options_.arrays, variable.name) &&
-        !matches_any(options_.arrays, canonical.name)) {
+    if (!is_wanted(options_, variable.name, canonical.name)) {
         return;
     }
     const core::Place place{variable.file.path.string(), {}, {}, {}};

@@ -118,7 +118,7 @@ Field read(const std::filesystem::path& path, const ReadOptions& options, core::
         part.add(VTK_VERTEX, &node, 1);
     }
     scale_parts(parts, options, field);
-    field.zones.push_back(zone_from(std::move(part), std::move(values), 3, options, file.name(), field.problems));
+    field.zones.push_back(zone_from(std::move(part), std::move(values), seen.contains("z-coordinate") ? 3 : 2, options, file.name(), field.problems));
     field.problems.push_back({core::Problem::Severity::warning,
                               std::string("points at ") + (cells ? "cell centres" : "nodes") +
                                   " without surfaces: forces cannot be integrated from this file",

@@ -25,7 +25,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 class Assembly {
 public:
     Assembly(FaceMesh& mesh, std::vector<ValueBlock>& values, const ReadOptions& options, core::Progress& progress)
-        : mesh_(mesh), values_(values), zone_values_(values, mesh.file, options, progress), options_(options), progress_(progress) {}
+        : mesh_(mesh), values_(values), zone_values_(values, mesh.file, mesh.dimension, options, progress), options_(options), progress_(progress) {}
 
     void add_volumes(Field& field);
     void add_surfaces(Field& field);

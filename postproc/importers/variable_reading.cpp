@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "core/text.h"
+#include "postproc/importers/array_names.h"
 
 namespace underbody::postproc {
 
@@ -14,9 +16,30 @@ constexpr const char* foam_shear = "wallShearStress";
 constexpr const char* over_density = "m^2/s^2";
 constexpr std::string_view unstated = " (unit not stated)";
 
+/// The caller's word, which may be written in other letters if nothing has the very name.
 const std::string* stated_unit(const ReadOptions& options, const std::string& variable) {
-    const auto found = std::find_if(options.units.begin(), options.units.end(), [&](const auto& stated) { return stated.first == variable; });
-    return found != options.units.end() ? &found->second : nullptr;
+    const auto stated = [&](const auto& same) {
+        const auto found = std::find_if(options.units.begin(), options.units.end(), [&](const auto& entry) { return same(entry.first); });
+        return found != options.units.end() ? &found->second : nullptr;
+    };
+    const std::string* exact = stated([&](const std::string& name) { return name == variable; });
+    return exact != nullptr || options.units.empty() ? exact
+                                                     : stated([key = core::lower_case(variable)](const std::string& name) { return core::lower_case(name) == key; });
+}
+
+bool same_unit(const std::string& a, const std::string& b) {
+    if (a == b || !core::same_dimension(a, b)) {
+        return a == b;
+    }
+    const core::Conversion conversion = core::conversion(a, b);
+    return std::abs(conversion.scale - 1) < 1e-9 && conversion.offset == 0;
+}
+
+std::string settled(const std::string* stated, const std::string& own, const std::string& in_file, const core::Place& place, core::Problems& problems) {
+    if (stated != nullptr && !in_file.empty() && !same_unit(*stated, in_file)) {
+        say_once(problems, {core::Problem::Severity::warning, "the file has '" + own + "' in " + in_file + "; " + *stated + " is taken, as stated (--unit)", place});
+    }
+    return stated != nullptr ? *stated : in_file;
 }
 
 /// OpenFOAM's numbers are SI: where p is over density, so is the shear.
@@ -50,20 +73,39 @@ NameWithUnit parts_of(const std::string& original) {
 
 }  // namespace
 
-VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place) {
-    const NameWithUnit stated = parts_of(original);
-    const CanonicalName canonical = canonical_name(stated.name);
-    const std::string* own = stated_unit(options, original);
-    const std::string unit = own != nullptr ? *own : original == foam_shear ? unit_beside_pressure(options) : stated.unit;
-    VariableReading reading{canonical.name, canonical.unit, unit, {}};
-    if (!unit.empty()) {
-        const bool expected = !canonical.unit.empty() && core::same_dimension(unit, canonical.unit);
-        const bool kinematic = core::same_dimension(unit, over_density) &&
-                               (canonical.name == "pressure" || canonical.name == "wall_shear" || canonical.name.starts_with("wall_shear_"));
-        reading.unit = expected ? canonical.unit : kinematic ? over_density : core::si_unit(unit, place);
-        reading.name = expected || canonical.unit.empty() ? canonical.name : kinematic ? "kinematic_" + canonical.name : stated.name;
-        reading.convert = core::conversion(unit, reading.unit, place);
+std::string own_name(const std::string& own, const std::string& unit) {
+    const CanonicalName canonical = canonical_name(own);
+    const bool misleads = !canonical.unit.empty() && canonical.name == own;
+    return !misleads ? own : unit.empty() ? unstated_name(own) : own + " [" + unit + "]";
+}
+
+VariableReading quantity_in(const std::string& own, const CanonicalName& meaning, const std::string& unit, const core::Place& place) {
+    const bool expected = !meaning.unit.empty() && core::same_dimension(unit, meaning.unit);
+    const bool kinematic = core::same_dimension(unit, over_density) &&
+                           (meaning.name == "pressure" || meaning.name == "wall_shear" || meaning.name.starts_with("wall_shear_")) &&
+                           meaning.unit == "Pa";
+    VariableReading reading{own, meaning.name, expected ? meaning.unit : kinematic ? over_density : core::si_unit(unit, place), unit, {}};
+    if (!expected && !meaning.unit.empty()) {
+        reading.name = kinematic ? "kinematic_" + meaning.name : own_name(own, reading.unit);
     }
+    reading.convert = core::conversion(unit, reading.unit, place);
+    return reading;
+}
+
+std::string settled_unit(const std::string& own, const std::string& in_file, const ReadOptions& options, const core::Place& place, core::Problems& problems) {
+    return settled(stated_unit(options, own), own, in_file, place, problems);
+}
+
+VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place, core::Problems& problems) {
+    const NameWithUnit written = parts_of(original);
+    const CanonicalName canonical = canonical_name(written.name);
+    const std::string* stated = stated_unit(options, original);  // a caller may write the name with its unit or without
+    std::string unit = settled(stated != nullptr ? stated : stated_unit(options, written.name), written.name, written.unit, place, problems);
+    if (unit.empty() && original == foam_shear) {
+        unit = unit_beside_pressure(options);
+    }
+    VariableReading reading = unit.empty() ? VariableReading{written.name, canonical.name, canonical.unit, "", {}}
+                                           : quantity_in(written.name, canonical, unit, place);
     if (original == foam_shear) {
         reading.convert = {-reading.convert.scale, -reading.convert.offset};
     }

@@ -18,8 +18,10 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/units.h"
+#include "postproc/importers/array_names.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/variable_reading.h"
 #include "postproc/importers/vtk_sides.h"
@@ -30,44 +32,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// x, y and z parts that stand alone become one array.
-void join_components(Zone& zone, vtkDataSetAttributes& data, Location on) {
-    std::vector<ArrayInfo> joined;
-    std::vector<ArrayInfo> kept;
-    for (auto& info : zone.arrays) {
-        const auto part = info.on == on && info.components == 1 ? vector_component(info.name) : std::nullopt;
-        vtkDataArray* values = part ? data.GetArray(info.name.c_str()) : nullptr;
-        if (values == nullptr) {
-            kept.push_back(std::move(info));
-            continue;
-        }
-        vtkSmartPointer<vtkDataArray> whole = data.GetArray(part->vector.c_str());
-        if (whole != nullptr && whole->GetNumberOfComponents() != 3) {
-            kept.push_back(std::move(info));  // something else has the vector's name
-            continue;
-        }
-        if (whole == nullptr) {
-            whole = vtkSmartPointer<vtkDoubleArray>::New();
-            whole->SetName(part->vector.c_str());
-            whole->SetNumberOfComponents(3);
-            whole->SetNumberOfTuples(values->GetNumberOfTuples());
-            whole->Fill(0);
-            data.AddArray(whole);
-            joined.push_back(info);
-            joined.back().name = part->vector;
-            joined.back().components = 3;
-        } else if (!joined.empty()) {
-            joined.back().original_name += ", " + info.original_name;
-        }
-        for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) {
-            whole->SetComponent(i, part->index, values->GetComponent(i, 0));
-        }
-        data.RemoveArray(info.name.c_str());
-    }
-    zone.arrays = std::move(kept);
-    zone.arrays.insert(zone.arrays.end(), joined.begin(), joined.end());
-}
-
 /// Once a file, whatever the number of its zones.
 void ask_for_unit(Field& field, const std::string& variable) {
     core::Problem problem = unit_is_asked_for(variable, {field.files.front(), {}, {}, {}});
@@ -77,36 +41,89 @@ void ask_for_unit(Field& field, const std::string& variable) {
     }
 }
 
-/// Turns the arrays of one attribute set into canonical ones.
-void add_arrays(Field& field, Zone& zone, vtkDataSetAttributes& data, Location on, const ReadOptions& options) {
-    std::vector<vtkSmartPointer<vtkDataArray>> arrays;
-    for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
-        if (vtkDataArray* array = data.GetArray(i); array != nullptr && array->GetName() != nullptr) {
-            arrays.emplace_back(array);
+/// An array with what it becomes.
+struct ReadArray {
+    vtkSmartPointer<vtkDataArray> values;
+    ArrayInfo info;
+    core::Conversion convert;
+};
+
+void convert(vtkDataArray& values, const core::Conversion& conversion) {
+    for (vtkIdType t = 0; t < values.GetNumberOfTuples() && !conversion.is_identity(); ++t) {
+        for (int c = 0; c < values.GetNumberOfComponents(); ++c) {
+            values.SetComponent(t, c, conversion(values.GetComponent(t, c)));
         }
     }
-    for (auto& array : arrays) {
+}
+
+/// Takes the named arrays out of an attribute set, and plans their names.
+std::vector<ReadArray> taken_arrays(Field& field, vtkDataSetAttributes& data, Location on, const ReadOptions& options, std::vector<ArrayPlan>& plans) {
+    std::vector<ReadArray> arrays;
+    for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
+        vtkDataArray* array = data.GetArray(i);
+        if (array == nullptr || array->GetName() == nullptr) {
+            continue;
+        }
         const std::string original = array->GetName();
         const bool asked = unit_must_be_stated(original, options);
-        const VariableReading reading = read_variable_name(asked ? unstated_name(original) : original, options, {});
-        data.RemoveArray(original.c_str());
         if (asked) {
             ask_for_unit(field, original);
         }
-        if (!options.arrays.empty() && !matches_any(options.arrays, original) && !matches_any(options.arrays, reading.name)) {
+        const core::Place place{field.files.front(), {}, {}, {}};
+        const VariableReading reading = read_variable_name(asked ? unstated_name(original) : original, options, place, field.problems);
+        const int components = array->GetNumberOfComponents();
+        const std::string name = components == 1 ? named_as_scalar({reading.name, reading.unit}).name : reading.name;
+        plans.push_back({reading.own, name, components});
+        arrays.push_back({array, {name, reading.unit, original, reading.original_unit, on, components}, reading.convert});
+    }
+    for (const auto& array : arrays) {
+        data.RemoveArray(array.info.original_name.c_str());
+    }
+    return arrays;
+}
+
+/// Turns the arrays of one attribute set into canonical ones.
+void add_arrays(Field& field, Zone& zone, vtkDataSetAttributes& data, Location on, int dimension, const ReadOptions& options) {
+    const core::Place place{field.files.front(), {}, {}, {}};
+    std::vector<ArrayPlan> plans;
+    std::vector<ReadArray> arrays = taken_arrays(field, data, on, options, plans);
+    settle_names(plans, place, field.problems);
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        if (!is_wanted(options, arrays[i].info.original_name, plans[i].name)) {
+            plans[i].name.clear();
+        }
+    }
+    join_components(plans, dimension, options, place, field.problems);
+    std::map<std::string, std::size_t> vectors;  // places among the zone's
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        if (plans[i].name.empty()) {
             continue;
         }
-        ArrayInfo info{reading.name, reading.unit, original, reading.original_unit, on, array->GetNumberOfComponents()};
-        for (vtkIdType t = 0; t < array->GetNumberOfTuples() && !reading.convert.is_identity(); ++t) {
-            for (int c = 0; c < array->GetNumberOfComponents(); ++c) {
-                array->SetComponent(t, c, reading.convert(array->GetComponent(t, c)));
-            }
+        auto& [values, info, conversion] = arrays[i];
+        info.name = plans[i].name;
+        convert(*values, conversion);
+        if (plans[i].component < 0) {
+            values->SetName(info.name.c_str());
+            data.AddArray(values);
+            zone.arrays.push_back(std::move(info));
+            continue;
         }
-        array->SetName(info.name.c_str());
-        data.AddArray(array);
-        zone.arrays.push_back(std::move(info));
+        vtkSmartPointer<vtkDataArray> whole = data.GetArray(info.name.c_str());
+        const auto [found, is_new] = vectors.emplace(info.name, zone.arrays.size());
+        if (is_new) {
+            whole = vtkSmartPointer<vtkDoubleArray>::New();
+            whole->SetName(info.name.c_str());
+            whole->SetNumberOfComponents(3);
+            whole->SetNumberOfTuples(values->GetNumberOfTuples());
+            whole->Fill(0);
+            data.AddArray(whole);
+            info.components = 3;
+            zone.arrays.push_back(std::move(info));
+        } else {
+            zone.arrays[found->second].original_name += ", " + info.original_name;
+        }
+        whole->CopyComponent(plans[i].component, values, 0);
     }
-    join_components(zone, data, on);
 }
 
 /// VTK's cells along the axes number their corners row by row; everybody else goes round them.
@@ -241,6 +258,15 @@ vtkSmartPointer<vtkDataSet> own_copy(vtkDataSet& data) {
     return copy;
 }
 
+/// A plane flow, or points and lines at one z, which may be a part of one: vectors may have no z.
+bool is_plane(const Zone& zone) {
+    if (zone.volume != nullptr) {
+        return dimension_of(*zone.volume) == 2;
+    }
+    vtkBoundingBox box(zone.surface->GetBounds());
+    return dimension_of(*zone.surface) == 0 && box.IsValid() && box.GetLength(2) == 0;
+}
+
 void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
     auto* read = vtkDataSet::SafeDownCast(object);
     if (read == nullptr || read->GetNumberOfPoints() == 0) {
@@ -258,8 +284,9 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool
         zone.volume = nullptr;
     }
     zone.kind = zone.volume != nullptr ? ZoneKind::fluid : ZoneKind::unknown;
-    add_arrays(field, zone, *data->GetPointData(), Location::nodes, options);
-    add_arrays(field, zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, options);
+    const int dimension = is_plane(zone) ? 2 : 3;
+    add_arrays(field, zone, *data->GetPointData(), Location::nodes, dimension, options);
+    add_arrays(field, zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, dimension, options);
     vtkPointSet* own = zone.surface != nullptr ? static_cast<vtkPointSet*>(zone.surface) : static_cast<vtkPointSet*>(zone.volume);
     if (own != data) {
         own->GetPointData()->ShallowCopy(data->GetPointData());

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 
+#include "postproc/importers/array_names.h"
+#include "postproc/importers/variable_reading.h"
 #include "postproc/importers/vtk_arrays.h"
 
 namespace underbody::postproc {
@@ -24,18 +27,6 @@ void to_traction(Buffer<double>& forces, int components, const std::vector<doubl
     }
 }
 
-/// x, y, z by turns; a part that is not there is 0.
-Buffer<double> interleaved(const std::array<Buffer<double>, 3>& parts, std::size_t count) {
-    Buffer<double> result(3 * count);
-    const auto of = [&](std::size_t k, std::size_t i) { return parts[k].empty() ? 0 : parts[k][i]; };
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            result[3 * i + k] = of(k, i);
-        }
-    }
-    return result;
-}
-
 /// Three components out of two, the third 0.
 Buffer<double> widened(const Buffer<double>& values) {
     Buffer<double> result(values.size() / 2 * 3);
@@ -46,6 +37,19 @@ Buffer<double> widened(const Buffer<double>& values) {
     }
     return result;
 }
+
+/// The caller states another unit than the file.
+void take_as(ArrayInfo& info, Buffer<double>& values, const VariableReading& reading) {
+    info.name = reading.name;
+    info.unit = reading.unit;
+    info.original_unit = reading.original_unit;
+    for (double& value : values) {
+        value = reading.convert(value);
+    }
+}
+
+/// Behind the names of a phase that is not the mixture.
+std::string phase_suffix(int phase) { return phase == 1 ? "" : ".phase-" + std::to_string(phase); }
 
 }  // namespace
 
@@ -83,6 +87,7 @@ struct ZoneValues::Gathered {
     Buffer<double> values;
     int components = 1;
     std::uint64_t found = 0;
+    ArrayInfo info{};
 };
 
 struct ZoneValues::Key {
@@ -109,7 +114,7 @@ ZoneValues::Gathered ZoneValues::gather(const Key& key, int zone, bool on_cells,
         const std::uint64_t from = std::max(first, block.first);
         const std::uint64_t to = std::min(last + 1, block.first + block.count);
         if (gapless && result.values.empty() && block.first == first && block.count == ids.size()) {
-            result = {std::move(block.values), block.components, block.count};
+            result = {std::move(block.values), block.components, block.count, {}};
             block.count = 0;  // taken: no other zone has these ids
             return result;
         }
@@ -156,27 +161,51 @@ std::vector<ZoneValues::Key> ZoneValues::keys_of(const Zone& zone, bool on_cells
     return keys;
 }
 
-void ZoneValues::add_to(Zone& zone, vtkCellData& data, const Ids& ids, bool on_cells, const std::vector<double>& areas, core::Problems& problems) {
-    const auto wanted = [&](const std::string& name, const std::string& original) {
-        return options_.arrays.empty() || matches_any(options_.arrays, name) || matches_any(options_.arrays, original);
-    };
-    struct Joined {
+/// Arrays of one phase, each under a name of its own, components joined.
+void ZoneValues::add_phase(Zone& zone, vtkCellData& data, std::vector<Gathered>&& arrays, const std::string& phase, core::Problems& problems) const {
+    std::vector<ArrayPlan> plans;
+    for (const auto& array : arrays) {
+        plans.push_back({array.info.original_name, array.info.name, array.components});
+    }
+    settle_names(plans, place_, problems);
+    join_components(plans, dimension_, options_, place_, problems);
+    struct Vector {
         ArrayInfo info;
-        std::array<Buffer<double>, 3> parts;
+        std::size_t count = 0;
+        std::array<const Buffer<double>*, 3> parts{};
     };
-    std::vector<Joined> vectors;
+    std::map<std::string, Vector> vectors;
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        ArrayInfo info = arrays[i].info;
+        info.name = plans[i].name + phase;
+        if (plans[i].component < 0) {
+            add_cell_array(zone, data, std::move(info), std::move(arrays[i].values));
+            continue;
+        }
+        info.components = 3;
+        auto& vector = vectors[info.name];
+        vector.parts[static_cast<std::size_t>(plans[i].component)] = &arrays[i].values;
+        if (vector.count == 0) {
+            vector.count = arrays[i].values.size();
+            vector.info = std::move(info);
+        } else {
+            vector.info.original_name += ", " + info.original_name;
+        }
+    }
+    for (auto& [name, vector] : vectors) {
+        add_cell_array(zone, data, std::move(vector.info), interleaved(vector.parts, vector.count));
+    }
+}
+
+void ZoneValues::add_to(Zone& zone, vtkCellData& data, const Ids& ids, bool on_cells, const std::vector<double>& areas, core::Problems& problems) {
+    std::map<int, std::vector<Gathered>> phases;
     const Span span = span_of(ids);
     for (const auto& key : keys_of(zone, on_cells)) {
         progress_.check();
-        const std::string phase = key.phase == 1 ? "" : ".phase-" + std::to_string(key.phase);
-        const CanonicalName& canonical = key.canonical;
-        const auto component = vector_component(canonical.name);
-        std::string name = (component ? component->vector : canonical.name) + phase;
-        const bool shear = canonical.name == "wall_shear_force";
-        if (!wanted(shear ? "wall_shear" + phase : name, key.variable)) {
-            continue;
-        }
-        Gathered found = gather(key, zone.id, on_cells, ids, span);
+        const bool shear = key.canonical.name == "wall_shear_force";
+        const bool wanted = is_wanted(options_, key.variable, key.canonical.name, phase_suffix(key.phase)) ||
+                            (shear && matches_any(options_.arrays, "wall_shear" + phase_suffix(key.phase)));
+        Gathered found = wanted ? gather(key, zone.id, on_cells, ids, span) : Gathered{};
         if (found.found == 0) {
             continue;
         }
@@ -185,37 +214,27 @@ void ZoneValues::add_to(Zone& zone, vtkCellData& data, const Ids& ids, bool on_c
                                 key.variable + " covers " + std::to_string(found.found) + " of the " +
                                     std::to_string(ids.size()) + (on_cells ? " cells" : " faces") + " of zone " +
                                     zone.name + "; the others are not-a-number",
-                                {file_, {}, {}, {}}});
+                                place_});
         }
-        ArrayInfo info{
-            name, canonical.unit, key.variable, "", on_cells ? Location::cells : Location::faces, found.components};
-        if (component && found.components == 1) {
-            auto joined =
-                std::find_if(vectors.begin(), vectors.end(), [&](const Joined& j) { return j.info.name == name; });
-            if (joined == vectors.end()) {
-                info.components = 3;
-                vectors.push_back({info, {}});
-                joined = std::prev(vectors.end());
-            } else {
-                joined->info.original_name += ", " + key.variable;
-            }
-            joined->parts[static_cast<std::size_t>(component->index)] = std::move(found.values);
-            continue;
-        }
-        if (found.components == 2 && (shear || vector_component(canonical.name + "_x"))) {
+        if (found.components == 2 && (shear || vector_component(key.canonical.name + "_x"))) {
             found.values = widened(found.values);
-            info.components = 3;
+            found.components = 3;
         }
-        if (shear && !on_cells && areas.size() == ids.size()) {
-            to_traction(found.values, info.components, areas);
-            info.name = "wall_shear" + phase;
-            info.unit = "Pa";
-            info.original_unit = "N";
+        found.info = {key.canonical.name, key.canonical.unit, key.variable, "", on_cells ? Location::cells : Location::faces, found.components};
+        const std::string unit = settled_unit(key.variable, key.canonical.unit, options_, place_, problems);
+        if (unit != key.canonical.unit) {
+            take_as(found.info, found.values, quantity_in(key.variable, canonical_name(key.variable), unit, place_));
         }
-        add_cell_array(zone, data, std::move(info), std::move(found.values));
+        if (found.info.name == "wall_shear_force" && !on_cells && areas.size() == ids.size()) {
+            to_traction(found.values, found.components, areas);
+            found.info.name = "wall_shear";
+            found.info.unit = "Pa";
+            found.info.original_unit = "N";
+        }
+        phases[key.phase].push_back(std::move(found));
     }
-    for (auto& joined : vectors) {
-        add_cell_array(zone, data, std::move(joined.info), interleaved(joined.parts, ids.size()));
+    for (auto& [phase, arrays] : phases) {
+        add_phase(zone, data, std::move(arrays), phase_suffix(phase), problems);
     }
 }
 

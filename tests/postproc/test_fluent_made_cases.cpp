@@ -170,11 +170,11 @@ TEST(FluentTrees, AtANonConformalInterfaceCellsEndAtTheFacesTheMeshWasMadeWith) 
 }
 
 /// Pressure and velocity on the rim's faces 2 to 8, in the pieces given: the pressure is the face's number, y-velocity
-/// ten times that.
+/// ten times that, x-velocity 0.
 std::string data_in(const std::vector<std::pair<int, int>>& pieces) {
     std::ostringstream out;
     out << "(0 \"made by a test\")\n(33 (3 11 10))\n";
-    for (const auto& [variable, factor] : {std::pair{1, 1}, {112, 10}}) {
+    for (const auto& [variable, factor] : {std::pair{1, 1}, {111, 0}, {112, 10}}) {
         for (const auto& [first, last] : pieces) {
             out << "(300 (" << variable << " 5 1 0 1 " << first << " " << last << ")\n(";
             for (int id = first; id <= last; ++id) {
