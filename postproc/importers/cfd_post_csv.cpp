@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "core/text.h"
 #include "postproc/importers/csv_columns.h"
@@ -58,6 +60,7 @@ public:
                              core::did_you_mean(options_.zones.front(), names_));
         }
         note_surfaces_without_faces();
+        settle_dimension();
         return std::move(field_);
     }
 
@@ -158,15 +161,21 @@ private:
             throw InputError("parse", "[Data] of zone '" + zone.name + "' is empty", text_.place_of(section.at, false), "the file is cut short");
         }
         const char separator = separator_of(header);
-        std::vector<CsvColumn> plans = plan_columns(header, separator, zone.name, text_, options_, field_.problems);
+        core::Problems found;
+        const std::vector<CsvColumn> plans = plan_columns(header, separator, zone.name, text_, options_, found);
+        for (auto& problem : found) {
+            if (said_.insert(problem.message).second) {
+                field_.problems.push_back(std::move(problem));
+            }
+        }
         const std::string_view block(std::min(p, end), static_cast<std::size_t>(end - std::min(p, end)));
         refuse_decimal_commas(block, separator);
         return fill(block, separator, plans, zone);
     }
 
     void refuse_decimal_commas(std::string_view block, char separator) const {
-        const std::string_view line = first_line(block);
-        if (separator == ',' || line.empty()) {
+        const std::string_view line = separator == ',' ? std::string_view() : first_line(block);
+        if (line.empty()) {
             return;
         }
         for (const auto cell : core::split(line, separator)) {
@@ -182,43 +191,30 @@ private:
         }
     }
 
-    bool wanted(const CsvColumn& plan) const {
-        if (options_.arrays.empty()) {
-            return true;
-        }
-        return std::any_of(options_.arrays.begin(), options_.arrays.end(), [&](const std::string& name) {
-            return core::lower_case(name) == core::lower_case(plan.name) || core::lower_case(name) == core::lower_case(plan.array);
-        });
-    }
-
     std::size_t fill(std::string_view block, char separator, const std::vector<CsvColumn>& plans, Zone& zone) {
         const RowPlan rows = plan_rows(block, separator, plans.size(), false, progress_);
         const auto room = static_cast<vtkIdType>(rows.capacity());
         const std::array<bool, 3> has = coordinates_in(plans);
+        const bool placed = has[0] && has[1];
         vtkNew<vtkDoubleArray> coordinates;
-        if (has[0] && has[1]) {
+        if (placed) {
             coordinates->SetNumberOfComponents(3);
             coordinates->SetNumberOfTuples(room);
+            (has[2] ? solid_ : flat_).push_back(zone.name);
             if (!has[2]) {
                 std::fill_n(coordinates->GetPointer(0), 3 * room, 0.0);
-                field_.dimension = 2;
             }
         }
-        std::vector<vtkSmartPointer<vtkDoubleArray>> arrays;
+        Arrays arrays;
         std::vector<ColumnTarget> targets;
         for (const auto& plan : plans) {
             ColumnTarget target{nullptr, 1, plan.conversion.scale, plan.conversion.offset};
-            if (plan.coordinate >= 0 && has[0] && has[1]) {
+            if (plan.coordinate >= 0 && placed) {
                 target.base = coordinates->GetPointer(plan.coordinate);
                 target.stride = 3;
-            } else if (!plan.array.empty() && wanted(plan)) {
-                auto array = array_for(plan, plans, room, arrays, zone);
-                target.base = array->GetPointer(plan.component);
-                target.stride = static_cast<std::size_t>(array->GetNumberOfComponents());
-            } else if (plan.coordinate >= 0) {
-                CsvColumn radial = plan;  // a coordinate of a profile that has no place in space
-                radial.array = plan.name;
-                target.base = array_for(radial, plans, room, arrays, zone)->GetPointer(0);
+            } else if (!plan.array.empty()) {
+                target.base = arrays.place_for(plan, room, !has[2], zone);
+                target.stride = plan.component < 0 ? 1 : 3;
             }
             targets.push_back(target);
         }
@@ -227,36 +223,35 @@ private:
             throw InputError("parse", "[Data] of zone '" + zone.name + "' has no rows", text_.place_of(block.data(), false), "the file is cut short");
         }
         report_missing(read, plans, zone);
-        attach(read.rows, coordinates, arrays, zone);
+        attach(read.rows, coordinates, arrays.in_order, zone);
         return read.rows;
     }
 
-    static std::array<bool, 3> coordinates_in(const std::vector<CsvColumn>& plans) {
-        std::array<bool, 3> has{};
-        for (const auto& plan : plans) {
-            if (plan.coordinate >= 0) {
-                has[static_cast<std::size_t>(plan.coordinate)] = true;
-            }
-        }
-        return has;
-    }
+    /// The arrays of a block.
+    struct Arrays {
+        std::vector<vtkSmartPointer<vtkDoubleArray>> in_order;
+        std::unordered_map<std::string, std::size_t> vectors;  ///< places in it, and in those of the zone, by name
 
-    static vtkSmartPointer<vtkDoubleArray> array_for(const CsvColumn& plan, const std::vector<CsvColumn>& plans, vtkIdType room,
-                                                     std::vector<vtkSmartPointer<vtkDoubleArray>>& arrays, Zone& zone) {
-        for (const auto& array : arrays) {
-            if (plan.array == array->GetName()) {
-                return array;
+        /// Where the values of a column begin. In a plane case vectors may lack a column: they are 0 there.
+        double* place_for(const CsvColumn& plan, vtkIdType room, bool plane, Zone& zone) {
+            const int components = plan.component < 0 ? 1 : 3;
+            const auto [found, is_new] = vectors.emplace(plan.array, in_order.size());
+            if (is_new) {
+                auto array = vtkSmartPointer<vtkDoubleArray>::New();
+                array->SetName(plan.array.c_str());
+                array->SetNumberOfComponents(components);
+                array->SetNumberOfTuples(room);
+                in_order.push_back(array);
+                zone.arrays.push_back({plan.array, plan.si_unit, plan.name, plan.unit, Location::nodes, components});
+                if (components == 3 && plane) {
+                    std::fill_n(array->GetPointer(0), 3 * room, 0.0);
+                }
+            } else {
+                zone.arrays[found->second].original_name += ", " + plan.name;
             }
+            return in_order[found->second]->GetPointer(std::max(plan.component, 0));
         }
-        const auto components = std::count_if(plans.begin(), plans.end(), [&](const CsvColumn& p) { return p.array == plan.array; });
-        auto array = vtkSmartPointer<vtkDoubleArray>::New();
-        array->SetName(plan.array.c_str());
-        array->SetNumberOfComponents(components == 3 ? 3 : 1);
-        array->SetNumberOfTuples(room);
-        arrays.push_back(array);
-        zone.arrays.push_back({plan.array, plan.si_unit, plan.name, plan.unit, Location::nodes, components == 3 ? 3 : 1});
-        return array;
-    }
+    };
 
     void report_missing(const NumberRows& read, const std::vector<CsvColumn>& plans, const Zone& zone) {
         for (std::size_t c = 0; c < plans.size(); ++c) {
@@ -417,10 +412,21 @@ private:
         }
     }
 
+    /// Coordinates x and y alone are those of a plane case, unless there is more in the file.
+    void settle_dimension() {
+        if (solid_.empty() && !flat_.empty()) {
+            field_.dimension = 2;
+        } else if (!flat_.empty()) {
+            note(Severity::warning, listed(flat_) + (flat_.size() > 1 ? " have" : " has") + " no column Z beside zones that have one: taken to lie at z = 0", {field_.files[0], {}, {}, {}});
+        }
+    }
+
     CsvText text_;
     const ReadOptions& options_;
     core::Progress& progress_;
     Field field_;
+    std::vector<std::string> solid_, flat_;  ///< zones with and without z
+    std::unordered_set<std::string> said_;   ///< of the columns: once a file, whatever the number of its blocks
     std::vector<std::string> names_;  ///< of all blocks
 };
 

@@ -1,9 +1,12 @@
 #include "postproc/importers/csv_columns.h"
 
 #include <algorithm>
-#include <array>
+#include <cctype>
+#include <unordered_set>
 
 #include "core/text.h"
+#include "postproc/importers/array_names.h"
+#include "postproc/importers/variable_reading.h"
 
 namespace underbody::postproc {
 
@@ -32,21 +35,25 @@ CsvColumn header_cell(std::string_view text) {
 }
 
 /// CFX writes C, F, R for temperatures, where UDUNITS reads coulomb, farad and a gas constant; pounds per square
-/// foot it knows only spelt out.
+/// foot it knows only spelt out. Beside other units, or to a power, they are differences: W/m^2 per C is per kelvin.
 std::string readable_unit(const std::string& unit) {
-    if (unit == "C") {
-        return "degC";
+    if (unit == "C" || unit == "F" || unit == "R") {
+        return "deg" + unit;
     }
-    if (unit == "F") {
-        return "degF";
+    std::string readable;
+    for (std::size_t i = 0; i < unit.size();) {
+        std::size_t end = i;
+        while (end < unit.size() && (std::isalpha(static_cast<unsigned char>(unit[end])) != 0 || unit[end] == '_')) {
+            ++end;
+        }
+        const std::string word = unit.substr(i, end - i);
+        readable += word == "C" ? "K" : word == "F" || word == "R" ? "degR" : word == "psf" ? "(lbf ft^-2)" : word;
+        if (end < unit.size()) {
+            readable += unit[end++];
+        }
+        i = end;
     }
-    if (unit == "R") {
-        return "degR";
-    }
-    if (unit == "psf") {
-        return "lbf ft^-2";
-    }
-    return unit;
+    return readable;
 }
 
 int coordinate_index(const std::string& name) {
@@ -63,37 +70,29 @@ public:
     Planner(const CsvText& text, const ReadOptions& options, core::Problems& problems) : text_(text), options_(options), problems_(problems) {}
 
     std::vector<CsvColumn> columns(std::string_view header, char separator, const std::string& zone) {
-        std::vector<CsvColumn> plans;
-        for (const auto text : core::split(header, separator)) {
-            CsvColumn plan = header_cell(text);
-            if (plan.name.empty()) {
-                throw InputError("parse", "a column of zone '" + zone + "' has no name", text_.place_of(text.data()));
-            }
-            for (const auto& [name, unit] : options_.units) {
-                if (!plan.has_unit && core::lower_case(name) == core::lower_case(plan.name)) {
-                    plan.unit = unit;
-                    plan.has_unit = true;
-                }
-            }
-            plans.push_back(std::move(plan));
-        }
+        std::vector<CsvColumn> plans = named_columns(header, separator, zone);
         const bool plain = std::any_of(plans.begin(), plans.end(), [](const CsvColumn& p) { return p.name.size() == 1 && coordinate_index(p.name) >= 0; });
-        for (std::size_t i = 0; i < plans.size(); ++i) {
-            const bool repeated = std::any_of(plans.begin(), plans.begin() + static_cast<std::ptrdiff_t>(i), [&](const CsvColumn& p) {
-                return core::lower_case(p.name) == core::lower_case(plans[i].name);
-            });
-            if (repeated) {
-                note(Severity::note, "column '" + plans[i].name + "' is repeated: the first one counts", text_.place_of(plans[i].at));
+        std::unordered_set<std::string> names;
+        std::array<bool, 3> has{};
+        for (auto& plan : plans) {
+            if (!names.insert(core::lower_case(plan.name)).second) {
+                note(Severity::note, "column '" + plan.name + "' is repeated: the first one counts", text_.place_of(plan.at));
                 continue;
             }
-            const int coordinate = coordinate_index(plans[i].name);
-            if (coordinate >= 0 && (!plain || plans[i].name.size() == 1)) {
-                plan_coordinate(plans[i], coordinate);
-            } else if (core::lower_case(plans[i].name) != "node number") {
-                plan_array(plans[i]);
+            const int coordinate = coordinate_index(plan.name);
+            if (coordinate >= 0 && (!plain || plan.name.size() == 1) && !has[static_cast<std::size_t>(coordinate)]) {
+                has[static_cast<std::size_t>(coordinate)] = true;
+                plan_coordinate(plan, coordinate);
+            } else if (core::lower_case(plan.name) != "node number") {
+                plan_array(plan);
             }
         }
-        join_components(plans);
+        for (auto& plan : plans) {
+            if (plan.coordinate >= 0 && !(has[0] && has[1])) {
+                plan.array = plan.name;  // of a profile that has no place in space
+            }
+        }
+        settle(plans, has[0] && has[1] && !has[2] ? 2 : 3);
         note_mixed_units(plans);
         return plans;
     }
@@ -103,80 +102,99 @@ private:
         problems_.push_back({severity, std::move(message), std::move(place)});
     }
 
-    void plan_coordinate(CsvColumn& plan, int coordinate) {
-        std::string unit = plan.unit;
-        if (!plan.has_unit) {
-            unit = options_.length_unit;
-            if (unit.empty()) {
-                throw InputError("unit", "coordinate '" + plan.name + "' has no unit", text_.place_of(plan.at),
-                                 "say it with --length-unit mm (or m, inch, ...)");
+    std::vector<CsvColumn> named_columns(std::string_view header, char separator, const std::string& zone) const {
+        std::vector<CsvColumn> plans;
+        const auto cells = core::split(header, separator);
+        if (cells.size() > most_csv_columns) {
+            throw InputError("parse", "the header of zone '" + zone + "' names " + std::to_string(cells.size()) + " columns", text_.place_of(header.data(), false),
+                             "the file is damaged: its line ends are lost, perhaps");
+        }
+        for (const auto text : cells) {
+            plans.push_back(header_cell(text));
+            if (plans.back().name.empty()) {
+                throw InputError("parse", "a column of zone '" + zone + "' has no name", text_.place_of(text.data()));
             }
         }
+        return plans;
+    }
+
+    void state_unit(CsvColumn& plan) {
+        plan.unit = settled_unit(plan.name, plan.unit, options_, text_.place_of(plan.at), problems_);
+        plan.has_unit = !plan.unit.empty();
+    }
+
+    void plan_coordinate(CsvColumn& plan, int coordinate) {
+        const Place place = text_.place_of(plan.at);
+        state_unit(plan);
+        const std::string& stated = options_.length_unit;
+        if (!plan.has_unit && stated.empty()) {
+            throw InputError("unit", "coordinate '" + plan.name + "' has no unit", place, "say it with --length-unit mm (or m, inch, ...)");
+        }
+        if (plan.has_unit && !stated.empty() && core::same_dimension(plan.unit, stated) && core::conversion(plan.unit, stated).scale != 1) {
+            note(Severity::warning, "coordinate '" + plan.name + "' is in " + plan.unit + ": a length unit (" + stated + ") is for files that state none", place);
+        }
         plan.coordinate = coordinate;
-        plan.conversion = core::conversion(unit, "m", text_.place_of(plan.at));
+        plan.conversion = core::conversion(plan.has_unit ? plan.unit : stated, "m", place);
         plan.si_unit = "m";
     }
 
     void plan_array(CsvColumn& plan) {
         const Place place = text_.place_of(plan.at);
-        CanonicalName canonical = canonical_name(plan.name);
-        if (vector_component(canonical.name + "_x")) {
-            canonical.name += "_magnitude";  // CFX calls the size of a vector by the vector's name
+        state_unit(plan);
+        const CanonicalName meaning = named_as_scalar(canonical_name(plan.name));
+        const bool counts = meaning.name == "pressure" || meaning.name.starts_with("wall_shear");  // for loads: nothing is guessed
+        const bool pure = meaning.unit.empty() || meaning.unit == "1";
+        if (!plan.has_unit && !pure && counts) {
+            throw InputError("unit", "column '" + plan.name + "' has no unit", place, "say it with --unit \"" + plan.name + "=" + meaning.unit + "\"");
         }
-        const std::string& dimension = canonical.unit;
-        const std::string unit = readable_unit(plan.unit);
-        if (!dimension.empty() && !plan.has_unit && dimension != "1") {
-            if (canonical.name == "pressure" || canonical.name.starts_with("wall_shear")) {
-                throw InputError("unit", "column '" + plan.name + "' has no unit", place,
-                                 "say it with --unit \"" + plan.name + "=" + dimension + "\"");
+        if (!plan.has_unit) {
+            if (!pure) {
+                note(Severity::warning, "column '" + plan.name + "' has no unit: kept as a pure number", place);
             }
-            note(Severity::warning, "column '" + plan.name + "' has no unit: kept as a pure number", place);
-            plan.array = plan.name;
+            plan.array = pure ? meaning.name : own_name(plan.name, "");
             plan.si_unit = "1";
             return;
         }
-        plan.array = canonical.name;
-        if (!dimension.empty()) {
-            plan.conversion = core::conversion(plan.has_unit ? unit : "1", dimension, place);
-            plan.si_unit = dimension;
-        } else if (!plan.has_unit) {
-            plan.si_unit = "1";
-        } else if (core::is_unit(unit)) {
-            plan.si_unit = core::si_unit(unit, place);
-            plan.conversion = core::conversion(unit, plan.si_unit, place);
-        } else {
+        const std::string unit = readable_unit(plan.unit);
+        try {
+            const VariableReading reading = quantity_in(plan.name, meaning, unit, place);
+            const bool fits = meaning.unit.empty() || reading.unit == meaning.unit || reading.name == "kinematic_" + meaning.name;
+            if (!fits && counts) {
+                (void)core::conversion(unit, meaning.unit, place);  // throws: of another dimension
+            }
+            if (!fits) {
+                note(Severity::warning, "column '" + plan.name + "' is in " + plan.unit + ", which no " + meaning.name + " is: it is kept under its own name", place);
+            }
+            plan.array = reading.name;
+            plan.si_unit = reading.unit;
+            plan.conversion = reading.convert;
+        } catch (const InputError&) {
+            if (counts) {
+                throw;
+            }
             note(Severity::warning, "unit '" + unit + "' of column '" + plan.name + "' is not known: values are kept as they are", place);
+            plan.array = own_name(plan.name, unit);
             plan.si_unit = unit;
         }
     }
 
-    /// Three columns x, y, z of a vector become one array; two columns of one meaning keep their own names.
-    static void join_components(std::vector<CsvColumn>& plans) {
+    /// Each name once, what is asked for, components as vectors.
+    void settle(std::vector<CsvColumn>& plans, int dimension) {
+        std::vector<ArrayPlan> arrays;
+        for (const auto& plan : plans) {
+            arrays.push_back({plan.name, plan.array});
+        }
+        const Place place = text_.place_of(plans.front().at, false);
+        settle_names(arrays, place, problems_);
         for (std::size_t i = 0; i < plans.size(); ++i) {
-            for (std::size_t j = 0; j < i; ++j) {
-                if (!plans[i].array.empty() && plans[j].array == plans[i].array) {
-                    plans[i].array = plans[i].name;
-                }
+            if (plans[i].coordinate < 0 && !is_wanted(options_, arrays[i].own, arrays[i].name)) {
+                arrays[i].name.clear();
             }
         }
-        for (auto& plan : plans) {
-            const auto component = vector_component(plan.array);
-            if (!component) {
-                continue;
-            }
-            std::array<CsvColumn*, 3> found{};
-            for (auto& other : plans) {
-                const auto of = vector_component(other.array);
-                if (of && of->vector == component->vector) {
-                    found[static_cast<std::size_t>(of->index)] = &other;
-                }
-            }
-            if (found[0] != nullptr && found[1] != nullptr && found[2] != nullptr) {
-                for (std::size_t k = 0; k < 3; ++k) {
-                    found[k]->array = component->vector;
-                    found[k]->component = static_cast<int>(k);
-                }
-            }
+        join_components(arrays, dimension, options_, place, problems_);
+        for (std::size_t i = 0; i < plans.size(); ++i) {
+            plans[i].array = arrays[i].name;
+            plans[i].component = arrays[i].component;
         }
     }
 
@@ -200,6 +218,16 @@ private:
 };
 
 }  // namespace
+
+std::array<bool, 3> coordinates_in(const std::vector<CsvColumn>& columns) {
+    std::array<bool, 3> has{};
+    for (const auto& column : columns) {
+        if (column.coordinate >= 0) {
+            has[static_cast<std::size_t>(column.coordinate)] = true;
+        }
+    }
+    return has;
+}
 
 std::vector<CsvColumn> plan_columns(std::string_view header, char separator, const std::string& zone, const CsvText& text,
                                     const ReadOptions& options, core::Problems& problems) {

@@ -1,6 +1,7 @@
 // What the columns of a CFD-Post export become: coordinates, arrays with canonical names, components of vectors; in SI.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,15 +18,22 @@ struct CsvColumn {
     bool has_unit = false;
     const char* at = nullptr;  ///< in the header
     int coordinate = -1;       ///< 0 x, 1 y, 2 z
-    std::string array;         ///< canonical name, "" when the column is skipped or a coordinate
-    int component = 0;
+    std::string array;         ///< its name, "" when the column is skipped or a coordinate of points
+    int component = -1;        ///< of the vector `array`; -1: an array of its own
     std::string si_unit;
     core::Conversion conversion;  ///< to it
 };
 
-/// The columns of a header line. Throws InputError where a unit has to be stated (coordinates, pressure, wall shear) or is
-/// of another dimension; `problems` gets repeated columns, missing and unknown units.
+/// Of a row more columns than this are no export but damage.
+inline constexpr std::size_t most_csv_columns = 10000;
+
+/// The columns of a header line; those that `options.arrays` does not ask for are skipped. Throws InputError where the unit
+/// of a coordinate, a pressure or a wall shear has to be stated or is of another dimension; `problems` gets repeated columns,
+/// missing, odd and unknown units, columns of one meaning and incomplete vectors.
 std::vector<CsvColumn> plan_columns(std::string_view header, char separator, const std::string& zone, const CsvText& text,
                                     const ReadOptions& options, core::Problems& problems);
+
+/// Which of x, y, z there are. Without x and y a block is a table, with its coordinates among the arrays.
+std::array<bool, 3> coordinates_in(const std::vector<CsvColumn>& columns);
 
 }  // namespace underbody::postproc

@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "postproc/field.h"
 #include "tests/support/support.h"
 
@@ -290,6 +291,152 @@ TEST(CfdPostCsv, TakesAsLongForABlockWhereverItStands) {
 
 TEST(CfdPostCsv, RefusesNodeNumbersThatNoNumberHolds) {
     EXPECT_THAT(failure(replaced(good, "0, 2, 3\n", "0, 2, " + std::string(40, '9') + "\n")), HasSubstr("is not a node number"));
+}
+
+/// A tetrahedron with columns of `header` behind its coordinates, the same `values` in every row.
+std::string body(const std::string& header, const std::string& values, const std::string& name = "body") {
+    std::string text = "[Name]\n" + name + "\n[Data]\nX [ m ],Y [ m ],Z [ m ]," + header + "\n";
+    for (const char* at : {"0,0,0,", "1,0,0,", "0,1,0,", "0,0,1,"}) {
+        text += at + values + "\n";
+    }
+    return text + "\n[Faces]\n0,2,1\n0,1,3\n1,2,3\n0,3,2\n\n";
+}
+
+std::vector<std::string> names_in(const Zone& zone) {
+    std::vector<std::string> names;
+    for (const auto& info : zone.arrays) {
+        names.push_back(info.name);
+    }
+    return names;
+}
+
+std::string words_of(const Field& field) {
+    std::string text;
+    for (const auto& problem : field.problems) {
+        text += problem.message + "\n";
+    }
+    return text;
+}
+
+TEST(CfdPostCsv, OneComponentAskedForIsThatComponent) {
+    const std::string text = body("Pressure [ Pa ],Velocity u [ m s^-1 ],Velocity v [ m s^-1 ],Velocity w [ m s^-1 ]", "7,1,2,3");
+    ReadOptions options;
+    for (const char* name : {"Velocity v", "velocity_y", "*_y"}) {
+        options.arrays = {name};
+        const Field field = read_text(text, options);
+        EXPECT_THAT(names_in(field.zones[0]), testing::ElementsAre("velocity_y")) << name;
+        EXPECT_EQ(value(field.zones[0], "velocity_y", 3), 2);
+        EXPECT_THAT(field.problems, testing::IsEmpty());
+    }
+    for (const char* name : {"velocity", "Velocity*", "vel*y"}) {
+        options.arrays = {name};
+        const Field field = read_text(text, options);
+        EXPECT_THAT(names_in(field.zones[0]), testing::ElementsAre("velocity")) << name;
+        EXPECT_EQ(value(field.zones[0], "velocity", 3, 2), 3);
+        EXPECT_EQ(field.zones[0].arrays[0].original_name, "Velocity u, Velocity v, Velocity w");
+    }
+}
+
+TEST(CfdPostCsv, AMissingComponentIsNoughtInAPlaneCaseOnly) {
+    const Field solid = read_text(body("Velocity u [ m s^-1 ],Velocity v [ m s^-1 ]", "1,2"));
+    EXPECT_THAT(names_in(solid.zones[0]), testing::ElementsAre("velocity_x", "velocity_y"));
+    EXPECT_THAT(words_of(solid), HasSubstr("velocity has no z component here: no vector, but velocity_x, velocity_y"));
+    const Field plane = read_text("[Name]\ncut\n[Data]\nX [ m ],Y [ m ],Velocity u [ m s^-1 ],Velocity v [ m s^-1 ]\n0,0,1,2\n1,0,1,2\n");
+    EXPECT_EQ(plane.dimension, 2);
+    EXPECT_EQ(value(plane.zones[0], "velocity", 1, 1), 2);
+    EXPECT_EQ(value(plane.zones[0], "velocity", 1, 2), 0);
+}
+
+TEST(CfdPostCsv, OfColumnsOfOneMeaningThePlainestCounts) {
+    for (const char* header : {"Static Pressure [ Pa ],pressure [ kPa ]", "Solved Pressure [ Pa ],Pressure [ kPa ]"}) {
+        const Field field = read_text(body(header, "5,7"));
+        const Zone& zone = field.zones[0];
+        ASSERT_EQ(zone.arrays.size(), 2U);
+        EXPECT_EQ(value(zone, "pressure", 0), 7000) << header;
+        EXPECT_EQ(value(zone, zone.arrays[0].name.c_str(), 0), 5);
+        EXPECT_EQ(zone.arrays[0].name, zone.arrays[0].original_name);
+        EXPECT_THAT(words_of(field), HasSubstr("both mean pressure"));
+    }
+    // The name of the other may be taken too.
+    const Field field = read_text(body("P [ Pa ],Static Pressure [ Pa ],pressure [ Pa ],P (2)", "1,2,3,4"));
+    EXPECT_THAT(names_in(field.zones[0]), testing::ElementsAre("P", "Static Pressure", "pressure", "P (2)"));
+}
+
+TEST(CfdPostCsv, LettersForTemperaturesBesideOtherUnitsAreDifferences) {
+    const Field field = read_text(body("h [ Btu hr^-1 ft^-2 F^-1 ],Grad T [ C m^-1 ],Expansion [ C^-1 ],Old [ Btu lb^-1 R^-1 ],Reference [ F ],Temperature [ C ]", "1,1,1,1,32,20"));
+    const Zone& zone = field.zones[0];
+    EXPECT_NEAR(value(zone, "h", 0), 5.678263, 1e-6);
+    EXPECT_EQ(value(zone, "Grad T", 0), 1);
+    EXPECT_TRUE(core::same_dimension(zone.find("Grad T")->unit, "K/m")) << zone.find("Grad T")->unit;
+    EXPECT_TRUE(core::same_dimension(zone.find("h")->unit, "W m^-2 K^-1")) << zone.find("h")->unit;
+    EXPECT_TRUE(core::same_dimension(zone.find("Expansion")->unit, "1/K")) << zone.find("Expansion")->unit;
+    EXPECT_NEAR(value(zone, "Old", 0), 4186.8, 0.1);
+    EXPECT_NEAR(value(zone, "Reference", 0), 273.15, 1e-9);
+    EXPECT_NEAR(value(zone, "temperature", 0), 293.15, 1e-9);
+}
+
+TEST(CfdPostCsv, AnOddUnitRefusesTheFileOnlyWhereItCounts) {
+    const Field field = read_text(body("Pressure [ Pa ],T [ s ],density [ m ],Enthalpy [ furlongish ]", "1,2,3,4"));
+    EXPECT_THAT(names_in(field.zones[0]), testing::ElementsAre("pressure", "T", "density [m]", "Enthalpy"));
+    EXPECT_EQ(field.zones[0].find("T")->unit, "s");
+    EXPECT_THAT(words_of(field), HasSubstr("column 'T' is in s, which no temperature is"));
+    EXPECT_THAT(words_of(field), HasSubstr("unit 'furlongish' of column 'Enthalpy' is not known"));
+    EXPECT_THAT(failure(body("Pressure [ s ]", "1")), HasSubstr("another dimension"));
+    EXPECT_THAT(failure(body("Wall Shear X [ m ]", "1")), HasSubstr("another dimension"));
+    EXPECT_THAT(failure(body("Pressure [ furlongish ]", "1")), HasSubstr("unknown unit"));
+    EXPECT_THAT(failure(replaced(body("Pressure [ Pa ]", "1"), "Z [ m ]", "Z [ Pa ]")), HasSubstr("another dimension"));
+}
+
+TEST(CfdPostCsv, ABlockWithoutZMakesNoPlaneCaseOfABody) {
+    const std::string cut = "[Name]\ncut\n[Data]\nX [ m ],Y [ m ],Pressure [ Pa ]\n0,0,1\n1,0,1\n\n";
+    EXPECT_EQ(read_text(cut).dimension, 2);
+    for (const std::string& text : {cut + body("Pressure [ Pa ]", "1"), body("Pressure [ Pa ]", "1") + cut}) {
+        const Field field = read_text(text);
+        EXPECT_EQ(field.dimension, 3);
+        EXPECT_THAT(words_of(field), HasSubstr("cut has no column Z beside zones that have one"));
+    }
+}
+
+TEST(CfdPostCsv, AUnitStatedAgainstTheFileIsTakenAndTold) {
+    ReadOptions options;
+    options.units = {{"Pressure", "kPa"}};
+    const Field field = read_text(body("Pressure [ Pa ]", "2"), options);
+    EXPECT_EQ(value(field.zones[0], "pressure", 0), 2000);
+    EXPECT_THAT(words_of(field), HasSubstr("the file has 'Pressure' in Pa; kPa is taken"));
+    options.units = {{"Pressure", "N/m^2"}};
+    EXPECT_THAT(read_text(body("Pressure [ Pa ]", "2"), options).problems, testing::IsEmpty());
+    options.units.clear();
+    options.length_unit = "mm";
+    EXPECT_THAT(words_of(read_text(body("Pressure [ Pa ]", "2"), options)), HasSubstr("coordinate 'X' is in m"));
+}
+
+TEST(CfdPostCsv, PressureOverDensityIsKinematic) {
+    const Field field = read_text(body("Pressure [ m^2 s^-2 ]", "2"));
+    EXPECT_THAT(names_in(field.zones[0]), testing::ElementsAre("kinematic_pressure"));
+}
+
+TEST(CfdPostCsv, SaysOnceWhatAllBlocksHaveAlike) {
+    std::string text;
+    for (int i = 0; i < 50; ++i) {
+        text += body("Pressure [ Pa ],Temperature", "1,2", "b" + std::to_string(i));
+    }
+    EXPECT_EQ(read_text(text).problems.size(), 1U);
+}
+
+TEST(CfdPostCsv, ThousandsOfColumnsAreReadAndMoreRefused) {
+    std::string header = "c0";
+    std::string values = "0";
+    for (int c = 1; c < 5000; ++c) {
+        header += ",c" + std::to_string(c);
+        values += ",1";
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(read_text(body(header, values)).zones[0].arrays.size(), 5000U);
+    for (int c = 0; c < 200000; ++c) {
+        header += ",d" + std::to_string(c);
+    }
+    EXPECT_THAT(failure(body(header, values)), HasSubstr("205003 columns"));
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 20);
 }
 
 TEST(CfdPostCsv, SurvivesRandomDamage) {
