@@ -28,6 +28,7 @@ struct StatedLoad {
     double value = 0;                ///< N or N m; of a history: its value at the field's time, or its last
     std::optional<double> time;      ///< of that value (s, or iteration), where the file says
     std::size_t earlier = 0;         ///< how often the same file stated it before, of other iterations
+    std::size_t later = 0;           ///< rows of a monitor behind the field's time
     std::optional<IterationScatter> history;
 };
 
@@ -48,19 +49,22 @@ MonitorSource monitor_source(const std::string& text);
 /// Throws core::InputError: no report in the file, a direction without length.
 std::vector<StatedLoad> stated_in_report(const std::filesystem::path& path);
 
-/// A column of a report file (.out, .csv) as one of the named loads of `result`, moments about its reference point.
-/// Throws core::InputError: no such column, a history too short to judge.
+/// A column of a report file (.out, .csv) as one of the named loads of `result`, moments about its reference point. Where
+/// the field has a time, up to that: by the monitor's column of times, or where it counts iterations by the one of that
+/// number (OpenFOAM's steady time); else to the end. Throws core::InputError: no such column, a history too short to judge.
 StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& result);
 
 /// The forces that OpenFOAM wrote beside the case (see read_openfoam_forces), as the named loads of `result` with
-/// their histories up to the time of the field (the nearest row; the last where the field has no time); moments are moved from OpenFOAM's centre to the reference point of `result`, one instant at a time.
+/// their histories up to the time of the field (the nearest row; the last where the field has no time); moments are moved
+/// from OpenFOAM's centre to the reference point of `result`, one instant at a time.
 std::vector<StatedLoad> stated_by_openfoam(const std::filesystem::path& case_folder, const LoadsResult& result);
 
 /// The name of a CFD file without its folder and endings: "case.cas.h5" -> "case".
 std::string case_stem(const std::filesystem::path& file);
 
 /// What lies beside a CFD file and states forces: OpenFOAM's postProcessing, and texts that begin with the file's
-/// stem (STEM.txt, STEM-forces.out ...) and hold a force report. Empty when there is nothing.
+/// stem (STEM.txt, STEM-forces.out ...), with that of no other CFD file of the folder that is longer, and hold a force
+/// report. Empty when there is nothing.
 std::vector<StatedLoad> stated_beside(const std::filesystem::path& file, const LoadsResult& result);
 
 /// A load against what somebody states of it.
@@ -70,7 +74,9 @@ struct Comparison {
     std::string stated_in;  ///< the report; empty: the conditions (manifest)
     double value = 0;
     double stated = 0;      ///< of the whole body: doubled where the report is of a half model
-    double of_force = 0;    ///< |value - stated| over the size of the force on the same zones, the stated one where the own is nothing (moments: times the root of their area)
+    /// |value - stated| over the size of the force on the same zones, the stated one where the own is nothing (moments:
+    /// times the root of their area).
+    double of_force = 0;
 };
 
 /// |difference| over `force`; over `fallback` where there is no force at all (a pure moment).

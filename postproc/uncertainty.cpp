@@ -434,8 +434,9 @@ double cycle_of(std::span<const double> tail, const Moments& m) {
 }  // namespace
 
 IterationScatter iteration_scatter(std::span<const double> history) {
-    if (history.size() < 8) {
-        throw core::InputError("range", "a monitor of " + std::to_string(history.size()) + " values is too short to judge: 8 are needed");
+    if (history.size() < shortest_history) {
+        throw core::InputError("range", "a monitor of " + std::to_string(history.size()) + " values is too short to judge: " +
+                                            std::to_string(shortest_history) + " are needed");
     }
     if (std::any_of(history.begin(), history.end(), [](double v) { return !std::isfinite(v); })) {
         throw core::InputError("range", "the monitor has values that are not finite: the solution diverged");

@@ -69,7 +69,9 @@ struct IterationScatter {
     std::string text;
 };
 
-/// `history`: one value an iteration (or a time step). Throws core::InputError: fewer than 8 values, or not finite.
+constexpr std::size_t shortest_history = 8;  ///< values that iteration_scatter needs
+
+/// `history`: one value an iteration (or a time step). Throws core::InputError: too short, or not finite.
 IterationScatter iteration_scatter(std::span<const double> history);
 
 /// Mesh, iteration and any other independent parts together.

@@ -192,6 +192,17 @@ TEST_F(StatedLoads, LieBesideAFileUnderItsName) {
     EXPECT_EQ(stated_beside(folder_.path() / "box.csv", result).size(), 27U);
 }
 
+TEST_F(StatedLoads, AreOfTheFileWithTheLongestNameThatFits) {
+    const LoadsResult result = loads_of();
+    written("box-coarse.csv", box(false));
+    written("box-coarse.txt", report);
+    EXPECT_TRUE(stated_beside(folder_.path() / "box.csv", result).empty());
+    EXPECT_EQ(stated_beside(folder_.path() / "box-coarse.csv", result).size(), 27U);
+    written("box-forces.csv", "gap [mm], file\n5, box.csv\n");  // a table is no CFD file
+    written("box-forces.txt", report);
+    EXPECT_EQ(stated_beside(folder_.path() / "box.csv", result).size(), 27U);
+}
+
 /// The same of CFX's solver: a summary of the walls at the end of its output.
 std::string cfx_summary() {
     const auto table = [](const char* title, const char* base, const char* hull, const char* total) {
@@ -251,6 +262,45 @@ TEST_F(StatedLoads, OfAMonitorGiveTheirLastValueAndTheScatterOfTheirTail) {
     EXPECT_NEAR(iteration_sigmas(half, {lift})[0].second, 2 * sigmas[0].second, 1e-15);
 }
 
+TEST_F(StatedLoads, OfAMonitorAreThoseOfTheFieldsTime) {
+    LoadsResult result = loads_of();
+    std::string by_time = "\"lift\"\n\"Time Step\" \"lift etc..\"\n(\"Time Step\" \"lift\" \"flow-time\")\n";
+    std::string by_iteration = "(\"Iteration\" \"lift\")\n";
+    for (int i = 1; i <= 100; ++i) {
+        by_time += std::to_string(i) + " " + std::to_string(-i) + " " + core::format_number(0.01 * i) + "\n";
+        by_iteration += std::to_string(i) + " " + std::to_string(-i) + "\n";
+    }
+    const auto at = [&](const fs::path& path, std::optional<double> time) {
+        result.time = time;
+        return stated_by_monitor(monitor_source("lift_force=" + path.string()), result);
+    };
+    const auto steps = written("steps.out", by_time);
+    const StatedLoad half = at(steps, 0.5);
+    EXPECT_EQ(half.value, -50);
+    EXPECT_EQ(half.time, 0.5);
+    EXPECT_EQ(half.later, 50U);
+    ASSERT_TRUE(half.history);
+    EXPECT_EQ(half.history->first + half.history->count, 50U);
+    core::Problems notes;
+    EXPECT_EQ(compare_with_solver(result, {half}, notes)[0].stated, -50);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].message, HasSubstr("the field is of 0.5: 50 later rows"));
+    EXPECT_EQ(at(steps, {}).value, -100);
+    EXPECT_FALSE(at(steps, 0.03).history);  // three rows tell no scatter
+    EXPECT_EQ(at(steps, 0.03).value, -3);
+    const StatedLoad beyond = at(steps, 2.0);
+    notes.clear();
+    compare_with_solver(result, {beyond}, notes);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].message, HasSubstr("no row of the field's time 2"));
+    // Iterations: those of a steady field. Seconds are none.
+    const auto iterations = written("iterations.out", by_iteration);
+    EXPECT_EQ(at(iterations, 40.0).value, -40);
+    EXPECT_EQ(at(iterations, 40.5).value, -100);
+    EXPECT_EQ(at(iterations, 2.0).value, -100);
+    EXPECT_FALSE(at(iterations, 2.0).time);
+}
+
 TEST_F(StatedLoads, ThatDriftAreWarnedOfUnlessTheyAreRounding) {
     const LoadsResult result = loads_of();
     const auto drifting = [&](double size) {
@@ -285,6 +335,8 @@ TEST_F(StatedLoads, OfAMonitorAreRefusedWhenTheyAreNotClear) {
     };
     EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string()), result); }), HasSubstr("several columns"));
     EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string() + ":lft"), result); }), HasSubstr("did you mean 'lift'?"));
+    const auto none = written("none.out", "\"Iteration\"\n1\n2\n");
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + none.string()), result); }), HasSubstr("no column of values, only 'Iteration'"));
     EXPECT_THAT(message([] { monitor_source("lift_froce=a.out"); }), HasSubstr("did you mean 'lift_force'?"));
     EXPECT_THAT(message([] { monitor_source("lift_force [m]=a.out"); }), HasSubstr("no unit of lift_force"));
     EXPECT_THAT(message([] { monitor_source("a.out"); }), HasSubstr("no QUANTITY=FILE"));
