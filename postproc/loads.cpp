@@ -116,8 +116,10 @@ private:
         std::vector<std::string> body;
         std::string list;
         for (const auto& part : parts_) {
-            body.push_back(part.zone->name);
-            list += (list.empty() ? "" : ",") + part.zone->name;
+            body.push_back(part.name);
+            if (list.empty() || !(list.ends_with("," + part.zone->name) || list == part.zone->name)) {
+                list += (list.empty() ? "" : ",") + part.zone->name;
+            }
         }
         std::string others;
         for (const auto& zone : result_.left_out) {
@@ -208,7 +210,7 @@ private:
         }
         std::vector<FacingZone> zones;
         for (const auto& part : parts_) {
-            zones.push_back({part.zone->name, part.surface.get(), part.sums, part.zone->normals_into_fluid});
+            zones.push_back({part.name, part.surface.get(), part.sums, part.zone->normals_into_fluid});
         }
         const Facing facing = settle_facing(zones, revolved_ ? 1 : mirror_.axis < 0 && field_.dimension == 2 ? 2 : mirror_.axis, half_reference_, field_.dimension);
         result_.orientation = facing.how;
@@ -244,6 +246,21 @@ private:
                 0.0 + dot(wrench.moment, axes_.starboard), 0.0 + dot(wrench.moment, axes_.forward), 0.0 + dot(wrench.moment, down)};
     }
 
+    /// Shells of one zone are given as one.
+    void add(ZoneLoads&& zone) {
+        if (result_.zones.empty() || result_.zones.back().name != zone.name) {
+            result_.zones.push_back(std::move(zone));
+            return;
+        }
+        ZoneLoads& sum = result_.zones.back();
+        sum.faces += zone.faces;
+        sum.area += zone.area;
+        sum.area_vector = plus(sum.area_vector, zone.area_vector);
+        sum.pressure = {plus(sum.pressure.force, zone.pressure.force), plus(sum.pressure.moment, zone.pressure.moment)};
+        sum.viscous = {plus(sum.viscous.force, zone.viscous.force), plus(sum.viscous.moment, zone.viscous.moment)};
+        sum.turned = sum.turned || zone.turned;
+    }
+
     void add_up() {
         Vector area_vector{};
         for (const auto& part : parts_) {
@@ -260,7 +277,7 @@ private:
             area_vector = plus(area_vector, zone.area_vector);
             result_.pressure = {plus(result_.pressure.force, zone.pressure.force), plus(result_.pressure.moment, zone.pressure.moment)};
             result_.viscous = {plus(result_.viscous.force, zone.viscous.force), plus(result_.viscous.moment, zone.viscous.moment)};
-            result_.zones.push_back(std::move(zone));
+            add(std::move(zone));
         }
         result_.total = {plus(result_.pressure.force, result_.viscous.force), plus(result_.pressure.moment, result_.viscous.moment)};
         result_.named = named(result_.total);

@@ -10,12 +10,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 
 #include "core/text.h"
 #include "postproc/body_zones.h"
 #include "postproc/doubled_faces.h"
 #include "postproc/importers/variable_reading.h"
 #include "postproc/mirror_plane.h"
+#include "postproc/shells.h"
 
 namespace underbody::postproc {
 
@@ -71,30 +74,9 @@ private:
         if (std::find(used.begin(), used.end(), false) == used.end()) {
             return surface;
         }
-        auto result = vtkSmartPointer<vtkPolyData>::New();
-        vtkNew<vtkPoints> points;
-        points->SetDataTypeToDouble();
-        result->GetPointData()->CopyAllocate(surface->GetPointData());
-        std::vector<vtkIdType> place(arrays.nodes(), 0);
-        for (std::size_t i = 0; i < used.size(); ++i) {
-            if (used[i]) {
-                place[i] = points->InsertNextPoint(arrays.points().data() + 3 * i);
-                result->GetPointData()->CopyData(surface->GetPointData(), static_cast<vtkIdType>(i), place[i]);
-            }
-        }
-        vtkNew<vtkCellArray> faces;
-        result->GetCellData()->CopyAllocate(surface->GetCellData());
-        const vtkIdType first = surface->GetNumberOfVerts() + surface->GetNumberOfLines();  // their values come before
-        for (std::size_t f = 0; f < arrays.faces(); ++f) {
-            result->GetCellData()->CopyData(surface->GetCellData(), first + static_cast<vtkIdType>(f), static_cast<vtkIdType>(f));
-            faces->InsertNextCell(static_cast<int>(arrays.offsets()[f + 1] - arrays.offsets()[f]));
-            for (Index i = arrays.offsets()[f]; i < arrays.offsets()[f + 1]; ++i) {
-                faces->InsertCellPoint(place[static_cast<std::size_t>(arrays.connectivity()[static_cast<std::size_t>(i)])]);
-            }
-        }
-        result->SetPoints(points);
-        result->SetPolys(faces);
-        return result;
+        std::vector<std::size_t> faces(arrays.faces());
+        std::iota(faces.begin(), faces.end(), std::size_t{0});
+        return surface_of_faces(*surface, arrays, faces);
     }
 
     /// The lines of a plane case as a strip. The normal of a line n0 -> n1 that looks into the fluid is z x t.
@@ -222,7 +204,7 @@ private:
             part.zone = zone;
             part.polygons = has_polygons(*zone) ? with_used_points(zone->surface) : extruded(*zone);
             part.surface = std::make_unique<SurfaceArrays>(*part.polygons);
-            parts_.push_back(std::move(part));
+            add_shells(std::move(part));
         }
         if (options_.zones.empty() && parts_.size() > 1) {
             leave_out_other_walls();
@@ -249,11 +231,52 @@ private:
         }
     }
 
+    /// A zone whose sides nobody knows may hold several closed shells, each with a winding of its own; what is open stays
+    /// together, as the file has it.
+    void add_shells(Part&& part) {
+        const auto numbers = part.zone->normals_into_fluid || field_.dimension == 2 ? std::vector<std::uint32_t>{} : connected_parts(*part.surface);
+        std::vector<std::vector<std::size_t>> faces;
+        for (std::size_t face = 0; face < numbers.size(); ++face) {
+            faces.resize(std::max<std::size_t>(faces.size(), numbers[face] + 1));
+            faces[numbers[face]].push_back(face);
+        }
+        std::vector<Part> shells;
+        std::vector<std::size_t> open;
+        constexpr std::size_t most = 1000;  // droplets
+        for (std::size_t i = 0; i < faces.size() && faces.size() <= most; ++i) {
+            Part shell;
+            shell.zone = part.zone;
+            shell.polygons = surface_of_faces(*part.polygons, *part.surface, faces[i]);
+            shell.surface = std::make_unique<SurfaceArrays>(*shell.polygons);
+            if (bounds_a_volume(integrate_faces(*shell.surface, {}, {}))) {
+                shells.push_back(std::move(shell));
+            } else {
+                open.insert(open.end(), faces[i].begin(), faces[i].end());
+            }
+        }
+        if (shells.size() + (open.empty() ? 0 : 1) < 2) {
+            part.name = part.zone->name;
+            parts_.push_back(std::move(part));
+            return;
+        }
+        if (!open.empty()) {
+            Part rest;
+            rest.zone = part.zone;
+            rest.polygons = surface_of_faces(*part.polygons, *part.surface, open);
+            rest.surface = std::make_unique<SurfaceArrays>(*rest.polygons);
+            shells.push_back(std::move(rest));
+        }
+        for (std::size_t i = 0; i < shells.size(); ++i) {
+            shells[i].name = part.zone->name + " (part " + std::to_string(i + 1) + " of " + std::to_string(shells.size()) + ")";
+            parts_.push_back(std::move(shells[i]));
+        }
+    }
+
     /// A ground or a tunnel is a wall too. `audit` refuses when the rest does not close either.
     void leave_out_other_walls() {
         std::vector<WallShape> walls;
         for (const auto& part : parts_) {
-            walls.push_back(shape_of(part.zone->name, *part.surface, part.zone->normals_into_fluid, field_.dimension));
+            walls.push_back(shape_of(part.name, *part.surface, part.zone->normals_into_fluid, field_.dimension));
             walls.back().surface = part.surface.get();
         }
         const auto is_other = [&](const std::string& name) {
@@ -262,8 +285,11 @@ private:
         for (auto& other : walls_beside_body(walls, mirror_plane_from(options_.symmetry).is_half())) {
             result_.left_out.push_back(std::move(other));
         }
-        std::erase_if(parts_, [&](const Part& part) { return is_other(part.zone->name); });
+        std::erase_if(parts_, [&](const Part& part) { return is_other(part.name); });
         std::erase_if(walls, [&](const WallShape& wall) { return is_other(wall.name); });
+        std::erase_if(walls, [&](const WallShape& wall) {  // parts of one zone are not told from each other by name
+            return std::none_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.name == wall.name && part.zone->name == wall.name; });
+        });
         const auto bodies = separate_bodies(walls);
         if (!bodies.empty()) {
             warn("zones " + quoted(bodies) + " are bodies of their own that lie apart: the loads are the sum over all; name those that are meant with --zones");
@@ -274,10 +300,10 @@ private:
     void settle_doubled_zones() {
         std::vector<bool> away(parts_.size(), false);
         for (const auto& doubled : doubled_zones(parts_)) {
-            const std::string& name = parts_[doubled.zone].zone->name;
+            const std::string& name = parts_[doubled.zone].name;
             std::vector<std::string> others;
             for (const std::size_t other : doubled.others) {
-                others.push_back(parts_[other].zone->name);
+                others.push_back(parts_[other].name);
             }
             const std::string faces = (doubled.whole ? "all " : "") + std::to_string(doubled.faces) + " faces of zone '" + name + "' stand in " + quoted(others) + " too";
             if (!options_.zones.empty()) {

@@ -13,9 +13,10 @@
 
 namespace underbody::postproc {
 
-/// One zone, ready to be summed.
+/// One zone, or one of several closed shells of it, ready to be summed.
 struct SummedZone {
     const Zone* zone = nullptr;
+    std::string name;  ///< of the zone, with the number of the shell
     vtkSmartPointer<vtkPolyData> polygons;  ///< of the zone; a plane case's lines as a strip, see `zones_to_sum`
     std::unique_ptr<SurfaceArrays> surface;
     FaceValues values;

@@ -396,6 +396,42 @@ TEST(Loads, SeeNoGroundInAPipeWithAFlange) {
     EXPECT_THAT(result.problems.back().message, testing::AllOf(HasSubstr("not closed"), testing::Not(HasSubstr("a ground?"))));
 }
 
+/// Two boxes of one zone, the second at x + 5, with a winding of its own; `around` makes it a tank around the first instead.
+Field two_boxes(bool turned, bool around) {
+    std::vector<Vector> points;
+    std::vector<std::vector<vtkIdType>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    for (const bool second : {false, true}) {
+        for (const double z : {0.0, 0.5}) {
+            for (const auto& [x, y] : {std::pair{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}}) {
+                points.push_back(!second ? Vector{x, y, z} : around ? Vector{6 * x - 4, 6 * y - 2, 6 * z - 1} : Vector{x / 2 + 5, y, z});
+            }
+        }
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+        faces.push_back(faces[i]);
+        std::for_each(faces.back().begin(), faces.back().end(), [](vtkIdType& node) { node += 8; });
+        if (turned) {
+            std::reverse(faces.back().begin(), faces.back().end());
+        }
+    }
+    return field_of({make_zone("walls", points, faces, [](const Vector& p) { return 10 + 2 * p[0] - 3 * p[1] + 4 * p[2]; })});
+}
+
+TEST(Loads, OfSeveralBodiesInOneZoneDoNotDependOnTheWindingOfEach) {
+    for (const bool turned : {false, true}) {
+        const auto result = loads(two_boxes(turned, false), about({0, 0, 0}));
+        ASSERT_EQ(result.zones.size(), 1U);
+        EXPECT_EQ(result.zones[0].faces, 12U);
+        for (const auto& [k, slope] : {std::pair{0, 2.0}, {1, -3.0}, {2, 4.0}}) {
+            EXPECT_NEAR(result.total.force[static_cast<std::size_t>(k)], -slope * 1.5, 1e-12) << turned;  // -grad p V
+        }
+        const auto inside = loads(two_boxes(turned, true), about({0, 0, 0}));
+        EXPECT_NEAR(inside.total.force[2], -4.0, 1e-12) << turned;
+        ASSERT_EQ(inside.left_out.size(), 1U);
+        EXPECT_EQ(inside.left_out[0].name, "walls (part 2 of 2)");
+    }
+}
+
 TEST(Loads, SayThatTheSideOfADuctIsNotKnown) {
     for (const bool turned : {false, true}) {
         Field duct = box(false, false);
