@@ -66,11 +66,8 @@ Field Reader::read() {
     Field field;
     field.format = "CGNS";
     field.files = {name_};
-    field.dimension = file_.cell_dimension() == 2 && file_.physical_dimension() == 2 ? 2 : 3;
-    if (file_.units_stated()) {
-        field.metadata.emplace_back("length unit", core::format_number(file_.base_length()) + " m");
-    }
     shell_ = is_shell();
+    field.dimension = file_.cell_dimension() == 2 && !shell_ ? 2 : 3;
     if (const auto& times = file_.times(); !times.empty()) {
         if (file_.time()) {
             field.metadata.emplace_back("time", core::format_number(*file_.time()));
@@ -86,6 +83,11 @@ Field Reader::read() {
         zone.structured ? add_structured(zone, field) : add_unstructured(zone, field);
         understood_ += (understood_.empty() ? "" : ", ") + zone.name;
     }
+    if (file_.units_stated()) {
+        field.metadata.emplace_back("length unit", core::format_number(file_.base_length()) + " m");
+    } else if (!options_.length_unit.empty()) {
+        field.metadata.emplace_back("length unit", options_.length_unit);
+    }
     add_notes(field);
     return field;
 }
@@ -97,7 +99,7 @@ bool Reader::is_shell() {
     }
     std::optional<double> z;
     for (const int index : file_.zones()) {
-        const auto points = file_.points(file_.zone(index));
+        const auto points = file_.points(file_.zone(index), options_.length_unit);
         for (std::size_t i = 2; i < points.size(); i += 3) {
             if (points[i] != z.value_or(points[i])) {
                 return true;
@@ -126,14 +128,15 @@ void Reader::add_notes(Field& field) const {
     for (const auto& warning : file_.warnings()) {
         add(core::Problem::Severity::warning, warning);
     }
-    if (const std::string data = file_.dimensionless_class(); !data.empty()) {
-        add(core::Problem::Severity::warning, "the file says that its values have no dimensions (" + data +
-                                                  "): they are taken as they stand, so that lengths and forces are not SI");
+    for (const auto& [data, variables] : file_.without_dimensions()) {
+        add(core::Problem::Severity::warning,
+            "the file says that " + listed({variables.begin(), variables.end()}) + (variables.size() > 1 ? " have" : " has") + " no dimensions (" + data +
+                (data == "NormalizedByDimensional" ? " without a conversion" : "") + "): taken as they stand, so that lengths and forces may not be SI");
     }
     for (const auto& [variable, unit] : file_.converted()) {
         add(core::Problem::Severity::note, variable + " stands in the units that the file states: 1 there is " + unit);
     }
-    if (!file_.units_stated()) {
+    if (!file_.units_stated() && options_.length_unit.empty()) {
         add(core::Problem::Severity::note, "the file states no units; SI is taken");
     }
 }
@@ -286,7 +289,7 @@ void Reader::add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume
 }
 
 void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
-    auto points = file_.points(zone);
+    auto points = file_.points(zone, options_.length_unit);
     auto values = file_.solutions(zone, options_, progress_, solutions_left_);
     const auto sections = file_.sections(zone, progress_);
     CellsOfPolygons cells_of_polygons;
@@ -316,7 +319,7 @@ void Reader::add_structured(const CgnsZone& zone, Field& field) {
     if (dimension != 3 && dimension != 2) {
         file_.fail(zone, "structured zones of " + std::to_string(dimension) + " dimensions are not read");
     }
-    auto points = file_.points(zone);
+    auto points = file_.points(zone, options_.length_unit);
     auto values = file_.solutions(zone, options_, progress_, solutions_left_);
     ElementPart volume = cells_of_block(zone, dimension, progress_);
     std::vector<ElementPart> surfaces;

@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "core/units.h"
 #include "postproc/field.h"
 #include "postproc/importers/buffer.h"
 #include "postproc/importers/element_zone.h"
@@ -76,8 +78,9 @@ public:
     [[nodiscard]] const std::vector<int>& zones() const { return zones_; }
     [[nodiscard]] CgnsZone zone(int index) const;
 
-    /// Three coordinates a node of the grid at the step, in m; what the file does not have is 0.
-    [[nodiscard]] Buffer<double> points(const CgnsZone& zone);
+    /// Three coordinates a node of the grid at the step, in m; those that the space does not have are 0. `length_unit`
+    /// is theirs where the file states none, unless empty.
+    [[nodiscard]] Buffer<double> points(const CgnsZone& zone, const std::string& length_unit = {});
     /// In order of their element numbers; structured zones have none.
     [[nodiscard]] std::vector<CgnsSection> sections(const CgnsZone& zone, core::Progress& progress) const;
     [[nodiscard]] std::vector<CgnsCondition> conditions(const CgnsZone& zone) const;
@@ -95,19 +98,21 @@ public:
     [[nodiscard]] double base_length() const { return of_base_.length; }
     /// So far, at any node that was read.
     [[nodiscard]] bool units_stated() const { return units_stated_; }
-    /// The file's word for values without dimensions, "" for all others.
-    [[nodiscard]] std::string dimensionless_class() const;
+    /// The file's words for values without dimensions -> the variables read so far of which it says so.
+    [[nodiscard]] const std::map<std::string, std::set<std::string>>& without_dimensions() const { return without_dimensions_; }
     /// Variables that were not SI -> what 1 of the file's units is.
     [[nodiscard]] const std::map<std::string, std::string>& converted() const { return converted_; }
 
     [[noreturn]] void fail(const CgnsZone& zone, const std::string& what) const { fail("zone '" + zone.name + "': " + what); }
 
 private:
-    /// What makes SI of the file's units of mass and length (CGNS knows no time but the second).
+    /// What makes SI of the file's units (CGNS knows no time but the second).
     struct Scales {
         double mass = 1;
         double length = 1;
-        [[nodiscard]] double to_si(std::string_view unit) const;
+        core::Conversion temperature;
+        std::string data_class;  ///< "" where none is stated
+        [[nodiscard]] core::Conversion to_si(std::string_view unit) const;
     };
     bool open_newer(bool hdf5);
     [[noreturn]] void fail(const std::string& what) const;
@@ -116,7 +121,7 @@ private:
     template <typename... Node>
     Scales scales_at(const Scales& above, Node... node);
     void read_units_of_base();
-    Scales scales_of(const CgnsZone& zone, const char* parent, int index, int array);
+    core::Conversion to_si(const CgnsZone& zone, const char* parent, int index, int array, const std::string& variable, const std::string& unit);
     struct Steps {
         int count = 0;
         std::vector<double> times;  ///< s; as many, or none
@@ -160,6 +165,7 @@ private:
     Scales of_base_;
     bool units_stated_ = false;
     std::map<std::string, std::string> converted_;
+    std::map<std::string, std::set<std::string>> without_dimensions_;
 };
 
 }  // namespace underbody::postproc

@@ -53,7 +53,7 @@ void CgnsFile::read_nodes(const CgnsZone& zone, int array, Buffer<double>& colum
     }
 }
 
-Buffer<double> CgnsFile::points(const CgnsZone& zone) {
+Buffer<double> CgnsFile::points(const CgnsZone& zone, const std::string& length_unit) {
     const double count = static_cast<double>(zone.nodes[0]) * static_cast<double>(zone.nodes[1]) * static_cast<double>(zone.nodes[2]);
     check_room(zone, count);
     if (count < 1 || count > 2147483647.0) {
@@ -68,6 +68,7 @@ Buffer<double> CgnsFile::points(const CgnsZone& zone) {
     Buffer<double> points(3 * nodes);
     points.fill(0);
     Buffer<double> column(nodes);
+    std::array<bool, 3> read{};
     for (int c = 1; c <= coordinates; ++c) {
         std::array<char, 33> coordinate{};
         CGNS_ENUMT(DataType_t) type{};
@@ -81,12 +82,19 @@ Buffer<double> CgnsFile::points(const CgnsZone& zone) {
             fail(zone, "coordinates '" + std::string(word) + "' are not read (cylindrical and others)");
         }
         read_nodes(zone, c, column);
-        const double scale = scales_of(zone, "GridCoordinates_t", grid, c).length;
+        read[static_cast<std::size_t>(axis)] = true;
+        const core::Conversion stated = to_si(zone, "GridCoordinates_t", grid, c, coordinate.data(), "m");
+        const core::Conversion convert = length_unit.empty() || units_stated_ ? stated : core::conversion(length_unit, "m");
         for (std::size_t i = 0; i < nodes; ++i) {
             if (!std::isfinite(column[i])) {
                 fail(zone, "a coordinate that is not a number");
             }
-            points[3 * i + static_cast<std::size_t>(axis)] = scale * column[i];
+            points[3 * i + static_cast<std::size_t>(axis)] = convert(column[i]);
+        }
+    }
+    for (int axis = 0; axis < std::min(3, physical_dimension_); ++axis) {
+        if (!read[static_cast<std::size_t>(axis)]) {
+            fail(zone, "it has no Coordinate" + std::string(1, static_cast<char>('X' + axis)));
         }
     }
     return points;
@@ -189,10 +197,13 @@ std::vector<PartValues> CgnsFile::solutions(const CgnsZone& zone, const ReadOpti
         ok(zone,
            cg_field_read(file_, base_, zone.index, choice.solution, choice.variable.c_str(), CGNS_ENUMV(RealDouble), low.data(), high.data(), values.values.data()),
            "field");
-        const CanonicalName canonical = canonical_name(choice.variable);
-        if (const double scale = scales_of(zone, "FlowSolution_t", choice.solution, choice.field).to_si(canonical.unit); scale != 1) {
-            converted_[choice.variable] = core::format_number(scale) + " " + canonical.unit;
-            std::for_each(values.values.begin(), values.values.end(), [&](double& value) { value *= scale; });
+        // What the caller states of a variable replaces what the file says of it.
+        const bool stated = std::any_of(options.units.begin(), options.units.end(), [&](const auto& unit) { return unit.first == choice.variable; });
+        const std::string unit = canonical_name(choice.variable).unit;
+        const core::Conversion convert = stated ? core::Conversion{} : to_si(zone, "FlowSolution_t", choice.solution, choice.field, choice.variable, unit);
+        if (!convert.is_identity()) {
+            converted_[choice.variable] = core::format_number(convert(1)) + " " + unit;
+            std::for_each(values.values.begin(), values.values.end(), [&](double& value) { value = convert(value); });
         }
         result.push_back(std::move(values));
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/text.h"
 #include "postproc/importers/cgns_file.h"
@@ -24,12 +25,15 @@ constexpr std::array powers = {Powers{"Pa", 1, -1},     Powers{"m/s", 0, 1},    
 
 }  // namespace
 
-double CgnsFile::Scales::to_si(std::string_view unit) const {
+core::Conversion CgnsFile::Scales::to_si(std::string_view unit) const {
+    if (unit == "K") {
+        return temperature;
+    }
     const auto found = std::find_if(powers.begin(), powers.end(), [&](const Powers& p) { return p.unit == unit; });
-    return found == powers.end() ? 1 : std::pow(mass, found->mass) * std::pow(length, found->length);
+    return {found == powers.end() ? 1 : std::pow(mass, found->mass) * std::pow(length, found->length), 0};
 }
 
-/// The units stated at a node of the file, else those above it.
+/// The units and the class of data stated at a node of the file, else those above it.
 template <typename... Node>
 CgnsFile::Scales CgnsFile::scales_at(const Scales& above, Node... node) {
     CGNS_ENUMT(MassUnits_t) mass{};
@@ -37,11 +41,17 @@ CgnsFile::Scales CgnsFile::scales_at(const Scales& above, Node... node) {
     CGNS_ENUMT(TimeUnits_t) time{};
     CGNS_ENUMT(TemperatureUnits_t) temperature{};
     CGNS_ENUMT(AngleUnits_t) angle{};
-    if (cg_goto(file_, base_, node..., "end") != CG_OK ||
-        cg_units_read(&mass, &length, &time, &temperature, &angle) != CG_OK) {
-        return above;
-    }
+    auto data = CGNS_ENUMV(DataClassNull);
     Scales result = above;
+    if (cg_goto(file_, base_, node..., "end") != CG_OK) {
+        return result;
+    }
+    if (cg_dataclass_read(&data) == CG_OK && data != CGNS_ENUMV(DataClassNull)) {
+        result.data_class = DataClassName[data];
+    }
+    if (cg_units_read(&mass, &length, &time, &temperature, &angle) != CG_OK) {
+        return result;
+    }
     if (length > CGNS_ENUMV(LengthUnitsUserDefined)) {
         units_stated_ = true;
         const std::string unit = core::lower_case(LengthUnitsName[length]);
@@ -55,23 +65,56 @@ CgnsFile::Scales CgnsFile::scales_at(const Scales& above, Node... node) {
         const std::string unit = core::lower_case(MassUnitsName[mass]);
         result.mass = unit == "gram" ? 1e-3 : unit == "slug" ? 14.59390294 : unit == "poundmass" ? 0.45359237 : 1;
     }
+    if (temperature > CGNS_ENUMV(TemperatureUnitsUserDefined)) {
+        const std::string unit = core::lower_case(TemperatureUnitsName[temperature]);
+        result.temperature = core::conversion(unit == "celsius" ? "degC" : unit == "fahrenheit" ? "degF" : unit == "rankine" ? "degR" : "K", "K");
+    }
     return result;
 }
 
 void CgnsFile::read_units_of_base() { of_base_ = scales_at({}); }
 
-/// The units of an array of a zone: its own, or of what it stands in.
-CgnsFile::Scales CgnsFile::scales_of(const CgnsZone& zone, const char* parent, int index, int array) {
-    const Scales of_zone = scales_at(of_base_, "Zone_t", zone.index);
-    const Scales of_parent = scales_at(of_zone, "Zone_t", zone.index, parent, index);
-    return scales_at(of_parent, "Zone_t", zone.index, parent, index, "DataArray_t", array);
+namespace {
+
+/// What makes numbers with dimensions of those at the library's place, where these are normalised.
+std::optional<core::Conversion> stated_conversion() {
+    CGNS_ENUMT(DataType_t) type{};
+    std::array<double, 2> factors{};
+    std::array<float, 2> small{};
+    if (cg_conversion_info(&type) != CG_OK) {
+        return {};
+    }
+    if (type == CGNS_ENUMV(RealDouble) && cg_conversion_read(factors.data()) == CG_OK) {
+        return core::Conversion{factors[0], factors[1]};
+    }
+    if (type == CGNS_ENUMV(RealSingle) && cg_conversion_read(small.data()) == CG_OK) {
+        return core::Conversion{small[0], small[1]};
+    }
+    return {};
 }
 
-std::string CgnsFile::dimensionless_class() const {
-    auto data = CGNS_ENUMV(DataClassNull);
-    const bool stated = cg_goto(file_, base_, "end") == CG_OK && cg_dataclass_read(&data) == CG_OK && data != CGNS_ENUMV(DataClassNull) &&
-                        data != CGNS_ENUMV(DataClassUserDefined) && data != CGNS_ENUMV(Dimensional);
-    return stated ? DataClassName[data] : "";
+}  // namespace
+
+/// What makes SI of an array of a zone, by the units and the class that it states, or what it stands in. What has no
+/// dimensions stays as it is, and is told.
+core::Conversion CgnsFile::to_si(const CgnsZone& zone, const char* parent, int index, int array, const std::string& variable, const std::string& unit) {
+    const Scales of_zone = scales_at(of_base_, "Zone_t", zone.index);
+    const Scales of_parent = scales_at(of_zone, "Zone_t", zone.index, parent, index);
+    const Scales own = scales_at(of_parent, "Zone_t", zone.index, parent, index, "DataArray_t", array);
+    const core::Conversion dimensional = own.to_si(unit);
+    if (own.data_class.empty() || own.data_class == "Dimensional" || own.data_class == "UserDefined") {
+        return dimensional;
+    }
+    if (own.data_class == "NormalizedByDimensional") {
+        const bool there = cg_goto(file_, base_, "Zone_t", zone.index, parent, index, "DataArray_t", array, "end") == CG_OK;
+        if (const auto stated = there ? stated_conversion() : std::nullopt) {
+            return {dimensional.scale * stated->scale, dimensional(stated->offset)};
+        }
+    }
+    if (own.data_class != "DimensionlessConstant" && !unit.empty() && unit != "1") {
+        without_dimensions_[own.data_class].insert(variable);
+    }
+    return {};
 }
 
 }  // namespace underbody::postproc

@@ -52,9 +52,9 @@ public:
         coordinates(x);
         return zone;
     }
-    /// An unstructured zone with these nodes, without sections.
+    /// An unstructured zone with these nodes (none: room for eight), without sections.
     int add_zone(const std::string& name, const std::array<std::vector<double>, 3>& x, cgsize_t cells) {
-        const cgsize_t size[3] = {static_cast<cgsize_t>(x[0].size()), cells, 0};
+        const cgsize_t size[3] = {static_cast<cgsize_t>(x[0].empty() ? 8 : x[0].size()), cells, 0};
         ok(cg_zone_write(file, base, name.c_str(), size, CGNS_ENUMV(Unstructured), &zone));
         next = 1;
         if (!x[0].empty()) {
