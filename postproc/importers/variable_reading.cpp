@@ -96,13 +96,18 @@ std::string settled_unit(const std::string& own, const std::string& in_file, con
     return settled(stated_unit(options, own), own, in_file, place, problems);
 }
 
-VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place, core::Problems& problems) {
-    const NameWithUnit written = parts_of(original);
+VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place, core::Problems& problems,
+                                   const std::string& in_file) {
+    NameWithUnit written = parts_of(original);
+    written.unit = written.unit.empty() ? in_file : written.unit;
     const CanonicalName canonical = canonical_name(written.name);
     const std::string* stated = stated_unit(options, original);  // a caller may write the name with its unit or without
     std::string unit = settled(stated != nullptr ? stated : stated_unit(options, written.name), written.name, written.unit, place, problems);
     if (unit.empty() && original == foam_shear) {
         unit = unit_beside_pressure(options);
+    }
+    if (!unit.empty() && unit == in_file && !core::is_unit(unit)) {
+        return {written.name, own_name(written.name, unit), unit, unit, {}};  // the file's own affair
     }
     VariableReading reading = unit.empty() ? VariableReading{written.name, canonical.name, canonical.unit, "", {}}
                                            : quantity_in(written.name, canonical, unit, place);

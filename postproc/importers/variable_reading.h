@@ -19,7 +19,9 @@ struct VariableReading {
 /// SI is taken, or the unit behind the name ("Pressure [ Pa ]"), or before both that in `options.units`, which may make another quantity of it: pressure in m^2/s^2 is
 /// kinematic_pressure. OpenFOAM's `wallShearStress` follows the unit stated for `p`, and is turned round: it acts on the
 /// fluid there, on the body here. Throws core::InputError for a unit that is none; `problems` gets what `settled_unit` says.
-VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place, core::Problems& problems);
+/// `in_file`: the unit that the file states elsewhere.
+VariableReading read_variable_name(const std::string& original, const ReadOptions& options, const core::Place& place, core::Problems& problems,
+                                   const std::string& in_file = {});
 
 /// What a variable of this meaning is whose numbers are in `unit`: of another dimension than the meaning has it is kinematic
 /// or goes by its own name. Throws core::InputError for a unit that is none.

@@ -10,10 +10,12 @@
 #include <vtkDataObjectTreeIterator.h>
 #include <vtkDataSet.h>
 #include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkStringArray.h>
 #include <vtkTriangleFilter.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -56,8 +58,24 @@ void convert(vtkDataArray& values, const core::Conversion& conversion) {
     }
 }
 
+/// What `import` writes beside the arrays: "T [s]" for each, by the name.
+using Units = std::map<std::string, std::string>;
+
+Units units_in(vtkFieldData& data) {
+    Units units;
+    auto* lines = vtkStringArray::SafeDownCast(data.GetAbstractArray("units"));
+    for (vtkIdType i = 0; lines != nullptr && i < lines->GetNumberOfValues(); ++i) {
+        const std::string& line = lines->GetValue(i);
+        if (const auto open = line.rfind(" ["); open != std::string::npos && line.back() == ']') {
+            units[line.substr(0, open)] = line.substr(open + 2, line.size() - open - 3);
+        }
+    }
+    return units;
+}
+
 /// Takes the named arrays out of an attribute set, and plans their names.
-std::vector<ReadArray> taken_arrays(Field& field, vtkDataSetAttributes& data, Location on, const ReadOptions& options, std::vector<ArrayPlan>& plans) {
+std::vector<ReadArray> taken_arrays(Field& field, vtkDataSetAttributes& data, Location on, const Units& units, const ReadOptions& options,
+                                    std::vector<ArrayPlan>& plans) {
     std::vector<ReadArray> arrays;
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
         vtkDataArray* array = data.GetArray(i);
@@ -70,7 +88,9 @@ std::vector<ReadArray> taken_arrays(Field& field, vtkDataSetAttributes& data, Lo
             ask_for_unit(field, original);
         }
         const core::Place place{field.files.front(), {}, {}, {}};
-        const VariableReading reading = read_variable_name(asked ? unstated_name(original) : original, options, place, field.problems);
+        const auto unit = units.find(original);
+        const VariableReading reading = read_variable_name(asked ? unstated_name(original) : original, options, place, field.problems,
+                                                           unit != units.end() ? unit->second : std::string());
         const int components = array->GetNumberOfComponents();
         const std::string name = components == 1 ? named_as_scalar({reading.name, reading.unit}).name : reading.name;
         plans.push_back({reading.own, name, components});
@@ -83,10 +103,10 @@ std::vector<ReadArray> taken_arrays(Field& field, vtkDataSetAttributes& data, Lo
 }
 
 /// Turns the arrays of one attribute set into canonical ones.
-void add_arrays(Field& field, Zone& zone, vtkDataSetAttributes& data, Location on, int dimension, const ReadOptions& options) {
+void add_arrays(Field& field, Zone& zone, vtkDataSetAttributes& data, Location on, const Units& units, int dimension, const ReadOptions& options) {
     const core::Place place{field.files.front(), {}, {}, {}};
     std::vector<ArrayPlan> plans;
-    std::vector<ReadArray> arrays = taken_arrays(field, data, on, options, plans);
+    std::vector<ReadArray> arrays = taken_arrays(field, data, on, units, options, plans);
     settle_names(plans, place, field.problems);
     for (std::size_t i = 0; i < arrays.size(); ++i) {
         if (!is_wanted(options, arrays[i].info.original_name, plans[i].name)) {
@@ -285,8 +305,9 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool
     }
     zone.kind = zone.volume != nullptr ? ZoneKind::fluid : ZoneKind::unknown;
     const int dimension = is_plane(zone) ? 2 : 3;
-    add_arrays(field, zone, *data->GetPointData(), Location::nodes, dimension, options);
-    add_arrays(field, zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, dimension, options);
+    const Units units = units_in(*read->GetFieldData());
+    add_arrays(field, zone, *data->GetPointData(), Location::nodes, units, dimension, options);
+    add_arrays(field, zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, units, dimension, options);
     vtkPointSet* own = zone.surface != nullptr ? static_cast<vtkPointSet*>(zone.surface) : static_cast<vtkPointSet*>(zone.volume);
     if (own != data) {
         own->GetPointData()->ShallowCopy(data->GetPointData());

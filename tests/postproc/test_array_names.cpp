@@ -15,6 +15,7 @@
 #include "postproc/importers/element_zone.h"
 #include "postproc/importers/zone_values.h"
 #include "postproc/names.h"
+#include "postproc/vtk_files.h"
 
 namespace underbody::postproc {
 namespace {
@@ -223,6 +224,26 @@ TEST(VtkZones, KeepComponentsApartWhereOneIsMissingAndNamesOnce) {
     EXPECT_THAT(words, HasSubstr("velocity has no z component here"));
     EXPECT_THAT(words, HasSubstr("'Static_Pressure' and 'pressure' both mean pressure"));
     EXPECT_THAT(words, HasSubstr("the file has 'Density' in g/cm^3; kg/m^3 is taken"));
+}
+
+TEST(VtkZones, WhatImportWritesKeepsItsNamesAndUnits) {
+    const core::TemporaryFolder folder;
+    std::ofstream(folder.path() / "a.csv") << "[Name]\nbody\n[Data]\nX [ m ],Y [ m ],Z [ m ],T [ s ],Temperature,Static Pressure [ Pa ],Pressure [ kPa ],h [ W m^-2 C^-1 ],Enthalpy [ furlongish ],Velocity u [ m/s ]\n"
+                                              "0,0,0,1,2,3,4,5,6,7\n1,0,0,1,2,3,4,5,6,7\n0,1,0,1,2,3,4,5,6,7\n0,0,1,1,2,3,4,5,6,7\n[Faces]\n0,2,1\n0,1,3\n";
+    const Field written = read_field(folder.path() / "a.csv");
+    for (const char* name : {"b.vtp", "b.vtu", "b.vtm"}) {
+        write_vtk(written, folder.path() / name);
+        const Field again = read_field(folder.path() / name);
+        ASSERT_NE(again.zones.at(0).surface, nullptr) << name;
+        for (const auto& info : written.zones.at(0).arrays) {
+            const ArrayInfo* found = again.zones.at(0).find(info.name);
+            ASSERT_NE(found, nullptr) << name << " " << info.name;
+            EXPECT_EQ(found->unit, info.unit) << name << " " << info.name;
+            EXPECT_EQ(again.zones[0].surface->GetPointData()->GetArray(info.name.c_str())->GetComponent(1, 0),
+                      written.zones[0].surface->GetPointData()->GetArray(info.name.c_str())->GetComponent(1, 0));
+        }
+        EXPECT_EQ(again.zones[0].find("temperature"), nullptr);
+    }
 }
 
 }  // namespace
