@@ -45,7 +45,8 @@ private:
     void add_unstructured(const CgnsZone& zone, Field& field);
     void add_structured(const CgnsZone& zone, Field& field);
     void add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
-                     ElementPart&& surface, const BoundaryFaces& volume);
+                     ElementPart&& surface, const BoundaryFaces& volume, bool sided);
+    void add_sides(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values, ElementPart&& surface, const BoundaryFaces& volume);
     void add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume, Buffer<double>&& points, std::vector<PartValues>&& values);
     [[nodiscard]] ElementPart volume_of(const CgnsZone& zone, const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const;
     void add_polyhedra(const CgnsZone& zone, ElementPart& volume, const CgnsSection& cells, const std::map<std::int64_t, std::size_t>& polygons,
@@ -198,9 +199,9 @@ ElementPart Reader::volume_of(const CgnsZone& zone, const std::vector<CgnsSectio
 }
 
 /// Where the pressure lies in the cells alone, a surface takes that of those behind its faces; its own nodes know
-/// better.
-std::vector<PartValues> pressure_beside(const ElementPart& surface, const std::vector<PartValues>& values,
-                                        const BoundaryFaces& volume) {
+/// better. Between two cells that is the one on its side, or of a surface that has no sides their mean.
+std::vector<PartValues> pressure_beside(const ElementPart& surface, const Buffer<double>& points, const std::vector<PartValues>& values,
+                                        const BoundaryFaces& volume, bool sided) {
     std::vector<PartValues> own;
     for (const auto& entry : values) {
         const std::string name = canonical_name(entry.variable).name;
@@ -214,10 +215,12 @@ std::vector<PartValues> pressure_beside(const ElementPart& surface, const std::v
         bool any = false;
         for (std::size_t i = 0; i < surface.elements(); ++i) {
             const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
-            const std::int64_t cell = volume.cell_behind(surface.nodes.data() + surface.offsets[i], count);
-            const bool found = cell >= 0 && static_cast<std::size_t>(cell) < entry.values.size();
-            part.values[i] = found ? entry.values[static_cast<std::size_t>(cell)] : std::numeric_limits<double>::quiet_NaN();
-            any = any || found;
+            const auto cells = volume.cells_at(surface.nodes.data() + surface.offsets[i], count, points);
+            const auto value_of = [&](std::int64_t cell) {
+                return cell >= 0 && static_cast<std::size_t>(cell) < entry.values.size() ? entry.values[static_cast<std::size_t>(cell)] : std::numeric_limits<double>::quiet_NaN();
+            };
+            part.values[i] = sided || cells[1] < 0 ? value_of(cells[0]) : (value_of(cells[0]) + value_of(cells[1])) / 2;
+            any = any || cells[0] >= 0;
         }
         if (any) {
             own.push_back(std::move(part));
@@ -226,14 +229,31 @@ std::vector<PartValues> pressure_beside(const ElementPart& surface, const std::v
     return own;
 }
 
+/// What may be a wall between two cells has two sides: two surfaces, as Fluent's wall and its shadow are. The pressure of
+/// one side alone is no load.
+void Reader::add_sides(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values, ElementPart&& surface, const BoundaryFaces& volume) {
+    const bool sided = surface.kind == ZoneKind::wall || surface.kind == ZoneKind::unknown;
+    ElementPart back = sided ? volume.other_side(surface) : ElementPart();
+    if (back.elements() > 0 && matches_any(options_.zones, surface.name)) {
+        const bool on_nodes = std::any_of(values.begin(), values.end(), [](const PartValues& value) { return value.on_nodes && canonical_name(value.variable).name == "pressure"; });
+        field.problems.push_back({core::Problem::Severity::warning,
+                                  "'" + surface.name + "' has cells on both sides of " + std::to_string(back.elements()) + " of its " + std::to_string(surface.elements()) +
+                                      " faces: the other side is '" + back.name + "', and '" + surface.name + "*' are both" +
+                                      (on_nodes ? "; its pressure stands at nodes, so that it is the same on both" : ""),
+                                  {name_, {}, {}, {}}});
+    }
+    add_surface(field, points, values, std::move(surface), volume, sided);
+    add_surface(field, points, values, std::move(back), volume, sided);
+}
+
 /// A surface gets the points it uses, and their values.
 void Reader::add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
-                         ElementPart&& surface, const BoundaryFaces& volume) {
+                         ElementPart&& surface, const BoundaryFaces& volume, bool sided) {
     if (surface.elements() == 0 || !matches_any(options_.zones, surface.name)) {
         return;
     }
-    const bool settled = volume.turn_into_volume(surface, points);
-    std::vector<PartValues> own = pressure_beside(surface, values, volume);
+    const bool settled = volume.turn_into_volume(surface, points, sided);
+    std::vector<PartValues> own = pressure_beside(surface, points, values, volume, sided);
     const bool of_cells = !own.empty();
     std::unordered_map<std::int64_t, std::int64_t> places;
     std::vector<std::int64_t> used(surface.nodes);
@@ -309,7 +329,7 @@ void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
     }
     const BoundaryFaces faces(surfaces.parts, volume);
     for (auto& surface : surfaces.parts) {
-        add_surface(field, points, values, std::move(surface), faces);
+        add_sides(field, points, values, std::move(surface), faces);
     }
     add_volume(zone, field, std::move(volume), std::move(points), std::move(values));
 }
@@ -334,7 +354,7 @@ void Reader::add_structured(const CgnsZone& zone, Field& field) {
     }
     const BoundaryFaces faces(surfaces, volume);
     for (auto& surface : surfaces) {
-        add_surface(field, points, values, std::move(surface), faces);
+        add_sides(field, points, values, std::move(surface), faces);
     }
     add_volume(zone, field, std::move(volume), std::move(points), std::move(values));
 }

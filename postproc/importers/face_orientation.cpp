@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -66,6 +67,13 @@ Vector normal_of(const std::int64_t* nodes, std::size_t count, const Buffer<doub
         }
     }
     return sum;
+}
+
+/// What a line in a plane across z has on its left.
+Vector left_of(const std::int64_t* nodes, const Buffer<double>& points) {
+    const double* a = points.data() + 3 * nodes[0];
+    const double* b = points.data() + 3 * nodes[1];
+    return {a[1] - b[1], b[0] - a[0], 0};
 }
 
 /// The faces of one polyhedron with a sense each, so that all look out of it. The centre of a concave cell may lie on the
@@ -198,7 +206,7 @@ BoundaryFaces::Key BoundaryFaces::key_of(const std::int64_t* nodes, std::size_t 
 void BoundaryFaces::note(const std::int64_t* nodes, std::size_t count, std::size_t cell, std::size_t stream) {
     const auto found = cells_.find(key_of(nodes, count));
     if (found != cells_.end()) {
-        found->second = {static_cast<std::int64_t>(cell), stream, found->second.cell >= 0};
+        (found->second.one.place < 0 ? found->second.one : found->second.other) = {static_cast<std::int64_t>(cell), stream};
     }
 }
 
@@ -237,20 +245,43 @@ BoundaryFaces::Behind BoundaryFaces::behind(const std::int64_t* nodes, std::size
     return found == cells_.end() ? Behind{} : found->second;
 }
 
-std::int64_t BoundaryFaces::cell_behind(const std::int64_t* nodes, std::size_t count) const { return behind(nodes, count).cell; }
+std::array<std::int64_t, 2> BoundaryFaces::cells_at(const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const {
+    const Behind found = behind(nodes, count);
+    if (found.between() && turn_toward(found.one, nodes, count, points) < 0) {
+        return {found.other.place, found.one.place};
+    }
+    return {found.one.place, found.other.place};
+}
 
-int BoundaryFaces::turn_of(const Behind& found, const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const {
-    if (found.cell < 0 || found.between || count < 3) {
+ElementPart BoundaryFaces::other_side(const ElementPart& surface) const {
+    ElementPart side;
+    side.name = surface.name + "-shadow";
+    side.kind = surface.kind;
+    side.original_kind = surface.original_kind;
+    for (std::size_t i = 0; i < surface.elements(); ++i) {
+        const auto first = surface.nodes.begin() + static_cast<std::ptrdiff_t>(surface.offsets[i]);
+        const auto end = surface.nodes.begin() + static_cast<std::ptrdiff_t>(surface.offsets[i + 1]);
+        if (first != end && behind(&*first, static_cast<std::size_t>(end - first)).between()) {
+            const std::vector<std::int64_t> turned(std::make_reverse_iterator(end), std::make_reverse_iterator(first));
+            side.add(surface.types[i], turned.data(), turned.size());
+        }
+    }
+    return side;
+}
+
+/// +1 if the right-hand normal of a face points into a cell at it, -1 if out of it, 0 if nobody knows.
+int BoundaryFaces::turn_toward(const Cell& at, const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const {
+    if (at.place < 0 || count < 2) {
         return 0;
     }
-    const auto cell = static_cast<std::size_t>(found.cell);
+    const auto cell = static_cast<std::size_t>(at.place);
     if (volume_.types[cell] == VTK_POLYHEDRON) {
-        return -OrientedCell(volume_.polyhedra.data() + found.stream, points).sense_of(nodes, count);
+        return -OrientedCell(volume_.polyhedra.data() + at.stream, points).sense_of(nodes, count);
     }
     const Vector inside = mean_of(volume_.nodes.data() + volume_.offsets[cell],
                                   static_cast<std::size_t>(volume_.offsets[cell + 1] - volume_.offsets[cell]), points);
     const Vector here = mean_of(nodes, count, points);
-    const Vector normal = normal_of(nodes, count, points);
+    const Vector normal = count == 2 ? left_of(nodes, points) : normal_of(nodes, count, points);
     double toward = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         toward += normal[k] * (inside[k] - here[k]);
@@ -258,12 +289,14 @@ int BoundaryFaces::turn_of(const Behind& found, const std::int64_t* nodes, std::
     return toward > 0 ? 1 : toward < 0 ? -1 : 0;
 }
 
-bool BoundaryFaces::turn_into_volume(ElementPart& surface, const Buffer<double>& points) const {
-    std::vector<int> turns;  // -1: the face looks out of the volume, 0: nobody knows
+bool BoundaryFaces::turn_into_volume(ElementPart& surface, const Buffer<double>& points, bool two_sided) const {
+    constexpr int either = 2;
+    std::vector<int> turns;  // -1: the face looks out of the volume, 0: nobody knows, either: into it on both sides
     for (std::size_t i = 0; i < surface.elements(); ++i) {
         const std::int64_t* nodes = surface.nodes.data() + surface.offsets[i];
         const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
-        turns.push_back(turn_of(behind(nodes, count), nodes, count, points));
+        const Behind found = behind(nodes, count);
+        turns.push_back(!found.between() ? turn_toward(found.one, nodes, count, points) : two_sided ? either : 0);
     }
     const auto known = [&](int turn) { return static_cast<std::size_t>(std::count(turns.begin(), turns.end(), turn)); };
     const bool all = known(0) == 0;
@@ -272,7 +305,7 @@ bool BoundaryFaces::turn_into_volume(ElementPart& surface, const Buffer<double>&
         return false;
     }
     for (std::size_t i = 0; i < surface.elements(); ++i) {
-        if (turns[i] < 0 || (!all && known(-1) > 0)) {
+        if (turns[i] < 0 || (turns[i] != either && !all && known(-1) > 0)) {
             std::reverse(surface.nodes.begin() + static_cast<std::ptrdiff_t>(surface.offsets[i]),
                          surface.nodes.begin() + static_cast<std::ptrdiff_t>(surface.offsets[i + 1]));
         }

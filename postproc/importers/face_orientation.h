@@ -1,6 +1,7 @@
 // Which way boundary faces look, found from the volume cells behind them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -16,11 +17,16 @@ public:
 
     /// Turns the faces of a surface so that their right-hand normals point into the volume. True if every face has one
     /// cell behind it, or a quarter of them have and those agree on the order of the whole; a face between two cells has no
-    /// side. A surface that is not settled so is left as it was.
-    bool turn_into_volume(ElementPart& surface, const Buffer<double>& points) const;
+    /// side, unless the surface is one of two that lie there (`two_sided`): then it stays as it is. A surface that is not
+    /// settled so is left as it was. Lines bound a plane volume: they have it on their left.
+    bool turn_into_volume(ElementPart& surface, const Buffer<double>& points, bool two_sided = false) const;
 
-    /// The place of the cell behind a face among the volume's elements; -1 when there is none.
-    [[nodiscard]] std::int64_t cell_behind(const std::int64_t* nodes, std::size_t count) const;
+    /// The faces of a surface that lie between two cells, turned round: its other side. Without points.
+    [[nodiscard]] ElementPart other_side(const ElementPart& surface) const;
+
+    /// Places of the cells at a face among the volume's elements, -1 for none: between two cells first the one that its
+    /// right-hand normal points into.
+    [[nodiscard]] std::array<std::int64_t, 2> cells_at(const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const;
 
 private:
     /// Corners of a face, sorted (the four lowest), tell it from others.
@@ -34,12 +40,16 @@ private:
     static Key key_of(const std::int64_t* nodes, std::size_t count);
     void note(const std::int64_t* nodes, std::size_t count, std::size_t cell, std::size_t stream = 0);
 
-    struct Behind {
-        std::int64_t cell = -1;  ///< the last one found; -1: none yet
-        std::size_t stream = 0;  ///< where a polyhedron's faces begin in `polyhedra`
-        bool between = false;    ///< two cells share the face
+    struct Cell {
+        std::int64_t place = -1;  ///< -1: none
+        std::size_t stream = 0;   ///< where a polyhedron's faces begin in `polyhedra`
     };
-    [[nodiscard]] int turn_of(const Behind& found, const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const;
+    struct Behind {
+        Cell one;
+        Cell other;  ///< that shares the face
+        [[nodiscard]] bool between() const { return other.place >= 0; }
+    };
+    [[nodiscard]] int turn_toward(const Cell& cell, const std::int64_t* nodes, std::size_t count, const Buffer<double>& points) const;
     [[nodiscard]] Behind behind(const std::int64_t* nodes, std::size_t count) const;
 
     const ElementPart& volume_;

@@ -1,9 +1,11 @@
 // Boundary conditions of CGNS files in all the ways in which they name their faces.
 #include <gmock/gmock.h>
+#include <vtkCellData.h>
 
 #include "cgns_files.h"
 #include "core/file.h"
 #include "import_support.h"
+#include "postproc/loads.h"
 
 namespace underbody {
 
@@ -233,6 +235,94 @@ TEST(CgnsBoundaries, AHundredThousandFacesInOneConditionAreReadAtOnce) {
     postproc::ReadOptions surfaces;
     surfaces.surfaces_only = true;
     EXPECT_NEAR(area(read_field(folder.path() / "a.cgns", surfaces), "wall"), n * n, 1e-6);  // was refused after a minute
+}
+
+namespace {
+
+/// Two cubes one on the other, 10 Pa in the lower and 20 in the upper, and the face between them; hexahedra or polyhedra.
+void write_two_cubes(const fs::path& path, CGNS_ENUMT(BCType_t) type, bool polyhedra, bool upward) {
+    CgnsWriter file(path);
+    std::array<std::vector<double>, 3> x;
+    for (int k = 0; k < 3; ++k) {
+        for (int j = 0; j < 2; ++j) {
+            for (int i = 0; i < 2; ++i) {
+                x[0].push_back(i);
+                x[1].push_back(j);
+                x[2].push_back(k);
+            }
+        }
+    }
+    file.add_zone("water", x, 2);
+    const std::vector<cgsize_t> plate = upward ? std::vector<cgsize_t>{5, 6, 8, 7} : std::vector<cgsize_t>{7, 8, 6, 5};
+    if (!polyhedra) {
+        file.section("cells", CGNS_ENUMV(HEXA_8), {1, 2, 4, 3, 5, 6, 8, 7, 5, 6, 8, 7, 9, 10, 12, 11}, 8);
+        file.section("faces", CGNS_ENUMV(QUAD_4), plate, 4);
+        file.condition("plate", type, CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {3});
+    } else {
+        std::vector<cgsize_t> faces = plate;
+        for (const cgsize_t up : {0, 4}) {
+            for (const cgsize_t node : {1, 2, 6, 5, 2, 4, 8, 6, 4, 3, 7, 8, 3, 1, 5, 7}) {
+                faces.push_back(node + up);
+            }
+        }
+        faces.insert(faces.end(), {1, 3, 4, 2, 9, 10, 12, 11});
+        std::vector<cgsize_t> starts;
+        for (cgsize_t f = 0; f <= 11; ++f) {
+            starts.push_back(4 * f);
+        }
+        const cgsize_t out = upward ? 1 : -1;
+        const std::vector<cgsize_t> cells = {out, 2, 3, 4, 5, 10, -out, 6, 7, 8, 9, 11};
+        const std::vector<cgsize_t> cell_starts = {0, 6, 12};
+        int index = 0;
+        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "faces", CGNS_ENUMV(NGON_n), 1, 11, 0, faces.data(), starts.data(), &index));
+        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "cells", CGNS_ENUMV(NFACE_n), 12, 13, 0, cells.data(), cell_starts.data(), &index));
+        file.condition("plate", type, CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {1});
+    }
+    file.solution("Cells", CGNS_ENUMV(CellCenter), "Pressure", {10, 20});
+}
+
+}  // namespace
+
+TEST(CgnsBoundaries, AWallBetweenTwoCellsHasTwoSides) {
+    const core::TemporaryFolder folder;
+    for (const bool polyhedra : {false, true}) {
+        for (const bool upward : {false, true}) {
+            write_two_cubes(folder.path() / "a.cgns", CGNS_ENUMV(BCWall), polyhedra, upward);
+            const auto field = read_field(folder.path() / "a.cgns");
+            ASSERT_NE(field.find("plate-shadow"), nullptr);
+            EXPECT_TRUE(field.find("plate")->normals_into_fluid);
+            EXPECT_TRUE(field.find("plate-shadow")->normals_into_fluid);
+            EXPECT_EQ(field.find("plate-shadow")->kind, ZoneKind::wall);
+            EXPECT_NEAR(postproc::loads(field).total.force[2], 10 - 20, 1e-12);
+            EXPECT_THAT(told(field), HasSubstr("the other side is 'plate-shadow'"));
+        }
+    }
+    write_two_cubes(folder.path() / "a.cgns", CGNS_ENUMV(BCInflow), false, true);
+    const auto fan = read_field(folder.path() / "a.cgns");
+    EXPECT_EQ(fan.find("plate-shadow"), nullptr);
+    EXPECT_EQ(fan.find("plate")->surface->GetCellData()->GetArray("pressure")->GetTuple1(0), 15);
+}
+
+TEST(CgnsBoundaries, PlaneWallsHaveTheFluidOnTheirLeft) {
+    const core::TemporaryFolder folder;
+    {
+        CgnsWriter file(folder.path() / "a.cgns", 2, 2);
+        file.add_zone("water", {{{0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 2, 2}, {}}}, 2);
+        file.section("cells", CGNS_ENUMV(QUAD_4), {1, 2, 4, 3, 3, 4, 6, 5}, 4);
+        file.section("lines", CGNS_ENUMV(BAR_2), {2, 1, 3, 4}, 2);
+        file.condition("floor", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(EdgeCenter), {3});
+        file.condition("plate", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(EdgeCenter), {4});
+        file.solution("Cells", CGNS_ENUMV(CellCenter), "Pressure", {10, 20});
+    }
+    const auto field = read_field(folder.path() / "a.cgns");
+    const auto force_on = [&](const std::string& zones) {
+        postproc::LoadsOptions options;
+        options.zones = {zones};
+        return postproc::loads(field, options).total.force[1];
+    };
+    EXPECT_TRUE(field.find("floor")->normals_into_fluid);
+    EXPECT_NEAR(force_on("floor"), -10, 1e-12);
+    EXPECT_NEAR(force_on("plate*"), 10 - 20, 1e-12);
 }
 
 }  // namespace underbody
