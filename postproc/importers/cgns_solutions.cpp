@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "postproc/importers/cgns_file.h"
 #include "postproc/importers/understood.h"
+#include "postproc/importers/variable_reading.h"
 
 namespace underbody::postproc {
 
@@ -198,7 +199,7 @@ std::vector<PartValues> CgnsFile::solutions(const CgnsZone& zone, const ReadOpti
            cg_field_read(file_, base_, zone.index, choice.solution, choice.variable.c_str(), CGNS_ENUMV(RealDouble), low.data(), high.data(), values.values.data()),
            "field");
         // What the caller states of a variable replaces what the file says of it.
-        const bool stated = std::any_of(options.units.begin(), options.units.end(), [&](const auto& unit) { return unit.first == choice.variable; });
+        const bool stated = is_unit_stated(options, choice.variable);
         const std::string unit = canonical_name(choice.variable).unit;
         const core::Conversion convert = stated ? core::Conversion{} : to_si(zone, "FlowSolution_t", choice.solution, choice.field, choice.variable, unit);
         if (!convert.is_identity()) {

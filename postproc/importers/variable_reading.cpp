@@ -73,6 +73,8 @@ NameWithUnit parts_of(const std::string& original) {
 
 }  // namespace
 
+bool is_unit_stated(const ReadOptions& options, const std::string& variable) { return stated_unit(options, variable) != nullptr; }
+
 std::string own_name(const std::string& own, const std::string& unit) {
     const CanonicalName canonical = canonical_name(own);
     const bool misleads = !canonical.unit.empty() && canonical.name == own;

@@ -31,6 +31,9 @@ VariableReading quantity_in(const std::string& own, const CanonicalName& meaning
 /// may be "". Where the two differ the caller's is taken, in all formats, and a warning says so.
 std::string settled_unit(const std::string& own, const std::string& in_file, const ReadOptions& options, const core::Place& place, core::Problems& problems);
 
+/// Does the caller state a unit for a variable of this name? Small and large letters are alike where nothing has the very name.
+bool is_unit_stated(const ReadOptions& options, const std::string& variable);
+
 /// The name of a variable that is not what its name says, in `unit` ("": nobody says): nobody may take it for that.
 std::string own_name(const std::string& own, const std::string& unit);
 

@@ -123,6 +123,8 @@ TEST(CgnsUnits, WhatTheUserStatesReplacesWhatTheFileStates) {
     EXPECT_NEAR(value_of(cube_of("VelocityX", options, in_millimetres), "velocity_x"), 0.02, 1e-15);
     options.units = {{"VelocityX", "mm/s"}};
     EXPECT_NEAR(value_of(cube_of("VelocityX", options, in_millimetres), "velocity_x"), 0.02, 1e-15);
+    options.units = {{"velocityx", "mm/s"}};
+    EXPECT_NEAR(value_of(cube_of("VelocityX", options, in_millimetres), "velocity_x"), 0.02, 1e-15);
     options.units = {{"VelocityX", "km/h"}};
     EXPECT_NEAR(value_of(cube_of("VelocityX", options, in_millimetres), "velocity_x"), 20 / 3.6, 1e-12);
 }
