@@ -78,12 +78,12 @@ bool match_from(const std::vector<Part>& parts, std::size_t index, std::string_v
     if (part.kind == Part::Kind::one) {
         return !rest.empty() && rest.front() != '/' && match_from(parts, index + 1, rest.substr(1), found);
     }
+    // Text is as short as the rest allows; a number as long: "h10.5-coarse" is 10.5 for "h{gap:mm}*", not 1.
     const std::size_t shortest = part.kind == Part::Kind::any ? 0 : 1;
-    for (std::size_t length = shortest; length <= rest.size(); ++length) {
+    const std::size_t longest = std::min(rest.find('/'), rest.size());
+    for (std::size_t tried = shortest; tried <= longest; ++tried) {
+        const std::size_t length = part.kind == Part::Kind::number ? longest - tried + 1 : tried;
         const std::string_view piece = rest.substr(0, length);
-        if (piece.find('/') != std::string_view::npos) {
-            return false;
-        }
         std::optional<double> number;
         if (part.kind == Part::Kind::number) {
             number = parse_number(piece);

@@ -12,7 +12,7 @@
 namespace underbody::core {
 
 /// `{name}` stands for text, `{name:unit}` for a number in that unit; `*` and `?` as in a shell.
-/// A `{name}` matches the shortest text that lets the rest fit; a number matches digits, sign, point and exponent.
+/// A `{name}` matches the shortest text that lets the rest fit; a number the most digits, sign, point and exponent.
 class NamePattern {
 public:
     /// Throws UsageError for an unclosed brace, an empty name, an unknown unit, a unit of another dimension than

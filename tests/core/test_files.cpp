@@ -108,6 +108,19 @@ TEST(NamePattern, TakesConditionsFromNames) {
     EXPECT_THROW(NamePattern("{a}-{a}.csv"), UsageError);
 }
 
+TEST(NamePattern, ANumberHasAllItsDigits) {
+    const auto number = [](const char* pattern, const char* name) {
+        const auto match = NamePattern(pattern).match(name);
+        return match ? match->numbers.at(0).second : -1;
+    };
+    EXPECT_DOUBLE_EQ(number("h{gap:mm}*.csv", "h10.5-coarse.csv"), 0.0105);
+    EXPECT_DOUBLE_EQ(number("h{gap:mm}{mesh}.csv", "h12-fine.csv"), 0.012);
+    EXPECT_DOUBLE_EQ(number("case-{gap:mm}*/*.csv", "case-5.5mm/a.csv"), 0.0055);
+    EXPECT_NEAR(number("a-p{pitch:deg}*", "a-p-1.5.csv"), -1.5 * 0.017453292519943295, 1e-12);
+    EXPECT_DOUBLE_EQ(number("h{gap:mm}-{mesh}", "h1e1-2"), 0.010);
+    EXPECT_DOUBLE_EQ(number("h{gap:mm}5.csv", "h15.csv"), 0.001);  // the rest must fit
+}
+
 TEST(NamePattern, FindsFilesInFolders) {
     const TemporaryFolder folder;
     for (const char* name : {"x/a-h1.csv", "x/a-h2.csv", "y/b-h1.csv", "x/deep/a-h3.csv", "x/a-hx.csv"}) {
