@@ -409,7 +409,7 @@ void Reader::Corners::add(FaceBlock& block, const std::uint32_t* sizes, std::siz
 }
 
 /// Finds each zone's share of a part of the faces; the nodes of faces that nobody wants are not read. A zone may lie in
-/// several parts.
+/// several parts. One wrong size would move all faces behind it: all of them are added up.
 void Reader::cut_faces(const Part& part, std::vector<Corners>& corners) {
     const auto shape = file_.shape(part.path + "/nnodes");
     const auto nodes = file_.backed_shape(part.path + "/nodes");
@@ -424,8 +424,9 @@ void Reader::cut_faces(const Part& part, std::vector<Corners>& corners) {
             while (b < corners.size() && mesh_.face_blocks[b].first + mesh_.face_blocks[b].count <= id) {
                 ++b;
             }
-            if (b == corners.size()) {
-                return false;
+            if (b == corners.size()) {  // nobody wants these, but their corners must be those that are left
+                at += std::accumulate(sizes + i, sizes + count, std::uint64_t{0});
+                return true;
             }
             FaceBlock& block = mesh_.face_blocks[b];
             const bool wanted = block.first <= id;
@@ -452,6 +453,9 @@ void Reader::cut_faces(const Part& part, std::vector<Corners>& corners) {
         return true;
     };
     each_row(file_, part.path + "/nnodes", progress_, take);
+    if (at != nodes[0]) {
+        refuse(part.path, "its faces have " + number(at) + " corners together, and " + number(nodes[0]) + " nodes are there");
+    }
 }
 
 void Reader::read_beside(const std::string& side) {

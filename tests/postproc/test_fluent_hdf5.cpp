@@ -509,6 +509,7 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
                 }),
                 HasSubstr("its numbers of 32 bytes are of no kind that is read"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 400}); }), HasSubstr("more nodes"));
+    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4}); }), HasSubstr("43 corners together, and 44 nodes"));
     EXPECT_THAT(damaged([&](hid_t f) {
                     values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 2000000});
                     set(f, "/meshes/1", "cellCount", 2000000);
