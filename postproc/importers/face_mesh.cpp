@@ -177,6 +177,27 @@ const ZoneLabel* FaceMesh::label(int zone) const {
     return nullptr;
 }
 
+bool FaceMesh::is_solid(std::uint32_t cell) const {
+    for (const auto& block : cell_blocks) {
+        if (cell >= block.first && cell < block.first + block.count) {
+            const ZoneLabel* own = label(block.zone);
+            return own != nullptr && own->type == "solid";
+        }
+    }
+    return false;
+}
+
+bool FaceMesh::bounds_solids(int zone) const {
+    bool any = std::any_of(labels.begin(), labels.end(), [](const ZoneLabel& label) { return label.type == "solid"; });
+    for (const auto& block : face_blocks) {
+        for (std::size_t i = 0; any && block.zone == zone && i < block.c0.size(); ++i) {
+            const std::uint32_t c1 = block.c1.empty() ? 0 : block.c1[i];
+            any = (block.c0[i] != 0 || c1 != 0) && (block.c0[i] == 0 || is_solid(block.c0[i])) && (c1 == 0 || is_solid(c1));
+        }
+    }
+    return any;
+}
+
 std::string type_of_code(int code) {
     for (const auto& [number, type] : codes) {
         if (number == code) {

@@ -94,6 +94,10 @@ struct FaceMesh {
     CellFaces cell_faces;  ///< made by `gather_cell_faces`
 
     [[nodiscard]] const ZoneLabel* label(int zone) const;
+    /// Is the cell of that number in a solid zone?
+    [[nodiscard]] bool is_solid(std::uint32_t cell) const;
+    /// Are all cells beside the faces of a zone solid? The shadow of a wall between fluid and metal lies in the metal.
+    [[nodiscard]] bool bounds_solids(int zone) const;
 };
 
 /// Fluent's boundary code or zone type, in words and as a kind.

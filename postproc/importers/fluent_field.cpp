@@ -39,7 +39,6 @@ private:
 
     [[nodiscard]] Zone named_zone(int id, int code, bool cells) const;
     [[nodiscard]] Buffer<double> picked_points(Buffer<std::int32_t>& nodes, Buffer<std::int64_t>& stream, bool last);
-    [[nodiscard]] bool is_solid(std::uint32_t cell) const;
     [[nodiscard]] bool turned(const FaceBlock& block, std::size_t face, bool wall) const;
     [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall) const;
     [[nodiscard]] double face_area(const Element& element) const;
@@ -128,16 +127,6 @@ Buffer<double> Assembly::picked_points(Buffer<std::int32_t>& nodes, Buffer<std::
     return points;
 }
 
-bool Assembly::is_solid(std::uint32_t cell) const {
-    for (const auto& block : mesh_.cell_blocks) {
-        if (cell >= block.first && cell < block.first + block.count) {
-            const ZoneLabel* label = mesh_.label(block.zone);
-            return label != nullptr && label->type == "solid";
-        }
-    }
-    return false;
-}
-
 /// The stored normal points into c0. Must it be turned to point into the fluid?
 bool Assembly::turned(const FaceBlock& block, std::size_t face, bool wall) const {
     const std::uint32_t c0 = block.c0[face];
@@ -145,7 +134,7 @@ bool Assembly::turned(const FaceBlock& block, std::size_t face, bool wall) const
     if (c0 == 0 || c1 == 0) {
         return c0 == 0 && c1 != 0;
     }
-    return wall && is_solid(c0) && !is_solid(c1);
+    return wall && mesh_.is_solid(c0) && !mesh_.is_solid(c1);
 }
 
 std::vector<Assembly::Element> Assembly::elements_of(const std::vector<std::size_t>& blocks, bool wall) const {
@@ -263,6 +252,10 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
         field.problems.push_back(
             {core::Problem::Severity::note, "zone " + zone.name + " has no faces", {mesh_.file, {}, {}, {}}});
         return;
+    }
+    if (zone.kind == ZoneKind::wall && mesh_.bounds_solids(id)) {
+        zone.kind = ZoneKind::solid;
+        field.problems.push_back({core::Problem::Severity::note, "wall '" + zone.name + "' bounds solids alone: no fluid acts on it", {mesh_.file, {}, {}, {}}});
     }
     std::size_t corners = 0;
     for (const auto& element : elements) {

@@ -43,6 +43,7 @@ Announced announced(std::string_view comment) {
 struct ZoneRanges {
     bool cells = false;
     bool inner = false;
+    bool hidden = false;  ///< no fluid acts on it
     std::vector<IdRange> ranges;
 
     [[nodiscard]] bool holds(std::uint64_t first, std::uint64_t last) const {
@@ -50,6 +51,20 @@ struct ZoneRanges {
                            [&](const IdRange& r) { return first >= r.first && last <= r.last; });
     }
 };
+
+/// A zone may come in several sections; its values come in one.
+void join_ranges(std::vector<IdRange>& ranges) {
+    std::sort(ranges.begin(), ranges.end(), [](const IdRange& a, const IdRange& b) { return a.first < b.first; });
+    std::vector<IdRange> joined;
+    for (const IdRange& range : ranges) {
+        if (!joined.empty() && range.first == joined.back().last + 1) {
+            joined.back().last = range.last;
+        } else {
+            joined.push_back(range);
+        }
+    }
+    ranges = std::move(joined);
+}
 
 class DataReader {
 public:
@@ -70,7 +85,12 @@ public:
         for (const auto& block : mesh.face_blocks) {
             auto& zone = zones_[block.zone];
             zone.inner = is_inner_code(block.kind);
+            zone.hidden = is_hidden_code(block.kind);
             zone.ranges.push_back({block.first, block.first + block.count - 1});
+        }
+        for (auto& [id, zone] : zones_) {
+            join_ranges(zone.ranges);
+            zone.hidden = zone.hidden || (!zone.cells && mesh.bounds_solids(id));
         }
     }
 
@@ -148,7 +168,7 @@ void DataReader::mind_missing_pressure() {
         });
         const ZoneLabel* label = mesh_.label(id);
         const bool solid = label != nullptr && (label->type == "solid" || label->type == "interface");
-        if (!found && !solid && !zone.inner && !(zone.cells && options_.surfaces_only) && !zone.ranges.empty()) {
+        if (!found && !solid && !zone.hidden && !zone.inner && !(zone.cells && options_.surfaces_only) && !zone.ranges.empty()) {
             without += (without.empty() ? "" : ", ") + (label != nullptr ? label->name : std::to_string(id));
         }
     }

@@ -267,6 +267,27 @@ TEST(FluentLegacy, ACommentSpeaksOfTheSectionBehindItAlone) {
     EXPECT_TRUE(std::any_of(twice.problems.begin(), twice.problems.end(), [](const auto& p) { return p.message == "SV_T on zone 10 stands twice in the data: the first counts"; }));
 }
 
+TEST(FluentLegacy, AZoneInSeveralSectionsTakesItsValuesFromOne) {
+    const core::TemporaryFolder folder;
+    const std::string text = replaced(core::read_file(data("ascii.cas")), "(13 (a 5 7 3 0)\n(\n4 1 2 3 4 1 0\n", "(13 (a 5 5 3 0)\n(\n4 1 2 3 4 1 0\n))\n(13 (a 6 7 3 0)\n(\n");
+    ReadOptions options;
+    options.companion = data("ascii.dat");
+    const auto whole = read_field(data("ascii.cas"), options);
+    const auto cut = read_field(alone(folder, text, "cut.cas"), options);
+    EXPECT_EQ(cut.find("floor")->surface->GetNumberOfCells(), 3);
+    EXPECT_EQ(test::pressure_force(*cut.find("floor")->surface), test::pressure_force(*whole.find("floor")->surface));
+    EXPECT_EQ(test::viscous_force(*cut.find("floor")->surface), test::viscous_force(*whole.find("floor")->surface));
+}
+
+TEST(FluentLegacy, AWallBesideSolidsAloneIsNoWallOfTheFluid) {
+    const core::TemporaryFolder folder;
+    const std::string text = replaced(core::read_file(data("ascii.cas")), "(39 (2 fluid water 1)", "(39 (2 solid hull-metal 1)");
+    const auto field = read_field(alone(folder, text, "metal.cas"));
+    EXPECT_EQ(field.find("body")->kind, postproc::ZoneKind::solid);
+    EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), [](const auto& p) { return p.message == "wall 'body' bounds solids alone: no fluid acts on it"; }));
+    EXPECT_EQ(read_field(data("ascii.cas")).find("body")->kind, postproc::ZoneKind::wall);
+}
+
 TEST(FluentLegacy, TheRunKnowsItsOwnTime) {
     const core::TemporaryFolder folder;
     std::string text = core::read_file(data("ascii.cas"));
