@@ -300,10 +300,6 @@ void Reader::add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume
     volume.name = zone.name;
     volume.kind = shell_ ? ZoneKind::unknown : ZoneKind::fluid;
     volume.points = std::move(points);
-    const std::int64_t turned = zone.structured ? 0 : turn_inverted_cells(volume);
-    if (turned > 0) {
-        field.metadata.emplace_back("cells turned to VTK's order in " + zone.name, std::to_string(turned));
-    }
     field.zones.push_back(
         zone_from(std::move(volume), std::move(values), shell_ ? 3 : file_.cell_dimension(), options_, name_, field.problems));
 }

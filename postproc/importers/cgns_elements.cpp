@@ -46,6 +46,86 @@ int CgnsSection::Element::dimension() const {
                                                                              : 3;
 }
 
+namespace {
+
+/// The numbers of a section as they stand in the file; with lists of different lengths, where each begins.
+struct RawElements {
+    CGNS_ENUMT(ElementType_t) type{};
+    std::vector<cgsize_t> numbers;
+    std::vector<cgsize_t> offsets;
+};
+
+class Decoder {
+public:
+    Decoder(const CgnsFile& file, const CgnsZone& zone, const RawElements& raw, CgnsSection& section) : file_(file), zone_(zone), raw_(raw), section_(section) {}
+
+    void decode() {
+        const auto count = static_cast<std::size_t>(section_.last - section_.first + 1);
+        section_.elements.reserve(count);
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            at = raw_.offsets.empty() ? at : list_of(i);
+            if (section_.polygons || section_.polyhedra) {
+                add(section_.polygons ? VTK_POLYGON : VTK_POLYHEDRON, at, static_cast<std::size_t>(raw_.offsets[i + 1]) - at);
+            } else {
+                at = add_of_kind(i, at);
+            }
+        }
+        if (!section_.polyhedra) {
+            count_nodes_from_zero();
+        }
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& what) const { file_.fail(zone_, "section '" + section_.name + "'" + what); }
+
+    [[nodiscard]] std::size_t list_of(std::size_t element) const {
+        const auto& offsets = raw_.offsets;
+        if (offsets[element] < 0 || offsets[element + 1] < offsets[element] || static_cast<std::size_t>(offsets[element + 1]) > raw_.numbers.size()) {
+            fail(": element " + std::to_string(element + 1) + " lies outside its list");
+        }
+        return static_cast<std::size_t>(offsets[element]);
+    }
+
+    void add(unsigned char type, std::size_t at, std::size_t count) {
+        section_.elements.push_back({type, section_.nodes.size(), count});
+        const auto first = raw_.numbers.begin() + static_cast<std::ptrdiff_t>(at);
+        section_.nodes.insert(section_.nodes.end(), first, first + static_cast<std::ptrdiff_t>(count));
+    }
+
+    /// An element at `at`, with its kind in front where they are mixed; says where the next one is.
+    std::size_t add_of_kind(std::size_t element, std::size_t at) {
+        auto type = raw_.type;
+        if (type == CGNS_ENUMV(MIXED)) {
+            type = static_cast<CGNS_ENUMT(ElementType_t)>(at < raw_.numbers.size() ? raw_.numbers[at] : 0);
+            ++at;
+        }
+        const Kind* kind = find_kind(type);
+        int stored = 0;
+        if (kind == nullptr || cg_npe(type, &stored) != CG_OK || at + static_cast<std::size_t>(stored) > raw_.numbers.size()) {
+            fail(": element " + std::to_string(element + 1) + " is of a kind that is not read");
+        }
+        add(kind->type, at, static_cast<std::size_t>(kind->corners));
+        return at + static_cast<std::size_t>(stored);
+    }
+
+    void count_nodes_from_zero() {
+        for (auto& node : section_.nodes) {
+            if (node < 1 || node > zone_.nodes[0]) {
+                fail(" names node " + std::to_string(node) + " of " + std::to_string(zone_.nodes[0]));
+            }
+            --node;
+        }
+    }
+
+    const CgnsFile& file_;
+    const CgnsZone& zone_;
+    const RawElements& raw_;
+    CgnsSection& section_;
+};
+
+}  // namespace
+
 CgnsSection CgnsFile::section(const CgnsZone& zone, int index) const {
     CgnsSection result;
     std::array<char, 33> section_name{};
@@ -67,60 +147,16 @@ CgnsSection CgnsFile::section(const CgnsZone& zone, int index) const {
         fail(zone, "section '" + result.name + "' has elements " + std::to_string(first) + " to " + std::to_string(last) +
              " in " + std::to_string(data) + " numbers");
     }
-    std::vector<cgsize_t> raw(static_cast<std::size_t>(data));
-    const bool mixed = type == CGNS_ENUMV(MIXED);
+    RawElements raw{type, std::vector<cgsize_t>(static_cast<std::size_t>(data)), {}};
     result.polygons = type == CGNS_ENUMV(NGON_n);
     result.polyhedra = type == CGNS_ENUMV(NFACE_n);
-    std::vector<cgsize_t> offsets;
-    if (mixed || result.polygons || result.polyhedra) {
-        offsets.resize(static_cast<std::size_t>(count) + 1);
-        ok(zone, cg_poly_elements_read(file_, base_, zone.index, index, raw.data(), offsets.data(), nullptr), "elements");
+    if (type == CGNS_ENUMV(MIXED) || result.polygons || result.polyhedra) {
+        raw.offsets.resize(static_cast<std::size_t>(count) + 1);
+        ok(zone, cg_poly_elements_read(file_, base_, zone.index, index, raw.numbers.data(), raw.offsets.data(), nullptr), "elements");
     } else {
-        ok(zone, cg_elements_read(file_, base_, zone.index, index, raw.data(), nullptr), "elements");
+        ok(zone, cg_elements_read(file_, base_, zone.index, index, raw.numbers.data(), nullptr), "elements");
     }
-    result.elements.reserve(static_cast<std::size_t>(count));
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        auto kind_number = type;
-        std::size_t size = 0;
-        if (!offsets.empty()) {
-            if (offsets[i] < 0 || offsets[i + 1] < offsets[i] || offsets[i + 1] > data) {
-                fail(zone, "section '" + result.name + "': element " + std::to_string(i + 1) + " lies outside its list");
-            }
-            at = static_cast<std::size_t>(offsets[i]);
-            size = static_cast<std::size_t>(offsets[i + 1] - offsets[i]);
-        }
-        if (result.polygons || result.polyhedra) {
-            result.elements.push_back({static_cast<unsigned char>(result.polygons ? VTK_POLYGON : VTK_POLYHEDRON),
-                                       result.nodes.size(), size});
-            result.nodes.insert(result.nodes.end(), raw.begin() + static_cast<std::ptrdiff_t>(at),
-                                raw.begin() + static_cast<std::ptrdiff_t>(at + size));
-            continue;
-        }
-        if (mixed) {
-            kind_number = static_cast<CGNS_ENUMT(ElementType_t)>(at < raw.size() ? raw[at] : 0);
-            ++at;
-        }
-        const Kind* kind = find_kind(kind_number);
-        int stored = 0;
-        if (kind == nullptr || cg_npe(kind_number, &stored) != CG_OK ||
-            at + static_cast<std::size_t>(stored) > raw.size()) {
-            fail(zone, "section '" + result.name + "': element " + std::to_string(i + 1) + " is of a kind that is not read");
-        }
-        result.elements.push_back({kind->type, result.nodes.size(), static_cast<std::size_t>(kind->corners)});
-        result.nodes.insert(result.nodes.end(), raw.begin() + static_cast<std::ptrdiff_t>(at),
-                            raw.begin() + static_cast<std::ptrdiff_t>(at) + kind->corners);
-        at += static_cast<std::size_t>(stored);
-    }
-    if (!result.polyhedra) {
-        for (auto& node : result.nodes) {
-            if (node < 1 || node > zone.nodes[0]) {
-                fail(zone, "section '" + result.name + "' names node " + std::to_string(node) + " of " +
-                     std::to_string(zone.nodes[0]));
-            }
-            --node;
-        }
-    }
+    Decoder(*this, zone, raw, result).decode();
     return result;
 }
 

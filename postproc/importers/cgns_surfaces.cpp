@@ -37,7 +37,8 @@ public:
 
 private:
     [[nodiscard]] bool is_face(std::size_t section, std::size_t element) const {
-        return !sections_[section].polyhedra && sections_[section].elements[element].dimension() == dimension_ - 1;
+        const auto& one = sections_[section].elements[element];
+        return !sections_[section].polyhedra && one.dimension() == dimension_ - 1 && one.count >= static_cast<std::size_t>(dimension_);
     }
     /// A polygon that two cells share is no boundary unless a condition names it.
     [[nodiscard]] bool between_cells(std::size_t section, std::size_t element) const {
@@ -117,7 +118,7 @@ private:
             for (std::size_t e = 0; e < sections_[s].elements.size(); ++e) {
                 const auto& element = sections_[s].elements[e];
                 const auto first = sections_[s].nodes.begin() + static_cast<std::ptrdiff_t>(element.first);
-                if (!used_[s][e] && element.count > 0 && is_face(s, e) && !between_cells(s, e) &&
+                if (!used_[s][e] && is_face(s, e) && !between_cells(s, e) &&
                     std::all_of(first, first + static_cast<std::ptrdiff_t>(element.count), named)) {
                     add(part, s, e);
                 }
