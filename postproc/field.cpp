@@ -3,6 +3,7 @@
 #include <vtkCellData.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 
@@ -157,6 +158,10 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
     progress.report(0, "reading " + path.filename().string());
     Field field = telling([&] { return importer->read(path, options, progress); }, [&] { return "the format, " + importer->format + ", nothing else yet"; });
     make_names_utf8(field);
+    const auto is_time = [](const auto& entry) { return entry.first == "time"; };
+    if (options.time && std::none_of(field.metadata.begin(), field.metadata.end(), is_time)) {
+        field.problems.push_back({core::Problem::Severity::warning, "the file states no times: the time asked for chose nothing", place});
+    }
     progress.report(1, "read " + path.filename().string());
     return field;
 }

@@ -123,7 +123,7 @@ public:
         keep_what_spreading_lost(*volume_, "pressure");
         for (const Zone* zone : base_) {
             Box one{};
-            zone->surface->GetBounds(one.data());
+            zone->surface->GetCellsBounds(one.data());
             widen(box_, one);
         }
         centre_ = {0.5 * (box_[0] + box_[1]), 0.5 * (box_[2] + box_[3]), 0.5 * (box_[4] + box_[5])};

@@ -66,4 +66,12 @@ void multiply_by_density(Field& field, double density) {
     }
 }
 
+bool bring_to_pascal(Field& field, std::optional<double> density) {
+    density = density ? density : field.density;
+    if (density) {
+        multiply_by_density(field, *density);
+    }
+    return !is_kinematic(field);
+}
+
 }  // namespace underbody::postproc

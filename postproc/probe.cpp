@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 
+#include "core/text.h"
 #include "postproc/node_values.h"
 #include "postproc/view_parts.h"
 
@@ -37,25 +38,28 @@ std::vector<std::string> known_arrays(const Field& field, bool volumes) {
     return names;
 }
 
+/// Empty when the file does not say it.
 std::string unit_of(const Field& field, const std::string& array) {
     for (const auto& zone : field.zones) {
         if (const auto* info = zone.find(array)) {
-            return info->unit.empty() ? "1" : info->unit;
+            return info->unit;
         }
     }
-    return "1";
+    return {};
 }
+
+core::Place place_of(const Field& field) { return {field.files.empty() ? "" : field.files.front(), {}, {}, {}}; }
 
 /// The arrays asked for, checked; all when none were named.
 std::vector<std::string> chosen_arrays(const Field& field, const ProbeOptions& options, bool volumes) {
     const auto known = known_arrays(field, volumes);
     if (known.empty()) {
-        throw core::InputError("missing", std::string("there are no values in the ") + (volumes ? "volume" : "surfaces") + " to look at", {field.files.empty() ? "" : field.files.front(), {}, {}, {}},
+        throw core::InputError("missing", std::string("there are no values in the ") + (volumes ? "volume" : "surfaces") + " to look at", place_of(field),
                                "a mesh alone has none: name the file of results");
     }
     for (const auto& name : options.arrays) {
         if (std::find(known.begin(), known.end(), name) == known.end()) {
-            throw core::InputError("missing", "the field has no array '" + name + "'", {field.files.empty() ? "" : field.files.front(), {}, {}, {}},
+            throw core::InputError("missing", "the field has no array '" + name + "'", place_of(field),
                                    core::did_you_mean(name, known));
         }
     }
@@ -151,7 +155,15 @@ struct Columns {
     [[nodiscard]] core::Table table() const {
         core::Table result;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            result.add_numbers(names[i], units[i], values[i]);
+            if (!units[i].empty()) {
+                result.add_numbers(names[i], units[i], values[i]);
+                continue;
+            }
+            std::vector<std::string> numbers;  // of a unit that nobody knows: a column of numbers has one
+            for (const double value : values[i]) {
+                numbers.push_back(std::isfinite(value) ? core::format_number(value) : "");
+            }
+            result.add_text(names[i], std::move(numbers));
         }
         return result;
     }
@@ -205,30 +217,52 @@ void probe_volume(const Field& field, const std::vector<Point>& points, const st
     }
 }
 
+std::vector<const Zone*> surfaces_to_look_on(const Field& field, const std::vector<std::string>& patterns) {
+    std::vector<const Zone*> zones;
+    std::vector<std::string> names;
+    for (const auto& zone : field.zones) {
+        if (zone.surface != nullptr && zone.volume == nullptr && zone.surface->GetNumberOfPolys() > 0) {
+            names.push_back(zone.name);
+            if (matches_any(patterns, zone.name)) {
+                zones.push_back(&zone);
+            }
+        }
+    }
+    for (const auto& pattern : patterns) {
+        if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches(pattern, name); })) {
+            throw core::InputError("zone", "no surface with faces fits '" + pattern + "'", place_of(field), core::did_you_mean(pattern, names));
+        }
+    }
+    if (zones.empty()) {
+        throw core::InputError("zone", "there is no surface to look on", place_of(field));
+    }
+    return zones;
+}
+
 void probe_surfaces(const Field& field, const std::vector<Point>& points, const std::vector<std::string>& arrays, const ProbeOptions& options, Columns& columns,
                     core::Progress& progress) {
     const std::size_t distances = columns.add("distance_to_surface", "m", points.size());
     const auto entries = columns_for(field, arrays, points.size(), columns);
     std::vector<std::unique_ptr<Sampler>> samplers;
-    for (const auto& zone : field.zones) {
-        if (zone.surface != nullptr && zone.volume == nullptr && zone.surface->GetNumberOfPolys() > 0 && matches_any(options.zones, zone.name)) {
-            samplers.push_back(std::make_unique<Sampler>(surface_with_point_values(zone, arrays)));
-        }
-    }
-    if (samplers.empty()) {
-        throw core::InputError("zone", "there is no surface to look on", {field.files.empty() ? "" : field.files.front(), {}, {}, {}});
+    for (const Zone* zone : surfaces_to_look_on(field, options.zones)) {
+        samplers.push_back(std::make_unique<Sampler>(surface_with_point_values(*zone, arrays)));
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
         progress.check();
+        // All values of a row are those of one zone: what that lacks is missing.
+        const Sampler* nearest = nullptr;
         double best = std::numeric_limits<double>::infinity();
         for (const auto& sampler : samplers) {
             const double distance = sampler->nearest(points[i]);
             if (distance < best) {
                 best = distance;
-                fill_row(*sampler, entries, i, columns);
+                nearest = sampler.get();
             }
         }
-        columns.values[distances][i] = best;
+        if (nearest != nullptr) {
+            fill_row(*nearest, entries, i, columns);
+            columns.values[distances][i] = best;
+        }
     }
 }
 
@@ -246,6 +280,9 @@ core::Table probe_points(const Field& field, const std::vector<Point>& points, c
         }
     }
     const bool volumes = !options.on_surface && std::any_of(field.zones.begin(), field.zones.end(), [](const Zone& z) { return z.volume != nullptr && z.volume->GetNumberOfCells() > 0; });
+    if (volumes && !options.zones.empty()) {
+        throw core::UsageError("usage", "zones choose surfaces, but it is the volume that is looked into", {}, "--on-surface looks on surfaces, or leave --zones away");
+    }
     const auto arrays = chosen_arrays(field, options, volumes);
     if (volumes) {
         probe_volume(field, points, arrays, columns, progress);

@@ -16,16 +16,19 @@ struct Field;
 
 struct ProbeOptions {
     std::vector<std::string> arrays;   ///< canonical names; empty: all
-    std::vector<std::string> zones;    ///< surfaces to look on when there is no volume; empty: all
+    std::vector<std::string> zones;    ///< surfaces to look on (no volume, or `on_surface`); empty: all
     bool on_surface = false;           ///< look on surfaces although there is a volume
 };
 
-/// Columns x, y, z [m], then each array (vectors as NAME_x, NAME_y, NAME_z), in SI.
+/// Columns x, y, z [m], then each array (vectors as NAME_x, NAME_y, NAME_z), in SI; one whose unit the file does not say is
+/// a column of text without a unit.
 ///
 /// In a volume: between the nodes of the cell that holds the point; values that lie in cells are first carried to the
 /// nodes along their gradients (`NodeValues`: a linear field comes out as it is, and a wall's own values hold at the
-/// wall). A point outside has missing values. On surfaces: the nearest face, and a column `distance_to_surface [m]`.
-/// Throws core::InputError: an array that nobody knows, a field without cells or without values.
+/// wall). A point outside has missing values. On surfaces: the nearest face, and a column `distance_to_surface [m]`;
+/// arrays that the zone of that face does not have are missing.
+/// Throws core::InputError: an array or a zone that nobody knows, a field without cells or without values;
+/// core::UsageError: zones, though it is a volume that is looked into.
 core::Table probe_points(const Field& field, const std::vector<std::array<double, 3>>& points, const ProbeOptions& options = {},
                          core::Progress& progress = core::Progress::none());
 

@@ -95,6 +95,10 @@ nlohmann::json json_of(const core::Table& table) {
     nlohmann::json columns = nlohmann::json::array();
     for (const auto& column : table.columns()) {
         nlohmann::json values = nlohmann::json::array();
+        for (const auto& text : column.text) {  // numbers whose unit nobody knows
+            const auto value = core::parse_number(text);
+            values.push_back(value ? nlohmann::json(*value) : nlohmann::json(nullptr));
+        }
         for (const double value : column.numbers) {
             values.push_back(std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr));
         }
@@ -134,8 +138,9 @@ void add_probe_command(CLI::App& app, Shell& shell) {
         postproc::ReadOptions read = o->field.read_options();
         auto field = postproc::read_field(o->file, read, shell.progress());
         shell.show(field.problems);
-        if (!o->density.empty()) {
-            postproc::multiply_by_density(field, core::parse_in(o->density, "kg/m^3"));
+        const auto density = o->density.empty() ? std::nullopt : std::optional<double>(core::parse_in(o->density, "kg/m^3"));
+        if (!postproc::bring_to_pascal(field, density) && o->gap > 0) {
+            shell.warn(o->file + ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");
         }
         const core::Table table = look(field, *o, shell);
         if (!o->out.empty()) {

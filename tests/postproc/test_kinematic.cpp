@@ -10,7 +10,7 @@
 namespace underbody::postproc {
 namespace {
 
-TEST(Kinematic, PressureBecomesPascal) {
+Field kinematic_field() {
     Zone zone;
     zone.name = "base";
     zone.surface = vtkSmartPointer<vtkPolyData>::New();
@@ -29,13 +29,31 @@ TEST(Kinematic, PressureBecomesPascal) {
     zone.arrays = {{"kinematic_pressure", "m^2/s^2", "p", "", Location::faces, 1}};
     Field field;
     field.zones = {zone};
+    return field;
+}
+
+TEST(Kinematic, PressureBecomesPascal) {
+    Field field = kinematic_field();
+    const vtkSmartPointer<vtkDoubleArray> kept = vtkDoubleArray::SafeDownCast(field.zones[0].surface->GetCellData()->GetArray("kinematic_pressure"));
     EXPECT_TRUE(is_kinematic(field));
     multiply_by_density(field, 1000);
     EXPECT_FALSE(is_kinematic(field));
     EXPECT_EQ(field.zones[0].find("pressure")->unit, "Pa");
     EXPECT_EQ(field.zones[0].surface->GetCellData()->GetArray("pressure")->GetComponent(0, 0), 250);
     EXPECT_EQ(field.zones[0].surface->GetCellData()->GetArray("kinematic_pressure"), nullptr);
-    EXPECT_EQ(pressure->GetValue(0), 0.25);
+    EXPECT_EQ(kept->GetValue(0), 0.25);
+}
+
+TEST(Kinematic, TheGivenDensityCountsBeforeTheFilesOwn) {
+    Field unknown = kinematic_field();
+    EXPECT_FALSE(bring_to_pascal(unknown, {}));
+    EXPECT_NE(unknown.zones[0].find("kinematic_pressure"), nullptr);
+    for (const bool given : {false, true}) {
+        Field field = kinematic_field();
+        field.density = 1000;
+        EXPECT_TRUE(bring_to_pascal(field, given ? std::optional<double>(800) : std::nullopt));
+        EXPECT_EQ(field.zones[0].surface->GetCellData()->GetArray("pressure")->GetComponent(0, 0), given ? 200 : 250);
+    }
 }
 
 }  // namespace

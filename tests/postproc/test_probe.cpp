@@ -140,6 +140,72 @@ Field half_gap(double plane) {
     return gap_block(false, [](const Vector& p) { return Vector{-(1 + 20 * p[2]), 0, 0}; }, plane + 0.1);
 }
 
+/// A face of 1 x 1 m at a height; pressure is the height, wall shear too where it has one, `odd` has no unit.
+Zone plate(const std::string& name, double height, bool shear) {
+    Zone zone;
+    zone.name = name;
+    zone.kind = ZoneKind::wall;
+    zone.surface = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> points;
+    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+        points->InsertNextPoint(x, y, height);
+    }
+    vtkNew<vtkCellArray> face;
+    face->InsertNextCell({0, 1, 2, 3});
+    zone.surface->SetPoints(points);
+    zone.surface->SetPolys(face);
+    const auto add = [&](const char* array, const char* unit, int components) {
+        vtkNew<vtkDoubleArray> values;
+        values->SetName(array);
+        values->SetNumberOfComponents(components);
+        values->SetNumberOfTuples(4);
+        values->Fill(height);
+        zone.surface->GetPointData()->AddArray(values);
+        zone.arrays.push_back({array, unit, array, unit, Location::nodes, components});
+    };
+    add("pressure", "Pa", 1);
+    add("odd", "", 1);
+    if (shear) {
+        add("wall_shear", "Pa", 3);
+    }
+    return zone;
+}
+
+TEST(Probe, TakesAllValuesOfARowFromTheNearestSurface) {
+    Field field;
+    field.files = {"made"};
+    field.zones = {plate("with", 1, true), plate("without", 2, false)};
+    const core::Table table = probe_points(field, {{0.5, 0.5, 1.2}, {0.5, 0.5, 1.8}});
+    EXPECT_NEAR(table.numbers("wall_shear_x")[0], 1, 1e-12);
+    EXPECT_NEAR(table.numbers("pressure")[1], 2, 1e-12);
+    EXPECT_NEAR(table.numbers("distance_to_surface")[1], 0.2, 1e-12);
+    EXPECT_TRUE(std::isnan(table.numbers("wall_shear_x")[1]));  // the other zone's is not its own
+}
+
+TEST(Probe, GivesNoUnitToWhatTheFileGivesNone) {
+    Field field;
+    field.files = {"made"};
+    field.zones = {plate("with", 1, true)};
+    const core::Table table = probe_points(field, {{0.5, 0.5, 1.2}});
+    ASSERT_TRUE(table.find("odd")->is_text());
+    EXPECT_EQ(table.text("odd")[0], "1");
+    EXPECT_THAT(core::write_csv(table), testing::HasSubstr(", odd,"));
+}
+
+TEST(Probe, SaysWhenItsZonesMeanNothing) {
+    ProbeOptions options;
+    options.zones = {"bas"};
+    EXPECT_THROW(probe_points(gap_block(), {{0, 0, 0}}, options), core::UsageError);  // a volume
+    Field field;
+    field.zones = {plate("base", 1, true)};
+    try {
+        probe_points(field, {{0, 0, 0}}, options);
+        FAIL() << "accepted";
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(error.hint(), "did you mean 'base'?");
+    }
+}
+
 TEST(Probe, CountsBothHalvesOfAHalfModelAlone) {
     GapOptions options;
     options.stations = 1;
