@@ -82,11 +82,61 @@ private:
     std::vector<double> values_;
 };
 
+/// What has to be added to the first case's pressures so that both are relative to the same, and what is said of it.
+struct Level {
+    double shift = 0;  ///< Pa
+    std::string said;
+};
+
+Level between_references(const Field& a, const Field& b, const std::string& array) {
+    using Kind = PressureReference::Kind;
+    const PressureReference& of_a = a.pressure;
+    const PressureReference& of_b = b.pressure;
+    if (array != "pressure" || of_a.kind == Kind::unknown || of_b.kind == Kind::unknown) {
+        return {};
+    }
+    const auto said = [](double pascal, const char* what) { return " " + core::format_number(pascal) + " Pa were added to the pressures of the first case, " + what + "."; };
+    if (of_a.kind != of_b.kind) {
+        const double operating = of_a.kind == Kind::gauge ? of_a.operating_pressure : of_b.operating_pressure;
+        if (!(operating > 0)) {
+            throw core::InputError("reference", "one case has gauge pressures and the other absolute ones, and nothing says what lies between", {b.files.empty() ? "" : b.files.front(), {}, {}, {}});
+        }
+        const double shift = of_a.kind == Kind::gauge ? operating : -operating;
+        return {shift, said(shift, "for one has gauge pressures and the other absolute ones")};
+    }
+    const double shift = of_a.operating_pressure - of_b.operating_pressure;
+    if (of_a.kind != Kind::gauge || shift == 0 || !(of_a.operating_pressure > 0) || !(of_b.operating_pressure > 0)) {
+        return {};
+    }
+    return {shift, said(shift, "for the operating pressures differ")};
+}
+
+/// A constant that dwarfs what changes over the body is no pressure of the flow.
+std::string suspicion(const std::vector<double>& differences) {
+    const auto count = static_cast<double>(differences.size());
+    double mean = 0;
+    double square = 0;
+    for (const double d : differences) {
+        mean += d / count;
+    }
+    for (const double d : differences) {
+        square += (d - mean) * (d - mean) / count;
+    }
+    constexpr double half_an_atmosphere = 5e4;
+    if (!(std::abs(mean) > half_an_atmosphere) || !(std::abs(mean) > 10 * std::sqrt(square))) {
+        return {};
+    }
+    return " Note: nearly all of it is one constant, " + core::format_number(mean, 4) + " Pa: is one of the two an absolute pressure?";
+}
+
 }  // namespace
 
 View difference_view(const Field& a, const Field& b, const std::string& array, const ViewOptions& options, core::Progress& progress) {
+    check_ranges(options, {"difference", "difference-" + array});
     ViewOptions named = options;
     named.case_name.clear();
+    named.ranges.clear();
+    const Level level = between_references(a, b, array);
     const ViewComposer from(a, named);
     const ViewComposer to(b, named);
     Point shift = plus(to.base_centre(), from.base_centre(), -1);
@@ -107,6 +157,7 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
     ComposedView composed;
     double furthest = 0;
     std::vector<double> on_base;
+    std::vector<double> all;
     for (const Zone* zone : to.zones()) {
         progress.check();
         DrawnSurface surface = drawn_surface(*zone, array);
@@ -118,12 +169,16 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
         }
         for (std::size_t i = 0; i < surface.points.size(); ++i) {
             double distance = 0;
-            surface.values[i] -= lookup.at(surface.points[i], distance);
+            double& value = surface.values[i];
+            value -= lookup.at(surface.points[i], distance) + level.shift;
             furthest = std::max(furthest, distance);
             if (distance > apart) {
-                surface.values[i] = std::nan("");
-            } else if (matches(options.base, zone->name)) {
-                on_base.push_back(surface.values[i]);
+                value = std::nan("");
+            } else if (std::isfinite(value)) {
+                all.push_back(value);
+                if (matches(options.base, zone->name)) {
+                    on_base.push_back(value);
+                }
             }
         }
         surface.contours = 12;
@@ -135,15 +190,12 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
     const auto* info = to.zones().front()->find(array);
     const std::string unit = info == nullptr ? "Pa" : info->unit;
     std::string extremes;
-    std::erase_if(on_base, [](double value) { return !std::isfinite(value); });
     if (!on_base.empty()) {
         scene.range = telling_range(on_base, extremes, unit);
     }
-    for (const auto& [key, given] : options.ranges) {
-        if (key == "difference" || key == "difference-" + array) {
-            scene.range = given;
-            extremes.clear();
-        }
+    for (const auto& [key, given] : options.ranges) {  // the last counts
+        scene.range = given;
+        extremes.clear();
     }
     const auto values = range_of(scene);
     if (!(values.first <= values.second)) {
@@ -153,14 +205,16 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
     scene.value_name = "difference";
     scene.value_unit = unit;
     scene.camera = to.from_below();
-    scene.title = "difference of " + view_label(array) + " on the underbody";
+    const bool vectors = info != nullptr && info->components > 1;
+    scene.title = std::string(vectors ? "difference of the size of " : "difference of ") + view_label(array) + " on the underbody";
     scene.subtitle = options.case_name.empty() ? to.case_name() + "  minus  " + from.case_name() : options.case_name;
     scene.width = options.width;
     scene.height = options.height;
     composed.caption = "The second case less the first, seen from below, bow to the right; the first was moved by (" + core::format_number(1000 * shift[0], 3) + ", " +
                        core::format_number(1000 * shift[1], 3) + ", " + core::format_number(1000 * shift[2], 3) +
                        ") mm so that the bases lie on each other; the surfaces then lie at most " + core::format_number(1000 * furthest, 2) + " mm apart" +
-                       (furthest > apart ? "; grey where that is more than " + core::format_number(1000 * apart, 2) + " mm: nothing is compared there." : std::string(".")) + extremes;
+                       (furthest > apart ? "; grey where that is more than " + core::format_number(1000 * apart, 2) + " mm: nothing is compared there." : std::string(".")) +
+                       (vectors ? " The sizes of the vectors are compared, not their directions." : "") + level.said + (view_unit(array) == unit ? suspicion(all) : "") + extremes + to.mirror_said();
     return drawn(composed, "difference-" + array);
 }
 

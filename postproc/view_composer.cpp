@@ -2,6 +2,7 @@
 #include "postproc/view_composer.h"
 
 #include <vtkCellData.h>
+#include <vtkDataArray.h>
 #include <vtkPointData.h>
 
 #include <algorithm>
@@ -19,7 +20,7 @@ namespace {
 
 Box box_of(const Zone& zone) {
     Box box{};
-    zone.surface->GetBounds(box.data());
+    zone.surface->GetCellsBounds(box.data());  // of the faces: a surface cut out of another may bring all points of that
     return box;
 }
 
@@ -62,6 +63,14 @@ std::vector<RangeKey> range_keys() {
     return keys;
 }
 
+std::vector<std::string> ViewComposer::keys_of_ranges() {
+    std::vector<std::string> keys = {"pressure", "wall_shear", "shear", "velocity", "speed"};
+    for (const auto& kind : kinds()) {
+        keys.emplace_back(kind.name);
+    }
+    return keys;
+}
+
 ViewComposer::ViewComposer(const Field& field, const ViewOptions& options)
     : field_(field), options_(options), axes_(vehicle_axes(options.forward, options.up)), zones_(surfaces_of_body(field, options.zones, options.base)) {
     for (const Zone* zone : zones_) {
@@ -79,7 +88,7 @@ ViewComposer::ViewComposer(const Field& field, const ViewOptions& options)
     if (mirror_.axis < 0) {
         find_symmetry_zone();
     }
-    check_ranges(options);
+    check_ranges(options, keys_of_ranges());
     name_ = options.case_name;
     if (name_.empty() && !field.files.empty()) {
         name_ = case_stem(field.files.front());
@@ -119,16 +128,29 @@ bool ViewComposer::in_gap(const std::string& array) const { return in_volume(arr
 
 bool ViewComposer::in_plane(const std::string& array) const { return field_.dimension == 2 && volume_has(array); }
 
+namespace {
+
+/// Is the array there, with a value somewhere? Of missing values alone there is nothing to show.
+bool has_values(vtkDataSet& data, const std::string& name) {
+    for (vtkDataSetAttributes* attributes : {static_cast<vtkDataSetAttributes*>(data.GetPointData()), static_cast<vtkDataSetAttributes*>(data.GetCellData())}) {
+        auto* array = attributes->GetArray(name.c_str());
+        for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfTuples(); ++i) {
+            if (std::isfinite(array->GetComponent(i, 0))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
 bool ViewComposer::has_array(const std::string& array) const {
-    return std::any_of(zones_.begin(), zones_.end(), [&](const Zone* z) {
-        return z->surface->GetPointData()->HasArray(array.c_str()) != 0 || z->surface->GetCellData()->HasArray(array.c_str()) != 0;
-    });
+    return std::any_of(zones_.begin(), zones_.end(), [&](const Zone* zone) { return has_values(*zone->surface, array); });
 }
 
 bool ViewComposer::volume_has(const std::string& array) const {
-    return std::any_of(field_.zones.begin(), field_.zones.end(), [&](const Zone& z) {
-        return z.volume != nullptr && (z.volume->GetPointData()->HasArray(array.c_str()) != 0 || z.volume->GetCellData()->HasArray(array.c_str()) != 0);
-    });
+    return std::any_of(field_.zones.begin(), field_.zones.end(), [&](const Zone& zone) { return zone.volume != nullptr && has_values(*zone.volume, array); });
 }
 
 void ViewComposer::find_symmetry_zone() {
@@ -187,21 +209,18 @@ void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {
     auto range = given(kind.name);  // its own counts over its array's
     range = range == options_.ranges.rend() ? given(kind.array) : range;
     if (range != options_.ranges.rend() && scene.range != range->second) {
-        if (const auto at = composed.caption.find(" Colours end at"); at != std::string::npos) {
-            composed.caption.resize(at);  // what was said of a range of its own holds no more
-        }
-        composed.caption += " Colours over the range given.";
+        composed.of_range = " Colours over the range given.";
         scene.range = range->second;
     }
     if (scene.range) {
         scene.range = drawn_range(*scene.range, scene.colours);
     }
-    composed.caption += mirror_said_;
+    composed.caption += composed.of_range + mirror_said_;
 }
 
 std::pair<double, double> telling_range(std::vector<double> values, std::string& extremes, const std::string& unit) {
     if (values.empty()) {
-        return {0, 1};
+        return range_of({});
     }
     std::sort(values.begin(), values.end());
     const auto at = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
@@ -214,9 +233,14 @@ std::pair<double, double> telling_range(std::vector<double> values, std::string&
     if (high - at(0.99) > 0.25 * core_span) {
         high = at(0.99);
     }
-    if (low != values.front() || high != values.back()) {
-        extremes = " Colours end at the 1st and 99th percentile; the extremes are " + core::format_number(values.front(), 4) + " and " + core::format_number(values.back(), 4) + " " +
-                   unit + ".";
+    const std::string lowest = core::format_number(values.front(), 4);
+    const std::string highest = core::format_number(values.back(), 4);
+    if (low != values.front() && high != values.back()) {
+        extremes = " Colours end at the 1st and 99th percentile; the extremes are " + lowest + " and " + highest + " " + unit + ".";
+    } else if (low != values.front()) {
+        extremes = " Colours begin at the 1st percentile; the lowest is " + lowest + " " + unit + ".";
+    } else if (high != values.back()) {
+        extremes = " Colours end at the 99th percentile; the highest is " + highest + " " + unit + ".";
     }
     return {low, high};
 }

@@ -16,10 +16,11 @@ namespace underbody::postproc {
 struct ComposedView {
     Scene scene;
     std::string caption;
+    std::string of_range;  ///< what is to be said of the colours' ends, unless a range is given
 };
 
 /// The range that holds 98 % of the values where a few extremes (an edge, a stagnation point) would swallow the colours;
-/// `extremes` names them then, in `unit`.
+/// `extremes` names the end that was cut then, in `unit`. Of no values the range is empty (its end lies before its begin).
 std::pair<double, double> telling_range(std::vector<double> values, std::string& extremes, const std::string& unit);
 
 /// What people call an array, and its unit: "wall shear", "Pa".
@@ -32,8 +33,8 @@ std::string array_of_view(const std::string& name);
 /// What a range is of: "speed" and "shear" are the arrays velocity and wall_shear, other words are themselves.
 std::string range_key(const std::string& word);
 
-/// Throws core::UsageError, with the nearest name: a range of what no view shows, one that ends before it begins.
-void check_ranges(const ViewOptions& options);
+/// Throws core::UsageError, with the nearest name: a range of what is not among the `shown` keys, one that ends before it begins.
+void check_ranges(const ViewOptions& options, const std::vector<std::string>& shown);
 
 /// The picture of a scene.
 View drawn(const ComposedView& composed, const std::string& name);
@@ -55,6 +56,7 @@ public:
 
     [[nodiscard]] const std::vector<const Zone*>& zones() const { return zones_; }  ///< of the body, without a ground
     [[nodiscard]] const PlacedMirror& mirror() const { return mirror_; }
+    [[nodiscard]] const std::string& mirror_said() const { return mirror_said_; }  ///< for captions; mostly empty
     [[nodiscard]] const std::string& case_name() const { return name_; }
     [[nodiscard]] Point base_centre() const;  ///< m, of what there is of it: half a model has half a base
     [[nodiscard]] Box whole_body() const;     ///< both halves
@@ -69,6 +71,7 @@ private:
         bool (ViewComposer::*possible)(const std::string& array) const;
     };
     static const std::vector<Kind>& kinds();
+    static std::vector<std::string> keys_of_ranges();
     friend std::vector<RangeKey> range_keys();
     friend std::string array_of_view(const std::string& name);
 

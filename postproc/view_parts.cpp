@@ -48,23 +48,33 @@ double diagonal(const Box& box) { return std::hypot(box[1] - box[0], box[3] - bo
 
 namespace {
 
+/// As for `loads`: a pattern with * or ? means walls where it fits any; a name means whatever bears it.
 std::vector<const Zone*> named_surfaces(const Field& field, const std::vector<std::string>& patterns) {
-    std::vector<const Zone*> zones;
+    std::vector<const Zone*> said_otherwise;
+    const std::vector<const Zone*> walls = possible_walls(field, said_otherwise);
+    std::vector<const Zone*> surfaces;
     std::vector<std::string> names;
     for (const auto& zone : field.zones) {
         if (zone.surface != nullptr && zone.volume == nullptr) {
+            surfaces.push_back(&zone);
             names.push_back(zone.name);
-            if (matches_any(patterns, zone.name)) {
-                zones.push_back(&zone);
-            }
         }
     }
+    std::vector<bool> chosen(surfaces.size(), false);
     for (const auto& pattern : patterns) {
-        if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches(pattern, name); })) {
+        const auto fits = [&](const Zone* zone) { return matches(pattern, zone->name); };
+        if (std::none_of(surfaces.begin(), surfaces.end(), fits)) {
             throw core::InputError("zone", "no surface fits '" + pattern + "'", {field.files.empty() ? "" : field.files.front(), {}, {}, {}}, core::did_you_mean(pattern, names));
         }
+        const bool name = pattern.find_first_of("*?") == std::string::npos || std::find(names.begin(), names.end(), pattern) != names.end();
+        const bool walls_alone = !name && std::any_of(walls.begin(), walls.end(), fits);
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            chosen[i] = chosen[i] || (fits(surfaces[i]) && (!walls_alone || std::find(walls.begin(), walls.end(), surfaces[i]) != walls.end()));
+        }
     }
-    return zones;
+    std::size_t at = 0;
+    std::erase_if(surfaces, [&](const Zone*) { return !chosen[at++]; });
+    return surfaces;
 }
 
 void leave_out_other_walls(std::vector<const Zone*>& zones, const std::string& base, int dimension) {
@@ -168,6 +178,35 @@ std::vector<double> point_values(const Zone& zone, const SurfaceArrays& surface,
     return result;
 }
 
+/// A surface cut out of another may bring all points of that, with their values.
+void drop_unused_points(DrawnSurface& surface) {
+    std::vector<int> place(surface.points.size(), -1);
+    for (const auto& triangle : surface.triangles) {
+        for (const int corner : triangle) {
+            place[static_cast<std::size_t>(corner)] = 0;
+        }
+    }
+    int kept = 0;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+        if (place[i] < 0) {
+            continue;
+        }
+        const auto to = static_cast<std::size_t>(kept);
+        place[i] = kept++;
+        surface.points[to] = surface.points[i];
+        if (!surface.values.empty()) {
+            surface.values[to] = surface.values[i];
+        }
+    }
+    surface.points.resize(static_cast<std::size_t>(kept));
+    surface.values.resize(surface.values.empty() ? 0 : static_cast<std::size_t>(kept));
+    for (auto& triangle : surface.triangles) {
+        for (int& corner : triangle) {
+            corner = place[static_cast<std::size_t>(corner)];
+        }
+    }
+}
+
 }  // namespace
 
 DrawnSurface drawn_surface(const Zone& zone, const std::string& array) {
@@ -188,6 +227,7 @@ DrawnSurface drawn_surface(const Zone& zone, const std::string& array) {
     if (!array.empty()) {
         drawn.values = point_values(zone, surface, array);
     }
+    drop_unused_points(drawn);
     return drawn;
 }
 

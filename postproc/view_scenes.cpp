@@ -90,20 +90,26 @@ ComposedView ViewComposer::hull_view(const std::string& array) const {
     return composed;
 }
 
-/// The body's surface; `base_range`: the colours are those of the base, whatever the rest has.
+/// The body's surface; `base_range`: the colours are those of the base, where it has the array, whatever the rest has.
 ComposedView ViewComposer::surface_view(const std::string& array, bool base_range) const {
     ComposedView composed;
-    std::vector<double> values;
+    std::vector<double> of_base;
+    std::vector<double> of_rest;
     for (const Zone* zone : zones_) {
         DrawnSurface surface = drawn_surface(*zone, array);
-        if (!base_range || matches(options_.base, zone->name)) {
-            std::copy_if(surface.values.begin(), surface.values.end(), std::back_inserter(values), [](double v) { return std::isfinite(v); });
-        }
+        std::vector<double>& values = matches(options_.base, zone->name) ? of_base : of_rest;
+        std::copy_if(surface.values.begin(), surface.values.end(), std::back_inserter(values), [](double v) { return std::isfinite(v); });
         surface.contours = 12;
         mirror_into(surface, mirror_);
         composed.scene.surfaces.push_back(std::move(surface));
     }
-    composed.scene.range = telling_range(values, composed.caption, view_unit(array));
+    if (base_range && of_base.empty()) {
+        composed.caption = " The base has no " + view_label(array) + ": the colours are those of the rest.";
+    }
+    if (!base_range || of_base.empty()) {
+        of_base.insert(of_base.end(), of_rest.begin(), of_rest.end());
+    }
+    composed.scene.range = telling_range(std::move(of_base), composed.of_range, view_unit(array));
     return composed;
 }
 

@@ -20,15 +20,10 @@ View drawn(const ComposedView& composed, const std::string& name) {
 
 std::string range_key(const std::string& word) { return word == "speed" ? "velocity" : word == "shear" ? "wall_shear" : word; }
 
-void check_ranges(const ViewOptions& options) {
-    std::vector<std::string> known = {"speed", "shear"};
-    for (const auto& key : range_keys()) {
-        known.push_back(key.name);
-    }
+void check_ranges(const ViewOptions& options, const std::vector<std::string>& shown) {
     for (const auto& [word, range] : options.ranges) {
-        const bool difference = word.starts_with("difference-");
-        if (!difference && std::find(known.begin(), known.end(), word) == known.end()) {
-            throw core::UsageError("usage", "no view shows '" + word + "': its range means nothing", {}, core::did_you_mean(word, known));
+        if (std::find(shown.begin(), shown.end(), word) == shown.end()) {
+            throw core::UsageError("usage", "no picture asked for shows '" + word + "': its range means nothing", {}, core::did_you_mean(word, shown));
         }
         if (!(range.first <= range.second)) {
             throw core::UsageError("usage", "the range of '" + word + "' ends at " + core::format_number(range.second) + ", below where it begins", {}, "give LOW:HIGH");
@@ -84,11 +79,13 @@ ViewOptions shared_view_options(const std::vector<const Field*>& fields, const V
     if (!options.box && box[0] <= box[1]) {
         shared.box = box;
     }
-    for (const auto& given : options.ranges) {  // what the caller fixed stays, for a view or for all of an array
-        const auto shows = [&](const std::string& name) { return name == given.first || array_of_view(name) == range_key(given.first); };
-        std::erase_if(shared.ranges, [&](const auto& entry) { return shows(entry.first); });
-        shared.ranges.push_back(given);
-    }
+    // What the caller fixed stays, for a view or for all of an array.
+    std::erase_if(shared.ranges, [&](const auto& computed) {
+        return std::any_of(options.ranges.begin(), options.ranges.end(), [&](const auto& given) {
+            return given.first == computed.first || range_key(given.first) == array_of_view(computed.first);
+        });
+    });
+    shared.ranges.insert(shared.ranges.end(), options.ranges.begin(), options.ranges.end());
     return shared;
 }
 

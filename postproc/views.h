@@ -87,8 +87,8 @@ struct ViewOptions {
     double speed = 0;                        ///< m/s, for pressure coefficients in subtitles; 0: unknown
     int width = 1200;
     int height = 800;
-    /// Colour ranges to share between cases, SI, by the view's name ("pressure-underbody") or by what it shows (see
-    /// range_keys; also "speed" and "shear"); a view's own counts over that of all. Other keys are refused.
+    /// Colour ranges to share between cases, SI, by the view's name ("pressure-underbody") or by what it shows
+    /// (pressure, wall_shear, velocity; also "speed" and "shear"); a view's own counts over that of all. Other keys are refused.
     std::vector<std::pair<std::string, std::pair<double, double>>> ranges;
     /// Box to fit, file axes, to share between cases (see Camera::box).
     std::optional<std::array<double, 6>> box;
@@ -129,7 +129,10 @@ ViewOptions shared_view_options(const std::vector<const Field*>& fields, const V
                                 core::Progress& progress = core::Progress::none());
 
 /// `b` minus `a` of an array on the body's surface, on the mesh of `b`; `a`, whatever its mesh, is interpolated there
-/// from its nearest faces. Diverging colours centred on zero. The caption says how far apart the surfaces lie.
+/// from its nearest faces. Of vectors their sizes are compared. Diverging colours centred on zero; ranges by "difference" or
+/// "difference-ARRAY" alone. The caption says how far apart the surfaces lie.
+/// Pressures are brought to one reference where both files say what theirs is. Throws core::InputError where that is not
+/// possible, or where the array is not on both.
 View difference_view(const Field& a, const Field& b, const std::string& array = "pressure", const ViewOptions& options = {},
                      core::Progress& progress = core::Progress::none());
 

@@ -2,6 +2,7 @@
 #include "postproc/views.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -91,6 +92,12 @@ public:
         written_.push_back({{"file", path.string()}, {"name", name}, {"title", figure.title}, {"caption", figure.caption}});
     }
 
+    /// A view that could be drawn.
+    void list(const std::string& name, const std::string& file, bool several) {
+        shell_.print((several ? file + ": " : "") + name);
+        written_.push_back({{"name", name}, {"of", file}});
+    }
+
     [[nodiscard]] nlohmann::json json() const { return {{"views", written_}}; }
 
 private:
@@ -103,9 +110,56 @@ bool has_profile(const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), "streamlines-gap") != names.end();  // a volume, a velocity and a base
 }
 
-void draw_case(Shell& shell, const Options& given, const postproc::Field& field, const postproc::ViewOptions& shared, const std::string& prefix, Album& album) {
+/// Names of the cases that no two share: that of the file, with as many of its folders before it as it takes ("a/case").
+std::vector<std::string> names_of(const std::vector<ConditionedFile>& files) {
+    struct Parts {
+        std::vector<std::string> folders;
+        std::string stem, file;
+    };
+    std::vector<Parts> all;
+    for (const auto& file : files) {
+        fs::path path = fs::absolute(file.path).lexically_normal();
+        path = path.has_filename() ? path : path.parent_path();
+        Parts parts{{}, postproc::case_stem(path), path.filename().string()};
+        for (const auto& folder : path.parent_path().relative_path()) {
+            parts.folders.push_back(folder.string());
+        }
+        all.push_back(std::move(parts));
+    }
+    const auto count = [&](auto&& same) { return std::count_if(all.begin(), all.end(), same); };
+    std::vector<std::string> names;
+    for (const auto& parts : all) {
+        const bool stem_is_shared = count([&](const Parts& other) { return other.folders == parts.folders && other.stem == parts.stem; }) > 1;
+        std::string name = stem_is_shared ? parts.file : parts.stem;
+        for (std::size_t depth = 1; depth <= parts.folders.size(); ++depth) {
+            const auto tail = [depth](const Parts& of) { return std::vector<std::string>(of.folders.end() - static_cast<std::ptrdiff_t>(std::min(depth - 1, of.folders.size())), of.folders.end()); };
+            if (count([&](const Parts& other) { return other.stem == parts.stem && other.folders != parts.folders && tail(other) == tail(parts); }) == 0) {
+                break;
+            }
+            name.insert(0, parts.folders[parts.folders.size() - depth] + "/");
+        }
+        names.push_back(name);
+    }
+    return names;
+}
+
+/// What the names of their pictures begin with: "a-case-"; of one case nothing.
+std::vector<std::string> prefixes_of(const std::vector<std::string>& names) {
+    std::vector<std::string> prefixes;
+    for (std::string name : names) {
+        std::replace(name.begin(), name.end(), '/', '-');
+        std::string prefix = name + "-";
+        for (int again = 2; std::find(prefixes.begin(), prefixes.end(), prefix) != prefixes.end(); ++again) {
+            prefix = name + "-" + std::to_string(again) + "-";
+        }
+        prefixes.push_back(names.size() > 1 ? prefix : "");
+    }
+    return prefixes;
+}
+
+void draw_case(Shell& shell, const Options& given, const postproc::Field& field, const postproc::ViewOptions& shared, const std::string& case_name, const std::string& prefix, Album& album) {
     postproc::ViewOptions options = shared;
-    options.case_name = postproc::case_stem(field.files.front());
+    options.case_name = case_name;
     auto possible = postproc::possible_views(field, options);
     if (has_profile(possible)) {
         possible.emplace_back("profile-gap");
@@ -121,7 +175,7 @@ void draw_case(Shell& shell, const Options& given, const postproc::Field& field,
     for (const auto& name : given.names.empty() ? possible : given.names) {
         shell.progress().check();
         if (given.list) {
-            shell.print(name);
+            album.list(name, field.files.front(), !prefix.empty());
         } else if (name == "profile-gap") {
             postproc::GapOptions gap;
             gap.forward = options.forward;
@@ -140,40 +194,63 @@ void draw_case(Shell& shell, const Options& given, const postproc::Field& field,
 
 /// Pictures show pascal: what a file has over density needs one.
 void use_density(Shell& shell, const Options& given, postproc::Field& field) {
-    const auto density = given.density.empty() ? field.density : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
-    if (density) {
-        postproc::multiply_by_density(field, *density);
-    } else if (postproc::is_kinematic(field)) {
+    const auto density = given.density.empty() ? std::nullopt : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
+    if (!postproc::bring_to_pascal(field, density)) {
         shell.warn(field.files.front() + ": pressure is over density here: --density \"998 kg/m^3\" draws it");
     }
 }
 
+/// A file that two patterns fit is drawn once.
+void name_once(Batch& batch) {
+    std::vector<fs::path> seen;
+    std::erase_if(batch.files, [&](const ConditionedFile& file) {
+        const fs::path path = fs::absolute(file.path).lexically_normal();
+        const bool again = std::find(seen.begin(), seen.end(), path) != seen.end();
+        seen.push_back(path);
+        return again;
+    });
+}
+
+void check_difference(const Options& given, std::size_t files) {
+    if (files != 2) {
+        throw core::UsageError("usage", "--difference compares two files", {}, "underbody views A B --difference pressure");
+    }
+    if (given.list || !given.names.empty()) {
+        throw core::UsageError("usage", std::string("--difference draws one picture: ") + (given.list ? "--list" : "--view") + " means nothing with it");
+    }
+}
+
 int run(Shell& shell, const Options& given) {
-    const Batch batch = find_files(given.files, "");
+    postproc::ViewOptions options = view_options(given);
+    Batch batch = find_files(given.files, "");
     shell.show(batch.problems);
+    if (given.difference.empty()) {
+        name_once(batch);
+    } else {
+        check_difference(given, batch.files.size());
+    }
     std::vector<postproc::Field> fields;
     for (const auto& file : batch.files) {
         fields.push_back(postproc::read_field(file.path, given.field.read_options(), shell.progress()));
         shell.show(fields.back().problems);
         use_density(shell, given, fields.back());
     }
+    const auto names = names_of(batch.files);
     Album album(shell, given);
-    postproc::ViewOptions options = view_options(given);
     if (!given.difference.empty()) {
-        if (fields.size() != 2) {
-            throw core::UsageError("usage", "--difference compares two files", {}, "underbody views A B --difference pressure");
-        }
+        options.case_name = names[1] + "  minus  " + names[0];
         album.keep(postproc::difference_view(fields[0], fields[1], given.difference, options, shell.progress()), "");
     } else {
-        if (fields.size() > 1) {
+        if (fields.size() > 1 && !given.list) {
             std::vector<const postproc::Field*> all;
             for (const auto& field : fields) {
                 all.push_back(&field);
             }
             options = postproc::shared_view_options(all, options, shell.progress());
         }
-        for (const auto& field : fields) {
-            draw_case(shell, given, field, options, fields.size() > 1 ? postproc::case_stem(field.files.front()) + "-" : "", album);
+        const auto prefixes = prefixes_of(names);
+        for (std::size_t i = 0; i < fields.size(); ++i) {
+            draw_case(shell, given, fields[i], options, names[i], prefixes[i], album);
         }
     }
     if (shell.json) {
@@ -191,7 +268,7 @@ void add_views_command(CLI::App& app, Shell& shell) {
     command->add_option("-o,--out", o->out, "folder for the pictures")->capture_default_str();
     command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',');
     command->add_flag("--list", o->list, "only say which views the file allows");
-    command->add_option("--difference", o->difference, "draw the second file less the first one: pressure, wall_shear");
+    command->add_option("--difference", o->difference, "draw the second file less the first one: pressure, wall_shear (of vectors the sizes)");
     command->add_option("--range", o->ranges, "colour range, in SI or with units: pressure=-200:100, shear=\"0 Pa:5 Pa\", speed=0:1, speed-symmetry=0:0.7, difference=-20:20");
     command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane");
     command->add_option("--base", o->base, "zone that is the base")->capture_default_str();

@@ -1,12 +1,17 @@
 // The picture set of real cases.
 #include <gmock/gmock.h>
 
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+
+#include <cmath>
 #include <cstdlib>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "postproc/field.h"
 #include "postproc/loads.h"
+#include "postproc/view_composer.h"
 #include "postproc/views.h"
 #include "tests/support/support.h"
 
@@ -225,6 +230,114 @@ TEST(ViewsOfASurface, ShowTheBodyThatLoadsAreSummedOver) {
         summed.push_back(zone.name);
     }
     EXPECT_THAT(summed, testing::ElementsAre("base", "hull"));
+}
+
+Field without_shear_on_base() {
+    Field field = half_box(0.5, 0);
+    Zone& base = field.zones.front();
+    base.surface->GetPointData()->RemoveArray("wall_shear");
+    std::erase_if(base.arrays, [](const ArrayInfo& info) { return info.name == "wall_shear"; });
+    return field;
+}
+
+TEST(ViewsOfASurface, TakeTheirColoursFromWhatIsDrawn) {
+    const View shear = view(without_shear_on_base(), "shear-underbody", with_symmetry("y"));
+    EXPECT_NEAR(shear.range.first, 2, 1e-9);
+    EXPECT_NEAR(shear.range.second, 2.5, 1e-9);
+    EXPECT_THAT(shear.caption, testing::HasSubstr("The base has no wall shear"));
+    Field nothing = half_box(0.5, 0);
+    for (auto& zone : nothing.zones) {
+        zone.surface->GetPointData()->GetArray("wall_shear")->Fill(std::nan(""));
+    }
+    EXPECT_THAT(possible_views(nothing, with_symmetry("y")), testing::Not(testing::Contains("shear-underbody")));
+}
+
+TEST(ViewsOfASurface, PassOverPointsThatNoFaceHas) {
+    Field field = half_box(0.5, 0);
+    const View clean = view(field, "pressure-hull", with_symmetry("y"));
+    for (auto& zone : field.zones) {
+        zone.surface->GetPoints()->InsertNextPoint(9, 9, 9);
+        zone.surface->GetPointData()->GetArray("pressure")->InsertNextTuple1(1000);
+        const double none[3] = {0, 0, 0};
+        zone.surface->GetPointData()->GetArray("wall_shear")->InsertNextTuple(none);
+        zone.surface->Modified();
+    }
+    const View stray = view(field, "pressure-hull", with_symmetry("y"));
+    EXPECT_EQ(stray.range, clean.range);
+    EXPECT_EQ(stray.png, clean.png);
+}
+
+TEST(TellingRange, NamesTheEndThatWasCut) {
+    const auto said = [](double low, double high) {
+        std::vector<double> values(1000);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            values[i] = 0.001 * static_cast<double>(i);
+        }
+        values.front() = low;
+        values.back() = high;
+        std::string text;
+        telling_range(values, text, "Pa");
+        return text;
+    };
+    EXPECT_EQ(said(0, 1), "");
+    EXPECT_EQ(said(-9, 1), " Colours begin at the 1st percentile; the lowest is -9 Pa.");
+    EXPECT_EQ(said(0, 8), " Colours end at the 99th percentile; the highest is 8 Pa.");
+    EXPECT_EQ(said(-9, 8), " Colours end at the 1st and 99th percentile; the extremes are -9 and 8 Pa.");
+}
+
+TEST(ViewsOfTwoCases, KeepTheRangeOfAViewBesideThatOfItsArray) {
+    const Field a = half_box(0.5, 0);
+    const Field b = half_box(0.5, 7);
+    ViewOptions options = with_symmetry("y");
+    options.ranges = {{"pressure-hull", {-50, 50}}, {"pressure", {-10, 10}}};
+    const ViewOptions shared = shared_view_options({&a, &b}, options);
+    EXPECT_EQ(view(a, "pressure-hull", shared).range, std::pair(-50.0, 50.0));
+    EXPECT_EQ(view(a, "pressure-underbody", shared).range, std::pair(-10.0, 10.0));
+    EXPECT_NEAR(view(a, "shear-underbody", shared).range.second, 2.5, 1e-9);  // computed
+}
+
+TEST(ViewsOfTwoCases, TakeARangeForTheirDifferenceAlone) {
+    const Field a = half_box(0.5, 0);
+    const Field b = half_box(0.5, 7);
+    const auto with = [&](const std::string& key) {
+        ViewOptions options = with_symmetry("y");
+        options.ranges = {{key, {-3, 3}}};
+        return difference_view(a, b, "pressure", options).range;
+    };
+    EXPECT_EQ(with("difference"), std::pair(-3.0, 3.0));
+    EXPECT_EQ(with("difference-pressure"), std::pair(-3.0, 3.0));
+    for (const char* key : {"pressure", "difference-nosuch", "difference-wall_shear"}) {
+        EXPECT_THROW(with(key), core::UsageError) << key;
+    }
+    ViewOptions options = with_symmetry("y");
+    options.ranges = {{"difference", {-3, 3}}};
+    EXPECT_THROW(view(a, "pressure-hull", options), core::UsageError);
+}
+
+TEST(ViewsOfTwoCases, SayThatSizesAreCompared) {
+    const View shear = difference_view(half_box(0.5, 0), half_box(0.5, 0), "wall_shear", with_symmetry("y"));
+    EXPECT_EQ(shear.title, "difference of the size of wall shear on the underbody");
+    EXPECT_THAT(shear.caption, testing::HasSubstr("not their directions"));
+    EXPECT_EQ(difference_view(half_box(0.5, 0), half_box(0.5, 0), "pressure", with_symmetry("y")).title, "difference of pressure on the underbody");
+}
+
+TEST(ViewsOfTwoCases, BringPressuresToOneReference) {
+    using Kind = PressureReference::Kind;
+    Field gauge = half_box(0.5, 0);
+    Field absolute = half_box(0.5, 101330);
+    const auto range = [&] { return difference_view(gauge, absolute, "pressure", with_symmetry("y")); };
+    const View unknown = range();
+    EXPECT_GT(unknown.range.second, 1e5);
+    EXPECT_THAT(unknown.caption, testing::HasSubstr("is one of the two an absolute pressure?"));
+    gauge.pressure = {Kind::gauge, 101325};
+    absolute.pressure = {Kind::absolute, 0};
+    EXPECT_NEAR(range().range.second, 5, 1e-6);
+    EXPECT_THAT(range().caption, testing::HasSubstr("101325 Pa were added to the pressures of the first case"));
+    gauge.pressure.operating_pressure = 0;
+    EXPECT_THROW(range(), core::InputError);
+    absolute.pressure = {Kind::gauge, 1000};
+    gauge.pressure.operating_pressure = 102325;
+    EXPECT_NEAR(range().range.second, 5, 1e-6);
 }
 
 TEST(ViewsOfTwoCases, CompareWhereTheBodiesMeet) {

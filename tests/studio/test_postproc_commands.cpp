@@ -309,6 +309,40 @@ TEST_F(PostprocCommands, ViewsAreDrawnWithoutADisplay) {
     EXPECT_EQ(run({"views", "a-h5.csv", "--view", "nothing"}).exit_code, 3);
 }
 
+TEST_F(PostprocCommands, ViewsOfFilesOfOneNameAreKeptApart) {
+    for (const char* folder : {"a", "b"}) {
+        std::filesystem::create_directories(folder_.path() / folder);
+        core::write_file(folder_.path() / folder / "case.csv", box_csv);
+    }
+    const json views = run_json({"views", "a/case.csv", "b/case.csv", "a-h5.csv", "./a/case.csv", "--out", "pictures", "--view", "pressure-hull"})["views"];
+    ASSERT_EQ(views.size(), 3U);
+    EXPECT_EQ(views[0]["file"], "pictures/a-case-pressure-hull.png");
+    EXPECT_EQ(views[1]["file"], "pictures/b-case-pressure-hull.png");
+    EXPECT_EQ(views[2]["file"], "pictures/a-h5-pressure-hull.png");
+    const json listed = run_json({"views", "a/case.csv", "b/case.csv", "--list"})["views"];
+    ASSERT_EQ(listed.size(), 4U);
+    EXPECT_EQ(listed[0]["name"], "pressure-underbody");
+    EXPECT_EQ(listed[2]["of"], "b/case.csv");
+    EXPECT_THAT(run({"views", "a/case.csv", "--list"}).output, testing::StartsWith("pressure-underbody\n"));
+}
+
+TEST_F(PostprocCommands, ViewsSayWhatMeansNothingWithADifference) {
+    const auto difference = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"views", "a-h5.csv", "b-h10.csv", "--difference", "pressure", "--out", "pictures"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments).exit_code;
+    };
+    EXPECT_EQ(difference({"--view", "pressure-hull"}), 2);
+    EXPECT_EQ(difference({"--list"}), 2);
+    EXPECT_EQ(difference({"--range", "pressure=-1:1"}), 2);
+    EXPECT_EQ(difference({"--range", "difference=-1:1"}), 0);
+}
+
+TEST_F(PostprocCommands, ATimeThatChoosesNothingIsSaid) {
+    EXPECT_THAT(run({"probe", "a-h5.csv", "--point", "0,0,0", "--time", "3"}).errors, testing::HasSubstr("states no times"));
+    EXPECT_THAT(run({"probe", "a-h5.csv", "--point", "0,0,0"}).errors, testing::Not(testing::HasSubstr("states no times")));
+}
+
 TEST_F(PostprocCommands, ProbeLooksAtPointsAndLines) {
     const json line = run_json({"probe", "a-h5.csv", "--line", "0,0,0:0,0,0.5", "--count", "3", "--arrays", "pressure"});
     EXPECT_EQ(line["rows"], 3);
