@@ -385,6 +385,11 @@ private:
                 throw InputError("missing", "zone '" + part.zone->name + "' has no pressure but '" + name + "', of which the file does not say the unit", place(),
                                  "say it: --unit " + name + "=Pa, or of p/rho --unit \"" + name + "=m^2/s^2\" with --density");
             }
+            if (names.empty()) {
+                throw InputError("missing", "zone '" + part.zone->name + "' has no pressure, nor any other values: this is a mesh alone", place(),
+                                 field_.format.starts_with("Fluent") ? "no results lie beside it under its name; give the results file (.dat, .dat.h5), with --mesh if the mesh has another name"
+                                                                     : "give the file that the solver's results are in");
+            }
             throw InputError("missing", "zone '" + part.zone->name + "' has no pressure", place(), core::did_you_mean("pressure", names));
         }
         part.values.pressure = summed_values(part, *array, on_nodes, part.own_pressure);

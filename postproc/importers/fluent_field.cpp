@@ -40,7 +40,7 @@ private:
     [[nodiscard]] Zone named_zone(int id, int code, bool cells) const;
     [[nodiscard]] Buffer<double> picked_points(Buffer<std::int32_t>& nodes, Buffer<std::int64_t>& stream, bool last);
     [[nodiscard]] bool turned(const FaceBlock& block, std::size_t face, bool wall) const;
-    [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall) const;
+    [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall, std::size_t& too_small) const;
     [[nodiscard]] double face_area(const Element& element) const;
     void add_surface(Field& field, int id, const std::vector<std::size_t>& blocks);
     void take_pressure_of_cells(Zone& zone, const std::vector<Element>& elements, core::Problems& problems) const;
@@ -137,7 +137,7 @@ bool Assembly::turned(const FaceBlock& block, std::size_t face, bool wall) const
     return wall && mesh_.is_solid(c0) && !mesh_.is_solid(c1);
 }
 
-std::vector<Assembly::Element> Assembly::elements_of(const std::vector<std::size_t>& blocks, bool wall) const {
+std::vector<Assembly::Element> Assembly::elements_of(const std::vector<std::size_t>& blocks, bool wall, std::size_t& too_small) const {
     std::vector<Element> elements;
     for (const std::size_t b : blocks) {
         const FaceBlock& block = mesh_.face_blocks[b];
@@ -152,9 +152,14 @@ std::vector<Assembly::Element> Assembly::elements_of(const std::vector<std::size
             const std::uint64_t id = block.first + face;
             const bool parent = std::any_of(hidden.begin(), hidden.end(),
                                             [&](const IdRange& r) { return id >= r.first && id <= r.last; });
-            if (!parent && block.size_of(face) >= least) {
-                elements.push_back({b, face, turned(block, face, wall)});
+            if (parent) {
+                continue;
             }
+            if (block.size_of(face) < least) {
+                ++too_small;
+                continue;
+            }
+            elements.push_back({b, face, turned(block, face, wall)});
         }
     }
     return elements;
@@ -247,7 +252,13 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
     if (!matches_any(options_.zones, zone.name)) {
         return;
     }
-    const auto elements = elements_of(blocks, zone.kind == ZoneKind::wall);
+    std::size_t too_small = 0;
+    const auto elements = elements_of(blocks, zone.kind == ZoneKind::wall, too_small);
+    if (too_small > 0) {
+        field.problems.push_back({core::Problem::Severity::error,
+                                  std::to_string(too_small) + " faces of zone '" + zone.name + "' have fewer corners than a face can have, and are left out: is the mesh damaged?",
+                                  {mesh_.file, {}, {}, {}}});
+    }
     if (elements.empty()) {
         field.problems.push_back(
             {core::Problem::Severity::note, "zone " + zone.name + " has no faces", {mesh_.file, {}, {}, {}}});

@@ -279,6 +279,14 @@ TEST(FluentLegacy, AZoneInSeveralSectionsTakesItsValuesFromOne) {
     EXPECT_EQ(test::viscous_force(*cut.find("floor")->surface), test::viscous_force(*whole.find("floor")->surface));
 }
 
+TEST(FluentLegacy, AFaceOfTwoCornersIsNoFace) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(alone(folder, replaced(core::read_file(data("ascii.cas")), "4 1 2 3 4 1 0\n5 2", "2 1 2 1 0\n5 2"), "thin.cas"));
+    EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), [](const auto& p) {
+        return p.severity == core::Problem::Severity::error && p.message.find("1 faces of zone 'floor' have fewer corners") == 0;
+    }));
+}
+
 TEST(FluentLegacy, AWallBesideSolidsAloneIsNoWallOfTheFluid) {
     const core::TemporaryFolder folder;
     const std::string text = replaced(core::read_file(data("ascii.cas")), "(39 (2 fluid water 1)", "(39 (2 solid hull-metal 1)");
