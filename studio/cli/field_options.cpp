@@ -14,9 +14,13 @@ namespace underbody::studio {
 
 namespace fs = std::filesystem;
 
+std::string trimmed_name(const std::string& name) { return std::string(core::trimmed(name)); }
+
 void FieldOptions::add_to(CLI::App& command, bool with_zones) {
     if (with_zones) {
-        command.add_option("--zones", zones, "zones to take: names, * and ? allowed; several with commas")->delimiter(',');
+        command.add_option("--zones", zones, "zones to take: names, * and ? allowed; several with commas")
+            ->delimiter(',')
+            ->transform(trimmed_name);
     }
     command.add_option("--length-unit", length_unit, "unit of coordinates that the file does not say (mm, inch ...)");
     command.add_option("--unit", units, "unit of a variable that the file does not say: \"Pressure=Pa\"");
@@ -59,13 +63,15 @@ void add_pattern(const std::string& text, Batch& batch) {
     const auto found = pattern.files();
     const std::string missed = near_misses(pattern);
     if (found.empty()) {
-        throw core::InputError("file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; near it: " + missed), {}, "patterns may hold *, ?, {name} and {name:unit}");
+        throw core::InputError("file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; near it: " + missed), {},
+                               "patterns may hold *, ?, {name} and {name:unit}");
     }
     if (!missed.empty()) {
-        batch.problems.push_back({core::Problem::Severity::warning, "not of the batch, for want of a number where '" + text + "' has one: " + missed, {}});
+        batch.problems.push_back(
+            {core::Problem::Severity::warning, "not of the batch, for want of a number where '" + text + "' has one: " + missed, {}});
     }
     for (const auto& [path, match] : found) {
-        batch.files.push_back({path.string(), match.numbers, match.texts});
+        batch.files.push_back({path.string(), match.numbers, match.texts, {}});
     }
     for (const auto& part : pattern.parts()) {
         if (part.kind == core::NamePattern::Part::Kind::number) {
@@ -75,6 +81,7 @@ void add_pattern(const std::string& text, Batch& batch) {
 }
 
 void add_row(const core::Table& table, std::size_t row, ConditionedFile& file) {
+    file.row = table.place(row, {});
     for (const auto& column : table.columns()) {
         if (column.name == "file") {
             continue;
@@ -98,16 +105,18 @@ void add_manifest(const std::string& path, Batch& batch) {
         }
         const fs::path listed = fs::path(path).parent_path() / names[row];
         if (all) {
-            batch.files.push_back({listed.string(), {}, {}});
+            batch.files.push_back({listed.string(), {}, {}, {}});
             add_row(table, row, batch.files.back());
             continue;
         }
         for (auto& file : batch.files) {
             std::error_code ignored;
             if (fs::equivalent(file.path, listed, ignored)) {
-                if (!file.numbers.empty() || !file.texts.empty()) {
-                    throw core::InputError("manifest", "row " + std::to_string(row + 1) + " of the manifest lists '" + names[row] + "' once more, or a pattern gave its conditions already", {path, {}, {}, {}},
-                                           "one row a file, or no pattern with a manifest");
+                if (!file.row.file.empty() || !file.numbers.empty() || !file.texts.empty()) {
+                    throw core::InputError("manifest",
+                                           "row " + std::to_string(row + 1) + " of the manifest lists '" + names[row] +
+                                               "' once more, or a pattern gave its conditions already",
+                                           {path, {}, {}, {}}, "one row a file, or no pattern with a manifest");
                 }
                 add_row(table, row, file);
             }
@@ -119,8 +128,9 @@ void add_manifest(const std::string& path, Batch& batch) {
         }
     }
     for (const auto& file : batch.files) {
-        if (file.numbers.empty() && file.texts.empty()) {
-            throw core::InputError("missing", "the manifest does not list '" + file.path + "'", {path, {}, {}, {}}, core::did_you_mean(fs::path(file.path).filename().string(), names));
+        if (file.row.file.empty()) {
+            throw core::InputError("missing", "the manifest does not list '" + file.path + "'", {path, {}, {}, {}},
+                                   core::did_you_mean(fs::path(file.path).filename().string(), names));
         }
     }
 }
@@ -133,7 +143,7 @@ Batch find_files(const std::vector<std::string>& arguments, const std::string& m
         if (!fs::exists(argument) && core::NamePattern::is_pattern(argument)) {
             add_pattern(argument, batch);
         } else {
-            batch.files.push_back({argument, {}, {}});
+            batch.files.push_back({argument, {}, {}, {}});
         }
     }
     if (!manifest.empty()) {

@@ -14,6 +14,9 @@ class App;
 
 namespace underbody::studio {
 
+/// For options with several names, parted by commas: blanks around each are not of the name.
+std::string trimmed_name(const std::string& name);
+
 /// --zones, --length-unit, --unit, --mesh, --time.
 struct FieldOptions {
     std::vector<std::string> zones;
@@ -32,6 +35,7 @@ struct ConditionedFile {
     std::string path;
     std::vector<std::pair<std::string, double>> numbers;      ///< SI
     std::vector<std::pair<std::string, std::string>> texts;
+    core::Place row{};                                        ///< its row of the manifest; without a file when it is in none
 };
 struct Batch {
     std::vector<ConditionedFile> files;

@@ -38,7 +38,9 @@ void add_import_command(CLI::App& app, Shell& shell) {
     auto options = std::make_shared<Options>();
     command->add_option("files", options->files, "CFD files, or patterns of names")->required();
     command->add_option("-o,--out", options->out, "what to write: .vtp surfaces, .vtu volumes, .vtm every zone a block")->required();
-    command->add_option("--arrays", options->arrays, "arrays to keep, by their canonical or own names")->delimiter(',');
+    command->add_option("--arrays", options->arrays, "arrays to keep, by their canonical or own names")
+        ->delimiter(',')
+        ->transform(trimmed_name);
     options->field.add_to(*command);
     command->footer(
         "Examples:\n"

@@ -17,6 +17,7 @@
 #include "studio/cli/batch_problems.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 
 namespace underbody::studio {
@@ -35,8 +36,16 @@ struct Options {
     FieldOptions field;
 };
 
-std::optional<double> optional_quantity(const std::string& text, const char* unit) {
-    return text.empty() ? std::nullopt : std::optional<double>(core::parse_in(text, unit));
+/// Nothing when the option was not given. Throws core::UsageError when it is not positive: lengths and flow that coefficients refer to.
+std::optional<double> positive(const char* option, const std::string& text, const char* unit) {
+    if (text.empty()) {
+        return {};
+    }
+    const double value = option_value(option, text, unit);
+    if (!(value > 0)) {
+        throw core::UsageError("range", std::string(option) + " is " + core::format_number(value) + " " + unit + ": it has to be positive");
+    }
+    return value;
 }
 
 /// A condition of a file, SI; nothing when it has none of that name or a missing value.
@@ -73,11 +82,42 @@ std::optional<postproc::Vector> reference_of(const std::string& text, const Cond
             for (const auto& entry : file.numbers) {
                 names.push_back(entry.first);
             }
-            throw core::UsageError("usage", "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'", {}, core::did_you_mean(part, names));
+            if (std::find(names.begin(), names.end(), part) != names.end()) {
+                throw core::InputError("missing", "this case has no value of '" + part + "', which --reference takes", {file.path, {}, {}, {}});
+            }
+            throw core::UsageError("usage", "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'", {},
+                                   core::did_you_mean(part, names));
         }
         point[k] = known ? *known : core::parse_in(part, "m");
     }
     return point;
+}
+
+/// Conditions that mean something here are in a unit of theirs, and not below nothing.
+void check_conditions(const Batch& batch, const Options& given) {
+    std::vector<std::pair<std::string, std::string>> units = {
+        {"density", "kg/m^3"}, {"speed", "m/s"}, {"reference_x", "m"}, {"reference_y", "m"}, {"reference_z", "m"}};
+    if (!given.mesh_study.empty()) {
+        units.emplace_back(given.mesh_study, "1");
+    }
+    for (const auto& load : postproc::table_row({})) {
+        units.emplace_back(load.name + "_scatter", load.unit);
+    }
+    for (const auto& [name, unit] : batch.number_units) {
+        for (const auto& [known, si] : units) {
+            if (name == known && !core::same_dimension(unit, si)) {
+                throw core::InputError("unit", "the condition '" + name + "' is in " + unit + ", not in " + (si == "1" ? "pure numbers" : si),
+                                       {given.manifest, {}, {}, {}});
+            }
+        }
+    }
+    for (const auto& file : batch.files) {
+        const core::Place place = file.row.file.empty() ? core::Place{file.path, {}, {}, {}} : file.row;
+        postproc::check_scatters(file.numbers, place);
+        if (const auto density = condition_of(file, "density"); density && !(*density > 0)) {
+            throw core::InputError("range", "the density is " + core::format_number(*density) + " kg/m^3", place);
+        }
+    }
 }
 
 postproc::LoadsOptions loads_options(const Options& given) {
@@ -87,10 +127,12 @@ postproc::LoadsOptions loads_options(const Options& given) {
     options.forward = postproc::axis_from(given.forward);
     options.up = postproc::axis_from(given.up);
     options.symmetry = given.symmetry;
-    options.fluid = given.fluid == "automatic" ? postproc::FluidSide::automatic : given.fluid == "file" ? postproc::FluidSide::as_in_file : postproc::FluidSide::reversed;
-    options.reference_pressure = optional_quantity(given.reference_pressure, "Pa").value_or(0);
-    options.references = {optional_quantity(given.density, "kg/m^3"), optional_quantity(given.speed, "m/s"), optional_quantity(given.length, "m"),
-                          optional_quantity(given.width, "m"), optional_quantity(given.height, "m")};
+    options.fluid = given.fluid == "automatic" ? postproc::FluidSide::automatic
+                    : given.fluid == "file"    ? postproc::FluidSide::as_in_file
+                                               : postproc::FluidSide::reversed;
+    options.reference_pressure = given.reference_pressure.empty() ? 0 : option_value("--reference-pressure", given.reference_pressure, "Pa");
+    options.references = {positive("--density", given.density, "kg/m^3"), positive("--speed", given.speed, "m/s"), positive("--length", given.length, "m"),
+                          positive("--width", given.width, "m"), positive("--height", given.height, "m")};
     options.stations = given.stations;
     options.accept_problems = given.accept_problems;
     options.axisymmetric = given.axisymmetric;
@@ -120,7 +162,8 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     line("pitch_moment", &postproc::NamedLoads::pitch_moment, "N m, nose up");
     line("roll_moment", &postproc::NamedLoads::roll_moment, "N m, starboard down");
     line("yaw_moment", &postproc::NamedLoads::yaw_moment, "N m, bow to starboard");
-    const auto vector = [](const postproc::Vector& v) { return core::format_number(v[0], 6) + ", " + core::format_number(v[1], 6) + ", " + core::format_number(v[2], 6); };
+    const auto number = [](double value) { return core::format_number(value, 6); };
+    const auto vector = [&](const postproc::Vector& v) { return number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]); };
     shell.print("force           " + vector(result.total.force) + " N, in the file's axes");
     shell.print("moment          " + vector(result.total.moment) + " N m, about " + vector(result.reference) + " m: " + result.reference_from);
     if (result.centre_of_pressure) {
@@ -137,17 +180,20 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     }
     if (result.coefficients) {
         const auto& c = *result.coefficients;
-        shell.print("C_L " + core::format_number(c.lift, 5) + ", C_D " + core::format_number(c.drag, 5) + ", C_M " + core::format_number(c.pitch_moment, 5) + " on " +
-                    core::format_number(c.length, 4) + " x " + core::format_number(c.width, 4) + " x " + core::format_number(c.height, 4) + " m (" + c.lengths_from + "), " +
-                    core::format_number(c.density, 5) + " kg/m^3, " + core::format_number(c.speed, 4) + " m/s");
+        const auto brief = [](double value, int digits) { return core::format_number(value, digits); };
+        shell.print("C_L " + brief(c.lift, 5) + ", C_D " + brief(c.drag, 5) + ", C_M " + brief(c.pitch_moment, 5) + " on " + brief(c.length, 4) + " x " +
+                    brief(c.width, 4) + " x " + brief(c.height, 4) + " m (" + c.lengths_from + "), " + brief(c.density, 5) + " kg/m^3, " + brief(c.speed, 4) +
+                    " m/s");
     }
     shell.print("from values on " + result.values_from + "; closure " + core::format_number(result.closure, 3) + "; 1 kPa of reference pressure would add " +
-                vector({1000 * result.force_per_reference_pascal[0], 1000 * result.force_per_reference_pascal[1], 1000 * result.force_per_reference_pascal[2]}) + " N");
+                vector(postproc::plus({}, result.force_per_reference_pascal, 1000)) + " N");
     shell.print("sides: " + result.orientation);
     if (!result.stations.empty()) {
-        shell.print("what the part behind each place carries (along forward from the reference point):\n     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
+        shell.print("what the part behind each place carries (along forward from the reference point):\n"
+                    "     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
         for (const auto& station : result.stations) {
-            shell.print("   " + cell(station.position) + "    " + cell(station.behind.lift_force) + "    " + cell(station.behind.drag_force) + "       " + cell(station.behind.pitch_moment));
+            shell.print("   " + cell(station.position) + "    " + cell(station.behind.lift_force) + "    " + cell(station.behind.drag_force) + "       " +
+                        cell(station.behind.pitch_moment));
         }
     }
     print(shell, one.comparisons);
@@ -166,7 +212,8 @@ void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
         const bool zone = one.quantity.find(" on '") != std::string::npos && std::count(one.quantity.begin(), one.quantity.end(), '\'') == 2;
         const bool part = zone || one.quantity.find(" part of ") != std::string::npos;
         if (!part || shell.verbose) {
-            shell.print("  " + one.quantity + std::string(one.quantity.size() < 14 ? 14 - one.quantity.size() : 1, ' ') + cell(one.stated) + "  " + of_force(one));
+            const std::string blanks(one.quantity.size() < 14 ? 14 - one.quantity.size() : 1, ' ');
+            shell.print("  " + one.quantity + blanks + cell(one.stated) + "  " + of_force(one));
         }
     }
     if (!comparisons.empty()) {
@@ -180,12 +227,22 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
     core::Problems notes;
     auto comparisons = postproc::compare_with_stated(cases, notes);
     shell.show(notes);
+    std::vector<std::string> unchecked;
+    for (const auto& one : cases) {
+        if (one.comparisons.empty() && std::none_of(comparisons.begin(), comparisons.end(), [&](const auto& stated) { return stated.file == one.file; })) {
+            unchecked.push_back(one.file);
+        }
+    }
     for (const auto& one : cases) {
         comparisons.insert(comparisons.end(), one.comparisons.begin(), one.comparisons.end());
     }
     if (comparisons.empty()) {
         throw core::InputError("missing", "nothing to check against: no report beside the file and no loads in a manifest", {},
-                               "give a force report with --report, a monitor with --monitor, or a manifest with columns such as lift_force, drag_force, pitch_moment");
+                               "give a force report with --report, a monitor with --monitor, or a manifest with columns such as lift_force, "
+                               "drag_force, pitch_moment");
+    }
+    for (const auto& file : unchecked) {
+        shell.warn(file + ": compared with nothing: no report, monitor or manifest states its loads");
     }
     double worst = 0;
     int failed = 0;
@@ -197,8 +254,8 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
                        (one.stated_in.empty() ? "" : " in " + one.stated_in) + ": " + of_force(one));
         }
     }
-    shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " + core::format_number(100 * worst, 3) + " % of the force apart, " +
-               std::to_string(failed) + " beyond " + core::format_number(100 * allowed, 3) + " %");
+    shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " + core::format_number(100 * worst, 3) +
+               " % of the force apart, " + std::to_string(failed) + " beyond " + core::format_number(100 * allowed, 3) + " %");
     return failed > 0 ? check_failed : done;
 }
 
@@ -213,6 +270,29 @@ std::string beside(const std::string& report, const std::string& file) {
     return (std::filesystem::path(file).parent_path() / name).string();
 }
 
+/// The same of the file in a monitor's QUANTITY=FILE.
+std::string monitor_beside(const std::string& monitor, const std::string& file) {
+    const std::size_t name = monitor.find('=') + 1;  // without one: from the beginning, to be refused as it is
+    return monitor.substr(0, name) + beside(std::string(core::trimmed(monitor.substr(name))), file);
+}
+
+/// Adds what no file states that was there before: a report that lies beside the CFD file and is named as well counts once.
+void add_new(std::vector<postproc::StatedLoad>& stated, const std::vector<postproc::StatedLoad>& more) {
+    std::vector<std::string> before;
+    for (const auto& load : stated) {
+        if (before.empty() || before.back() != load.file) {
+            before.push_back(load.file);
+        }
+    }
+    for (const auto& load : more) {
+        std::error_code ignored;
+        const auto same = [&](const std::string& file) { return file == load.file || std::filesystem::equivalent(file, load.file, ignored); };
+        if (std::none_of(before.begin(), before.end(), same)) {
+            stated.push_back(load);
+        }
+    }
+}
+
 /// What the solver states of a case: beside the file, in the reports and monitors that were named; the later counts.
 void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one, core::Problems& problems) {
     auto stated = postproc::stated_beside(one.file, one.loads);
@@ -222,10 +302,10 @@ void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one, c
         if (more.empty()) {
             throw core::InputError("missing", "no forces in '" + path + "'", {}, "an OpenFOAM case keeps them under postProcessing");
         }
-        stated.insert(stated.end(), more.begin(), more.end());
+        add_new(stated, more);
     }
     for (const auto& text : given.monitors) {
-        stated.push_back(postproc::stated_by_monitor(postproc::monitor_source(beside(text, one.file)), one.loads));
+        stated.push_back(postproc::stated_by_monitor(postproc::monitor_source(monitor_beside(text, one.file)), one.loads));
     }
     for (const auto& load : stated) {
         if (load.history && load.part == postproc::LoadPart::total) {
@@ -238,11 +318,25 @@ void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one, c
     problems.insert(problems.end(), notes.begin(), notes.end());
 }
 
-postproc::LoadsCase case_of(Shell& shell, const Options& given, const ConditionedFile& file, postproc::LoadsOptions options, core::Problems& problems) {
+/// The zones that were asked for; all of them when there are none of some name, for the error to know what there is.
+postproc::Field field_of(Shell& shell, const Options& given, const std::string& path) {
     postproc::ReadOptions read = given.field.read_options();
     read.zones = given.field.zones;
     read.surfaces_only = true;
-    const postproc::Field field = postproc::read_field(file.path, read, shell.progress());
+    postproc::Field field = postproc::read_field(path, read, shell.progress());
+    const bool all_there = std::all_of(read.zones.begin(), read.zones.end(), [&](const std::string& pattern) {
+        return std::any_of(field.zones.begin(), field.zones.end(), [&](const postproc::Zone& zone) { return postproc::matches(pattern, zone.name); });
+    });
+    if (!all_there) {
+        read.zones.clear();
+        field = {};
+        field = postproc::read_field(path, read, shell.progress());
+    }
+    return field;
+}
+
+postproc::LoadsCase case_of(Shell& shell, const Options& given, const ConditionedFile& file, postproc::LoadsOptions options, core::Problems& problems) {
+    const postproc::Field field = field_of(shell, given, file.path);
     problems = field.problems;
     options.reference = reference_of(given.reference, file);
     if (!options.references.speed) {
@@ -302,8 +396,10 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const Options& given, co
         shell.show(said.gathered(shell.verbose));
     }
     if (!failures.empty() && (cases.empty() || !given.keep_going)) {
-        throw core::InputError("file", std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) + " files cannot be used (the first: '" + failures.front().file + "'); nothing was written", {},
-                               cases.empty() ? "" : "mend them, or take the others alone with --keep-going");
+        throw core::InputError("file",
+                               std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) + " files cannot be used (the first: '" +
+                                   failures.front().file + "'); nothing was written",
+                               {}, cases.empty() ? "" : "mend them, or take the others alone with --keep-going");
     }
     return cases;
 }
@@ -314,6 +410,7 @@ int run(Shell& shell, const Options& given) {
     if (batch.files.empty()) {
         throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");
     }
+    check_conditions(batch, given);
     std::vector<Failure> failures;
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
     int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
@@ -321,7 +418,8 @@ int run(Shell& shell, const Options& given) {
     cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study, notes);
     shell.show(notes);
     show_studies(shell, cases);
-    const bool table = batch.files.size() > 1 || !given.manifest.empty() || !given.out.empty();
+    const bool several = batch.files.size() > 1 || (given.files.empty() && !given.manifest.empty());
+    const bool table = several || !given.manifest.empty() || !given.out.empty();
     if (!given.out.empty()) {
         core::write_csv(given.out, postproc::loads_table(cases, batch.number_units));
         shell.info("wrote " + given.out);
@@ -331,7 +429,7 @@ int run(Shell& shell, const Options& given) {
         for (const auto& failure : failures) {
             all["failed"].push_back({{"file", failure.file}, {"message", failure.message}});
         }
-        shell.print_json(table ? all : all["files"].front());
+        shell.print_json(several ? all : all["files"].front());
     } else if (!table) {
         print(shell, cases.front());
     } else if (given.out.empty()) {
@@ -354,22 +452,32 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("files", o->files, "CFD files, or patterns such as 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv'");
     command->add_option("--manifest", o->manifest, "table with a column `file`; its other columns are the conditions")->check(CLI::ExistingFile);
     command->add_option("-o,--out", o->out, "write a table (CSV) with one row a file");
-    command->add_option("--reference", o->reference, "point of the moments \"x,y,z\" in the file's axes, also by conditions: \"0,0,gap\" (default: the centre of the base)");
+    command->add_option("--reference", o->reference,
+                        "point of the moments \"x,y,z\" in the file's axes, also by conditions: \"0,0,gap\" (default: the centre of the base)");
     command->add_option("--base", o->base, "zone whose centre is the default reference")->capture_default_str();
     command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane, with its place if not 0: y, or y=0.1");
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
-    command->add_option("--fluid", o->fluid, "where normals point: automatic, file (into the fluid), reversed")->check(CLI::IsMember({"automatic", "file", "reversed"}))->capture_default_str();
+    command->add_option("--fluid", o->fluid, "where normals point: automatic, file (into the fluid), reversed")
+        ->check(CLI::IsMember({"automatic", "file", "reversed"}))
+        ->capture_default_str();
     command->add_option("--reference-pressure", o->reference_pressure, "taken from all pressures (\"101325 Pa\")");
     command->add_option("--density", o->density, "for coefficients, and for files that hold p/rho (default: the file's, or the condition of that name)");
     command->add_option("--speed", o->speed, "for coefficients (default: the condition of that name)");
     command->add_option("--length", o->length, "for coefficients (default: of the bounding box)");
     command->add_option("--width", o->width, "for coefficients");
     command->add_option("--height", o->height, "for coefficients");
-    command->add_option("--mesh-study", o->mesh_study, "condition with the number of cells, or faces: cases that differ in it alone become one, with NAME_sigma")->type_name("COLUMN");
-    command->add_option("--report", o->reports, "the solver's force report (Fluent's text, CFX's .out), or the OpenFOAM case, to compare with ({stem}: the file's name without ending); found by itself when it lies beside the file");
-    command->add_option("--monitor", o->monitors, "history of a load, QUANTITY=FILE:COLUMN or \"QUANTITY [UNIT]=FILE\": its last value is compared, its scatter becomes NAME_sigma");
-    command->add_option("--check", o->check, "exit code 4 when the loads are further from those stated (report, monitor, manifest) than this share of the force (0.01, \"1 %\")");
+    command->add_option("--mesh-study", o->mesh_study,
+                        "condition with the number of cells, or faces: cases that differ in it alone become one, with NAME_sigma")
+        ->type_name("COLUMN");
+    command->add_option("--report", o->reports,
+                        "the solver's force report (Fluent's text, CFX's .out), or the OpenFOAM case, to compare with ({stem}: the file's name "
+                        "without ending, beside that file); found by itself when it lies beside the file");
+    command->add_option("--monitor", o->monitors,
+                        "history of a load, QUANTITY=FILE:COLUMN or \"QUANTITY [UNIT]=FILE\" ({stem} in FILE: as for --report): its value at the "
+                        "field's time, or its last, is compared, its scatter becomes NAME_sigma");
+    command->add_option("--check", o->check,
+                        "exit code 4 when the loads are further from those stated (report, monitor, manifest) than this share of the force (0.01, \"1 %\")");
     command->add_flag("--axisymmetric", o->axisymmetric, "a plane case is half the section of a body of revolution about x (Fluent cases say so themselves)");
     command->add_option("--stations", o->stations, "running integral along the body in so many steps")->check(CLI::Range(0, 10000));
     command->add_flag("--accept-problems", o->accept_problems, "go on although the file has errors such as faces without area");

@@ -137,6 +137,38 @@ TEST_F(PostprocCommands, LoadsGiveOneResultOrATable) {
     EXPECT_NEAR(read.numbers("lift_force")[1], -1, 1e-12);
     const json both = run_json({"loads", "a-h5.csv", "b-h10.csv"});
     EXPECT_EQ(both["files"].size(), 2U);
+    // One file has its loads at the top, also when it is a table as well; a manifest is a batch.
+    EXPECT_NEAR(run_json({"loads", "a-h5.csv", "--out", "one.csv"})["lift_force"].get<double>(), -1, 1e-12);
+    EXPECT_EQ(core::read_csv(folder_.path() / "one.csv").rows(), 1U);
+    core::write_file(folder_.path() / "list.csv", "file\na-h5.csv\n");
+    EXPECT_EQ(run_json({"loads", "--manifest", "list.csv"})["files"].size(), 1U);
+    EXPECT_NEAR(run_json({"loads", "a-h5.csv", "--manifest", "list.csv"})["lift_force"].get<double>(), -1, 1e-12);  // a row without conditions
+}
+
+TEST_F(PostprocCommands, LoadsAreAManifestAgain) {
+    ASSERT_EQ(run({"loads", "{variant}-h{gap:mm}.csv", "--density", "1000", "--speed", "2", "--out", "first.csv"}).exit_code, 0);
+    const auto again = run({"loads", "--manifest", "first.csv", "--density", "1000", "--speed", "1", "--out", "second.csv"});
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    const core::Table table = core::read_csv(folder_.path() / "second.csv");
+    EXPECT_NEAR(table.numbers("lift_coefficient")[0], 4 * table.numbers("lift_coefficient_stated")[0], 1e-12);
+    EXPECT_EQ(run({"loads", "--manifest", "second.csv", "--density", "1000", "--speed", "1"}).exit_code, 0);
+}
+
+TEST_F(PostprocCommands, LoadsTakeZonesByTheirNames) {
+    EXPECT_EQ(run_json({"loads", "a-h5.csv", "--zones", "base, hull"})["zones"].size(), 2U);
+    const auto wrong = run({"loads", "a-h5.csv", "--zones", "hull,bse"});
+    EXPECT_EQ(wrong.exit_code, 3);
+    EXPECT_THAT(wrong.errors, testing::HasSubstr("no zone fits 'bse'"));
+    EXPECT_THAT(wrong.errors, testing::HasSubstr("did you mean 'base'?"));
+}
+
+TEST_F(PostprocCommands, LoadsRefuseLengthsAndFlowsThatAreNone) {
+    for (const char* option : {"--length", "--width", "--height", "--density", "--speed"}) {
+        const auto refused = run({"loads", "a-h5.csv", option, "0"});
+        EXPECT_EQ(refused.exit_code, 2) << option;
+        EXPECT_THAT(refused.errors, testing::HasSubstr(std::string(option) + " is 0 "));
+        EXPECT_EQ(run({"loads", "a-h5.csv", std::string(option) + "=-1"}).exit_code, 2) << option;
+    }
 }
 
 TEST_F(PostprocCommands, LoadsOfABatchNameEveryFileThatCannotBeUsed) {
@@ -186,6 +218,12 @@ TEST_F(PostprocCommands, LoadsSayWhichRowOfAManifestIsWrong) {
     EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n, b-h10.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("b-h10.csv: 'cells' is missing"));
     EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n0, b-h10.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("'cells' is 0"));
     EXPECT_THAT(refusal("reference_x [m], reference_y [m], reference_z [m], file\n0, 0, , a-h5.csv\n"), testing::HasSubstr("needs reference_x, reference_y and reference_z"));
+    EXPECT_THAT(refusal("reference_x [s], reference_y [m], reference_z [m], file\n0, 0, 0, a-h5.csv\n"), testing::HasSubstr("'reference_x' is in s, not in m"));
+    EXPECT_THAT(refusal("density [m], file\n1000, a-h5.csv\n"), testing::HasSubstr("'density' is in m, not in kg/m^3"));
+    EXPECT_THAT(refusal("density [kg/m^3], file\n1000, a-h5.csv\n-1, b-h10.csv\n"), testing::HasSubstr("list.csv:3: the density is -1 kg/m^3"));
+    EXPECT_THAT(refusal("lift_force_scatter [N], file\n0.1, a-h5.csv\n-0.1, b-h10.csv\n"), testing::HasSubstr("list.csv:3: lift_force_scatter is -0.1 N"));
+    EXPECT_THAT(refusal("cells [m], file\n1000, a-h5.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("'cells' is in m, not in pure numbers"));
+    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n, b-h10.csv\n", {"--reference", "0,0,gap"}), testing::HasSubstr("b-h10.csv: this case has no value of 'gap'"));
 }
 
 TEST_F(PostprocCommands, LoadsAreCheckedAgainstAManifest) {
@@ -194,6 +232,12 @@ TEST_F(PostprocCommands, LoadsAreCheckedAgainstAManifest) {
     EXPECT_EQ(wrong.exit_code, 4);
     EXPECT_THAT(wrong.errors, testing::HasSubstr("b-h10.csv: lift_force is -1, stated -1.2"));
     EXPECT_EQ(run({"loads", "a-h5.csv", "--manifest", "stated.csv", "--check", "0.01"}).exit_code, 0);
+    core::write_file(folder_.path() / "part.csv", "gap [mm], lift_force [N], file\n5, -1, a-h5.csv\n10, , b-h10.csv\n");
+    const auto part = run({"loads", "--manifest", "part.csv", "--check", "0.01"});
+    EXPECT_EQ(part.exit_code, 0);
+    EXPECT_THAT(part.errors, testing::HasSubstr("b-h10.csv: 'lift_force' is not stated of this case"));
+    EXPECT_THAT(part.errors, testing::HasSubstr("b-h10.csv: compared with nothing"));
+    EXPECT_THAT(part.errors, testing::Not(testing::HasSubstr("a-h5.csv: compared with nothing")));
 }
 
 TEST_F(PostprocCommands, LoadsAreCheckedAgainstTheSolversOwnReport) {
@@ -212,6 +256,12 @@ TEST_F(PostprocCommands, LoadsAreCheckedAgainstTheSolversOwnReport) {
     const json comparison = json::parse(wrong.output)["comparison"];
     ASSERT_EQ(comparison.size(), 9U);
     EXPECT_NEAR(comparison[6]["difference"].get<double>(), 0.02, 1e-12);
+    // Named as well, or twice, it counts once.
+    const auto once = run({"loads", "a-h5.csv", "--report", "a-h5-forces.txt", "--report", "./{stem}-forces.txt", "--report", "right.txt", "--report", "right.txt", "--json"});
+    EXPECT_EQ(json::parse(once.output)["comparison"].size(), 18U);
+    const auto one_of_two = run({"loads", "a-h5.csv", "b-h10.csv", "--check", "5 %"});
+    EXPECT_EQ(one_of_two.exit_code, 0);
+    EXPECT_THAT(one_of_two.errors, testing::HasSubstr("b-h10.csv: compared with nothing"));
     EXPECT_EQ(run({"loads", "b-h10.csv", "--report", "right.txt", "--check", "0.1 %"}).exit_code, 0);
     EXPECT_EQ(run({"loads", "b-h10.csv", "--report", "{stem}-forces.txt", "--check", "0.1 %"}).exit_code, 3);  // there is none
     const auto nothing = run({"loads", "b-h10.csv", "--check", "0.1 %"});
@@ -230,6 +280,9 @@ TEST_F(PostprocCommands, LoadsTakeTheirScatterFromAMonitor) {
     EXPECT_EQ(table.exit_code, 0) << table.errors;
     const core::Table read = core::read_csv(folder_.path() / "loads.csv");
     EXPECT_NEAR(read.numbers("lift_force_sigma")[1], 0.01, 1e-3);
+    const auto elsewhere = run_underbody({"loads", (folder_.path() / "a-h5.csv").string(), "--monitor", "lift_force [N]= {stem}-lift.out:lift"}, "/");
+    EXPECT_EQ(elsewhere.exit_code, 0) << elsewhere.errors;
+    EXPECT_THAT(elsewhere.output, testing::HasSubstr("a-h5-lift.out"));
     EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out", "--check", "0.5 %"}).exit_code, 4);
     EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out", "--check", "1.5 %"}).exit_code, 0);
     EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift=a-h5-lift.out"}).exit_code, 2);
@@ -279,6 +332,8 @@ TEST_F(PostprocCommands, ImportWritesVtkFiles) {
     EXPECT_EQ(run({"import", "*-h*.csv", "--out", "all.vtm"}).exit_code, 0);
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "a.vtp"));
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "all-b-h10.vtm"));
+    EXPECT_EQ(run({"import", "a-h5.csv", "--out", "trimmed.vtp", "--arrays", "wall_shear, pressure"}).exit_code, 0);
+    EXPECT_EQ(run_json({"info", "trimmed.vtp"})["arrays"][0]["name"], "pressure");
     EXPECT_EQ(run({"import", "a-h5.csv", "--out", "a.xyz"}).exit_code, 2);
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a.xyz"));
 }
