@@ -12,9 +12,13 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
 
 #include "core/file.h"
 #include "core/text.h"
+#include "postproc/vtk_description.h"
 
 namespace underbody::postproc {
 
@@ -22,8 +26,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Units and origin travel with the data.
-void describe(vtkDataObject& data, const Field& field, const std::vector<const Zone*>& zones) {
+/// A zone on its way into a file with others: its data may be changed, the zone's own not.
+struct Joined {
+    const Zone* zone = nullptr;
+    vtkSmartPointer<vtkDataSet> data;
+    int mark = 0;
+};
+
+Joined joined_from(const Zone& zone, vtkDataSet& data) {
+    Joined joined{&zone, vtk::TakeSmartPointer(data.NewInstance()), zone.id};
+    joined.data->ShallowCopy(&data);
+    return joined;
+}
+
+/// Units and origin travel with the data: for people, and for ourselves.
+void describe(vtkDataObject& data, const Field& field, const std::vector<Joined>& parts) {
     vtkNew<vtkStringArray> origin;
     origin->SetName("origin");
     for (const auto& file : field.files) {
@@ -34,26 +51,48 @@ void describe(vtkDataObject& data, const Field& field, const std::vector<const Z
     std::vector<std::string> seen;
     vtkNew<vtkStringArray> names;
     names->SetName("zone_names");
-    for (const Zone* zone : zones) {
-        names->InsertNextValue(std::to_string(zone->id) + " " + zone->name);
-        for (const auto& info : zone->arrays) {
+    std::vector<DescribedZone> zones;
+    for (const auto& part : parts) {
+        const Zone& zone = *part.zone;
+        names->InsertNextValue(std::to_string(part.mark) + " " + zone.name);
+        for (const auto& info : zone.arrays) {
             if (std::find(seen.begin(), seen.end(), info.name) == seen.end()) {
                 seen.push_back(info.name);
                 units->InsertNextValue(info.name + " [" + info.unit + "]");
             }
         }
+        DescribedZone described;
+        described.zone = zone;
+        described.zone.surface = nullptr;
+        described.zone.volume = nullptr;
+        described.mark = part.mark;
+        described.surface = zone.volume == nullptr;
+        described.points = part.data->GetNumberOfPoints();
+        described.cells = part.data->GetNumberOfCells();
+        zones.push_back(std::move(described));
     }
     data.GetFieldData()->AddArray(origin);
     data.GetFieldData()->AddArray(units);
     data.GetFieldData()->AddArray(names);
+    describe_in(data, field, zones);
 }
 
-void mark_zone(vtkDataSet& data, int id) {
-    vtkNew<vtkIntArray> zone;
-    zone->SetName("zone");
-    zone->SetNumberOfTuples(data.GetNumberOfCells());
-    zone->Fill(id);
-    data.GetCellData()->AddArray(zone);
+/// Numbers its zones in its cells: by their ids, unless two have the same.
+void mark_zones(std::vector<Joined>& parts) {
+    std::set<int> ids;
+    for (const auto& part : parts) {
+        ids.insert(part.mark);
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (ids.size() < parts.size()) {
+            parts[i].mark = static_cast<int>(i) + 1;
+        }
+        vtkNew<vtkIntArray> marks;
+        marks->SetName(mark_name);
+        marks->SetNumberOfTuples(parts[i].data->GetNumberOfCells());
+        marks->Fill(parts[i].mark);
+        parts[i].data->GetCellData()->AddArray(marks);
+    }
 }
 
 template <typename Writer, typename Data>
@@ -70,65 +109,112 @@ void write_whole(Data& data, const fs::path& path) {
     pending.commit();
 }
 
-void note_lost_arrays(const std::vector<const Zone*>& zones, vtkDataSet& joined, core::Problems& problems) {
+void note_lost_arrays(const std::vector<Joined>& parts, vtkDataSet& joined, core::Problems& problems) {
     std::vector<std::string> told;
-    for (const Zone* zone : zones) {
-        for (const auto& info : zone->arrays) {
+    for (const auto& part : parts) {
+        for (const auto& info : part.zone->arrays) {
             const bool kept = joined.GetPointData()->HasArray(info.name.c_str()) != 0 || joined.GetCellData()->HasArray(info.name.c_str()) != 0;
             if (!kept && std::find(told.begin(), told.end(), info.name) == told.end()) {
                 told.push_back(info.name);
-                problems.push_back({core::Problem::Severity::warning, "array '" + info.name + "' is left out: not every zone has it (a .vtm keeps it)", {}});
+                problems.push_back({core::Problem::Severity::warning, "array '" + info.name + "' is left out: it is not of one kind in all zones (a .vtm keeps it)", {}});
             }
         }
     }
 }
 
-core::Problems write_surfaces(const Field& field, const fs::path& path) {
-    vtkNew<vtkAppendPolyData> append;
-    std::vector<const Zone*> zones;
-    for (const auto& zone : field.zones) {
-        if (zone.surface != nullptr && zone.surface->GetNumberOfPoints() > 0) {
-            vtkNew<vtkPolyData> copy;
-            copy->ShallowCopy(zone.surface);
-            mark_zone(*copy, zone.id);
-            append->AddInputData(copy);
-            zones.push_back(&zone);
+/// What joins data sets keeps only arrays that all have: those that a zone lacks are not-a-number there.
+void fill_up(std::vector<Joined>& parts, bool on_nodes, core::Problems& problems) {
+    const auto data_of = [&](const Joined& part) {
+        return on_nodes ? static_cast<vtkDataSetAttributes*>(part.data->GetPointData()) : static_cast<vtkDataSetAttributes*>(part.data->GetCellData());
+    };
+    std::map<std::string, vtkSmartPointer<vtkDataArray>> known;
+    for (const auto& part : parts) {
+        for (const auto& info : part.zone->arrays) {
+            vtkDataArray* array = data_of(part)->GetArray(info.name.c_str());
+            if (array != nullptr && (array->GetDataType() == VTK_DOUBLE || array->GetDataType() == VTK_FLOAT)) {
+                known.try_emplace(info.name, array);
+            }
         }
     }
-    if (zones.empty()) {
-        throw core::InputError("zone", "the file holds no surfaces, lines or points for a .vtp", {field.files.front(), {}, {}, {}}, "volumes go into a .vtu or .vtm");
+    for (const auto& [name, like] : known) {
+        std::string without;
+        for (auto& part : parts) {
+            if (data_of(part)->HasArray(name.c_str()) != 0) {
+                continue;
+            }
+            auto nothing = vtk::TakeSmartPointer(like->NewInstance());
+            nothing->SetName(name.c_str());
+            nothing->SetNumberOfComponents(like->GetNumberOfComponents());
+            nothing->SetNumberOfTuples(on_nodes ? part.data->GetNumberOfPoints() : part.data->GetNumberOfCells());
+            nothing->Fill(std::nan(""));
+            data_of(part)->AddArray(nothing);
+            without += (without.empty() ? "'" : ", '") + part.zone->name + "'";
+        }
+        if (!without.empty()) {
+            problems.push_back({core::Problem::Severity::note, "array '" + name + "' is not-a-number on zones that do not have it (" + without + ")", {}});
+        }
+    }
+}
+
+/// Joins the parts and writes them.
+template <typename Append, typename Writer>
+core::Problems write_joined(const Field& field, std::vector<Joined>& parts, const fs::path& path) {
+    core::Problems problems;
+    mark_zones(parts);
+    fill_up(parts, true, problems);
+    fill_up(parts, false, problems);
+    vtkNew<Append> append;
+    for (const auto& part : parts) {
+        append->AddInputDataObject(part.data);
     }
     append->Update();
-    describe(*append->GetOutput(), field, zones);
-    core::Problems problems;
-    note_lost_arrays(zones, *append->GetOutput(), problems);
-    write_whole<vtkXMLPolyDataWriter>(*append->GetOutput(), path);
+    describe(*append->GetOutput(), field, parts);
+    note_lost_arrays(parts, *append->GetOutput(), problems);
+    write_whole<Writer>(*append->GetOutput(), path);
+    return problems;
+}
+
+/// Who wants surfaces hardly misses the volumes; the other way round the loads would be gone.
+void note_lost_zones(const Field& field, const std::vector<Joined>& parts, core::Problem::Severity severity, const std::string& ending, core::Problems& problems) {
+    std::string names;
+    for (const auto& zone : field.zones) {
+        const bool kept = std::any_of(parts.begin(), parts.end(), [&](const Joined& part) { return part.zone == &zone; });
+        names += kept ? "" : (names.empty() ? "'" : ", '") + zone.name + "'";
+    }
+    if (!names.empty()) {
+        problems.push_back({severity, "left out: " + names + ", which a " + ending + " does not take (a .vtm takes every zone)", {}});
+    }
+}
+
+core::Problems write_surfaces(const Field& field, const fs::path& path) {
+    std::vector<Joined> parts;
+    for (const auto& zone : field.zones) {
+        if (zone.surface != nullptr && zone.surface->GetNumberOfPoints() > 0) {
+            parts.push_back(joined_from(zone, *zone.surface));
+        }
+    }
+    if (parts.empty()) {
+        throw core::InputError("zone", "the file holds no surfaces, lines or points for a .vtp", {field.files.front(), {}, {}, {}}, "volumes go into a .vtu or .vtm");
+    }
+    auto problems = write_joined<vtkAppendPolyData, vtkXMLPolyDataWriter>(field, parts, path);
+    note_lost_zones(field, parts, core::Problem::Severity::note, ".vtp", problems);
     return problems;
 }
 
 core::Problems write_volumes(const Field& field, const fs::path& path) {
-    vtkNew<vtkAppendFilter> append;
-    std::vector<const Zone*> zones;
+    std::vector<Joined> parts;
     const bool volumes = std::any_of(field.zones.begin(), field.zones.end(), [](const Zone& z) { return z.volume != nullptr; });
     for (const auto& zone : field.zones) {
         vtkDataSet* data = zone.volume != nullptr ? static_cast<vtkDataSet*>(zone.volume) : zone.surface.Get();
-        if (data == nullptr || data->GetNumberOfPoints() == 0 || (volumes && zone.volume == nullptr)) {
-            continue;
+        if (data != nullptr && data->GetNumberOfPoints() > 0 && (!volumes || zone.volume != nullptr)) {
+            parts.push_back(joined_from(zone, *data));
         }
-        vtkSmartPointer<vtkDataSet> copy = vtk::TakeSmartPointer(data->NewInstance());
-        copy->ShallowCopy(data);
-        mark_zone(*copy, zone.id);
-        append->AddInputData(copy);
-        zones.push_back(&zone);
     }
-    if (zones.empty()) {
+    if (parts.empty()) {
         throw core::InputError("zone", "the file holds no points in space", {field.files.front(), {}, {}, {}});
     }
-    append->Update();
-    describe(*append->GetOutput(), field, zones);
-    core::Problems problems;
-    note_lost_arrays(zones, *append->GetOutput(), problems);
-    write_whole<vtkXMLUnstructuredGridWriter>(*append->GetOutput(), path);
+    auto problems = write_joined<vtkAppendFilter, vtkXMLUnstructuredGridWriter>(field, parts, path);
+    note_lost_zones(field, parts, core::Problem::Severity::warning, volumes ? ".vtu with volumes" : ".vtu", problems);
     return problems;
 }
 
@@ -148,16 +234,15 @@ core::Problems write_blocks(const Field& field, const fs::path& path, core::Prog
         progress.check();
         const Zone& zone = field.zones[i];
         const std::string name = file_name(zone, i);
-        if (zone.volume != nullptr) {
-            vtkNew<vtkUnstructuredGrid> copy;
-            copy->ShallowCopy(zone.volume);
-            describe(*copy, field, {&zone});
-            write_whole<vtkXMLUnstructuredGridWriter>(*copy, folder / name);
-        } else if (zone.surface != nullptr) {
-            vtkNew<vtkPolyData> copy;
-            copy->ShallowCopy(zone.surface);
-            describe(*copy, field, {&zone});
-            write_whole<vtkXMLPolyDataWriter>(*copy, folder / name);
+        vtkDataSet* data = zone.volume != nullptr ? static_cast<vtkDataSet*>(zone.volume) : zone.surface.Get();
+        if (data != nullptr) {
+            const Joined part = joined_from(zone, *data);
+            describe(*part.data, field, {part});
+            if (zone.volume != nullptr) {
+                write_whole<vtkXMLUnstructuredGridWriter>(*part.data, folder / name);
+            } else {
+                write_whole<vtkXMLPolyDataWriter>(*part.data, folder / name);
+            }
         }
         index += "    <DataSet index=\"" + std::to_string(i) + "\" name=\"" + core::escape_html(zone.name) + "\" file=\"" +
                  core::escape_html((folder.filename() / name).string()) + "\"/>\n";

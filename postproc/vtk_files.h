@@ -9,8 +9,10 @@
 
 namespace underbody::postproc {
 
-/// By the ending: .vtp all surfaces in one (cell array `zone`), .vtu everything in one, .vtm one block a zone (files in
-/// a folder of the same name). Written whole or not at all. Returns what was left out (arrays that not all zones have).
+/// By the ending: .vtp all surfaces in one, .vtu all volumes in one, or all surfaces where there are no volumes, .vtm one
+/// block a zone (files in a folder of the same name). The cell array `zone` tells zones apart, arrays are not-a-number on
+/// zones that do not have them, and a description (vtk_description.h) keeps what is known of the zones. Written whole or
+/// not at all. Returns what was left out or filled.
 /// Throws core::UsageError for another ending, core::InputError when the field has nothing that fits the ending.
 core::Problems write_vtk(const Field& field, const std::filesystem::path& path, core::Progress& progress = core::Progress::none());
 

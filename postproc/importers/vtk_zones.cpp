@@ -26,6 +26,7 @@
 #include "postproc/importers/array_names.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/variable_reading.h"
+#include "postproc/importers/vtk_described.h"
 #include "postproc/importers/vtk_sides.h"
 
 namespace underbody::postproc {
@@ -77,12 +78,13 @@ Units units_in(vtkFieldData& data) {
 std::vector<ReadArray> taken_arrays(Field& field, vtkDataSetAttributes& data, Location on, const Units& units, const ReadOptions& options,
                                     std::vector<ArrayPlan>& plans) {
     std::vector<ReadArray> arrays;
+    std::vector<std::string> written;
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
         vtkDataArray* array = data.GetArray(i);
         if (array == nullptr || array->GetName() == nullptr) {
             continue;
         }
-        const std::string original = array->GetName();
+        const std::string original = name_in_file(array->GetName());
         const bool asked = unit_must_be_stated(original, options);
         if (asked) {
             ask_for_unit(field, original);
@@ -94,10 +96,11 @@ std::vector<ReadArray> taken_arrays(Field& field, vtkDataSetAttributes& data, Lo
         const int components = array->GetNumberOfComponents();
         const std::string name = components == 1 ? named_as_scalar({reading.name, reading.unit}).name : reading.name;
         plans.push_back({reading.own, name, components});
+        written.emplace_back(array->GetName());
         arrays.push_back({array, {name, reading.unit, original, reading.original_unit, on, components}, reading.convert});
     }
-    for (const auto& array : arrays) {
-        data.RemoveArray(array.info.original_name.c_str());
+    for (const auto& name : written) {
+        data.RemoveArray(name.c_str());
     }
     return arrays;
 }
@@ -287,12 +290,134 @@ bool is_plane(const Zone& zone) {
     return dimension_of(*zone.surface) == 0 && box.IsValid() && box.GetLength(2) == 0;
 }
 
-void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
+void scale_to_metres(vtkPointSet& data, const ReadOptions& options) {
+    const double scale = options.length_unit.empty() ? 1 : core::conversion(options.length_unit, "m").scale;
+    auto* points = data.GetPoints()->GetData();
+    for (vtkIdType i = 0; i < points->GetNumberOfTuples() && scale != 1; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            points->SetComponent(i, k, scale * points->GetComponent(i, k));
+        }
+    }
+}
+
+/// What the descriptions of a file's parts say of the whole, where they agree.
+class Origin {
+public:
+    void add(const Field& described) {
+        const auto pressure = std::pair(described.pressure.kind, described.pressure.operating_pressure);
+        if (!first_) {
+            first_ = described;
+            return;
+        }
+        alike_ = alike_ && described.dimension == first_->dimension && described.density == first_->density &&
+                 pressure == std::pair(first_->pressure.kind, first_->pressure.operating_pressure);
+    }
+    void add_unknown() { unknown_ = true; }
+    [[nodiscard]] bool is_known() const { return first_.has_value() && !unknown_; }
+
+    void put_into(Field& field) const {
+        if (!is_known()) {
+            return;
+        }
+        if (!alike_) {
+            field.problems.push_back({core::Problem::Severity::warning, "its blocks come from files of different pressure reference, density or dimension: none of these is taken up", {field.files.front(), {}, {}, {}}});
+            return;
+        }
+        field.writer = first_->writer;
+        field.dimension = first_->dimension;
+        field.pressure = first_->pressure;
+        field.density = first_->density;
+        field.metadata = first_->metadata;
+        if (first_->format != field.format) {
+            field.metadata.emplace_back("imported from", first_->format);
+        }
+    }
+
+private:
+    std::optional<Field> first_;
+    bool alike_ = true;
+    bool unknown_ = false;
+};
+
+/// Takes out the arrays of which the file says what they are, and away those that only other zones have.
+std::vector<std::pair<vtkSmartPointer<vtkDataArray>, ArrayInfo>> take_described(const std::vector<ArrayInfo>& described, const Description& description, vtkDataSetAttributes& data,
+                                                                                Location on, const ReadOptions& options) {
+    // A surface may hold values of the cells beside its faces.
+    const auto here = [&](const ArrayInfo& info) { return (info.on == Location::nodes) == (on == Location::nodes); };
+    std::vector<std::pair<vtkSmartPointer<vtkDataArray>, ArrayInfo>> known;
+    for (const auto& info : described) {
+        vtkSmartPointer<vtkDataArray> values = data.GetArray(info.name.c_str());
+        const bool as_it_was = here(info) && values != nullptr && values->GetNumberOfComponents() == info.components;
+        // What the caller knows better, and what nobody knew, is read like that of any file.
+        if (!as_it_was || name_in_file(info.name) != info.name || is_unit_stated(options, info.name)) {
+            continue;
+        }
+        data.RemoveArray(info.name.c_str());
+        if (is_wanted(options, info.original_name, info.name)) {
+            known.emplace_back(values, info);
+        }
+    }
+    for (const auto& other : description.zones) {
+        for (const auto& info : other.zone.arrays) {
+            const bool own = std::any_of(described.begin(), described.end(), [&](const ArrayInfo& i) { return i.name == info.name && here(i); });
+            if (!own && here(info)) {
+                data.RemoveArray(info.name.c_str());
+            }
+        }
+    }
+    return known;
+}
+
+/// The zones of a data set that we wrote: their kinds, sides and units stand in it.
+void add_described_zones(Field& field, const std::string& name, vtkDataSet& data, const Description& description, const ReadOptions& options) {
+    const Units units = units_in(*data.GetFieldData());
+    auto parts = parts_of(data, description);
+    for (auto& part : parts) {
+        Zone zone = std::move(part.zone);
+        const std::vector<ArrayInfo> described = std::move(zone.arrays);
+        zone.arrays.clear();
+        zone.normals_into_fluid = zone.normals_into_fluid && part.as_written;
+        if (field.find(zone.name) != nullptr) {
+            zone.name = name.empty() || parts.size() > 1 ? name + "/" + zone.name : name;
+        }
+        zone.surface = vtkPolyData::SafeDownCast(part.data);
+        zone.volume = vtkUnstructuredGrid::SafeDownCast(part.data);
+        for (const Location on : {Location::nodes, zone.surface != nullptr ? Location::faces : Location::cells}) {
+            vtkDataSetAttributes* attributes = on == Location::nodes ? static_cast<vtkDataSetAttributes*>(part.data->GetPointData()) : part.data->GetCellData();
+            const auto known = take_described(described, description, *attributes, on, options);
+            add_arrays(field, zone, *attributes, on, units, description.field.dimension, options);
+            for (const auto& [values, info] : known) {
+                attributes->AddArray(values);
+                zone.arrays.push_back(info);
+            }
+        }
+        // Who looks for an array by its name takes the first one.
+        const auto place = [&](const ArrayInfo& info) {
+            return std::find_if(described.begin(), described.end(), [&](const ArrayInfo& other) { return other.name == info.name && other.on == info.on; }) - described.begin();
+        };
+        std::stable_sort(zone.arrays.begin(), zone.arrays.end(), [&](const ArrayInfo& a, const ArrayInfo& b) { return place(a) < place(b); });
+        scale_to_metres(*vtkPointSet::SafeDownCast(part.data), options);
+        field.zones.push_back(std::move(zone));
+    }
+}
+
+void add_zone(Field& field, Origin& origin, const std::string& name, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
     auto* read = vtkDataSet::SafeDownCast(object);
     if (read == nullptr || read->GetNumberOfPoints() == 0) {
         return;
     }
     const vtkSmartPointer<vtkDataSet> data = own_copy(*read);
+    if (const auto description = description_in(*read)) {
+        const std::size_t before = field.zones.size();
+        add_described_zones(field, name, *data, *description, options);
+        if (field.zones.size() > before) {
+            origin.add(description->field);
+            return;
+        }
+        field.problems.push_back({core::Problem::Severity::warning, "it had " + std::to_string(description->zones.size()) + " zones, but its cells no longer say which they are of: they are read as one",
+                                  {field.files.front(), {}, {}, {}}});
+    }
+    origin.add_unknown();
     Zone zone;
     zone.name = name;
     zone.id = static_cast<int>(field.zones.size()) + 1;
@@ -313,23 +438,15 @@ void add_zone(Field& field, const std::string& name, vtkDataObject* object, bool
         own->GetPointData()->ShallowCopy(data->GetPointData());
         own->GetCellData()->ShallowCopy(data->GetCellData());
     }
-    if (!options.length_unit.empty()) {
-        const double scale = core::conversion(options.length_unit, "m").scale;
-        auto* points = own->GetPoints()->GetData();
-        for (vtkIdType i = 0; i < points->GetNumberOfTuples() && scale != 1; ++i) {
-            for (int k = 0; k < 3; ++k) {
-                points->SetComponent(i, k, scale * points->GetComponent(i, k));
-            }
-        }
-    }
+    scale_to_metres(*own, options);
     field.zones.push_back(std::move(zone));
 }
 
 /// All leaves of a tree, named after the path to them.
-void add_tree(Field& field, const std::string& path, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
+void add_tree(Field& field, Origin& origin, const std::string& path, vtkDataObject* object, bool faces_are_surfaces, const ReadOptions& options) {
     auto* tree = vtkDataObjectTree::SafeDownCast(object);
     if (tree == nullptr) {
-        add_zone(field, path, object, faces_are_surfaces, options);
+        add_zone(field, origin, path, object, faces_are_surfaces, options);
         return;
     }
     auto walk = vtkSmartPointer<vtkDataObjectTreeIterator>::New();
@@ -341,7 +458,7 @@ void add_tree(Field& field, const std::string& path, vtkDataObject* object, bool
         const char* own =
             walk->HasCurrentMetaData() != 0 ? walk->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()) : nullptr;
         const std::string name = own != nullptr ? own : std::to_string(index);
-        add_tree(field, path.empty() ? name : path + "/" + name, walk->GetCurrentDataObject(), faces_are_surfaces, options);
+        add_tree(field, origin, path.empty() ? name : path + "/" + name, walk->GetCurrentDataObject(), faces_are_surfaces, options);
     }
 }
 
@@ -373,11 +490,15 @@ void note_units(Field& field, const ReadOptions& options) {
 
 Field field_from_vtk(const std::filesystem::path& path, const std::string& format, vtkDataObject* object, const ReadOptions& options, core::Progress& progress) {
     Field field = field_for(path, format);
-    add_tree(field, vtkDataObjectTree::SafeDownCast(object) != nullptr ? "" : path.stem().string(), object,
+    Origin origin;
+    add_tree(field, origin, vtkDataObjectTree::SafeDownCast(object) != nullptr ? "" : path.stem().string(), object,
              grids_are_surfaces(object), options);
+    origin.put_into(field);
     settle_sides(field, progress);
     std::erase_if(field.zones, [&](const Zone& zone) { return !matches_any(options.zones, zone.name); });
-    note_units(field, options);
+    if (!origin.is_known()) {
+        note_units(field, options);
+    }
     std::erase_if(field.zones, [&](const Zone& zone) { return zone.volume != nullptr && options.surfaces_only; });
     if (field.zones.empty() && options.zones.empty() && !options.surfaces_only) {
         throw core::InputError("format", "there are no points in this file", {path.string(), {}, {}, {}});

@@ -1,11 +1,19 @@
 // VTK's own files and surfaces, whole and damaged: what other programs write.
 #include <gmock/gmock.h>
 #include <vtkCellData.h>
+#include <vtkCleanPolyData.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkStringArray.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 
 #include "core/file.h"
 #include "import_support.h"
@@ -105,6 +113,142 @@ TEST(VtkFiles, XmlLegacyAndStructuredGridsHaveTheirCellsAndArrays) {
     EXPECT_EQ(grid.zones.at(0).volume->GetCellData()->GetArray("pressure")->GetTuple1(1), 2);
 }
 
+/// Everything of a field but its files, format and notes.
+void expect_same(const postproc::Field& found, const postproc::Field& wanted, bool volumes) {
+    EXPECT_EQ(found.dimension, wanted.dimension);
+    EXPECT_EQ(found.writer, wanted.writer);
+    EXPECT_EQ(found.pressure.kind, wanted.pressure.kind);
+    EXPECT_EQ(found.pressure.operating_pressure, wanted.pressure.operating_pressure);
+    EXPECT_EQ(found.density, wanted.density);
+    std::size_t count = 0;
+    for (const auto& zone : wanted.zones) {
+        if (zone.surface == nullptr && !volumes) {
+            continue;
+        }
+        SCOPED_TRACE(zone.name);
+        ++count;
+        const auto* again = found.find(zone.name);
+        ASSERT_NE(again, nullptr);
+        EXPECT_EQ(again->id, zone.id);
+        EXPECT_EQ(again->kind, zone.kind);
+        EXPECT_EQ(again->original_kind, zone.original_kind);
+        EXPECT_EQ(again->normals_into_fluid, zone.normals_into_fluid);
+        ASSERT_EQ(again->surface != nullptr, zone.surface != nullptr);
+        vtkPointSet* before = zone.surface != nullptr ? static_cast<vtkPointSet*>(zone.surface) : zone.volume;
+        vtkPointSet* after = again->surface != nullptr ? static_cast<vtkPointSet*>(again->surface) : again->volume;
+        EXPECT_EQ(after->GetNumberOfPoints(), before->GetNumberOfPoints());
+        EXPECT_EQ(after->GetNumberOfCells(), before->GetNumberOfCells());
+        EXPECT_EQ(again->arrays.size(), zone.arrays.size());
+        for (const auto& info : zone.arrays) {
+            const auto* array = again->find(info.name);
+            ASSERT_NE(array, nullptr) << info.name;
+            EXPECT_EQ(array->unit, info.unit);
+            EXPECT_EQ(array->original_name, info.original_name);
+            EXPECT_EQ(array->on, zone.find(info.name)->on);  // several places may have one name: the first
+        }
+    }
+    EXPECT_EQ(found.zones.size(), count);
+}
+
+TEST(VtkFiles, WhatImportWritesGivesTheSameLoadsOfTheSameBody) {
+    const core::TemporaryFolder folder;
+    // A body over a ground, whose zones have no kinds and not the same arrays.
+    core::write_file(folder.path() / "body.csv",
+                     "[Name]\nhull\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Yplus\n0,0,1,1,5\n1,0,1,3,5\n0,1,1,4,5\n0,0,2,5,5\n[Faces]\n0,1,3\n1,2,3\n0,3,2\n\n"
+                     "[Name]\nbase\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n0,0,1,1\n1,0,1,3\n0,1,1,4\n[Faces]\n0,2,1\n\n"
+                     "[Name]\nground\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n-9,-9,0,1\n9,-9,0,1\n9,9,0,1\n-9,9,0,1\n[Faces]\n0,1,2,3\n");
+    const std::vector<std::pair<fs::path, std::vector<std::string>>> cases = {{folder.path() / "body.csv", {}},
+                                                                              {test::data_folder() / "fluent_legacy/ascii.dat", {"body"}},
+                                                                              {test::data_folder() / "openfoam/ascii", {"*Wall*"}},
+                                                                              {test::data_folder() / "cgns/cfx-like.cgns", {}},
+                                                                              {test::data_folder() / "cgns/polyhedra.cgns", {}}};
+    for (const auto& [file, zones] : cases) {
+        const auto field = read_field(file);
+        for (const char* ending : {".vtm", ".vtp", ".vtu"}) {
+            if (ending == std::string(".vtu") && file.extension() != ".csv") {
+                continue;  // takes the volumes only
+            }
+            SCOPED_TRACE(file.string() + " as " + ending);
+            const fs::path out = folder.path() / ("out" + std::string(ending));
+            postproc::write_vtk(field, out);
+            const auto again = read_field(out);
+            expect_same(again, field, ending == std::string(".vtm"));
+            postproc::LoadsOptions options;
+            options.zones = zones;
+            const auto wanted = postproc::loads(field, options);
+            const auto found = postproc::loads(again, options);
+            EXPECT_EQ(found.values_from, wanted.values_from);
+            ASSERT_EQ(found.zones.size(), wanted.zones.size());
+            for (std::size_t z = 0; z < found.zones.size(); ++z) {
+                EXPECT_EQ(found.zones[z].name, wanted.zones[z].name);
+            }
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_NEAR(found.pressure.force[k], wanted.pressure.force[k], 1e-12 * wanted.area);
+                EXPECT_NEAR(found.viscous.force[k], wanted.viscous.force[k], 1e-12 * wanted.area);
+                EXPECT_NEAR(found.total.moment[k], wanted.total.moment[k], 1e-12 * wanted.area);
+            }
+        }
+    }
+}
+
+TEST(VtkFiles, FilesOfOursThatOthersChangedKeepWhatIsStillTrue) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(test::data_folder() / "fluent_legacy" / "ascii.dat");
+    postproc::write_vtk(field, folder.path() / "all.vtp");
+    const auto changed = [&](const std::function<void(vtkPolyData&)>& change) {
+        vtkNew<vtkXMLPolyDataReader> reader;
+        reader->SetFileName((folder.path() / "all.vtp").c_str());
+        reader->Update();
+        change(*reader->GetOutput());
+        vtkNew<vtkXMLPolyDataWriter> writer;
+        writer->SetFileName((folder.path() / "changed.vtp").c_str());
+        writer->SetInputData(reader->GetOutput());
+        writer->Write();
+        return read_field(folder.path() / "changed.vtp");
+    };
+    // Points that lay on each other became one: which side the faces look to may have changed too.
+    const auto merged = changed([](vtkPolyData& data) {
+        vtkNew<vtkCleanPolyData> clean;
+        clean->SetInputData(&data);
+        clean->Update();
+        data.ShallowCopy(clean->GetOutput());
+    });
+    ASSERT_EQ(merged.zones.size(), static_cast<std::size_t>(std::count_if(field.zones.begin(), field.zones.end(), [](const auto& zone) { return zone.surface != nullptr; })));
+    for (const auto& zone : merged.zones) {
+        const auto* before = field.find(zone.name);
+        ASSERT_NE(before, nullptr) << zone.name;
+        EXPECT_EQ(zone.kind, before->kind);
+        EXPECT_FALSE(zone.normals_into_fluid);
+        EXPECT_NEAR(test::area_of(*zone.surface), test::area_of(*before->surface), 1e-12);
+    }
+    // Nothing tells the zones apart any more.
+    const auto unmarked = changed([](vtkPolyData& data) { data.GetCellData()->RemoveArray("zone"); });
+    EXPECT_EQ(unmarked.zones.size(), 1U);
+    EXPECT_THAT(test::told(unmarked), HasSubstr("its cells no longer say which they are of"));
+    // Marks that nobody knows, descriptions that are none: no harm.
+    const auto others = changed([](vtkPolyData& data) { data.GetCellData()->GetArray("zone")->SetComponent(0, 0, 4711); });
+    EXPECT_NE(others.find("zone 4711"), nullptr);
+    for (const char* text : {"", "{", "[]", "{\"version\": 1}", "{\"version\": 1, \"zones\": 3}"}) {
+        const auto damaged = changed([&](vtkPolyData& data) { vtkStringArray::SafeDownCast(data.GetFieldData()->GetAbstractArray("underbody"))->SetValue(0, text); });
+        EXPECT_EQ(damaged.zones.size(), 1U) << text;
+    }
+}
+
+TEST(VtkFiles, WhatAFileLeavesOutIsTold) {
+    const core::TemporaryFolder folder;
+    const auto field = read_field(test::data_folder() / "fluent_legacy" / "ascii.dat");
+    const auto told = [&](const std::string& name) {
+        std::string text;
+        for (const auto& problem : postproc::write_vtk(field, folder.path() / name)) {
+            text += problem.message + "\n";
+        }
+        return text;
+    };
+    EXPECT_THAT(told("a.vtu"), HasSubstr("left out: '"));
+    EXPECT_THAT(told("a.vtp"), HasSubstr("left out: '"));
+    EXPECT_THAT(told("a.vtm"), testing::Not(HasSubstr("left out")));
+}
+
 TEST(VtkFiles, WhatImportWritesIsReadAgainTheSame) {
     const core::TemporaryFolder folder;
     const auto whole = read_field(test::data_folder() / "fluent_legacy" / "ascii.cas");
@@ -121,9 +265,10 @@ TEST(VtkFiles, WhatImportWritesIsReadAgainTheSame) {
 
 TEST(VtkFiles, TheCellsOfAVolumeTellOnWhichSideOfItsWallsTheFluidIs) {
     const core::TemporaryFolder folder;
-    const auto whole = read_field(test::data_folder() / "fluent_legacy" / "ascii.cas");
-    for (const auto& zone : whole.zones) {
+    auto whole = read_field(test::data_folder() / "fluent_legacy" / "ascii.cas");
+    for (auto& zone : whole.zones) {
         if (zone.surface != nullptr) {
+            zone.normals_into_fluid = false;
             zone.surface->BuildCells();
             for (vtkIdType face = 1; face < zone.surface->GetNumberOfCells(); face += 2) {
                 zone.surface->ReverseCell(face);  // a writer that cares for no order
