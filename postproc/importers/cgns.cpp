@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "core/text.h"
@@ -35,23 +36,26 @@ public:
 private:
     bool is_shell();
     void add_notes(Field& field) const;
-    void note_data_sets(const std::vector<CgnsCondition>& conditions) {
-        for (const auto& condition : conditions) {
-            if (condition.data_sets > 0) {
-                with_data_.push_back(condition.name);
-            }
-        }
-    }
     void add_unstructured(const CgnsZone& zone, Field& field);
     void add_structured(const CgnsZone& zone, Field& field);
-    void add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
-                     ElementPart&& surface, const BoundaryFaces& volume, bool sided);
-    void add_sides(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values, ElementPart&& surface, const BoundaryFaces& volume);
+    /// What the surfaces of a zone have in common.
+    struct Sides {
+        const CgnsZone& zone;
+        const Buffer<double>& points;
+        const std::vector<PartValues>& values;
+        const BoundaryFaces& volume;
+    };
+    void add_surfaces(Field& field, const CgnsZone& zone, const Buffer<double>& points, const std::vector<PartValues>& values, std::vector<CgnsSurface>&& surfaces,
+                      const ElementPart& volume);
+    void add_sides(Field& field, const Sides& at, CgnsSurface&& surface);
+    void add_surface(Field& field, const Sides& at, CgnsSurface&& surface, bool sided);
+    void add_own_values(const CgnsSurface& surface, const CgnsZone& zone, const std::vector<std::int64_t>& nodes, std::vector<PartValues>& values,
+                        std::set<std::string>& of_cells);
     void add_volume(const CgnsZone& zone, Field& field, ElementPart&& volume, Buffer<double>&& points, std::vector<PartValues>&& values);
     [[nodiscard]] ElementPart volume_of(const CgnsZone& zone, const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const;
     void add_polyhedra(const CgnsZone& zone, ElementPart& volume, const CgnsSection& cells, const std::map<std::int64_t, std::size_t>& polygons,
                        const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const;
-    void warn_of_missing(Field& field, const CgnsZone& zone, const CgnsCondition& condition, const std::string& why) const;
+    void warn_of_missing(Field& field, const CgnsZone& zone, const std::string& surface, const CgnsCondition& condition, const std::string& why) const;
 
     CgnsFile file_;
     std::string name_;
@@ -60,7 +64,7 @@ private:
     std::string understood_;
     bool shell_ = false;       ///< its cells are faces in space
     int solutions_left_ = 0;   ///< of other steps
-    std::vector<std::string> with_data_;  ///< boundaries with values of their own, which are not read
+    std::vector<std::string> unread_;  ///< values of boundaries' own
 };
 
 Field Reader::read() {
@@ -120,8 +124,8 @@ void Reader::add_notes(Field& field) const {
     if (solutions_left_ > 0 && !options_.time) {
         add(core::Problem::Severity::note, "of several solutions in time the last is read");
     }
-    if (!with_data_.empty()) {
-        add(core::Problem::Severity::warning, "values that boundaries hold for themselves (BCDataSet) are not read: " + listed(with_data_));
+    if (!unread_.empty()) {
+        add(core::Problem::Severity::warning, "values that boundaries hold for themselves (BCDataSet) are not read: " + listed(unread_));
     }
     if (file_.bases() > 1) {
         add(core::Problem::Severity::note, "of " + std::to_string(file_.bases()) + " bases '" + file_.base_name() + "' is read");
@@ -229,32 +233,80 @@ std::vector<PartValues> pressure_beside(const ElementPart& surface, const Buffer
     return own;
 }
 
+void Reader::add_surfaces(Field& field, const CgnsZone& zone, const Buffer<double>& points, const std::vector<PartValues>& values, std::vector<CgnsSurface>&& surfaces,
+                          const ElementPart& volume) {
+    std::vector<const ElementPart*> parts;
+    for (const auto& surface : surfaces) {
+        parts.push_back(&surface.part);
+    }
+    const BoundaryFaces faces(parts, volume);
+    for (auto& surface : surfaces) {
+        add_sides(field, {zone, points, values, faces}, std::move(surface));
+    }
+}
+
 /// What may be a wall between two cells has two sides: two surfaces, as Fluent's wall and its shadow are. The pressure of
 /// one side alone is no load.
-void Reader::add_sides(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values, ElementPart&& surface, const BoundaryFaces& volume) {
-    const bool sided = surface.kind == ZoneKind::wall || surface.kind == ZoneKind::unknown;
-    ElementPart back = sided ? volume.other_side(surface) : ElementPart();
-    if (back.elements() > 0 && matches_any(options_.zones, surface.name)) {
-        const bool on_nodes = std::any_of(values.begin(), values.end(), [](const PartValues& value) { return value.on_nodes && canonical_name(value.variable).name == "pressure"; });
+void Reader::add_sides(Field& field, const Sides& at, CgnsSurface&& surface) {
+    const ElementPart& front = surface.part;
+    const bool sided = front.kind == ZoneKind::wall || front.kind == ZoneKind::unknown;
+    CgnsSurface back;
+    if (sided) {
+        back.part = at.volume.other_side(front);
+    }
+    if (back.part.elements() > 0 && matches_any(options_.zones, front.name)) {
+        const bool on_nodes =
+            std::any_of(at.values.begin(), at.values.end(), [](const PartValues& value) { return value.on_nodes && canonical_name(value.variable).name == "pressure"; });
         field.problems.push_back({core::Problem::Severity::warning,
-                                  "'" + surface.name + "' has cells on both sides of " + std::to_string(back.elements()) + " of its " + std::to_string(surface.elements()) +
-                                      " faces: the other side is '" + back.name + "', and '" + surface.name + "*' are both" +
+                                  "'" + front.name + "' has cells on both sides of " + std::to_string(back.part.elements()) + " of its " + std::to_string(front.elements()) +
+                                      " faces: the other side is '" + back.part.name + "', and '" + front.name + "*' are both" +
                                       (on_nodes ? "; its pressure stands at nodes, so that it is the same on both" : ""),
                                   {name_, {}, {}, {}}});
     }
-    add_surface(field, points, values, std::move(surface), volume, sided);
-    add_surface(field, points, values, std::move(back), volume, sided);
+    add_surface(field, at, std::move(surface), sided);
+    add_surface(field, at, std::move(back), sided);
+}
+
+/// A boundary's own values are its where the solution at nodes has none of that variable; one for each face is better than
+/// the pressure of the cells behind (`of_cells`).
+void Reader::add_own_values(const CgnsSurface& surface, const CgnsZone& zone, const std::vector<std::int64_t>& nodes, std::vector<PartValues>& values,
+                            std::set<std::string>& of_cells) {
+    if (surface.condition == nullptr || surface.condition->data_sets == 0) {
+        return;
+    }
+    std::vector<std::string> unread;
+    for (const auto& stated : file_.boundary_values(zone, *surface.condition, options_, unread)) {
+        auto own = values_on(surface, nodes, zone, stated);
+        if (!own) {
+            unread.push_back(stated.variable);
+            continue;
+        }
+        const std::string name = canonical_name(stated.variable).name;
+        const auto before = std::find_if(values.begin(), values.end(), [&](const PartValues& value) { return canonical_name(value.variable).name == name; });
+        if (before == values.end()) {
+            values.push_back(std::move(*own));
+        } else if (of_cells.contains(name) && stated.values.size() > 1) {
+            of_cells.erase(name);
+            *before = std::move(*own);
+        }
+    }
+    for (const auto& variable : unread) {
+        unread_.push_back(variable + " of '" + surface.part.name + "'");
+    }
 }
 
 /// A surface gets the points it uses, and their values.
-void Reader::add_surface(Field& field, const Buffer<double>& points, const std::vector<PartValues>& values,
-                         ElementPart&& surface, const BoundaryFaces& volume, bool sided) {
+void Reader::add_surface(Field& field, const Sides& at, CgnsSurface&& one, bool sided) {
+    ElementPart& surface = one.part;
     if (surface.elements() == 0 || !matches_any(options_.zones, surface.name)) {
         return;
     }
-    const bool settled = volume.turn_into_volume(surface, points, sided);
-    std::vector<PartValues> own = pressure_beside(surface, points, values, volume, sided);
-    const bool of_cells = !own.empty();
+    const bool settled = at.volume.turn_into_volume(surface, at.points, sided);
+    std::vector<PartValues> own = pressure_beside(surface, at.points, at.values, at.volume, sided);
+    std::set<std::string> of_cells;
+    for (const auto& value : own) {
+        of_cells.insert(canonical_name(value.variable).name);
+    }
     std::unordered_map<std::int64_t, std::int64_t> places;
     std::vector<std::int64_t> used(surface.nodes);
     std::sort(used.begin(), used.end());
@@ -263,12 +315,12 @@ void Reader::add_surface(Field& field, const Buffer<double>& points, const std::
     surface.points.grow_to(3 * used.size());
     for (std::size_t i = 0; i < used.size(); ++i) {
         places[used[i]] = static_cast<std::int64_t>(i);
-        std::copy_n(points.data() + 3 * used[i], 3, surface.points.data() + 3 * i);
+        std::copy_n(at.points.data() + 3 * used[i], 3, surface.points.data() + 3 * i);
     }
     for (auto& node : surface.nodes) {
         node = places[node];
     }
-    for (const auto& entry : values) {
+    for (const auto& entry : at.values) {
         if (entry.on_nodes) {
             PartValues part{entry.variable, true, 1, Buffer<double>(used.size())};
             for (std::size_t i = 0; i < used.size(); ++i) {
@@ -277,16 +329,18 @@ void Reader::add_surface(Field& field, const Buffer<double>& points, const std::
             own.push_back(std::move(part));
         }
     }
+    add_own_values(one, at.zone, used, own, of_cells);
     Zone zone = zone_from(std::move(surface), std::move(own), shell_ ? 3 : file_.cell_dimension(), options_, name_, field.problems);
     zone.normals_into_fluid = settled;
     for (auto& info : zone.arrays) {
-        info.on = of_cells && info.on == Location::faces ? Location::cells : info.on;
+        info.on = info.on == Location::faces && of_cells.contains(info.name) ? Location::cells : info.on;
     }
     field.zones.push_back(std::move(zone));
 }
 
-void Reader::warn_of_missing(Field& field, const CgnsZone& zone, const CgnsCondition& condition, const std::string& why) const {
-    if (!condition.type.starts_with("BCDegenerate")) {  // points and lines are all that these have
+void Reader::warn_of_missing(Field& field, const CgnsZone& zone, const std::string& surface, const CgnsCondition& condition, const std::string& why) const {
+    // Points and lines are all that degenerate ones have.
+    if (!condition.type.starts_with("BCDegenerate") && matches_any(options_.zones, surface)) {
         field.problems.push_back({core::Problem::Severity::warning,
                                   "zone '" + zone.name + "': boundary condition '" + condition.name + "' (" + condition.type + ") is not there or not whole: " + why,
                                   {name_, {}, {}, {}}});
@@ -318,15 +372,11 @@ void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
         std::erase_if(values, [](const PartValues& v) { return !v.on_nodes; });
     }
     const auto conditions = file_.conditions(zone);
-    note_data_sets(conditions);
     CgnsSurfaces surfaces = surfaces_of(sections, conditions, cells_of_polygons, file_.cell_dimension());
     for (const auto& [condition, why] : surfaces.missing) {
-        warn_of_missing(field, zone, *condition, why);
+        warn_of_missing(field, zone, condition->name, *condition, why);
     }
-    const BoundaryFaces faces(surfaces.parts, volume);
-    for (auto& surface : surfaces.parts) {
-        add_sides(field, points, values, std::move(surface), faces);
-    }
+    add_surfaces(field, zone, points, values, std::move(surfaces.parts), volume);
     add_volume(zone, field, std::move(volume), std::move(points), std::move(values));
 }
 
@@ -338,20 +388,16 @@ void Reader::add_structured(const CgnsZone& zone, Field& field) {
     auto points = file_.points(zone, options_.length_unit);
     auto values = file_.solutions(zone, options_, progress_, solutions_left_);
     ElementPart volume = cells_of_block(zone, dimension, progress_);
-    std::vector<ElementPart> surfaces;
+    std::vector<CgnsSurface> surfaces;
     const auto conditions = file_.conditions(zone);
-    note_data_sets(conditions);
     for (const auto& condition : conditions) {
         BlockFaces faces = faces_of_block(file_, zone, condition);
         if (!faces.missing.empty()) {
-            warn_of_missing(field, zone, condition, faces.missing);
+            warn_of_missing(field, zone, faces.surface.part.name, condition, faces.missing);
         }
-        surfaces.push_back(std::move(faces.part));
+        surfaces.push_back(std::move(faces.surface));
     }
-    const BoundaryFaces faces(surfaces, volume);
-    for (auto& surface : surfaces) {
-        add_sides(field, points, values, std::move(surface), faces);
-    }
+    add_surfaces(field, zone, points, values, std::move(surfaces), volume);
     add_volume(zone, field, std::move(volume), std::move(points), std::move(values));
 }
 

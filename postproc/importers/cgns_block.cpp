@@ -83,9 +83,10 @@ public:
     }
 
     BlockFaces find() {
-        result_.part.name = zone_.name + "/" + condition_.name;
-        result_.part.kind = condition_.kind;
-        result_.part.original_kind = condition_.type;
+        result_.surface.condition = &condition_;
+        result_.surface.part.name = zone_.name + "/" + condition_.name;
+        result_.surface.part.kind = condition_.kind;
+        result_.surface.part.original_kind = condition_.type;
         if (places_.empty() || condition_.where == CgnsCondition::Where::nowhere || (condition_.range && places_.size() != 2)) {
             result_.missing = "it names neither faces nor vertices";
         } else if (condition_.where == CgnsCondition::Where::faces) {
@@ -93,7 +94,7 @@ public:
         } else {
             condition_.range ? add_between_vertices() : add_faces_of_vertices();
         }
-        if (result_.missing.empty() && result_.part.elements() == 0) {
+        if (result_.missing.empty() && result_.surface.part.elements() == 0) {
             result_.missing = "no face has all its vertices there";
         }
         return std::move(result_);
@@ -110,6 +111,12 @@ private:
                 file_.fail(zone_, "condition '" + condition_.name + "' lies outside the zone");
             }
         }
+    }
+
+    /// The next of the faces that the condition names, in its order.
+    void add_face(const Place& at, int normal) {
+        result_.surface.entries.push_back(static_cast<std::int64_t>(result_.surface.part.elements()));
+        block_.add_face(result_.surface.part, at, normal);
     }
 
     /// The index across faces of which the file says no more than that they are faces: the only one that is the same for
@@ -137,12 +144,12 @@ private:
         }
         if (condition_.range) {
             check(low_, high_, normal);
-            for_places(low_, high_, [&](const Place& at) { block_.add_face(result_.part, at, normal); });
+            for_places(low_, high_, [&](const Place& at) { add_face(at, normal); });
             return;
         }
         for (const auto& place : places_) {
             check(place, place, normal);
-            block_.add_face(result_.part, place, normal);
+            add_face(place, normal);
         }
     }
 
@@ -162,7 +169,7 @@ private:
             result_.missing = flat.empty() ? "its vertices fill a block" : "its vertices lie on a line";
             return;
         }
-        for_places(low_, last, [&](const Place& at) { block_.add_face(result_.part, at, flat[0]); });
+        for_places(low_, last, [&](const Place& at) { block_.add_face(result_.surface.part, at, flat[0]); });
     }
 
     /// The faces round the block all of whose nodes are in the list.
@@ -186,7 +193,7 @@ private:
                 for_places(low, high, [&](const Place& at) {
                     const auto corners = block_.face(at, normal);
                     if (std::all_of(corners.begin(), corners.end(), [&](std::int64_t node) { return named[static_cast<std::size_t>(node)]; })) {
-                        block_.add_face(result_.part, at, normal);
+                        block_.add_face(result_.surface.part, at, normal);
                     }
                 });
             }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "postproc/importers/cgns_boundary_values.h"
 #include "postproc/importers/cgns_file.h"
 
 namespace underbody::postproc {
@@ -12,7 +13,7 @@ ElementPart cells_of_block(const CgnsZone& zone, int dimension, core::Progress& 
 
 /// What a condition names: quadrilaterals of a block, lines of a plane one.
 struct BlockFaces {
-    ElementPart part;
+    CgnsSurface surface;
     std::string missing;  ///< why there are none; "" when there are
 };
 

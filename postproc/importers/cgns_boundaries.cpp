@@ -2,8 +2,10 @@
 #include <cgnslib.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "postproc/importers/cgns_file.h"
+#include "postproc/importers/variable_reading.h"
 
 namespace underbody::postproc {
 
@@ -32,6 +34,18 @@ int index_across(CGNS_ENUMT(GridLocation_t) location, const std::array<int, 3>& 
 }
 
 }  // namespace
+
+double CgnsCondition::named() const {
+    const auto each = static_cast<std::size_t>(indices);
+    if (!range) {
+        return static_cast<double>(numbers.size() / each);
+    }
+    double count = 1;
+    for (std::size_t k = 0; k < each && numbers.size() == 2 * each; ++k) {
+        count *= std::abs(static_cast<double>(numbers[each + k]) - static_cast<double>(numbers[k])) + 1;
+    }
+    return count;
+}
 
 /// The condition that the family of a boundary has.
 int CgnsFile::family_type(const CgnsZone& zone, int condition) const {
@@ -64,6 +78,7 @@ CgnsCondition CgnsFile::condition(const CgnsZone& zone, int index) const {
     cgsize_t normals = 0;
     std::array<int, 3> inward{};
     CgnsCondition condition;
+    condition.index = index;
     ok(zone, cg_boco_info(file_, base_, zone.index, index, name.data(), &type, &set, &points, inward.data(), &normals, &normal_type, &condition.data_sets), "condition");
     condition.name = name.data();
     type = type == CGNS_ENUMV(FamilySpecified) ? static_cast<CGNS_ENUMT(BCType_t)>(family_type(zone, index)) : type;
@@ -76,9 +91,9 @@ CgnsCondition CgnsFile::condition(const CgnsZone& zone, int index) const {
     const bool elements = set == CGNS_ENUMV(ElementRange) || set == CGNS_ENUMV(ElementList);
     const bool faces = location == CGNS_ENUMV(FaceCenter) || (cell_dimension_ == 2 && location == CGNS_ENUMV(EdgeCenter)) ||
                        (zone.structured ? across_an_index(location) : elements);
-    const int indices = zone.structured ? cell_dimension_ : 1;
-    check_room(zone, static_cast<double>(points) * indices);
-    std::vector<cgsize_t> raw(static_cast<std::size_t>(std::max<cgsize_t>(0, points)) * static_cast<std::size_t>(indices));
+    condition.indices = zone.structured ? cell_dimension_ : 1;
+    check_room(zone, static_cast<double>(points) * condition.indices);
+    std::vector<cgsize_t> raw(static_cast<std::size_t>(std::max<cgsize_t>(0, points)) * static_cast<std::size_t>(condition.indices));
     const bool known = faces || (location == CGNS_ENUMV(Vertex) && !elements);
     if (known && !raw.empty() && cg_boco_read(file_, base_, zone.index, index, raw.data(), nullptr) == CG_OK) {
         condition.where = faces ? CgnsCondition::Where::faces : CgnsCondition::Where::vertices;
@@ -96,6 +111,79 @@ std::vector<CgnsCondition> CgnsFile::conditions(const CgnsZone& zone) const {
     }
     for (int b = 1; b <= count; ++b) {
         result.push_back(condition(zone, b));
+    }
+    return result;
+}
+
+namespace {
+
+/// What stands under the name of a variable in Neumann data is its gradient, but for what a wall has of its own.
+bool is_of_walls(const std::string& canonical) {
+    return canonical.starts_with("wall_") || canonical.starts_with("kinematic_wall_") || canonical.starts_with("skin_friction") || canonical.starts_with("y_plus");
+}
+
+}  // namespace
+
+void CgnsFile::read_boundary_values(const CgnsZone& zone, const Path& data, bool neumann, bool at_faces, const ReadOptions& options,
+                                    std::vector<CgnsBoundaryValues>& result, std::vector<std::string>& unread) {
+    int arrays = 0;
+    if (!go_to(data) || cg_narrays(&arrays) != CG_OK) {
+        return;
+    }
+    for (int a = 1; a <= arrays; ++a) {
+        std::array<char, 33> name{};
+        CGNS_ENUMT(DataType_t) type{};
+        int dimensions = 0;
+        std::array<cgsize_t, 12> sizes{};
+        ok(zone, go_to(data) ? cg_array_info(a, name.data(), &type, &dimensions, sizes.data()) : CG_ERROR, "values of a boundary");
+        double count = 1;
+        for (int d = 0; d < dimensions; ++d) {
+            count *= static_cast<double>(sizes[static_cast<std::size_t>(d)]);
+        }
+        check_room(zone, count);
+        const CanonicalName canonical = canonical_name(name.data());
+        if (type == CGNS_ENUMV(Character) || count < 1 || (neumann && !is_of_walls(canonical.name))) {
+            unread.emplace_back(name.data());
+            continue;
+        }
+        CgnsBoundaryValues own{name.data(), at_faces, Buffer<double>(static_cast<std::size_t>(count))};
+        ok(zone, cg_array_read_as(a, CGNS_ENUMV(RealDouble), own.values.data()), "values of a boundary");
+        Path array = data;
+        array.emplace_back("DataArray_t", a);
+        // What the caller states of a variable replaces what the file says of it.
+        const core::Conversion convert = is_unit_stated(options, own.variable) ? core::Conversion{} : to_si(array, own.variable, canonical.unit);
+        std::for_each(own.values.begin(), own.values.end(), [&](double& value) { value = convert(value); });
+        result.push_back(std::move(own));
+    }
+}
+
+std::vector<CgnsBoundaryValues> CgnsFile::boundary_values(const CgnsZone& zone, const CgnsCondition& condition, const ReadOptions& options,
+                                                          std::vector<std::string>& unread) {
+    std::vector<CgnsBoundaryValues> result;
+    for (int set = 1; set <= condition.data_sets; ++set) {
+        const Path path = {{"Zone_t", zone.index}, {"ZoneBC_t", 1}, {"BC_t", condition.index}, {"BCDataSet_t", set}};
+        std::array<char, 33> name{};
+        CGNS_ENUMT(BCType_t) type{};
+        CGNS_ENUMT(GridLocation_t) location{};
+        CGNS_ENUMT(PointSetType_t) points{};
+        cgsize_t count = 0;
+        int dirichlet = 0;
+        int neumann = 0;
+        if (cg_dataset_read(file_, base_, zone.index, condition.index, set, name.data(), &type, &dirichlet, &neumann) != CG_OK || !go_to(path)) {
+            continue;
+        }
+        if (cg_ptset_info(&points, &count) == CG_OK) {
+            unread.emplace_back(name.data());  // of other faces or vertices than the condition's
+            continue;
+        }
+        const bool at_faces = cg_gridlocation_read(&location) == CG_OK && location != CGNS_ENUMV(Vertex);
+        for (const auto& [there, kind] : {std::pair{dirichlet, CGNS_ENUMV(Dirichlet)}, std::pair{neumann, CGNS_ENUMV(Neumann)}}) {
+            Path data = path;
+            data.emplace_back("BCData_t", static_cast<int>(kind));
+            if (there != 0) {
+                read_boundary_values(zone, data, kind == CGNS_ENUMV(Neumann), at_faces, options, result, unread);
+            }
+        }
     }
     return result;
 }

@@ -148,6 +148,16 @@ void CgnsFile::check_room(const CgnsZone& zone, double count) const {
         fail(zone, "it claims " + core::format_number(count) + " numbers but the file has " + std::to_string(bytes_) + " bytes");
     }
 }
+bool CgnsFile::go_to(const Path& path) const {
+    std::vector<char*> labels;
+    std::vector<int> numbers;
+    for (const auto& [label, number] : path) {
+        labels.push_back(const_cast<char*>(label));  // the library reads them only
+        numbers.push_back(number);
+    }
+    return cg_golist(file_, base_, static_cast<int>(path.size()), labels.data(), numbers.data()) == CG_OK;
+}
+
 CgnsZone CgnsFile::zone(int index) const {
     CgnsZone zone;
     zone.index = index;

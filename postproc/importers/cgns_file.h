@@ -48,14 +48,26 @@ struct CgnsSection {
 /// A boundary condition, with the faces or the vertices that it names.
 struct CgnsCondition {
     enum class Where { nowhere, vertices, faces };
+    int index = 1;  ///< from 1
     std::string name;
     std::string type;  ///< "BCWall", of its family where it leaves it to that
     ZoneKind kind = ZoneKind::unknown;
     Where where = Where::nowhere;
     int normal = -1;                    ///< structured: the index across its faces, 0 to 2; -1: the file does not say
     bool range = false;                 ///< `numbers` are the first and the last of what it names, for all between
-    std::vector<std::int64_t> numbers;  ///< from 1: elements or nodes; structured: an index in each direction
-    int data_sets = 0;                  ///< values of its own (BCDataSet), which are not read
+    int indices = 1;                    ///< numbers for each face or vertex; structured: one in each direction
+    std::vector<std::int64_t> numbers;  ///< from 1: elements or nodes
+    int data_sets = 0;                  ///< values of its own (BCDataSet)
+
+    /// How many faces or vertices it names.
+    [[nodiscard]] double named() const;
+};
+
+/// A variable that a boundary condition holds for itself, SI.
+struct CgnsBoundaryValues {
+    std::string variable;   ///< the file's name
+    bool at_faces = false;  ///< the file says so; else at the condition's faces or vertices
+    Buffer<double> values;  ///< one for all, or one each of what the condition names, in its order
 };
 
 /// A file opened for reading, one base of it at one step in time. Every failure is an InputError with file and zone.
@@ -84,6 +96,10 @@ public:
     /// In order of their element numbers; structured zones have none.
     [[nodiscard]] std::vector<CgnsSection> sections(const CgnsZone& zone, core::Progress& progress) const;
     [[nodiscard]] std::vector<CgnsCondition> conditions(const CgnsZone& zone) const;
+    /// Values of a condition's own; `unread` takes the names of those that are none of the field's variables on its faces
+    /// or vertices.
+    [[nodiscard]] std::vector<CgnsBoundaryValues> boundary_values(const CgnsZone& zone, const CgnsCondition& condition, const ReadOptions& options,
+                                                                  std::vector<std::string>& unread);
     /// Times of the steps of all bases, s; empty when the file states none.
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
     /// That of the step, where the file states it.
@@ -118,10 +134,14 @@ private:
     [[noreturn]] void fail(const std::string& what) const;
     void ok(const CgnsZone& zone, int result, const char* what) const;
     void check_room(const CgnsZone& zone, double count) const;
-    template <typename... Node>
-    Scales scales_at(const Scales& above, Node... node);
+    /// Labels and numbers of the nodes from the base down to one.
+    using Path = std::vector<std::pair<const char*, int>>;
+    [[nodiscard]] bool go_to(const Path& path) const;
+    Scales scales_at(const Scales& above, const Path& path);
     void read_units_of_base();
-    core::Conversion to_si(const CgnsZone& zone, const char* parent, int index, int array, const std::string& variable, const std::string& unit);
+    core::Conversion to_si(const Path& array, const std::string& variable, const std::string& unit);
+    void read_boundary_values(const CgnsZone& zone, const Path& data, bool neumann, bool at_faces, const ReadOptions& options, std::vector<CgnsBoundaryValues>& result,
+                              std::vector<std::string>& unread);
     struct Steps {
         int count = 0;
         std::vector<double> times;  ///< s; as many, or none

@@ -84,7 +84,7 @@ Buffer<double> CgnsFile::points(const CgnsZone& zone, const std::string& length_
         }
         read_nodes(zone, c, column);
         read[static_cast<std::size_t>(axis)] = true;
-        const core::Conversion stated = to_si(zone, "GridCoordinates_t", grid, c, coordinate.data(), "m");
+        const core::Conversion stated = to_si({{"Zone_t", zone.index}, {"GridCoordinates_t", grid}, {"DataArray_t", c}}, coordinate.data(), "m");
         const core::Conversion convert = length_unit.empty() || units_stated_ ? stated : core::conversion(length_unit, "m");
         for (std::size_t i = 0; i < nodes; ++i) {
             if (!std::isfinite(column[i])) {
@@ -198,10 +198,10 @@ std::vector<PartValues> CgnsFile::solutions(const CgnsZone& zone, const ReadOpti
         ok(zone,
            cg_field_read(file_, base_, zone.index, choice.solution, choice.variable.c_str(), CGNS_ENUMV(RealDouble), low.data(), high.data(), values.values.data()),
            "field");
-        // What the caller states of a variable replaces what the file says of it.
-        const bool stated = is_unit_stated(options, choice.variable);
         const std::string unit = canonical_name(choice.variable).unit;
-        const core::Conversion convert = stated ? core::Conversion{} : to_si(zone, "FlowSolution_t", choice.solution, choice.field, choice.variable, unit);
+        const Path array = {{"Zone_t", zone.index}, {"FlowSolution_t", choice.solution}, {"DataArray_t", choice.field}};
+        // What the caller states of a variable replaces what the file says of it.
+        const core::Conversion convert = is_unit_stated(options, choice.variable) ? core::Conversion{} : to_si(array, choice.variable, unit);
         if (!convert.is_identity()) {
             converted_[choice.variable] = core::format_number(convert(1)) + " " + unit;
             std::for_each(values.values.begin(), values.values.end(), [&](double& value) { value = convert(value); });

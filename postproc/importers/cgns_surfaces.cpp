@@ -31,7 +31,6 @@ public:
         for (std::size_t s = 0; s < sections_.size(); ++s) {
             add_rest_of(s);
         }
-        std::erase_if(result_.parts, [](const ElementPart& part) { return part.elements() == 0; });
         return std::move(result_);
     }
 
@@ -59,49 +58,53 @@ private:
         part.add(one.type, sections_[section].nodes.data() + one.first, one.count);
         used_[section][element] = true;
     }
-    static ElementPart part_of(const CgnsCondition& condition) {
-        ElementPart part;
-        part.name = condition.name;
-        part.kind = condition.kind;
-        part.original_kind = condition.type;
-        return part;
+    static CgnsSurface surface_of(const CgnsCondition& condition) {
+        CgnsSurface surface;
+        surface.condition = &condition;
+        surface.part.name = condition.name;
+        surface.part.kind = condition.kind;
+        surface.part.original_kind = condition.type;
+        return surface;
     }
 
-    ElementPart by_numbers(const CgnsCondition& condition) {
-        ElementPart part = part_of(condition);
-        double named = static_cast<double>(condition.numbers.size());
-        const auto add_number = [&](std::int64_t number) {
+    CgnsSurface by_numbers(const CgnsCondition& condition) {
+        CgnsSurface surface = surface_of(condition);
+        const ElementPart& part = surface.part;
+        const auto add_number = [&](std::int64_t number, std::int64_t entry) {
             const auto after = std::upper_bound(sections_.begin(), sections_.end(), number, [](std::int64_t n, const CgnsSection& s) { return n < s.first; });
             if (after != sections_.begin() && number <= std::prev(after)->last) {
                 const auto section = static_cast<std::size_t>(after - sections_.begin()) - 1;
                 const auto element = static_cast<std::size_t>(number - sections_[section].first);
                 if (is_face(section, element)) {
-                    add(part, section, element);
+                    add(surface.part, section, element);
+                    surface.entries.push_back(entry);
                 }
             }
         };
         if (condition.range && condition.numbers.size() == 2) {
             const auto [low, high] = std::minmax(condition.numbers[0], condition.numbers[1]);
-            named = static_cast<double>(high) - static_cast<double>(low) + 1;
             for (const auto& section : sections_) {  // no number that no section has
                 for (std::int64_t number = std::max(low, section.first); number <= std::min(high, section.last); ++number) {
-                    add_number(number);
+                    add_number(number, number - low);
                 }
             }
         } else {
-            std::for_each(condition.numbers.begin(), condition.numbers.end(), add_number);
+            for (std::size_t i = 0; i < condition.numbers.size(); ++i) {
+                add_number(condition.numbers[i], static_cast<std::int64_t>(i));
+            }
         }
         if (part.elements() == 0) {
             result_.missing.emplace_back(&condition, "none of the elements that it names is a face in the file");
-        } else if (static_cast<double>(part.elements()) < named) {
-            result_.missing.emplace_back(&condition, "of " + std::to_string(static_cast<std::int64_t>(named)) + " elements that it names " +
+        } else if (static_cast<double>(part.elements()) < condition.named()) {
+            result_.missing.emplace_back(&condition, "of " + std::to_string(static_cast<std::int64_t>(condition.named())) + " elements that it names " +
                                                              std::to_string(part.elements()) + " are faces in the file");
         }
-        return part;
+        return surface;
     }
 
-    ElementPart by_vertices(const CgnsCondition& condition) {
-        ElementPart part = part_of(condition);
+    CgnsSurface by_vertices(const CgnsCondition& condition) {
+        CgnsSurface surface = surface_of(condition);
+        ElementPart& part = surface.part;
         const bool range = condition.range && condition.numbers.size() == 2;
         std::vector<std::int64_t> nodes;
         for (const std::int64_t number : condition.numbers) {
@@ -127,7 +130,7 @@ private:
         if (part.elements() == 0) {
             result_.missing.emplace_back(&condition, "no face in the file has all its nodes among the vertices that it names");
         }
-        return part;
+        return surface;
     }
     /// The faces of a section that has the name of a condition are that one's.
     [[nodiscard]] bool is_named_by_vertices(const std::string& section) const {
@@ -136,7 +139,8 @@ private:
     }
 
     void add_rest_of(std::size_t s) {
-        ElementPart part;
+        CgnsSurface surface;
+        ElementPart& part = surface.part;
         part.name = sections_[s].name;
         bool whole = true;
         for (std::size_t e = 0; e < sections_[s].elements.size(); ++e) {
@@ -150,10 +154,11 @@ private:
             if (whole && condition.name == part.name) {
                 part.kind = condition.kind;
                 part.original_kind = condition.type;
+                surface.condition = &condition;
             }
         }
         part.name += whole ? "" : " (rest)";
-        result_.parts.push_back(std::move(part));
+        result_.parts.push_back(std::move(surface));
     }
 
     const std::vector<CgnsSection>& sections_;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "postproc/importers/cgns_boundary_values.h"
 #include "postproc/importers/cgns_file.h"
 
 namespace underbody::postproc {
@@ -13,7 +14,7 @@ namespace underbody::postproc {
 using CellsOfPolygons = std::vector<std::vector<unsigned char>>;
 
 struct CgnsSurfaces {
-    std::vector<ElementPart> parts;  ///< nodes as in the zone, no points yet
+    std::vector<CgnsSurface> parts;  ///< no points yet; some may be empty
     std::vector<std::pair<const CgnsCondition*, std::string>> missing;  ///< condition -> what of it gives no faces
 };
 

@@ -34,8 +34,7 @@ core::Conversion CgnsFile::Scales::to_si(std::string_view unit) const {
 }
 
 /// The units and the class of data stated at a node of the file, else those above it.
-template <typename... Node>
-CgnsFile::Scales CgnsFile::scales_at(const Scales& above, Node... node) {
+CgnsFile::Scales CgnsFile::scales_at(const Scales& above, const Path& path) {
     CGNS_ENUMT(MassUnits_t) mass{};
     CGNS_ENUMT(LengthUnits_t) length{};
     CGNS_ENUMT(TimeUnits_t) time{};
@@ -43,7 +42,7 @@ CgnsFile::Scales CgnsFile::scales_at(const Scales& above, Node... node) {
     CGNS_ENUMT(AngleUnits_t) angle{};
     auto data = CGNS_ENUMV(DataClassNull);
     Scales result = above;
-    if (cg_goto(file_, base_, node..., "end") != CG_OK) {
+    if (!go_to(path)) {
         return result;
     }
     if (cg_dataclass_read(&data) == CG_OK && data != CGNS_ENUMV(DataClassNull)) {
@@ -72,7 +71,7 @@ CgnsFile::Scales CgnsFile::scales_at(const Scales& above, Node... node) {
     return result;
 }
 
-void CgnsFile::read_units_of_base() { of_base_ = scales_at({}); }
+void CgnsFile::read_units_of_base() { of_base_ = scales_at({}, {}); }
 
 namespace {
 
@@ -95,19 +94,19 @@ std::optional<core::Conversion> stated_conversion() {
 
 }  // namespace
 
-/// What makes SI of an array of a zone, by the units and the class that it states, or what it stands in. What has no
-/// dimensions stays as it is, and is told.
-core::Conversion CgnsFile::to_si(const CgnsZone& zone, const char* parent, int index, int array, const std::string& variable, const std::string& unit) {
-    const Scales of_zone = scales_at(of_base_, "Zone_t", zone.index);
-    const Scales of_parent = scales_at(of_zone, "Zone_t", zone.index, parent, index);
-    const Scales own = scales_at(of_parent, "Zone_t", zone.index, parent, index, "DataArray_t", array);
+/// What makes SI of an array, by the units and the class that it states, or what it stands in. What has no dimensions
+/// stays as it is, and is told.
+core::Conversion CgnsFile::to_si(const Path& array, const std::string& variable, const std::string& unit) {
+    Scales own = of_base_;
+    for (std::size_t depth = 1; depth <= array.size(); ++depth) {
+        own = scales_at(own, {array.begin(), array.begin() + static_cast<std::ptrdiff_t>(depth)});
+    }
     const core::Conversion dimensional = own.to_si(unit);
     if (own.data_class.empty() || own.data_class == "Dimensional" || own.data_class == "UserDefined") {
         return dimensional;
     }
     if (own.data_class == "NormalizedByDimensional") {
-        const bool there = cg_goto(file_, base_, "Zone_t", zone.index, parent, index, "DataArray_t", array, "end") == CG_OK;
-        if (const auto stated = there ? stated_conversion() : std::nullopt) {
+        if (const auto stated = go_to(array) ? stated_conversion() : std::nullopt) {
             return {dimensional.scale * stated->scale, dimensional(stated->offset)};
         }
     }

@@ -210,11 +210,11 @@ void BoundaryFaces::note(const std::int64_t* nodes, std::size_t count, std::size
     }
 }
 
-BoundaryFaces::BoundaryFaces(const std::vector<ElementPart>& surfaces, const ElementPart& volume) : volume_(volume) {
-    for (const auto& surface : surfaces) {
-        for (std::size_t i = 0; i < surface.elements(); ++i) {
-            const auto count = static_cast<std::size_t>(surface.offsets[i + 1] - surface.offsets[i]);
-            cells_.emplace(key_of(surface.nodes.data() + surface.offsets[i], count), Behind{});
+BoundaryFaces::BoundaryFaces(const std::vector<const ElementPart*>& surfaces, const ElementPart& volume) : volume_(volume) {
+    for (const ElementPart* surface : surfaces) {
+        for (std::size_t i = 0; i < surface->elements(); ++i) {
+            const auto count = static_cast<std::size_t>(surface->offsets[i + 1] - surface->offsets[i]);
+            cells_.emplace(key_of(surface->nodes.data() + surface->offsets[i], count), Behind{});
         }
     }
     std::size_t stream = 0;
@@ -371,7 +371,11 @@ std::vector<bool> turn_into_volume(const std::vector<ElementPart*>& surfaces, co
     for (const ElementPart* surface : surfaces) {
         faces.push_back(in_numbers_of_volume(*surface, places));
     }
-    const BoundaryFaces boundary(faces, volume);
+    std::vector<const ElementPart*> parts;
+    for (const auto& part : faces) {
+        parts.push_back(&part);
+    }
+    const BoundaryFaces boundary(parts, volume);
     std::vector<bool> settled;
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         ElementPart& surface = *surfaces[s];

@@ -13,7 +13,7 @@ namespace underbody::postproc {
 /// The faces of some surfaces that are also faces of a volume with the same numbering of nodes.
 class BoundaryFaces {
 public:
-    BoundaryFaces(const std::vector<ElementPart>& surfaces, const ElementPart& volume);
+    BoundaryFaces(const std::vector<const ElementPart*>& surfaces, const ElementPart& volume);
 
     /// Turns the faces of a surface so that their right-hand normals point into the volume. True if every face has one
     /// cell behind it, or a quarter of them have and those agree on the order of the whole; a face between two cells has no
