@@ -150,28 +150,11 @@ private:
     }
 
     void place_mirror() {
-        if (mirror_.axis < 0) {
-            return;
+        std::vector<const SurfaceArrays*> body;
+        for (const auto& part : parts_) {
+            body.push_back(part.surface.get());
         }
-        const auto k = static_cast<std::size_t>(mirror_.axis);
-        const double low = extent_.lower[k];
-        const double high = extent_.upper[k];
-        const double slack = 1e-3 * norm(plus(extent_.upper, extent_.lower, -1));
-        const std::string axis(1, "xyz"[k]);
-        if (plane_.at) {
-            mirror_.at = *plane_.at;
-        } else if (low >= -slack || high <= slack) {  // else on both sides of 0: refused below
-            mirror_.at = std::abs(low) <= std::abs(high) ? low : high;
-            if (std::abs(mirror_.at) <= slack) {
-                mirror_.at = 0;
-            } else {
-                warn("the symmetry plane is taken at " + axis + " = " + core::format_number(mirror_.at, 4) + " m, where the surface ends");
-            }
-        }
-        if (low < mirror_.at - slack && high > mirror_.at + slack) {
-            throw InputError("range", "the surface lies on both sides of " + axis + " = " + core::format_number(mirror_.at, 4) + " m: it is no half model", place(),
-                             "leave --symmetry away");
-        }
+        mirror_ = postproc::place_mirror(plane_, body, place(), result_.problems);
     }
 
     void choose_reference() {
@@ -297,6 +280,7 @@ private:
         if (std::any_of(result_.left_out.begin(), result_.left_out.end(), [](const LeftOutZone& zone) { return zone.by == LeftOutZone::By::shape; })) {
             settle_what_was_left_out();
         }
+        look_into_mirror_plane();
         if (!(result_.closure > 1e-9)) {
             return;
         }
@@ -310,6 +294,52 @@ private:
             const std::string half = half_model_hint();
             const std::string one = opening_zone();
             warn(text + (!one.empty() ? "; it closes without zone '" + one + "' (a ground?): name the zones of the body with --zones" : half.empty() ? "" : "; " + half));
+        }
+    }
+
+    /// Of faces that lie in a plane across an axis (m^2): a half model has none in its plane, a ground nothing else.
+    [[nodiscard]] double area_in_plane(std::size_t axis, double at) const {
+        const double slack = 1e-4 * norm(plus(extent_.upper, extent_.lower, -1));
+        double area = 0;
+        for (const auto& part : parts_) {
+            const auto& surface = *part.surface;
+            for (std::size_t f = 0; f < surface.faces(); ++f) {
+                bool inside = true;
+                for (auto i = surface.offsets()[f]; inside && i < surface.offsets()[f + 1]; ++i) {
+                    inside = std::abs(surface.points()[3 * static_cast<std::size_t>(surface.connectivity()[static_cast<std::size_t>(i)]) + axis] - at) < slack;
+                }
+                area += inside ? integrate_face(surface, {}, {}, f).area : 0;
+            }
+        }
+        return area;
+    }
+
+    void look_into_mirror_plane() {
+        if (mirror_.axis < 0 || field_.dimension == 2) {
+            return;
+        }
+        refuse_a_whole_body();
+        const double inside = area_in_plane(static_cast<std::size_t>(mirror_.axis), mirror_.at);
+        if (inside > 1e-3 * result_.area) {
+            warn(core::format_number(inside, 3) + " m^2 of the surface lie in the symmetry plane itself, where a half model has no wall: is that a ground, or the plane of symmetry? name the zones of the body with --zones");
+        }
+    }
+
+    /// What closes by itself is no half of anything; two of them side by side have a plane that somebody states.
+    void refuse_a_whole_body() const {
+        if (plane_.at) {
+            return;
+        }
+        FaceSums sums;
+        for (const auto& part : parts_) {
+            sums.area += part.sums.area;
+            sums.area_vector = plus(sums.area_vector, part.sums.area_vector, part.sign);
+            sums.flux_of_place = plus(sums.flux_of_place, part.sums.flux_of_place, part.sign);
+        }
+        if (bounds_a_volume(sums)) {
+            const std::string axis(1, "xyz"[mirror_.axis]);
+            throw InputError("range", "the surface closes without a mirror image: it is no half model", place(),
+                             "leave --symmetry away, or state the plane between two bodies side by side: --symmetry " + axis + "=0");
         }
     }
 
@@ -357,7 +387,7 @@ private:
         const double size = norm(plus(extent_.upper, extent_.lower, -1));
         for (std::size_t k = 0; k < 3; ++k) {
             const bool ends_at_zero = std::abs(extent_.lower[k]) < 1e-3 * size || std::abs(extent_.upper[k]) < 1e-3 * size;
-            if (std::abs(open[k]) > 0.99 * norm(open) && ends_at_zero) {
+            if (std::abs(open[k]) > 0.99 * norm(open) && ends_at_zero && area_in_plane(k, 0) < 0.01 * norm(open)) {
                 return std::string("a half model? then --symmetry ") + "xyz"[k];
             }
         }
@@ -430,7 +460,7 @@ private:
     core::Progress& progress_;
     bool revolved_;
     MirrorPlane plane_;
-    Mirror mirror_;
+    PlacedMirror mirror_;
     Axes axes_;
     std::vector<Part> parts_;
     Extent extent_;

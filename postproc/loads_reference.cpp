@@ -57,7 +57,7 @@ Vector area_of(const SummedZone& part, std::size_t face) {
 }
 
 /// Mean normal and the offset below which half of the area lies.
-std::pair<Vector, double> plane_of(const std::vector<const SummedZone*>& base, const Vector& up, const Mirror& mirror) {
+std::pair<Vector, double> plane_of(const std::vector<const SummedZone*>& base, const Vector& up, const PlacedMirror& mirror) {
     struct Face {
         double offset, area;
     };
@@ -109,7 +109,7 @@ double lowest_along(const std::vector<SummedZone>& parts, const Vector& up) {
 
 }  // namespace
 
-MomentReference reference_from_base(const std::vector<SummedZone>& parts, const std::string& base, const Vector& up, const Mirror& mirror) {
+MomentReference reference_from_base(const std::vector<SummedZone>& parts, const std::string& base, const Vector& up, const PlacedMirror& mirror) {
     MomentReference reference;
     std::vector<const SummedZone*> of_base;
     std::vector<std::string> names;

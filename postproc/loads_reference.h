@@ -5,15 +5,10 @@
 #include <vector>
 
 #include "postproc/loads_parts.h"
+#include "postproc/mirror_plane.h"
 #include "postproc/vector_math.h"
 
 namespace underbody::postproc {
-
-/// A half model's plane, in its place; axis -1: none.
-struct Mirror {
-    int axis = -1;
-    double at = 0;  ///< m, along the axis
-};
 
 /// Bounding box, m, file axes; lower above upper when there is nothing.
 struct Extent {
@@ -34,6 +29,6 @@ struct MomentReference {
 
 /// Mid-length and mid-width of the zones that fit `base`, in the plane of the flat base (most of its area lies in it; a
 /// protrusion does not move it). Without such a zone: the lowest point under the centre of the bounding box.
-MomentReference reference_from_base(const std::vector<SummedZone>& parts, const std::string& base, const Vector& up, const Mirror& mirror);
+MomentReference reference_from_base(const std::vector<SummedZone>& parts, const std::string& base, const Vector& up, const PlacedMirror& mirror);
 
 }  // namespace underbody::postproc

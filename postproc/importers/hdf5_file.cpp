@@ -19,16 +19,6 @@ namespace {
 void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 constexpr std::uint64_t largest_ratio = 1032;  // of deflate
-constexpr std::size_t most_children = 1000000;
-
-herr_t note_child(hid_t /*group*/, const char* name, const H5L_info_t* /*info*/, void* list) {
-    auto& names = *static_cast<std::vector<std::string>*>(list);
-    if (names.size() >= most_children) {
-        return 1;
-    }
-    names.emplace_back(name);
-    return 0;
-}
 
 /// The strings that stand in `raw`, as many bytes each as `type` has.
 std::vector<std::string> fixed_strings(hid_t type, const std::vector<char>& raw) {
@@ -159,6 +149,8 @@ herr_t read_attribute(hid_t object, const char* name, const H5A_info_t* info, vo
 struct Looked {
     std::uint64_t bytes = 0;
     std::set<haddr_t> objects;  ///< links may go round
+    std::string path;           ///< of the group that is looked at
+    std::string report;         ///< paths, each with a '\0' behind it
 };
 
 void look_at_set(hid_t set, const Looked& looked) {
@@ -175,20 +167,34 @@ herr_t look_at(hid_t group, const char* name, const H5L_info_t* /*info*/, void* 
     auto& all = *static_cast<Looked*>(looked);
     const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
     H5O_info_t info{};
-    if (!object.good() || H5Oget_info(object.get(), &info) < 0 || !all.objects.insert(info.addr).second) {
-        return 0;  // the reader meets the same refusal; what comes after it is looked at all the same
+    if (!object.good() || H5Oget_info(object.get(), &info) < 0) {
+        return 0;  // what comes after it is looked at all the same
     }
-    H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
+    constexpr std::size_t longest = std::size_t{64} << 20;
+    const std::size_t length = all.path.size();
+    all.path += std::string("/") + name;
+    const bool known = !all.objects.insert(info.addr).second;  // by another name
+    if (!known) {
+        H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
+    }
+    if (all.report.size() + all.path.size() < longest) {
+        all.report += all.path + '\0';
+    }
+    if (known) {
+        all.path.resize(length);
+        return 0;
+    }
     if (info.type == H5O_TYPE_DATASET) {
         look_at_set(object.get(), all);
     } else if (info.type == H5O_TYPE_GROUP) {
         H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look_at, looked);
     }
+    all.path.resize(length);
     return 0;
 }
 
-/// Everything about the file but the numbers: what damage makes the library stumble over lies there.
-void look_through(const std::filesystem::path& path) {
+/// Everything about the file but the numbers: what damage makes the library stumble over lies there. The paths of what is good.
+std::string look_through(const std::filesystem::path& path) {
     std::error_code error;
     Looked looked;
     looked.bytes = std::filesystem::file_size(path, error);
@@ -196,32 +202,45 @@ void look_through(const std::filesystem::path& path) {
     if (file.good()) {
         H5Literate(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look_at, &looked);
     }
+    return looked.report;
 }
 
-/// A file is tried once, as long as it does not change; a case and its data take turns.
-void try_once(const std::filesystem::path& path) {
+using Paths = std::shared_ptr<const std::set<std::string>>;
+
+/// The paths of what is in a file. It is looked through once, as long as it does not change; a case and its data take turns.
+Paths paths_in(const std::filesystem::path& path) {
     constexpr std::size_t remembered = 16;
     static std::mutex mutex;
-    static std::vector<std::string> tried;
+    static std::vector<std::pair<std::string, Paths>> known;
     std::error_code error;
     const auto changed = std::filesystem::last_write_time(path, error);
     const std::string print = path.string() + " " + std::to_string(std::filesystem::file_size(path, error)) + " " +
                               std::to_string(changed.time_since_epoch().count());
     const std::lock_guard lock(mutex);
-    if (std::find(tried.begin(), tried.end(), print) == tried.end()) {
-        try_in_child(path, [&] { look_through(path); });
-        if (tried.size() == remembered) {
-            tried.erase(tried.begin());
+    for (const auto& [file, paths] : known) {
+        if (file == print) {
+            return paths;
         }
-        tried.push_back(print);
     }
+    auto paths = std::make_shared<std::set<std::string>>();
+    const std::string report = report_of_child(path, [&] { return look_through(path); });
+    for (std::size_t at = 0; at < report.size();) {
+        const std::size_t end = report.find('\0', at);
+        paths->insert(paths->end(), report.substr(at, end - at));
+        at = end + 1;
+    }
+    if (known.size() == remembered) {
+        known.erase(known.begin());
+    }
+    known.emplace_back(print, paths);
+    return paths;
 }
 
 }  // namespace
 
 Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
     quiet();
-    try_once(path);
+    looked_at_ = paths_in(path);
     std::error_code error;
     bytes_ = std::filesystem::file_size(path, error);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -243,34 +262,15 @@ void Hdf5File::fail(const std::string& path, const std::string& what) const {
     throw core::InputError("format", path + ": " + what, {name_, {}, {}, {}}, "the file is damaged or incomplete");
 }
 
-bool Hdf5File::has(const std::string& path) const {
-    if (path == "/") {
-        return true;
-    }
-    // Every step of the path has to be asked for: HDF5 takes a missing parent for an error.
-    for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
-        const std::string part = path.substr(0, slash);
-        if (H5Lexists(file_, part.c_str(), H5P_DEFAULT) <= 0) {
-            return false;
-        }
-        if (slash == std::string::npos) {
-            // What cannot be opened was not looked through either: its attributes are not safe to touch.
-            return Hdf5Handle(H5Oopen(file_, path.c_str(), H5P_DEFAULT), H5Oclose).good();
-        }
-    }
-}
+bool Hdf5File::has(const std::string& path) const { return path == "/" || looked_at_->contains(path.ends_with('/') ? path.substr(0, path.size() - 1) : path); }
 
 std::vector<std::string> Hdf5File::children(const std::string& path) const {
     std::vector<std::string> names;
-    if (!has(path)) {
-        return names;
-    }
-    const Hdf5Handle group(H5Gopen2(file_, path.c_str(), H5P_DEFAULT), H5Gclose);
-    if (!group.good()) {
-        return names;
-    }
-    if (H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, note_child, &names) < 0) {
-        fail(path, "its contents cannot be listed");
+    const std::string before = path.ends_with('/') ? path : path + "/";
+    for (auto at = looked_at_->lower_bound(before); at != looked_at_->end() && at->starts_with(before); ++at) {
+        if (at->find('/', before.size()) == std::string::npos) {
+            names.push_back(at->substr(before.size()));
+        }
     }
     std::stable_sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
         const auto x = core::parse_integer(a);

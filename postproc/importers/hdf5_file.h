@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,7 @@ public:
     Hdf5File& operator=(const Hdf5File&) = delete;
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// A group or a dataset.
+    /// A group or a dataset that could be opened when the file was looked through.
     [[nodiscard]] bool has(const std::string& path) const;
     /// Names of the children of a group, numbers in their order ("2" before "10"); empty if there is no such group.
     [[nodiscard]] std::vector<std::string> children(const std::string& path) const;
@@ -51,6 +53,9 @@ public:
 
 private:
     std::string name_;
+    /// Paths of all objects that a process of its own opened and looked at: what it did not come to is not touched, however a
+    /// damaged file may lead there.
+    std::shared_ptr<const std::set<std::string>> looked_at_;
     std::int64_t file_ = -1;
     std::uint64_t bytes_ = 0;
 };

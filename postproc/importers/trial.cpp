@@ -1,7 +1,7 @@
 #include "postproc/importers/trial.h"
 
+#include <fcntl.h>
 #include <poll.h>
-#include <sys/syscall.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -57,38 +57,55 @@ void limit([[maybe_unused]] std::uintmax_t size) {
 #endif
 }
 
-/// Waits for the child; ends it when the waiting is cancelled. The status that waitpid gives.
-int wait_for(pid_t child, core::Progress& progress) {
-    int status = 0;
-    const int handle = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
-    while (handle >= 0 && !progress.cancelled()) {
-        pollfd wanted{handle, POLLIN, 0};
-        constexpr int milliseconds = 50;
-        if (::poll(&wanted, 1, milliseconds) > 0) {
-            break;
+void write_all(int pipe, const std::string& text) {
+    for (std::size_t done = 0; done < text.size();) {
+        const ssize_t some = ::write(pipe, text.data() + done, text.size() - done);
+        if (some <= 0) {
+            return;
         }
+        done += static_cast<std::size_t>(some);
     }
-    if (handle >= 0) {
-        ::close(handle);
+}
+
+/// What the child writes until it ends; ends it when the waiting is cancelled.
+std::string read_all(int pipe, pid_t child, core::Progress& progress) {
+    std::string text;
+    char some[65536];
+    for (;;) {
+        if (progress.cancelled()) {
+            ::kill(child, SIGKILL);
+            return {};
+        }
+        pollfd wanted{pipe, POLLIN, 0};
+        constexpr int milliseconds = 50;
+        if (::poll(&wanted, 1, milliseconds) <= 0) {
+            continue;
+        }
+        const ssize_t count = ::read(pipe, some, sizeof some);
+        if (count < 0 && errno == EINTR) {
+            continue;
+        }
+        if (count <= 0) {
+            return text;
+        }
+        text.append(some, static_cast<std::size_t>(count));
     }
-    if (progress.cancelled()) {
-        ::kill(child, SIGKILL);
-    }
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return status;
 }
 
 }  // namespace
 
-void try_in_child(const std::filesystem::path& path, const std::function<void()>& read, core::Progress& progress) {
+std::string report_of_child(const std::filesystem::path& path, const std::function<std::string()>& read, core::Progress& progress) {
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
-    const pid_t child = ::fork();
+    int ends[2] = {-1, -1};
+    const pid_t child = ::pipe2(ends, O_CLOEXEC) == 0 ? ::fork() : -1;
     if (child < 0) {
+        ::close(ends[0]);
+        ::close(ends[1]);
         throw core::SystemError("process", "cannot start a process to try the file in", {path.string(), {}, {}, {}});
     }
     if (child == 0) {
+        ::close(ends[0]);
         for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGALRM, SIGXCPU}) {
             ::signal(signal, SIG_DFL);
         }
@@ -98,7 +115,7 @@ void try_in_child(const std::filesystem::path& path, const std::function<void()>
         std::freopen("/dev/null", "w", stderr);  // what a library says before it dies is of no use to anybody
         int code = 0;
         try {
-            read();
+            write_all(ends[1], read());
         } catch (const std::bad_alloc&) {
             code = 2;
         } catch (...) {
@@ -106,10 +123,15 @@ void try_in_child(const std::filesystem::path& path, const std::function<void()>
         }
         ::_exit(code);
     }
-    const int status = wait_for(child, progress);
+    ::close(ends[1]);
+    std::string report = read_all(ends[0], child, progress);
+    ::close(ends[0]);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     progress.check();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
-        return;
+        return report;
     }
     const bool memory = WIFEXITED(status) && WEXITSTATUS(status) == 2;
     const bool time = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM);
@@ -122,6 +144,10 @@ void try_in_child(const std::filesystem::path& path, const std::function<void()>
                                 : time ? "takes more time than the file can justify"
                                        : "crashes on it (tried in a process of its own)"),
                            {path.string(), {}, {}, {}}, "the file is cut short or damaged");
+}
+
+void try_in_child(const std::filesystem::path& path, const std::function<void()>& read, core::Progress& progress) {
+    (void)report_of_child(path, [&] { return read(), std::string(); }, progress);
 }
 
 }  // namespace underbody::postproc

@@ -656,6 +656,27 @@ TEST(Loads, GiveCoefficientsAndTheRunningIntegral) {
     EXPECT_EQ(json["pressure"]["force"].size(), 3U);
 }
 
+TEST(Loads, OfAWholeBodyAreNotDoubled) {
+    try {
+        (void)loads(box(false, false), about({0, 0, 0}, "z"));
+        ADD_FAILURE() << "a closed box passed for half of one";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("closes without a mirror image"), HasSubstr("--symmetry z=0")));
+    }
+    EXPECT_NO_THROW((void)loads(box(false, false), about({0, 0, 0}, "z=-1")));
+}
+
+TEST(Loads, TellAGroundFromThePlaneOfAHalfModel) {
+    // A body over a ground at z = 0, in one zone: open along z, and no half of anything.
+    std::vector<Vector> points = {{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}, {0, 0, 0.6}, {2, 0, 0.6}, {2, 1, 0.6}, {0, 1, 0.6}, {-1, -1, 0}, {3, -1, 0}, {3, 2, 0}, {-1, 2, 0}};
+    const std::vector<std::vector<vtkIdType>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {8, 9, 10, 11}};
+    const Field field = field_of({make_zone("walls", points, faces, [](const Vector& p) { return 1 + p[2]; })});
+    for (const auto& problem : loads(field, about({0, 0, 0})).problems) {
+        EXPECT_THAT(problem.message, testing::Not(HasSubstr("half model")));
+    }
+    EXPECT_THROW((void)loads(field, about({0, 0, 0}, "z")), core::InputError);
+}
+
 TEST(Loads, OfTwoHullsSideBySideHaveTheWidthOfBoth) {
     LoadsOptions options = about({0, 0, 0});
     options.symmetry = "y=0";
