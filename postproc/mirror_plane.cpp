@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <map>
-#include <utility>
 
 #include "core/text.h"
 #include "core/units.h"
-#include "postproc/places.h"
+#include "postproc/rim_edges.h"
 #include "postproc/surface_arrays.h"
 #include "postproc/vector_math.h"
 
@@ -50,15 +47,15 @@ struct Bounds {
     }
 };
 
-const double* corner(const SurfaceArrays& surface, Index i) { return surface.points().data() + 3 * surface.connectivity()[static_cast<std::size_t>(i)]; }
+const double* node(const SurfaceArrays& surface, Index i) { return surface.points().data() + 3 * i; }
 
 /// What there is of a body along the normal of its plane.
 class Ends {
 public:
     Ends(const std::vector<const SurfaceArrays*>& body, std::size_t axis) : body_(body), axis_(axis) {
         for (const SurfaceArrays* surface : body) {
-            for (std::size_t i = 0; i < surface->connectivity().size(); ++i) {
-                all_.widen(corner(*surface, static_cast<Index>(i)));
+            for (const Index used : surface->connectivity()) {
+                all_.widen(node(*surface, used));
             }
         }
         size_ = norm(plus(all_.upper, all_.lower, -1));
@@ -70,34 +67,19 @@ public:
     [[nodiscard]] bool empty() const { return !(low() <= high()); }
 
     /// Do edges of one face alone enclose something at this end? (The rim of an opening elsewhere only touches it.)
-    [[nodiscard]] bool open_at(double end) const {
-        Places places(1e-6 * size_);
-        struct Edge {
-            const double *from, *to;
-            int faces = 0;
-        };
-        std::map<std::pair<std::int64_t, std::int64_t>, Edge> edges;
-        for (const SurfaceArrays* surface : body_) {
-            const auto offsets = surface->offsets();
-            for (std::size_t f = 0; f < surface->faces(); ++f) {
-                for (Index i = offsets[f]; i < offsets[f + 1]; ++i) {
-                    const double* a = corner(*surface, i);
-                    const double* b = corner(*surface, i + 1 < offsets[f + 1] ? i + 1 : offsets[f]);
-                    if (std::abs(a[axis_] - end) > slack || std::abs(b[axis_] - end) > slack) {
-                        continue;
-                    }
-                    const std::pair<std::int64_t, std::int64_t> ends = std::minmax({places.number(a), places.number(b)});
-                    if (ends.first != ends.second) {
-                        ++edges.try_emplace(ends, Edge{a, b}).first->second.faces;
-                    }
-                }
-            }
+    [[nodiscard]] bool open_at(double end) {
+        if (rims_.empty()) {
+            joined_along_rims(body_, size_, &rims_);
         }
         Bounds rim;
-        for (const auto& [ends, edge] : edges) {
-            if (edge.faces == 1) {
-                rim.widen(edge.from);
-                rim.widen(edge.to);
+        for (std::size_t i = 0; i < rims_.size(); ++i) {
+            for (const RimEdge& edge : rims_[i]) {
+                const double* a = node(*body_[i], edge.a);
+                const double* b = node(*body_[i], edge.b);
+                if (std::abs(a[axis_] - end) <= slack && std::abs(b[axis_] - end) <= slack) {
+                    rim.widen(a);
+                    rim.widen(b);
+                }
             }
         }
         for (std::size_t k = 0; k < 3; ++k) {
@@ -115,11 +97,12 @@ private:
     const std::vector<const SurfaceArrays*>& body_;
     std::size_t axis_;
     Bounds all_;
+    std::vector<std::vector<RimEdge>> rims_;
     double size_ = 0;
 };
 
 /// The end where the plane is, when nobody says.
-double end_at_plane(const Ends& ends) {
+double end_at_plane(Ends& ends) {
     const double nearer = std::abs(ends.low()) <= std::abs(ends.high()) ? ends.low() : ends.high();
     if (std::abs(nearer) <= ends.slack) {
         return 0;
@@ -136,7 +119,7 @@ PlacedMirror place_mirror(const MirrorPlane& plane, const std::vector<const Surf
         return {};
     }
     PlacedMirror mirror{plane.axis, plane.at.value_or(0)};
-    const Ends ends(body, static_cast<std::size_t>(plane.axis));
+    Ends ends(body, static_cast<std::size_t>(plane.axis));
     if (ends.empty()) {
         return mirror;
     }

@@ -159,6 +159,8 @@ TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
     EXPECT_THAT(forgotten.problems.back().message, HasSubstr("--symmetry y"));
     EXPECT_GT(forgotten.closure, 0.1);
     EXPECT_THROW(loads(field_of({ellipsoid(20, {0.1, 0.1, 0.1}, p)}), about({}, "y")), core::InputError);
+    // Nor is it half a body that is open elsewhere than at its plane.
+    EXPECT_THROW(loads(field_of({ellipsoid(20, {0.1, 0.1, 0.1}, p, true)}), about({}, "y=-1")), core::InputError);
 }
 
 TEST(Loads, OfTheShearOnAHalfModelAreThoseOfTheWhole) {
