@@ -189,19 +189,22 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
     scene.colours = ColourMap::diverging;
     const auto* info = to.zones().front()->find(array);
     const std::string unit = info == nullptr ? "Pa" : info->unit;
-    std::string extremes;
     if (!on_base.empty()) {
-        scene.range = telling_range(on_base, extremes, unit);
+        std::string cut;  // the ends below are those of the colours about zero
+        scene.range = telling_range(on_base, cut, unit);
     }
     for (const auto& [key, given] : options.ranges) {  // the last counts
         scene.range = given;
-        extremes.clear();
     }
     const auto values = range_of(scene);
     if (!(values.first <= values.second)) {
         throw core::InputError("range", "the two bodies lie nowhere within " + core::format_number(1000 * apart, 2) + " mm of each other", {b.files.empty() ? "" : b.files.front(), {}, {}, {}});
     }
     scene.range = drawn_range(values, scene.colours);
+    std::string extremes;
+    if (const auto [lowest, highest] = std::minmax_element(on_base.begin(), on_base.end()); !on_base.empty() && (*lowest < scene.range->first || *highest > scene.range->second)) {
+        extremes = " The base has from " + core::format_number(*lowest, 4) + " to " + core::format_number(*highest, 4) + " " + unit + ": beyond the ends of the colours.";
+    }
     scene.value_name = "difference";
     scene.value_unit = unit;
     scene.camera = to.from_below();

@@ -223,7 +223,7 @@ public:
 
 private:
     void place_mirror_by_body(const Field& field, const GapOptions& options) {
-        std::vector<const Zone*> body = surfaces_of_body(field, options.zones, options.base);
+        std::vector<const Zone*> body = surfaces_of_body(field, options.zones, options.base, mirror_plane_from(options.symmetry).is_half());
         for (const Zone* zone : base_) {
             if (std::find(body.begin(), body.end(), zone) == body.end()) {
                 body.push_back(zone);

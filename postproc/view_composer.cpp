@@ -72,7 +72,7 @@ std::vector<std::string> ViewComposer::keys_of_ranges() {
 }
 
 ViewComposer::ViewComposer(const Field& field, const ViewOptions& options)
-    : field_(field), options_(options), axes_(vehicle_axes(options.forward, options.up)), zones_(surfaces_of_body(field, options.zones, options.base)) {
+    : field_(field), options_(options), axes_(vehicle_axes(options.forward, options.up)), zones_(surfaces_of_body(field, options.zones, options.base, mirror_plane_from(options.symmetry).is_half())) {
     for (const Zone* zone : zones_) {
         widen(body_, box_of(*zone));
         if (matches(options.base, zone->name)) {

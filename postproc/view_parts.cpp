@@ -77,7 +77,7 @@ std::vector<const Zone*> named_surfaces(const Field& field, const std::vector<st
     return surfaces;
 }
 
-void leave_out_other_walls(std::vector<const Zone*>& zones, const std::string& base, int dimension) {
+void leave_out_other_walls(std::vector<const Zone*>& zones, const std::string& base, int dimension, bool half) {
     std::vector<SurfaceArrays> surfaces;
     std::vector<WallShape> walls;
     surfaces.reserve(zones.size());
@@ -86,7 +86,7 @@ void leave_out_other_walls(std::vector<const Zone*>& zones, const std::string& b
         walls.push_back(shape_of(zone->name, surfaces.back(), zone->normals_into_fluid, dimension));
         walls.back().surface = &surfaces.back();
     }
-    const auto others = walls_beside_body(walls);
+    const auto others = walls_beside_body(walls, half);
     std::erase_if(zones, [&](const Zone* zone) {
         return !matches(base, zone->name) && std::any_of(others.begin(), others.end(), [&](const LeftOutZone& other) { return other.name == zone->name; });
     });
@@ -94,12 +94,12 @@ void leave_out_other_walls(std::vector<const Zone*>& zones, const std::string& b
 
 }  // namespace
 
-std::vector<const Zone*> surfaces_of_body(const Field& field, const std::vector<std::string>& patterns, const std::string& base) {
+std::vector<const Zone*> surfaces_of_body(const Field& field, const std::vector<std::string>& patterns, const std::string& base, bool half) {
     std::vector<const Zone*> said_otherwise;
     std::vector<const Zone*> zones = patterns.empty() ? possible_walls(field, said_otherwise) : named_surfaces(field, patterns);
     std::erase_if(zones, [](const Zone* zone) { return zone->surface->GetNumberOfPolys() == 0; });
     if (patterns.empty() && zones.size() > 1) {
-        leave_out_other_walls(zones, base, field.dimension);
+        leave_out_other_walls(zones, base, field.dimension, half);
     }
     return zones;
 }

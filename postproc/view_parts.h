@@ -25,8 +25,8 @@ double diagonal(const Box& box);
 
 /// The surfaces of the body, as `loads` chooses them: those that the patterns name, else what may be a wall (`possible_walls`)
 /// without what cannot be part of the body (`walls_beside_body`: a ground, a tunnel); what fits `base` always is.
-/// Throws core::InputError with the nearest name: a pattern that no surface fits.
-std::vector<const Zone*> surfaces_of_body(const Field& field, const std::vector<std::string>& patterns, const std::string& base);
+/// `half`: a half model. Throws core::InputError with the nearest name: a pattern that no surface fits.
+std::vector<const Zone*> surfaces_of_body(const Field& field, const std::vector<std::string>& patterns, const std::string& base, bool half);
 
 /// The plane of a half model, by these surfaces (`place_mirror`).
 PlacedMirror mirror_of(const std::string& symmetry, const std::vector<const Zone*>& body, const Field& field, core::Problems& problems);
