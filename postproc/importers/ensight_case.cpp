@@ -40,6 +40,26 @@ std::vector<std::string> words_of(std::string_view text) {
     return words;
 }
 
+/// What may stand before a colon, by section; sections without a list hold what is not read.
+const std::map<std::string, std::vector<std::string>> known_keys = {
+    {"FORMAT", {"type"}},
+    {"GEOMETRY", {"model", "measured", "match", "boundary", "rigid_body", "vector_glyphs"}},
+    {"VARIABLE",
+     {"scalar per node", "vector per node", "tensor symm per node", "tensor asym per node", "scalar per element", "vector per element", "tensor symm per element",
+      "tensor asym per element", "scalar per measured node", "vector per measured node", "complex scalar per node", "complex vector per node", "complex scalar per element",
+      "complex vector per element", "constant per case", "constant per case file", "constant per part"}},
+    {"TIME", {"time set", "number of steps", "filename start number", "filename increment", "filename numbers", "filename numbers file", "time values", "time values file"}},
+    {"FILE", {"file set", "filename index", "number of steps"}}};
+
+/// In small letters, with one blank between words: writers differ in both.
+std::string key_of(std::string_view text) {
+    std::string key;
+    for (const auto& word : words_of(text)) {
+        key += (key.empty() ? "" : " ") + core::lower_case(word);
+    }
+    return key;
+}
+
 struct TimeSet {
     int steps = 1;
     int start = 0;
@@ -85,6 +105,7 @@ private:
     [[noreturn]] void fail(const std::string& what) const {
         throw core::InputError("format", what, {path_.string(), line_, {}, {}});
     }
+    [[nodiscard]] bool is_known(const std::string& section, const std::string& key, std::string_view line);
     void geometry(const std::string& key, const std::string& rest);
     void variable(const std::string& key, const std::string& rest);
     void time(const std::string& key, const std::string& rest, std::string_view line);
@@ -168,6 +189,22 @@ void CaseReader::take_sets(std::vector<std::string>& words, std::size_t least, P
     }
 }
 
+/// A line that is not understood is lost: better said than found missing.
+bool CaseReader::is_known(const std::string& section, const std::string& key, std::string_view line) {
+    const auto known = known_keys.find(section);
+    // Lists of numbers go on in lines without a key.
+    if (known == known_keys.end() || (section == "TIME" && key.empty() && listing_ != Listing::none) ||
+        std::find(known->second.begin(), known->second.end(), key) != known->second.end()) {
+        return true;
+    }
+    const std::string word = key.empty() ? std::string(line.substr(0, 60)) : key;
+    const std::string near = core::nearest_name(word, known->second);
+    result_.problems.push_back({core::Problem::Severity::warning,
+                                "'" + word + "' is not known under " + section + " and passed over" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                                {path_.string(), line_, {}, {}}});
+    return false;
+}
+
 void CaseReader::geometry(const std::string& key, const std::string& rest) {
     if (key != "model") {
         return;  // measured, match, boundary, rigid_body: particles and the like
@@ -192,15 +229,14 @@ void CaseReader::variable(const std::string& key, const std::string& rest) {
         return;
     }
     Pending entry;
-    entry.variable.on_nodes = key.ends_with("per node") || key.ends_with("per measured node");
+    entry.variable.on_nodes = key.ends_with("per node");
     const bool on_elements = key.ends_with("per element");
     entry.variable.components = key.starts_with("scalar")        ? 1
                                 : key.starts_with("vector")      ? 3
                                 : key.starts_with("tensor symm") ? 6
                                 : key.starts_with("tensor asym") ? 9
                                                                  : 0;
-    if (entry.variable.components == 0 || (!entry.variable.on_nodes && !on_elements) ||
-        key.find("measured") != std::string::npos) {
+    if (entry.variable.components == 0 || (!entry.variable.on_nodes && !on_elements)) {
         result_.problems.push_back(
             {core::Problem::Severity::note, "'" + key + "' is not read", {path_.string(), line_, {}, {}}});
         return;
@@ -316,19 +352,25 @@ EnsightCase CaseReader::read() {
         if (line.empty() || line.front() == '#') {
             continue;
         }
+        bool begins = false;
         for (const char* name :
              {"FORMAT", "GEOMETRY", "VARIABLE", "TIME", "FILE", "MATERIAL", "BLOCK_CONTINUATION", "SCRIPTS"}) {
-            if (line == name) {
+            begins = begins || core::lower_case(line) == core::lower_case(name);
+            if (begins) {
                 section = name;
+                break;
             }
         }
-        if (line == section) {
+        if (begins) {
             continue;
         }
         const std::size_t colon = line.find(':');
         const bool keyed = colon != std::string_view::npos;
-        const std::string key = keyed ? core::lower_case(core::trimmed(line.substr(0, colon))) : std::string();
+        const std::string key = keyed ? key_of(line.substr(0, colon)) : std::string();
         const std::string rest(keyed ? core::trimmed(line.substr(colon + 1)) : std::string_view());
+        if (!is_known(section, key, line)) {
+            continue;
+        }
         if (section == "FORMAT" && key == "type") {
             gold = core::lower_case(rest).find("gold") != std::string::npos;
             if (!gold) {
