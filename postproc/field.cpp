@@ -156,7 +156,17 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
                                known.empty() ? "known formats: " + known_formats() : "it looks like " + known);
     }
     progress.report(0, "reading " + path.filename().string());
-    Field field = telling([&] { return importer->read(path, options, progress); }, [&] { return "the format, " + importer->format + ", nothing else yet"; });
+    const auto read = [&] {
+        try {
+            return telling([&] { return importer->read(path, options, progress); }, [&] { return "the format, " + importer->format + ", nothing else yet"; });
+        } catch (const core::InputError&) {
+            if (fs::is_regular_file(status) && has_lone_returns(path)) {
+                throw core::InputError("format", "its lines end in carriage returns alone", place, "make them line feeds: tr '\\r' '\\n' < FILE > NEW");
+            }
+            throw;
+        }
+    };
+    Field field = read();
     make_names_utf8(field);
     const auto is_time = [](const auto& entry) { return entry.first == "time"; };
     if (options.time && std::none_of(field.metadata.begin(), field.metadata.end(), is_time)) {

@@ -7,8 +7,22 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/file.h"
 
 namespace underbody::postproc {
+
+/// The text of a report, whatever its line ends: without a mark of its coding, lone carriage returns made ends of lines.
+class ReportText {
+public:
+    explicit ReportText(const std::filesystem::path& path);
+    [[nodiscard]] std::string_view bytes() const { return own_.empty() ? bytes_ : std::string_view(own_); }
+    [[nodiscard]] const std::string& name() const { return file_.name(); }
+
+private:
+    core::MappedFile file_;
+    std::string_view bytes_;
+    std::string own_;
+};
 
 /// The words of a line: quoted ones whole; blanks, tabs, commas and brackets between.
 std::vector<std::string> words_of(std::string_view line);

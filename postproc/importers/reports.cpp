@@ -14,10 +14,19 @@
 
 namespace underbody::postproc {
 
+ReportText::ReportText(const std::filesystem::path& path) : file_(path), bytes_(file_.bytes()) {
+    bytes_.remove_prefix(bytes_.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+    if (bytes_.find('\r') != std::string_view::npos && bytes_.find('\n') == std::string_view::npos) {
+        own_ = bytes_;
+        std::replace(own_.begin(), own_.end(), '\r', '\n');
+    }
+}
+
 std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words;
     std::string word;
     bool quoted = false;
+    bool in_number = false;
     const auto finish = [&](bool keep_empty) {
         if (!word.empty() || keep_empty) {
             words.push_back(word);
@@ -32,6 +41,12 @@ std::vector<std::string> words_of(std::string_view line) {
             quoted = !quoted;
         } else if (quoted) {
             word += c;
+        } else if (c == '(' && core::lower_case(word).ends_with("nan")) {
+            word += c;  // "-nan(ind)"
+            in_number = true;
+        } else if (in_number && c == ')') {
+            word += c;
+            in_number = false;
         } else if (c == ' ' || c == '\t' || c == ',' || c == '(' || c == ')' || c == '\r') {
             finish(false);
         } else {
@@ -47,7 +62,7 @@ std::optional<double> number_of(std::string_view word) {
         return value;
     }
     const std::string lower = core::lower_case(word);
-    if (lower.starts_with("nan") || lower.starts_with("-nan") || lower.find("#ind") != std::string::npos ||
+    if (lower == "nan" || lower == "-nan" || lower.starts_with("nan(") || lower.starts_with("-nan(") || lower.find("#ind") != std::string::npos ||
         lower.find("#qnan") != std::string::npos) {
         return std::nan("");
     }
@@ -77,8 +92,6 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& wo
 namespace {
 
 constexpr std::size_t most_columns = 4096;
-
-std::string_view without_mark(std::string_view text) { return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text; }
 
 core::Problem repetition(std::size_t rows, const std::string& file) {
     return {core::Problem::Severity::note,
@@ -161,7 +174,11 @@ Monitor read_transcript(const std::string& file, std::string_view bytes) {
     return monitor;
 }
 
-Monitor read_table(const std::string& file, std::string_view bytes) {
+/// "12" in quotation marks and nothing else is a title, whatever number it may look like.
+bool is_quoted_title(std::string_view line, const std::vector<std::string>& words) { return words.size() == 1 && line.front() == '"'; }
+
+/// `begun`: a row was found whose columns have names.
+Monitor read_table(const std::string& file, std::string_view bytes, bool* begun = nullptr) {
     Monitor monitor;
     monitor.file = file;
     Rows rows;
@@ -178,10 +195,12 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
             fail_in_line(file, number, "a line with more than " + std::to_string(most_columns) + " columns");
         }
         auto row = numbers_of(words);
-        if (!row) {
+        if (!row || is_quoted_title(line, words)) {
             // A head; after a restart it may come again.
             if (rows.empty() || line.front() == '"' || line.front() == '(') {
-                heads.push_back(std::move(words));
+                if (rows.empty()) {
+                    heads.push_back(std::move(words));
+                }
                 if (heads.size() > 16) {
                     fail_in_line(file, number, "no table begins within the first lines");
                 }
@@ -213,6 +232,9 @@ Monitor read_table(const std::string& file, std::string_view bytes) {
             fail_in_line(file, number, "a row without its iteration");
         }
         rows.add(std::move(*row));
+        if (begun != nullptr) {
+            *begun = monitor.columns.size() > 1 && !heads.empty();
+        }
     }
     if (rows.empty()) {
         throw core::InputError("format", "there is no table of numbers in this file", {file, {}, {}, {}});
@@ -337,8 +359,8 @@ const ReportedForce* ForceReport::net() const {
 }
 
 Monitor read_monitor(const std::filesystem::path& path) {
-    const core::MappedFile file(path);
-    const std::string_view bytes = without_mark(file.bytes());
+    const ReportText file(path);
+    const std::string_view bytes = file.bytes();
     if (has_cfx_iterations(bytes)) {
         return read_cfx_iterations(file.name(), bytes);
     }
@@ -356,11 +378,11 @@ Monitor read_monitor(const std::filesystem::path& path) {
 }
 
 Plot read_plot(const std::filesystem::path& path) {
-    const core::MappedFile file(path);
+    const ReportText file(path);
     Plot plot;
     std::int64_t number = 0;
     bool open = false;
-    for (const auto raw : core::split(without_mark(file.bytes()), '\n')) {
+    for (const auto raw : core::split(file.bytes(), '\n')) {
         ++number;
         const auto line = core::trimmed(raw);
         if (line.empty()) {
@@ -400,9 +422,9 @@ Plot read_plot(const std::filesystem::path& path) {
 }
 
 std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
-    const core::MappedFile file(path);
+    const ReportText file(path);
     if (has_cfx_forces(file.bytes())) {
-        return read_cfx_forces(file.name(), without_mark(file.bytes()));
+        return read_cfx_forces(file.name(), file.bytes());
     }
     std::vector<ForceReport> reports;
     std::size_t first = 0;
@@ -410,7 +432,7 @@ std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
     std::int64_t begins = 0;
     double scale = 1;
     bool reading = false;
-    for (const auto raw : core::split(without_mark(file.bytes()), '\n')) {
+    for (const auto raw : core::split(file.bytes(), '\n')) {
         ++number;
         const auto line = core::trimmed(raw);
         if (auto report = report_begun_by(line)) {
@@ -443,8 +465,8 @@ std::vector<ForceReport> read_force_reports(const std::filesystem::path& path) {
 }
 
 ReportKinds report_kinds(const std::filesystem::path& path) {
-    const core::MappedFile file(path);
-    const std::string_view text = without_mark(file.bytes()).substr(0, std::size_t{16} << 20);
+    const ReportText file(path);
+    const std::string_view text = file.bytes().substr(0, std::size_t{16} << 20);
     ReportKinds kinds;
     if (text.empty() || text.substr(0, 65536).find('\0') != std::string_view::npos) {
         return kinds;
@@ -458,10 +480,11 @@ ReportKinds report_kinds(const std::filesystem::path& path) {
         kinds.monitor = kinds.monitor || (line.starts_with("iter") && is_residual_header(words_of(line)));
     }
     if (!kinds.any()) {
+        bool begun = false;
         try {
-            kinds.monitor = read_table(file.name(), text.substr(0, text.rfind('\n', 65536) + 1)).columns.size() > 1;
+            kinds.monitor = read_table(file.name(), text.substr(0, text.rfind('\n', 65536) + 1), &begun).columns.size() > 1;
         } catch (const core::InputError&) {
-            // Some other text.
+            kinds.monitor = begun;  // a damaged one: who reads it says in which line. Else some other text
         }
     }
     return kinds;

@@ -84,6 +84,11 @@ std::string of_folder(const fs::path& path) {
 
 }  // namespace
 
+bool has_lone_returns(const fs::path& path) {
+    const std::string head = head_of(path);
+    return head.find('\r') != std::string::npos && head.find('\n') == std::string::npos && head.find('\0') == std::string::npos;
+}
+
 std::string what_it_is(const fs::path& path) {
     std::error_code error;
     if (fs::is_directory(path, error)) {
@@ -97,7 +102,10 @@ std::string what_it_is(const fs::path& path) {
     if (const std::string text = of_text(head); !text.empty()) {
         return text;
     }
-    return report_kinds(path).any() ? "a report of the solver, no field: see 'underbody info', and 'underbody loads --monitor' and '--report'" : "";
+    if (report_kinds(path).any()) {
+        return "a report of the solver, no field: see 'underbody info', and 'underbody loads --monitor' and '--report'";
+    }
+    return has_lone_returns(path) ? "text whose lines end in carriage returns alone: make them line feeds (tr '\\r' '\\n' < FILE > NEW)" : "";
 }
 
 }  // namespace underbody::postproc

@@ -10,4 +10,7 @@ namespace underbody::postproc {
 /// known about it.
 std::string what_it_is(const std::filesystem::path& path);
 
+/// Is it text whose lines end in carriage returns alone, as those of Macs once did? Who reads it by lines sees one.
+bool has_lone_returns(const std::filesystem::path& path);
+
 }  // namespace underbody::postproc

@@ -60,6 +60,34 @@ TEST(Monitors, ARaggedTableIsRefusedWithItsLine) {
     }
 }
 
+TEST(Monitors, ATitleMayLookLikeANumberAndLinesMayEndInCarriageReturns) {
+    const core::TemporaryFolder folder;
+    const auto path = folder.path() / "lift.out";
+    for (const std::string title : {"12", "nan", "inf", "-1e5"}) {
+        const std::string text = "\"" + title + "\"\n\"Iteration\" \"lift\"\n(\"Iteration\" \"lift\")\n1 1.5\n2 1.6\n";
+        core::write_file(path, text + text);  // a restart writes its heads again
+        EXPECT_TRUE(report_kinds(path).monitor) << title;
+        const Monitor monitor = read_monitor(path);
+        EXPECT_EQ(monitor.title, title);
+        EXPECT_THAT(monitor.columns, testing::ElementsAre("Iteration", "lift"));
+        EXPECT_EQ(monitor.values[0].size(), 2U);
+        std::string returns = text;
+        std::replace(returns.begin(), returns.end(), '\n', '\r');
+        core::write_file(path, returns);
+        EXPECT_TRUE(report_kinds(path).monitor);
+        EXPECT_EQ(read_monitor(path).values[1].back(), 1.6);
+    }
+    std::string often;
+    for (int run = 0; run < 12; ++run) {
+        often += "\"l\"\n\"Iteration\" \"lift\"\n(\"Iteration\" \"lift\")\n" + std::to_string(run) + " 1.5\n";
+    }
+    core::write_file(path, often);
+    EXPECT_EQ(read_monitor(path).values[0].size(), 12U);
+    core::write_file(path, "\"l\"\n\"Iteration\" \"nanoparticles\"\n1 -nan(ind)\n2 1.6\n");
+    EXPECT_EQ(read_monitor(path).columns[1], "nanoparticles");
+    EXPECT_TRUE(std::isnan(read_monitor(path).values[1][0]));
+}
+
 TEST(Monitors, AHeadOfBracketsAloneLeavesTheColumnUnnamed) {
     const core::TemporaryFolder folder;
     const auto monitor = read_monitor(written(folder, ")\n1 0.5\n2 0.6\n"));

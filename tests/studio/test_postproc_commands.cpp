@@ -1,6 +1,7 @@
 // info, import, loads, views and probe as a user runs them.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -116,6 +117,11 @@ TEST_F(PostprocCommands, ContentThatNoImporterReadsIsNamed) {
     EXPECT_THAT(hint("a.vtk.series", "{\"file-series-version\": \"1.0\", \"files\": []}"), testing::HasSubstr("one of the files"));
     EXPECT_THAT(hint("a.prof", "((inlet point 2)\n(x 0 1)\n"), testing::HasSubstr("boundary profile"));
     EXPECT_THAT(hint("a.bin", std::string("\x01\x02\0\x03", 4)), testing::HasSubstr("known formats"));
+    EXPECT_THAT(hint("ragged.out", "\"l\"\n\"Iteration\" \"l\"\n(\"Iteration\" \"l\")\n1 2\n2 3 4\n3 4\n"), testing::HasSubstr("ragged.out:5: a row of 3 numbers where there are 2 columns"));
+    std::string returns = box_csv;
+    std::replace(returns.begin(), returns.end(), '\n', '\r');
+    EXPECT_THAT(hint("mac.csv", returns), testing::HasSubstr("carriage returns alone"));
+    EXPECT_THAT(hint("mac.case", "FORMAT\rtype: ensight gold\rGEOMETRY\rmodel: a.geo\r"), testing::HasSubstr("carriage returns alone"));
     core::write_file(folder_.path() / "rooms/constant/air/polyMesh/owner", "");
     EXPECT_THAT(run({"info", "rooms"}).errors, testing::HasSubstr("regions air"));
     core::write_file(folder_.path() / "shares/processors4/constant/polyMesh/owner", "");
