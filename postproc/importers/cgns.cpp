@@ -55,7 +55,7 @@ private:
     [[nodiscard]] ElementPart volume_of(const CgnsZone& zone, const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const;
     void add_polyhedra(const CgnsZone& zone, ElementPart& volume, const CgnsSection& cells, const std::map<std::int64_t, std::size_t>& polygons,
                        const std::vector<CgnsSection>& sections, CellsOfPolygons& cells_of_polygons) const;
-    void warn_of_missing(Field& field, const CgnsZone& zone, const std::string& surface, const CgnsCondition& condition, const std::string& why) const;
+    void tell_of(Field& field, const CgnsZone& zone, const std::string& surface, const CgnsCondition& condition, const std::string& what) const;
 
     CgnsFile file_;
     std::string name_;
@@ -338,11 +338,11 @@ void Reader::add_surface(Field& field, const Sides& at, CgnsSurface&& one, bool 
     field.zones.push_back(std::move(zone));
 }
 
-void Reader::warn_of_missing(Field& field, const CgnsZone& zone, const std::string& surface, const CgnsCondition& condition, const std::string& why) const {
+void Reader::tell_of(Field& field, const CgnsZone& zone, const std::string& surface, const CgnsCondition& condition, const std::string& what) const {
     // Points and lines are all that degenerate ones have.
     if (!condition.type.starts_with("BCDegenerate") && matches_any(options_.zones, surface)) {
         field.problems.push_back({core::Problem::Severity::warning,
-                                  "zone '" + zone.name + "': boundary condition '" + condition.name + "' (" + condition.type + ") is not there or not whole: " + why,
+                                  "zone '" + zone.name + "': boundary condition '" + condition.name + "' (" + condition.type + ") " + what,
                                   {name_, {}, {}, {}}});
     }
 }
@@ -373,8 +373,8 @@ void Reader::add_unstructured(const CgnsZone& zone, Field& field) {
     }
     const auto conditions = file_.conditions(zone);
     CgnsSurfaces surfaces = surfaces_of(sections, conditions, cells_of_polygons, file_.cell_dimension());
-    for (const auto& [condition, why] : surfaces.missing) {
-        warn_of_missing(field, zone, condition->name, *condition, why);
+    for (const auto& [condition, what] : surfaces.told) {
+        tell_of(field, zone, condition->name, *condition, what);
     }
     add_surfaces(field, zone, points, values, std::move(surfaces.parts), volume);
     add_volume(zone, field, std::move(volume), std::move(points), std::move(values));
@@ -392,8 +392,8 @@ void Reader::add_structured(const CgnsZone& zone, Field& field) {
     const auto conditions = file_.conditions(zone);
     for (const auto& condition : conditions) {
         BlockFaces faces = faces_of_block(file_, zone, condition);
-        if (!faces.missing.empty()) {
-            warn_of_missing(field, zone, faces.surface.part.name, condition, faces.missing);
+        if (!faces.told.empty()) {
+            tell_of(field, zone, faces.surface.part.name, condition, faces.told);
         }
         surfaces.push_back(std::move(faces.surface));
     }

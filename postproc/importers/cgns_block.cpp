@@ -88,14 +88,14 @@ public:
         result_.surface.part.kind = condition_.kind;
         result_.surface.part.original_kind = condition_.type;
         if (places_.empty() || condition_.where == CgnsCondition::Where::nowhere || (condition_.range && places_.size() != 2)) {
-            result_.missing = "it names neither faces nor vertices";
+            result_.told = "has no faces: it names neither faces nor vertices";
         } else if (condition_.where == CgnsCondition::Where::faces) {
             add_faces();
         } else {
             condition_.range ? add_between_vertices() : add_faces_of_vertices();
         }
-        if (result_.missing.empty() && result_.surface.part.elements() == 0) {
-            result_.missing = "no face has all its vertices there";
+        if (result_.told.empty() && result_.surface.part.elements() == 0) {
+            result_.told = "has no faces: none has all its vertices among those that it names";
         }
         return std::move(result_);
     }
@@ -104,12 +104,18 @@ private:
     static constexpr int of_nodes = -1;
 
     /// Faces are as many as nodes across their index, and one less along the others.
-    void check(const Place& low, const Place& high, int normal) const {
+    [[nodiscard]] bool inside(const Place& low, const Place& high, int normal) const {
         for (int k = 0; k < block_.dimension(); ++k) {
             const std::int64_t less = k == normal || normal == of_nodes ? 0 : 1;
             if (low[static_cast<std::size_t>(k)] < 0 || high[static_cast<std::size_t>(k)] >= block_.nodes(k) - less) {
-                file_.fail(zone_, "condition '" + condition_.name + "' lies outside the zone");
+                return false;
             }
+        }
+        return true;
+    }
+    void check(const Place& low, const Place& high, int normal) const {
+        if (!inside(low, high, normal)) {
+            file_.fail(zone_, "condition '" + condition_.name + "' lies outside the zone");
         }
     }
 
@@ -139,7 +145,13 @@ private:
     void add_faces() {
         const int normal = condition_.normal >= 0 && condition_.normal < block_.dimension() ? condition_.normal : normal_by_extent();
         if (normal < 0) {
-            result_.missing = "the file does not say across which index its faces lie";
+            result_.told = "has no faces: the file does not say across which index they lie";
+            return;
+        }
+        const auto all_inside = [&](int kind) { return std::all_of(places_.begin(), places_.end(), [&](const Place& place) { return inside(place, place, kind); }); };
+        if (!all_inside(normal) && all_inside(of_nodes)) {  // some write FaceCenter to lists and ranges of vertices
+            result_.told = "is taken by its vertices: it goes one beyond the faces that there are";
+            condition_.range ? add_between_vertices() : add_faces_of_vertices();
             return;
         }
         if (condition_.range) {
@@ -166,7 +178,7 @@ private:
             }
         }
         if (flat.size() != 1) {
-            result_.missing = flat.empty() ? "its vertices fill a block" : "its vertices lie on a line";
+            result_.told = std::string("has no faces: its vertices ") + (flat.empty() ? "fill a block" : "lie on a line");
             return;
         }
         for_places(low_, last, [&](const Place& at) { block_.add_face(result_.surface.part, at, flat[0]); });

@@ -14,7 +14,7 @@ ElementPart cells_of_block(const CgnsZone& zone, int dimension, core::Progress& 
 /// What a condition names: quadrilaterals of a block, lines of a plane one.
 struct BlockFaces {
     CgnsSurface surface;
-    std::string missing;  ///< why there are none; "" when there are
+    std::string told;  ///< what to say of the condition: that it has none, and why; "" where all is well
 };
 
 /// Throws InputError (through `file`) for a condition that lies outside the zone.

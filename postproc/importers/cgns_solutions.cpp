@@ -158,8 +158,15 @@ std::vector<CgnsFile::Choice> CgnsFile::choices(const CgnsZone& zone, const Read
         std::array<char, 33> solution{};
         CGNS_ENUMT(GridLocation_t) location{};
         int fields = 0;
-        if (cg_sol_info(file_, base_, zone.index, s, solution.data(), &location) != CG_OK || cg_nfields(file_, base_, zone.index, s, &fields) != CG_OK ||
-            (location != CGNS_ENUMV(Vertex) && location != CGNS_ENUMV(CellCenter))) {
+        if (cg_sol_info(file_, base_, zone.index, s, solution.data(), &location) != CG_OK || cg_nfields(file_, base_, zone.index, s, &fields) != CG_OK) {
+            continue;
+        }
+        CGNS_ENUMT(PointSetType_t) points{};
+        cgsize_t named = 0;
+        const bool of_some = cg_sol_ptset_info(file_, base_, zone.index, s, &points, &named) == CG_OK && points != CGNS_ENUMV(PointSetTypeNull);
+        if (of_some || (location != CGNS_ENUMV(Vertex) && location != CGNS_ENUMV(CellCenter))) {
+            warn("zone '" + zone.name + "': solution '" + solution.data() + "' is not read: it " +
+                 (of_some ? "holds values of some of the zone's parts alone" : "lies at " + std::string(GridLocationName[location])));
             continue;
         }
         const bool of_step = !by_step.empty() && is_at(by_step[step_], solution.data());

@@ -25,7 +25,7 @@ public:
             if (condition.where == CgnsCondition::Where::vertices && !section_called(condition.name)) {
                 result_.parts.push_back(by_vertices(condition));
             } else if (condition.where == CgnsCondition::Where::nowhere && !section_called(condition.name)) {
-                result_.missing.emplace_back(&condition, "it names neither faces nor vertices");
+                result_.told.emplace_back(&condition, "has no faces: it names neither faces nor vertices");
             }
         }
         for (std::size_t s = 0; s < sections_.size(); ++s) {
@@ -94,9 +94,9 @@ private:
             }
         }
         if (part.elements() == 0) {
-            result_.missing.emplace_back(&condition, "none of the elements that it names is a face in the file");
+            result_.told.emplace_back(&condition, "has no faces: none of the elements that it names is one in the file");
         } else if (static_cast<double>(part.elements()) < condition.named()) {
-            result_.missing.emplace_back(&condition, "of " + std::to_string(static_cast<std::int64_t>(condition.named())) + " elements that it names " +
+            result_.told.emplace_back(&condition, "is not whole: of " + std::to_string(static_cast<std::int64_t>(condition.named())) + " elements that it names " +
                                                              std::to_string(part.elements()) + " are faces in the file");
         }
         return surface;
@@ -128,7 +128,7 @@ private:
             }
         }
         if (part.elements() == 0) {
-            result_.missing.emplace_back(&condition, "no face in the file has all its nodes among the vertices that it names");
+            result_.told.emplace_back(&condition, "has no faces: none in the file has all its nodes among the vertices that it names");
         }
         return surface;
     }

@@ -15,7 +15,7 @@ using CellsOfPolygons = std::vector<std::vector<unsigned char>>;
 
 struct CgnsSurfaces {
     std::vector<CgnsSurface> parts;  ///< no points yet; some may be empty
-    std::vector<std::pair<const CgnsCondition*, std::string>> missing;  ///< condition -> what of it gives no faces
+    std::vector<std::pair<const CgnsCondition*, std::string>> told;  ///< condition -> what to say of it: what has no faces
 };
 
 /// A surface for each condition with the faces that it names: by their numbers, else by the section of its name, else by

@@ -86,7 +86,7 @@ TEST(CgnsBoundaries, InABlockOneCellWideTheFileSaysAcrossWhichIndexFacesLie) {
     EXPECT_NEAR(area(block_with({3, 1, 1}, range, CGNS_ENUMV(FaceCenter), {1, 1, 2, 3, 1, 2}), "blk/wall"), 3, 1e-12);  // behind the last cell
     const auto unsaid = block_with({3, 1, 1}, range, CGNS_ENUMV(FaceCenter), numbers);
     EXPECT_EQ(unsaid.find("blk/wall"), nullptr);
-    EXPECT_THAT(told(unsaid), HasSubstr("'wall' (BCWall) is not there or not whole: the file does not say across which index"));
+    EXPECT_THAT(told(unsaid), HasSubstr("'wall' (BCWall) has no faces: the file does not say across which index"));
 }
 
 TEST(CgnsBoundaries, ListsInBlocksNameFacesOrVertices) {
@@ -109,11 +109,20 @@ TEST(CgnsBoundaries, PlaneBlocksHaveLines) {
 }
 
 TEST(CgnsBoundaries, FacesOutsideABlockAreRefused) {
-    for (const auto& numbers : {std::vector<cgsize_t>{1, 1, 1, 3, 3, 1}, std::vector<cgsize_t>{1, 1, 6, 2, 3, 6}, std::vector<cgsize_t>{0, 1, 1, 2, 3, 1}}) {
+    for (const auto& numbers : {std::vector<cgsize_t>{1, 1, 1, 4, 3, 1}, std::vector<cgsize_t>{1, 1, 6, 2, 3, 6}, std::vector<cgsize_t>{0, 1, 1, 2, 3, 1}}) {
         EXPECT_THROW(block_with({2, 3, 4}, CGNS_ENUMV(PointRange), CGNS_ENUMV(KFaceCenter), numbers), core::InputError);
     }
-    EXPECT_THROW(block_with({2, 3, 4}, CGNS_ENUMV(PointList), CGNS_ENUMV(KFaceCenter), {3, 1, 1}), core::InputError);
+    EXPECT_THROW(block_with({2, 3, 4}, CGNS_ENUMV(PointList), CGNS_ENUMV(KFaceCenter), {4, 1, 1}), core::InputError);
     EXPECT_THROW(block_with({2, 3, 4}, CGNS_ENUMV(PointList), CGNS_ENUMV(Vertex), {1, 1, 6}), core::InputError);
+}
+
+TEST(CgnsBoundaries, VerticesThatAreCalledFacesAreVertices) {
+    for (const auto where : {CGNS_ENUMV(KFaceCenter), CGNS_ENUMV(FaceCenter)}) {
+        const auto field = block_with({2, 3, 4}, CGNS_ENUMV(PointRange), where, {1, 1, 5, 3, 4, 5});
+        EXPECT_NEAR(area(field, "blk/wall"), 6, 1e-12);
+        EXPECT_THAT(told(field), HasSubstr("is taken by its vertices"));
+        EXPECT_NEAR(area(block_with({2, 3, 4}, CGNS_ENUMV(PointList), where, {2, 3, 5, 3, 3, 5, 3, 4, 5, 2, 4, 5}), "blk/wall"), 1, 1e-12);
+    }
 }
 
 TEST(CgnsBoundaries, CellsAndFacesMayStandInOneSection) {
@@ -158,8 +167,8 @@ TEST(CgnsBoundaries, FacesThatNoConditionNamesStayThere) {
     EXPECT_NEAR(area(field, "faces (rest)"), 2, 1e-12);
     EXPECT_EQ(field.find("faces (rest)")->kind, ZoneKind::unknown);
     EXPECT_EQ(field.find("nothing"), nullptr);
-    EXPECT_THAT(told(field), HasSubstr("'nothing' (BCWall) is not there or not whole: none of the elements"));
-    EXPECT_THAT(told(field), HasSubstr("of 2 elements that it names 1 are faces in the file"));
+    EXPECT_THAT(told(field), HasSubstr("'nothing' (BCWall) has no faces: none of the elements"));
+    EXPECT_THAT(told(field), HasSubstr("is not whole: of 2 elements that it names 1 are faces in the file"));
 }
 
 TEST(CgnsBoundaries, VerticesNameTheFacesBetweenThem) {

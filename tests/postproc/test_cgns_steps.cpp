@@ -133,6 +133,26 @@ TEST(CgnsSteps, ATimeIsRefusedWhereTheFileDoesNotSayWhichSolutionsAreOfIt) {
     EXPECT_THAT(refusal_at(folder.path() / "none.cgns", 0.1), HasSubstr("the file states no times"));
 }
 
+TEST(CgnsSteps, SolutionsOfPartsAloneAreLeftOutAloud) {
+    const core::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.cgns";
+    {
+        CgnsWriter file(path);
+        file.add_cube("water");
+        file.solution("All", CGNS_ENUMV(CellCenter), "Pressure", {5});
+        file.section("faces", CGNS_ENUMV(QUAD_4), CgnsWriter::cube_faces(), 4);
+        const cgsize_t nodes[2] = {1, 3};
+        int index = 0;
+        CgnsWriter::ok(cg_sol_ptset_write(file.file, file.base, file.zone, "Some", CGNS_ENUMV(Vertex), CGNS_ENUMV(PointRange), 2, nodes, &index));
+        const double values[3] = {1, 2, 3};
+        int field = 0;
+        CgnsWriter::ok(cg_field_write(file.file, file.base, file.zone, index, CGNS_ENUMV(RealDouble), "Temperature", values, &field));
+    }
+    const auto field = read_at(path, {});
+    EXPECT_EQ(pressure_of(field), 5);
+    EXPECT_THAT(told(field), HasSubstr("solution 'Some' is not read"));
+}
+
 TEST(CgnsSteps, AMovingGridIsThatOfTheStep) {
     const core::TemporaryFolder folder;
     for (const bool pointers : {true, false}) {
