@@ -241,6 +241,10 @@ ComposedView ViewComposer::gap_view(const std::string& array) const {
     }
     for (const Zone* zone : zones_) {
         DrawnSurface body = drawn_surface(*zone, "");
+        const double middle = dot(base_centre(), axes_.up) - 0.5 * gap;
+        if (std::all_of(body.points.begin(), body.points.end(), [&](const Point& p) { return dot(p, axes_.up) < middle; })) {
+            continue;  // a ground that was named would hide the gap
+        }
         const bool base = matches(options_.base, zone->name);
         body.colour = base ? Point{0.88, 0.89, 0.91} : Point{0.76, 0.78, 0.81};
         mirror_into(body, mirror_);

@@ -122,7 +122,7 @@ void add_probe_command(CLI::App& app, Shell& shell) {
     command->add_option("--gap", o->gap, "flow through the gap at so many stations along the base")->check(CLI::Range(1, 1000));
     command->add_option("--arrays", o->arrays, "arrays to look at; default all")->delimiter(',');
     command->add_flag("--on-surface", o->on_surface, "the nearest place of the surfaces, though there is a volume");
-    command->add_option("--symmetry", o->symmetry, "half model: flows count both halves");
+    command->add_option("--symmetry", o->symmetry, "half model: flows count both halves; normal axis of its plane, with its place if that is not where the body is open: y, or y=0.1");
     command->add_option("--base", o->base, "zone above the gap")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();

@@ -267,10 +267,10 @@ void add_views_command(CLI::App& app, Shell& shell) {
     command->add_option("files", o->files, "CFD files, or patterns of names; several share colours and camera")->required();
     command->add_option("-o,--out", o->out, "folder for the pictures")->capture_default_str();
     command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',');
-    command->add_flag("--list", o->list, "only say which views the file allows");
+    command->add_flag("--list", o->list, "only say which views each file allows");
     command->add_option("--difference", o->difference, "draw the second file less the first one: pressure, wall_shear (of vectors the sizes)");
     command->add_option("--range", o->ranges, "colour range, in SI or with units: pressure=-200:100, shear=\"0 Pa:5 Pa\", speed=0:1, speed-symmetry=0:0.7, difference=-20:20");
-    command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane");
+    command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane, with its place if that is not where the body is open: y, or y=0.1");
     command->add_option("--base", o->base, "zone that is the base")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
