@@ -249,7 +249,7 @@ void Reader::add_surfaces(Field& field, const CgnsZone& zone, const Buffer<doubl
 /// one side alone is no load.
 void Reader::add_sides(Field& field, const Sides& at, CgnsSurface&& surface) {
     const ElementPart& front = surface.part;
-    const bool sided = front.kind == ZoneKind::wall || front.kind == ZoneKind::unknown;
+    const bool sided = !shell_ && (front.kind == ZoneKind::wall || front.kind == ZoneKind::unknown);
     CgnsSurface back;
     if (sided) {
         back.part = at.volume.other_side(front);

@@ -312,6 +312,19 @@ TEST(CgnsBoundaries, AWallBetweenTwoCellsHasTwoSides) {
     EXPECT_EQ(fan.find("plate")->surface->GetCellData()->GetArray("pressure")->GetTuple1(0), 15);
 }
 
+TEST(CgnsBoundaries, LinesOnASurfaceInSpaceHaveNoSides) {
+    const core::TemporaryFolder folder;
+    {
+        CgnsWriter file(folder.path() / "a.cgns", 2, 3);
+        file.add_zone("skin", {{{0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 1, 1}, {0, 0, 0, 0, 1, 1}}}, 2);
+        file.section("faces", CGNS_ENUMV(QUAD_4), {1, 2, 4, 3, 3, 4, 6, 5}, 4);
+        file.section("edge", CGNS_ENUMV(BAR_2), {3, 4}, 2);
+    }
+    const auto field = read_field(folder.path() / "a.cgns");
+    EXPECT_NE(field.find("edge"), nullptr);
+    EXPECT_EQ(field.find("edge-shadow"), nullptr);
+}
+
 TEST(CgnsBoundaries, PlaneWallsHaveTheFluidOnTheirLeft) {
     const core::TemporaryFolder folder;
     {
