@@ -10,6 +10,7 @@
 #include "postproc/facing.h"
 #include "postproc/loads_reference.h"
 #include "postproc/mirror_plane.h"
+#include "postproc/vehicle_axes.h"
 
 namespace underbody::postproc {
 
@@ -24,10 +25,6 @@ std::string shown(const Vector& v) {
 }
 
 using Part = SummedZone;
-
-struct Axes {
-    Vector forward, up, starboard;
-};
 
 class Integrator {
 public:
@@ -65,15 +62,7 @@ private:
     void note(std::string text) { result_.problems.push_back({Severity::note, std::move(text), {}}); }
 
     void set_axes() {
-        const auto unit = [](const Vector& v, const char* name) {
-            const double size = norm(v);
-            if (!(size > 0)) {
-                throw core::UsageError("usage", std::string("the ") + name + " axis has no direction");
-            }
-            return Vector{v[0] / size, v[1] / size, v[2] / size};
-        };
-        axes_.forward = unit(options_.forward, "forward");
-        axes_.up = unit(options_.up, "up");
+        Vector up = options_.up;
         if (revolved_ && mirror_.axis >= 0) {
             throw core::UsageError("usage", "an axisymmetric case is whole already", {}, "leave --symmetry away");
         }
@@ -82,18 +71,19 @@ private:
             result_.depth = revolved_ ? "of the whole body of revolution" : "per metre depth";
             note(revolved_ ? "axisymmetric: forces are those on the whole body of revolution about the x axis; across it they cancel"
                            : "two-dimensional: forces and moments are per metre depth");
-            if (std::abs(axes_.up[2]) > 0.5) {
-                axes_.up = {0, 1, 0};
-                note("two-dimensional: up is +y");
+            if (std::abs(options_.forward[2]) > 0.5 * norm(options_.forward)) {
+                throw core::UsageError("usage", "in a two-dimensional case forward lies in its plane", {}, "for instance --forward +x --up +y");
+            }
+            if (std::abs(options_.up[2]) > 0.5 * norm(options_.up)) {
+                const bool along_y = std::abs(options_.forward[1]) > std::abs(options_.forward[0]);
+                up = along_y ? Vector{1, 0, 0} : Vector{0, 1, 0};
+                note(std::string("two-dimensional: up is ") + (along_y ? "+x" : "+y"));
             }
         }
-        if (std::abs(dot(axes_.forward, axes_.up)) > 1e-6) {
-            throw core::UsageError("usage", "forward and up are not perpendicular", {}, "for instance --forward +x --up +z");
-        }
+        axes_ = vehicle_axes(options_.forward, up);
         if (revolved_ && std::abs(axes_.forward[0]) < 1 - 1e-6) {
             throw core::UsageError("usage", "an axisymmetric case has its axis along x: forward lies along it", {}, "--forward +x or --forward -x");
         }
-        axes_.starboard = cross(axes_.forward, axes_.up);
         result_.forward = axes_.forward;
         result_.up = axes_.up;
         result_.starboard = axes_.starboard;
@@ -461,7 +451,7 @@ private:
     bool revolved_;
     MirrorPlane plane_;
     PlacedMirror mirror_;
-    Axes axes_;
+    VehicleAxes axes_;
     std::vector<Part> parts_;
     Extent extent_;
     Vector half_reference_{};

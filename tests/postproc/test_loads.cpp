@@ -726,6 +726,11 @@ TEST(Loads, OfAPlaneCaseArePerMetreDepth) {
         Field field = field_of({zone});
         field.dimension = 2;
         const auto result = loads(field, about({}));
+        LoadsOptions aside = about({});
+        aside.forward = {0, 1, 0};  // the default up leaves the plane: +x is what is left
+        EXPECT_NEAR(loads(field, aside).named.drag_force, -result.named.lift_force, 1e-12);
+        aside.forward = {0, 0, -1};
+        EXPECT_THROW((void)loads(field, aside), core::UsageError);
         const double area = 0.5 * count * 0.01 * std::sin(2 * M_PI / count);
         EXPECT_NEAR(result.total.force[1], rho * g * area, 1e-9);
         EXPECT_NEAR(result.named.lift_force, rho * g * area, 1e-9);
