@@ -253,18 +253,17 @@ core::Problems write_blocks(const Field& field, const fs::path& path, core::Prog
 
 }  // namespace
 
-core::Problems write_vtk(const Field& field, const fs::path& path, core::Progress& progress) {
+void check_vtk_ending(const fs::path& path) {
     const std::string ending = core::lower_case(path.extension().string());
-    if (ending == ".vtp") {
-        return write_surfaces(field, path);
+    if (ending != ".vtp" && ending != ".vtu" && ending != ".vtm") {
+        throw core::UsageError("usage", "'" + ending + "' is no ending that is written", {path.string(), {}, {}, {}}, "write to a .vtu, .vtp or .vtm");
     }
-    if (ending == ".vtu") {
-        return write_volumes(field, path);
-    }
-    if (ending == ".vtm") {
-        return write_blocks(field, path, progress);
-    }
-    throw core::UsageError("usage", "'" + ending + "' is no ending that is written", {path.string(), {}, {}, {}}, "write to a .vtu, .vtp or .vtm");
+}
+
+core::Problems write_vtk(const Field& field, const fs::path& path, core::Progress& progress) {
+    check_vtk_ending(path);
+    const std::string ending = core::lower_case(path.extension().string());
+    return ending == ".vtp" ? write_surfaces(field, path) : ending == ".vtu" ? write_volumes(field, path) : write_blocks(field, path, progress);
 }
 
 }  // namespace underbody::postproc

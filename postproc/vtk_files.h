@@ -16,4 +16,7 @@ namespace underbody::postproc {
 /// Throws core::UsageError for another ending, core::InputError when the field has nothing that fits the ending.
 core::Problems write_vtk(const Field& field, const std::filesystem::path& path, core::Progress& progress = core::Progress::none());
 
+/// Throws core::UsageError when the ending is none that `write_vtk` writes.
+void check_vtk_ending(const std::filesystem::path& path);
+
 }  // namespace underbody::postproc

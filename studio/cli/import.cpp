@@ -1,9 +1,12 @@
 // underbody import FILE... --out FILE.vtp: CFD exports as VTK files.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "core/text.h"
 #include "postproc/summary.h"
 #include "postproc/vtk_files.h"
 #include "studio/cli/commands.h"
@@ -16,13 +19,83 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Several inputs go into several outputs: OUT-NAME.ending.
-fs::path output_for(const std::string& out, const std::string& file, bool several) {
-    if (!several) {
-        return out;
+/// "case" of "a/case/" and of "a/case.csv"; `whole` with its ending.
+std::string name_of(const std::string& file, bool whole) {
+    fs::path path = fs::absolute(file).lexically_normal();
+    path = path.has_filename() ? path : path.parent_path();
+    return whole ? path.filename().string() : path.stem().string();
+}
+
+/// Its last `depth` folders and its name: "a-case".
+std::string name_from(const std::string& file, std::size_t depth, bool whole) {
+    fs::path path = fs::absolute(file).lexically_normal();
+    path = path.has_filename() ? path : path.parent_path();
+    std::string name = name_of(file, whole);
+    for (std::size_t i = 0; i < depth && path.has_parent_path() && path.parent_path() != path.root_path(); ++i) {
+        path = path.parent_path();
+        name.insert(0, path.filename().string() + "-");
     }
+    return name;
+}
+
+/// Several inputs go into several outputs: OUT-NAME.ending, with folders or endings before and behind NAME where files share it.
+std::vector<fs::path> outputs_for(const std::string& out, const std::vector<ConditionedFile>& files) {
     const fs::path path(out);
-    return path.parent_path() / (path.stem().string() + "-" + fs::path(file).stem().string() + path.extension().string());
+    if (files.size() == 1) {
+        return {path};
+    }
+    for (const bool whole : {false, true}) {
+        for (std::size_t depth = 0; depth < 16; ++depth) {
+            std::vector<fs::path> outputs;
+            std::set<fs::path> different;
+            for (const auto& file : files) {
+                outputs.push_back(path.parent_path() / (path.stem().string() + "-" + name_from(file.path, depth, whole) + path.extension().string()));
+                different.insert(outputs.back());
+            }
+            if (different.size() == files.size()) {
+                return outputs;
+            }
+        }
+    }
+    throw core::UsageError("usage", "a file is named twice, or several have one name: their outputs would be one", {}, "name each file once, or import them apart");
+}
+
+/// Before anything is written: no input may be lost.
+void check_outputs(const std::vector<fs::path>& outputs, const std::vector<ConditionedFile>& files) {
+    for (const auto& output : outputs) {
+        postproc::check_vtk_ending(output);
+        for (const auto& file : files) {
+            std::error_code error;
+            const fs::path input = fs::weakly_canonical(file.path, error);
+            const bool in_blocks = output.extension() == ".vtm" && input.parent_path() == fs::weakly_canonical(fs::path(output).replace_extension(""), error);
+            if (fs::equivalent(output, file.path, error) || in_blocks) {
+                throw core::UsageError("usage", "'" + output.string() + "' would be written over '" + file.path + "', which is to be read", {}, "name another --out");
+            }
+        }
+    }
+}
+
+/// Names of --arrays that fit nothing: a list for several files may name more than each has, but a slip of the pen loses an array.
+void show_missing_arrays(Shell& shell, const postproc::Field& field, const std::vector<std::string>& wanted) {
+    for (const auto& name : wanted) {
+        const bool found = std::any_of(field.zones.begin(), field.zones.end(), [&](const postproc::Zone& zone) {
+            return std::any_of(zone.arrays.begin(), zone.arrays.end(), [&](const postproc::ArrayInfo& info) {
+                return postproc::matches(name, info.name) || core::lower_case(info.original_name).find(core::lower_case(name)) != std::string::npos;
+            });
+        });
+        if (!found && name.find_first_of("*?") == std::string::npos) {
+            shell.warn(field.files.front() + ": there is no array '" + name + "'");
+        }
+    }
+}
+
+/// What a batch leaves behind when a file of it fails.
+std::string those_written(const nlohmann::json& written, std::size_t all) {
+    std::string names;
+    for (const auto& entry : written) {
+        names += (names.empty() ? "" : ", ") + entry["out"].get<std::string>();
+    }
+    return "written before: " + names + "; the other " + std::to_string(all - written.size()) + " files were not";
 }
 
 }  // namespace
@@ -46,23 +119,34 @@ void add_import_command(CLI::App& app, Shell& shell) {
         "Examples:\n"
         "  underbody import body.csv --out body.vtp\n"
         "  underbody import case.cas.h5 --out case.vtm --zones 'hull,base'\n"
-        "  underbody import 'run-*.csv' --out all.vtp      writes all-run-1.vtp, all-run-2.vtp ...");
+        "  underbody import 'run-*.csv' --out all.vtp      writes all-run-1.vtp, all-run-2.vtp ...\n"
+        "  underbody import a/body.csv b/body.csv --out all.vtp      writes all-a-body.vtp, all-b-body.vtp");
     shell.on(command, [&shell, options] {
         const Batch batch = find_files(options->files, "");
         shell.show(batch.problems);
+        const auto outputs = outputs_for(options->out, batch.files);
+        check_outputs(outputs, batch.files);
         nlohmann::json written = nlohmann::json::array();
-        for (const auto& file : batch.files) {
-            postproc::ReadOptions read = options->field.read_options();
-            read.zones = options->field.zones;
-            read.arrays = options->arrays;
-            const auto field = postproc::read_field(file.path, read, shell.progress());
-            shell.show(field.problems);
-            const fs::path out = output_for(options->out, file.path, batch.files.size() > 1);
-            shell.show(postproc::write_vtk(field, out, shell.progress()));
-            nlohmann::json entry = postproc::summarise(field);
-            entry["out"] = out.string();
-            written.push_back(std::move(entry));
-            shell.print("wrote " + out.string());
+        for (std::size_t i = 0; i < outputs.size(); ++i) {
+            const std::string& file = batch.files[i].path;
+            try {
+                postproc::ReadOptions read = options->field.read_options();
+                read.zones = options->field.zones;
+                read.arrays = options->arrays;
+                const auto field = postproc::read_field(file, read, shell.progress());
+                shell.show(field.problems);
+                show_missing_arrays(shell, field, options->arrays);
+                shell.show(postproc::write_vtk(field, outputs[i], shell.progress()));
+                nlohmann::json entry = postproc::summarise(field);
+                entry["out"] = outputs[i].string();
+                written.push_back(std::move(entry));
+            } catch (const core::Error&) {
+                if (!written.empty()) {
+                    shell.warn(those_written(written, outputs.size()));
+                }
+                throw;
+            }
+            shell.print("wrote " + outputs[i].string());
         }
         if (shell.json) {
             shell.print_json(written.size() == 1 ? written.front() : nlohmann::json{{"files", written}});

@@ -344,6 +344,30 @@ TEST_F(PostprocCommands, ImportWritesVtkFiles) {
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a.xyz"));
 }
 
+TEST_F(PostprocCommands, ImportLosesNoFile) {
+    const auto exists = [&](const char* name) { return std::filesystem::exists(folder_.path() / name); };
+    for (const char* name : {"a/body.csv", "b/body.csv", "b/body.vtk.csv"}) {
+        core::write_file(folder_.path() / name, box_csv);
+    }
+    EXPECT_EQ(run({"import", "a/body.csv", "b/body.csv", "--out", "imp.vtp"}).exit_code, 0);
+    EXPECT_TRUE(exists("imp-a-body.vtp") && exists("imp-b-body.vtp") && !exists("imp-body.vtp"));
+    EXPECT_EQ(run({"import", "a/body.csv", "a/../a/body.csv", "--out", "twice.vtp"}).exit_code, 2);
+    EXPECT_FALSE(exists("twice-body.vtp"));
+    // What is read stays.
+    for (const char* out : {"imp-a-body.vtp", "./imp-a-body.vtp"}) {
+        const auto over = run({"import", "imp-a-body.vtp", "--out", out, "--zones", "base"});
+        EXPECT_EQ(over.exit_code, 2);
+        EXPECT_THAT(over.errors, testing::HasSubstr("would be written over"));
+    }
+    EXPECT_EQ(run({"import", "a/body.csv", "--out", "x.vtm"}).exit_code, 0);
+    EXPECT_EQ(run({"import", "x/0-base.vtp", "--out", "x.vtm"}).exit_code, 2);
+    core::write_file(folder_.path() / "bad.csv", "[Name]\n");
+    const auto half = run({"import", "a-h5.csv", "bad.csv", "b-h10.csv", "--out", "half.vtp"});
+    EXPECT_EQ(half.exit_code, 3);
+    EXPECT_THAT(half.errors, testing::HasSubstr("written before: half-a-h5.vtp; the other 2 files were not"));
+    EXPECT_THAT(run({"import", "a-h5.csv", "--arrays", "presure", "--out", "slip.vtp"}).errors, testing::HasSubstr("there is no array 'presure'"));
+}
+
 TEST_F(PostprocCommands, ErrorsNameFileAndLine) {
     std::string damaged = box_csv;
     damaged.replace(damaged.find("2,1,0,1\n"), 8, "2,1,0,nan\n");
