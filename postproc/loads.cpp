@@ -31,8 +31,12 @@ public:
     Integrator(const Field& field, const LoadsOptions& options, core::Progress& progress)
         : field_(field), options_(options), progress_(progress), revolved_(is_body_of_revolution(field, options)), plane_(mirror_plane_from(options.symmetry)) {
         result_.file = field.files.empty() ? "" : field.files.front();
-        const auto time = std::find_if(field.metadata.begin(), field.metadata.end(), [](const auto& entry) { return entry.first == "time"; });
-        result_.time = time == field.metadata.end() ? std::nullopt : core::parse_number(time->second);
+        for (const auto& [name, value] : field.metadata) {
+            const auto number = name == "time" || name == "flow-time" ? core::parse_number(value) : std::nullopt;
+            if (number && (name == "time" || *number != 0)) {  // a steady run of Fluent says 0
+                result_.time = number;
+            }
+        }
         mirror_.axis = plane_.axis;
         set_axes();
     }

@@ -223,6 +223,17 @@ LoadsCase study_of(std::vector<const LoadsCase*> group, const std::string& colum
     return result;
 }
 
+/// Forces per metre and forces have no column in common.
+void refuse_mixed_depths(const std::vector<LoadsCase>& cases) {
+    for (const auto& one : cases) {
+        if (one.loads.depth != cases.front().loads.depth) {
+            const auto shown = [](const LoadsCase& c) { return "'" + c.file + "' " + (c.loads.depth.empty() ? "of a body" : c.loads.depth); };
+            throw core::InputError("mismatch", "the forces are those " + shown(cases.front()) + " and " + shown(one) + ": one table cannot hold both", {},
+                                   "make a table of each");
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<LoadsCase> with_iteration_sigmas(const std::vector<LoadsCase>& cases) {
@@ -306,11 +317,12 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases,
 }
 
 core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<std::pair<std::string, std::string>>& written_units) {
+    refuse_mixed_depths(cases);
     core::Table table;
     const std::vector<LoadsColumn> loads = cases.empty() ? std::vector<LoadsColumn>() : table_row(cases.front().loads);
     const auto free_name = [&](std::string name) {
         const auto taken = [&] {
-            return table.find(name) != nullptr || name == "file" || name == "values_from" || name == "reference_x" || name == "reference_y" ||
+            return table.find(name) != nullptr || name == "file" || name == "values_from" || name == "depth" || name == "reference_x" || name == "reference_y" ||
                    name == "reference_z" || std::any_of(coefficients.begin(), coefficients.end(), [&](const auto& c) { return c.first == name; }) ||
                    std::any_of(loads.begin(), loads.end(), [&](const LoadsColumn& c) { return c.name == name || c.name + "_sigma" == name; });
         };
@@ -370,6 +382,9 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
         files.push_back(one.file);
         origins.push_back(one.loads.values_from);
         std::replace(origins.back().begin(), origins.back().end(), ',', ' ');
+    }
+    if (!cases.empty() && !cases.front().loads.depth.empty()) {
+        table.add_text("depth", std::vector<std::string>(cases.size(), cases.front().loads.depth));
     }
     table.add_text("values_from", std::move(origins));
     table.add_text("file", std::move(files));

@@ -28,7 +28,8 @@ struct LoadsCase {
 /// Texts, numbers, loads (table_row) with their NAME_sigma, coefficients where some case has them, the reference point,
 /// values_from, file: one row a case. A condition or coefficient that a case does not have is missing there.
 /// `written_units`: condition -> the unit to write it in. A condition called like a column of what was found (the table of
-/// an earlier run as the manifest) is kept as NAME_stated.
+/// an earlier run as the manifest) is kept as NAME_stated. Of plane cases `depth` says what the forces are per; throws
+/// core::InputError for plane cases among others.
 core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<std::pair<std::string, std::string>>& written_units = {});
 
 /// Throws core::InputError at `place` when a load's NAME_scatter is negative.

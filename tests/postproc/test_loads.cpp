@@ -434,6 +434,17 @@ TEST(Loads, OfSeveralBodiesInOneZoneDoNotDependOnTheWindingOfEach) {
     }
 }
 
+TEST(Loads, KnowTheTimeOfTheirField) {
+    Field field = box(false, false);
+    EXPECT_FALSE(loads(field, about({0, 0, 0})).time);
+    field.metadata = {{"flow-time", "0"}};  // a steady run
+    EXPECT_FALSE(loads(field, about({0, 0, 0})).time);
+    field.metadata = {{"flow-time", "0.25"}};
+    EXPECT_EQ(loads(field, about({0, 0, 0})).time, 0.25);
+    field.metadata = {{"time", "0"}};
+    EXPECT_EQ(loads(field, about({0, 0, 0})).time, 0.0);
+}
+
 TEST(Loads, SayThatTheSideOfADuctIsNotKnown) {
     for (const bool turned : {false, true}) {
         Field duct = box(false, false);

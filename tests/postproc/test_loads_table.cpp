@@ -130,6 +130,19 @@ TEST(LoadsTable, KnowsThatAPlaneMeshHasTwoDimensions) {
     }
 }
 
+TEST(LoadsTable, SaysWhatThePlaneForcesArePerAndHoldsNoOthers) {
+    auto plane = case_with("strip.cas", 0.1, {});
+    plane.loads.depth = "per metre depth";
+    EXPECT_EQ(loads_table({plane}).text("depth")[0], "per metre depth");
+    EXPECT_EQ(loads_table({case_with("body.cas", 0.1, {})}).find("depth"), nullptr);
+    try {
+        (void)loads_table({plane, case_with("body.cas", 0.1, {})});
+        ADD_FAILURE() << "forces per metre and forces in one column";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("'strip.cas' per metre depth"), HasSubstr("'body.cas' of a body")));
+    }
+}
+
 TEST(LoadsTable, IsAManifestAgain) {
     LoadsCase one = case_with("a.csv", 0.1, {{"gap", 0.005}, {"lift_force", 1}, {"lift_force_stated", 2}, {"lift_coefficient", 0.5}});
     one.texts = {{"values_from", "nodes"}};
