@@ -118,9 +118,9 @@ void add_probe_command(CLI::App& app, Shell& shell) {
     command->add_option("--line", o->line, "two ends: \"x,y,z:x,y,z\"");
     command->add_option("--plane", o->plane, "three corners: the first, the end across, the end along");
     command->add_option("--count", o->count, "points on the line, or across the plane")->check(CLI::Range(2, 1000000))->capture_default_str();
-    command->add_option("--rows", o->rows, "points along the plane (default: as across)");
+    command->add_option("--rows", o->rows, "points along the plane (default: as across)")->check(CLI::Range(2, 1000000));
     command->add_option("--gap", o->gap, "flow through the gap at so many stations along the base")->check(CLI::Range(1, 1000));
-    command->add_option("--arrays", o->arrays, "arrays to look at; default all")->delimiter(',');
+    command->add_option("--arrays", o->arrays, "arrays to look at; default all")->delimiter(',')->transform(trimmed_name);
     command->add_flag("--on-surface", o->on_surface, "the nearest place of the surfaces, though there is a volume");
     command->add_option("--symmetry", o->symmetry, "half model: flows count both halves; normal axis of its plane, with its place if that is not where the body is open: y, or y=0.1");
     command->add_option("--base", o->base, "zone above the gap")->capture_default_str();

@@ -266,7 +266,7 @@ void add_views_command(CLI::App& app, Shell& shell) {
     auto o = std::make_shared<Options>();
     command->add_option("files", o->files, "CFD files, or patterns of names; several share colours and camera")->required();
     command->add_option("-o,--out", o->out, "folder for the pictures")->capture_default_str();
-    command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',');
+    command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',')->transform(trimmed_name);
     command->add_flag("--list", o->list, "only say which views each file allows");
     command->add_option("--difference", o->difference, "draw the second file less the first one: pressure, wall_shear (of vectors the sizes)");
     command->add_option("--range", o->ranges, "colour range, in SI or with units: pressure=-200:100, shear=\"0 Pa:5 Pa\", speed=0:1, speed-symmetry=0:0.7, difference=-20:20");
