@@ -276,7 +276,7 @@ void Reader::add_own_values(const CgnsSurface& surface, const CgnsZone& zone, co
     }
     std::vector<std::string> unread;
     for (const auto& stated : file_.boundary_values(zone, *surface.condition, options_, unread)) {
-        auto own = values_on(surface, nodes, zone, stated);
+        auto own = values_on(file_, surface, nodes, zone, stated);
         if (!own) {
             unread.push_back(stated.variable);
             continue;

@@ -124,6 +124,31 @@ bool is_of_walls(const std::string& canonical) {
 
 }  // namespace
 
+/// Values at the library's place may be those of other faces or vertices than their condition names.
+std::optional<CgnsCondition> CgnsFile::places_of_values(const CgnsZone& zone, const CgnsCondition& condition) const {
+    CGNS_ENUMT(PointSetType_t) set{};
+    CGNS_ENUMT(GridLocation_t) location{};
+    cgsize_t count = 0;
+    if (cg_ptset_info(&set, &count) != CG_OK) {
+        return {};
+    }
+    CgnsCondition places = condition;
+    places.where = CgnsCondition::Where::nowhere;
+    places.range = set == CGNS_ENUMV(PointRange) || set == CGNS_ENUMV(ElementRange);
+    places.numbers.clear();
+    check_room(zone, static_cast<double>(count) * places.indices);
+    std::vector<cgsize_t> raw(static_cast<std::size_t>(std::max<cgsize_t>(0, count)) * static_cast<std::size_t>(places.indices));
+    if (!raw.empty() && cg_ptset_read(raw.data()) == CG_OK && cg_gridlocation_read(&location) == CG_OK) {
+        const bool elements = set == CGNS_ENUMV(ElementRange) || set == CGNS_ENUMV(ElementList);
+        const bool vertices = location == CGNS_ENUMV(Vertex) && !elements;
+        const bool faces = elements || location == CGNS_ENUMV(FaceCenter) || location == CGNS_ENUMV(EdgeCenter) || across_an_index(location);
+        places.where = vertices ? CgnsCondition::Where::vertices : faces ? CgnsCondition::Where::faces : CgnsCondition::Where::nowhere;
+        places.normal = across_an_index(location) ? index_across(location, {}) : places.normal;
+        places.numbers.assign(raw.begin(), raw.end());
+    }
+    return places;
+}
+
 void CgnsFile::read_boundary_values(const CgnsZone& zone, const Path& data, bool neumann, bool at_faces, const ReadOptions& options,
                                     std::vector<CgnsBoundaryValues>& result, std::vector<std::string>& unread) {
     int arrays = 0;
@@ -146,7 +171,7 @@ void CgnsFile::read_boundary_values(const CgnsZone& zone, const Path& data, bool
             unread.emplace_back(name.data());
             continue;
         }
-        CgnsBoundaryValues own{name.data(), at_faces, Buffer<double>(static_cast<std::size_t>(count))};
+        CgnsBoundaryValues own{name.data(), at_faces, Buffer<double>(static_cast<std::size_t>(count)), {}};
         ok(zone, cg_array_read_as(a, CGNS_ENUMV(RealDouble), own.values.data()), "values of a boundary");
         Path array = data;
         array.emplace_back("DataArray_t", a);
@@ -165,24 +190,24 @@ std::vector<CgnsBoundaryValues> CgnsFile::boundary_values(const CgnsZone& zone, 
         std::array<char, 33> name{};
         CGNS_ENUMT(BCType_t) type{};
         CGNS_ENUMT(GridLocation_t) location{};
-        CGNS_ENUMT(PointSetType_t) points{};
-        cgsize_t count = 0;
         int dirichlet = 0;
         int neumann = 0;
         if (cg_dataset_read(file_, base_, zone.index, condition.index, set, name.data(), &type, &dirichlet, &neumann) != CG_OK || !go_to(path)) {
             continue;
         }
-        if (cg_ptset_info(&points, &count) == CG_OK) {
-            unread.emplace_back(name.data());  // of other faces or vertices than the condition's
-            continue;
-        }
+        const auto places = places_of_values(zone, condition);
         const bool at_faces = cg_gridlocation_read(&location) == CG_OK && location != CGNS_ENUMV(Vertex);
+        std::vector<CgnsBoundaryValues> own;
         for (const auto& [there, kind] : {std::pair{dirichlet, CGNS_ENUMV(Dirichlet)}, std::pair{neumann, CGNS_ENUMV(Neumann)}}) {
             Path data = path;
             data.emplace_back("BCData_t", static_cast<int>(kind));
             if (there != 0) {
-                read_boundary_values(zone, data, kind == CGNS_ENUMV(Neumann), at_faces, options, result, unread);
+                read_boundary_values(zone, data, kind == CGNS_ENUMV(Neumann), at_faces, options, own, unread);
             }
+        }
+        for (auto& values : own) {
+            values.places = places;
+            result.push_back(std::move(values));
         }
     }
     return result;

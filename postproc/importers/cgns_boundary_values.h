@@ -15,8 +15,9 @@ struct CgnsSurface {
     std::vector<std::int64_t> entries;         ///< by face: which of the faces that the condition names, from 0; else empty
 };
 
-/// One value for all faces, one each of the faces or the vertices that the condition names: on the faces, or on `nodes`
-/// (of the zone, from 0). Nothing where they are as many as none of these.
-std::optional<PartValues> values_on(const CgnsSurface& surface, const std::vector<std::int64_t>& nodes, const CgnsZone& zone, const CgnsBoundaryValues& stated);
+/// One value for all faces, one each of the faces or the vertices that the condition of the surface names, or that the
+/// values name: on the faces, or on `nodes` (of the zone, from 0). Nothing where they are as many as none of these.
+std::optional<PartValues> values_on(const CgnsFile& file, const CgnsSurface& surface, const std::vector<std::int64_t>& nodes, const CgnsZone& zone,
+                                    const CgnsBoundaryValues& stated);
 
 }  // namespace underbody::postproc

@@ -68,6 +68,7 @@ struct CgnsBoundaryValues {
     std::string variable;   ///< the file's name
     bool at_faces = false;  ///< the file says so; else at the condition's faces or vertices
     Buffer<double> values;  ///< one for all, or one each of what the condition names, in its order
+    std::optional<CgnsCondition> places = {};  ///< names other faces or vertices than the condition: of these
 };
 
 /// A file opened for reading, one base of it at one step in time. Every failure is an InputError with file and zone.
@@ -140,6 +141,7 @@ private:
     Scales scales_at(const Scales& above, const Path& path);
     void read_units_of_base();
     core::Conversion to_si(const Path& array, const std::string& variable, const std::string& unit);
+    [[nodiscard]] std::optional<CgnsCondition> places_of_values(const CgnsZone& zone, const CgnsCondition& condition) const;
     void read_boundary_values(const CgnsZone& zone, const Path& data, bool neumann, bool at_faces, const ReadOptions& options, std::vector<CgnsBoundaryValues>& result,
                               std::vector<std::string>& unread);
     struct Steps {

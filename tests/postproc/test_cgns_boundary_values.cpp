@@ -28,11 +28,17 @@ std::string told(const postproc::Field& field) {
     return text;
 }
 
-/// Data of a condition, one value or one each of what it names.
-void write_data(const CgnsWriter& file, int condition, CGNS_ENUMT(BCDataType_t) kind, const std::string& variable, const std::vector<double>& values) {
+/// Data of a condition, one value or one each of what it names, or of a range of its own.
+void write_data(const CgnsWriter& file, int condition, CGNS_ENUMT(BCDataType_t) kind, const std::string& variable, const std::vector<double>& values,
+                CGNS_ENUMT(GridLocation_t) where = CGNS_ENUMV(Vertex), const std::vector<cgsize_t>& range = {}, std::size_t indices = 1) {
     int set = 0;
     const std::string name = "Data of " + variable;
     CgnsWriter::ok(cg_dataset_write(file.file, file.base, file.zone, condition, name.c_str(), CGNS_ENUMV(BCWall), &set));
+    if (!range.empty()) {
+        CgnsWriter::ok(cg_goto(file.file, file.base, "Zone_t", file.zone, "ZoneBC_t", 1, "BC_t", condition, "BCDataSet_t", set, "end"));
+        CgnsWriter::ok(cg_ptset_write(CGNS_ENUMV(PointRange), static_cast<cgsize_t>(range.size() / indices), range.data()));
+        CgnsWriter::ok(cg_gridlocation_write(where));
+    }
     CgnsWriter::ok(cg_bcdata_write(file.file, file.base, file.zone, condition, set, kind));
     CgnsWriter::ok(cg_goto(file.file, file.base, "Zone_t", file.zone, "ZoneBC_t", 1, "BC_t", condition, "BCDataSet_t", set, "BCData_t", static_cast<int>(kind), "end"));
     const auto count = static_cast<cgsize_t>(values.size());
@@ -153,6 +159,34 @@ TEST(CgnsBoundaryValues, BlocksHaveThemInTheOrderOfTheirIndices) {
         }
     }
     EXPECT_EQ(node_value(*field.find("blk/vertices"), "temperature", 1, 2, 4), 7);
+}
+
+TEST(CgnsBoundaryValues, TheyMayNameTheirFacesThemselves) {
+    const core::TemporaryFolder folder;
+    {
+        CgnsWriter file(folder.path() / "block.cgns");
+        file.add_block("blk", {2, 3, 4});
+        const int wall = file.condition("wall", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(Vertex), {1, 1, 5, 3, 4, 5}, 3);
+        write_data(file, wall, CGNS_ENUMV(Dirichlet), "Pressure", {100, 101, 102, 103, 104, 105}, CGNS_ENUMV(KFaceCenter), {1, 1, 5, 2, 3, 5}, 3);
+        write_data(file, wall, CGNS_ENUMV(Dirichlet), "Temperature", {7, 8}, CGNS_ENUMV(KFaceCenter), {1, 1, 5, 2, 1, 5}, 3);
+    }
+    const auto block = read_field(folder.path() / "block.cgns");
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 2; ++i) {
+            EXPECT_EQ(face_value(*block.find("blk/wall"), "pressure", i + 0.5, j + 0.5, 4), 100 + 2 * j + i);
+        }
+    }
+    EXPECT_THAT(told(block), HasSubstr("Temperature of 'blk/wall'"));
+    {
+        CgnsWriter file(folder.path() / "cube.cgns");
+        file.add_cube("water");
+        file.section("quads", CGNS_ENUMV(QUAD_4), CgnsWriter::cube_faces(), 4);
+        const int hull = file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {3, 2});
+        write_data(file, hull, CGNS_ENUMV(Dirichlet), "Pressure", {2, 3, 4, 5}, CGNS_ENUMV(FaceCenter), {2, 5});
+    }
+    const auto cube = read_field(folder.path() / "cube.cgns");
+    EXPECT_EQ(face_value(*cube.find("hull"), "pressure", 0.5, 0.5, 0), 2);
+    EXPECT_EQ(face_value(*cube.find("hull"), "pressure", 0.5, 0.5, 1), 3);
 }
 
 }  // namespace underbody
