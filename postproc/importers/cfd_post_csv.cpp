@@ -399,7 +399,10 @@ private:
                 throw InputError("parse", "the file ends in the middle of the number '" + std::string(cut) + "'", text_.place_of(tail), "the file is cut short: export it again");
             }
         }
-        note(Severity::warning, "the file does not end with a line end: it may be cut short", text_.place_of(tail, false));
+        // A number that lost its last digit names another node, and nobody can see it.
+        const bool faces = block.sections.back().word == "faces";
+        note(faces ? Severity::error : Severity::warning,
+             std::string("the file does not end with a line end: it may be cut short") + (faces ? " within its last face" : ""), text_.place_of(tail, false));
     }
 
     void note_surfaces_without_faces() {

@@ -76,7 +76,9 @@ public:
         std::array<bool, 3> has{};
         for (auto& plan : plans) {
             if (!names.insert(core::lower_case(plan.name)).second) {
-                note(Severity::note, "column '" + plan.name + "' is repeated: the first one counts", text_.place_of(plan.at));
+                const std::string meaning = canonical_name(plan.name).name;  // the values may differ, and of these loads are made
+                const bool counts = meaning.starts_with("pressure") || meaning.starts_with("wall_shear");
+                note(counts ? Severity::warning : Severity::note, "column '" + plan.name + "' is repeated: the first one counts", text_.place_of(plan.at));
                 continue;
             }
             const int coordinate = coordinate_index(plan.name);

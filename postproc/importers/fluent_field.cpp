@@ -220,6 +220,14 @@ void Assembly::add_volumes(Field& field) {
     const CellBuilder builder(mesh_);
     const core::Place place{mesh_.file, {}, {}, {}};
     for (const CellBlock* block : wanted) {
+        constexpr int last_known = 7;  // polyhedra
+        const int strange = block->elements.empty() ? block->element : *std::max_element(block->elements.begin(), block->elements.end());
+        if (strange > last_known) {
+            field.problems.push_back({core::Problem::Severity::warning,
+                                      "cells of zone '" + named_zone(block->zone, 0, true).name + "' are said to be of type " + std::to_string(strange) +
+                                          ", and there are 0 to 7: is the mesh damaged? They are put together from their faces",
+                                      place});
+        }
         const bool last = block == wanted.back();
         Zone zone = named_zone(block->zone, 0, true);
         progress_.report(0.7, "building " + zone.name);

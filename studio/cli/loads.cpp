@@ -381,6 +381,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const Options& given, co
             said.add(batch.files[i].path, problems);
         } catch (const core::InputError& error) {
             if (batch.files.size() == 1) {
+                std::erase_if(problems, [](const core::Problem& problem) { return problem.severity == core::Problem::Severity::error; });  // that is what it says
                 shell.show(problems);
                 throw;
             }
@@ -409,6 +410,12 @@ int run(Shell& shell, const Options& given) {
     shell.show(batch.problems);
     if (batch.files.empty()) {
         throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");
+    }
+    for (const auto& file : batch.files) {
+        std::error_code ignored;
+        if (!given.out.empty() && std::filesystem::equivalent(file.path, given.out, ignored)) {
+            throw core::UsageError("usage", "--out '" + given.out + "' is one of the files to read, and would be lost", {}, "write the table to a file of its own");
+        }
     }
     check_conditions(batch, given);
     std::vector<Failure> failures;

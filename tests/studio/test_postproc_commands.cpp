@@ -49,6 +49,25 @@ TEST_F(PostprocCommands, InfoSaysWhatAFileHolds) {
     EXPECT_THAT(run({"info", "a-h5.csv"}).output, testing::HasSubstr("hull"));
 }
 
+TEST_F(PostprocCommands, LoadsOfAFileThatMayBeCutWithinAFaceAreRefused) {
+    for (const std::size_t missing : {1U, 2U, 4U}) {
+        core::write_file(folder_.path() / "cut.csv", box_csv.substr(0, box_csv.size() - missing));
+        const auto refused = run({"loads", "cut.csv"});
+        EXPECT_EQ(refused.exit_code, 3) << missing;
+        EXPECT_THAT(refused.errors, testing::HasSubstr(missing < 4 ? "cut.csv:33: the file does not end with a line end" : "cut.csv:33:1: a row of 2 node numbers")) << missing;
+        EXPECT_THAT(refused.errors, testing::Not(testing::HasSubstr("warning"))) << missing;  // said once
+    }
+    core::write_file(folder_.path() / "cut.csv", box_csv.substr(0, box_csv.size() - 1));
+    EXPECT_EQ(run({"loads", "cut.csv", "--accept-problems"}).exit_code, 0);
+}
+
+TEST_F(PostprocCommands, LoadsAreNotWrittenOverWhatTheyAreMadeOf) {
+    const auto refused = run({"loads", "a-h5.csv", "--out", "./a-h5.csv"});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.errors, testing::HasSubstr("is one of the files to read"));
+    EXPECT_EQ(core::read_file(folder_.path() / "a-h5.csv"), box_csv);
+}
+
 TEST_F(PostprocCommands, ABatchSaysOnceWhatItsFilesHaveAlike) {
     const std::string open_csv = box_csv.substr(0, box_csv.rfind("4,5,6,7"));
     for (const char* name : {"o-h1.csv", "o-h2.csv", "o-hO3.csv"}) {
