@@ -28,9 +28,10 @@ constexpr std::array kinds = {Kind{CGNS_ENUMV(NODE), VTK_VERTEX, 1},       Kind{
                               Kind{CGNS_ENUMV(HEXA_8), VTK_HEXAHEDRON, 8}, Kind{CGNS_ENUMV(HEXA_20), VTK_HEXAHEDRON, 8},
                               Kind{CGNS_ENUMV(HEXA_27), VTK_HEXAHEDRON, 8}};
 
-const Kind* find_kind(CGNS_ENUMT(ElementType_t) type) {
+/// By the number in the file, which need be none of the library's.
+const Kind* find_kind(std::int64_t type) {
     for (const auto& kind : kinds) {
-        if (kind.cgns == type) {
+        if (static_cast<std::int64_t>(kind.cgns) == type) {
             return &kind;
         }
     }
@@ -95,14 +96,14 @@ private:
 
     /// An element at `at`, with its kind in front where they are mixed; says where the next one is.
     std::size_t add_of_kind(std::size_t element, std::size_t at) {
-        auto type = raw_.type;
-        if (type == CGNS_ENUMV(MIXED)) {
-            type = static_cast<CGNS_ENUMT(ElementType_t)>(at < raw_.numbers.size() ? raw_.numbers[at] : 0);
+        std::int64_t type = raw_.type;
+        if (raw_.type == CGNS_ENUMV(MIXED)) {
+            type = at < raw_.numbers.size() ? raw_.numbers[at] : 0;
             ++at;
         }
         const Kind* kind = find_kind(type);
         int stored = 0;
-        if (kind == nullptr || cg_npe(type, &stored) != CG_OK || at + static_cast<std::size_t>(stored) > raw_.numbers.size()) {
+        if (kind == nullptr || cg_npe(kind->cgns, &stored) != CG_OK || at + static_cast<std::size_t>(stored) > raw_.numbers.size()) {
             fail(": element " + std::to_string(element + 1) + " is of a kind that is not read");
         }
         add(kind->type, at, static_cast<std::size_t>(kind->corners));
