@@ -76,6 +76,12 @@ bool of_another_time(const LoadsResult& result, const StatedLoad& load) {
     return result.time && load.time && std::abs(*load.time - *result.time) > written * std::max(std::abs(*load.time), std::abs(*result.time));
 }
 
+/// So far off that its numbers say nothing of this field; a row of the next step may still be the one.
+bool of_a_far_time(const LoadsResult& result, const StatedLoad& load) {
+    constexpr double far = 0.1;
+    return of_another_time(result, load) && std::abs(*load.time - *result.time) > far * std::max(std::abs(*load.time), std::abs(*result.time));
+}
+
 /// What is no more than this share of a force is nothing beside it: symmetry leaves such rests, which never settle.
 constexpr double rounding = 1e-9;
 
@@ -116,7 +122,9 @@ public:
         }
         if (of_another_time(result, load)) {
             once("time", load.file, core::Problem::Severity::warning,
-                 "there is no row of the field's time " + shown(*result.time) + ": the field is compared with the row of " + shown(*load.time), load.file);
+                 "there is no row of the field's time " + shown(*result.time) + ": " +
+                     (of_a_far_time(result, load) ? "the nearest, of " + shown(*load.time) + ", is too far off to be compared" : "the field is compared with the row of " + shown(*load.time)),
+                 load.file);
         }
         if (load.later > 0) {
             once("later", load.file, core::Problem::Severity::note,
@@ -161,6 +169,9 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
             continue;
         }
         notes.of_report(result, load);
+        if (of_a_far_time(result, load)) {
+            continue;
+        }
         const Wrench& wrench = load.part == LoadPart::pressure ? body.pressure : load.part == LoadPart::viscous ? body.viscous : body.total;
         const Vector moment = plus(wrench.moment, cross(plus(result.reference, load.centre, -1), wrench.force));
         Comparison one;

@@ -403,6 +403,12 @@ TEST_F(StatedLoads, OfOpenFoamAreThoseOfTheFieldsTime) {
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_THAT(notes[0].message, HasSubstr("time 22.2"));
     EXPECT_THAT(notes[0].message, HasSubstr("row of 22"));
+    // Nothing near: not compared.
+    result.time = 200;
+    notes.clear();
+    EXPECT_TRUE(compare_with_solver(result, stated_by_openfoam(folder_.path(), result), notes).empty());
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].message, HasSubstr("too far off to be compared"));
 }
 
 TEST_F(StatedLoads, OfOpenFoamAreOfThePatchesOfTheirEntry) {
