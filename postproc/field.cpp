@@ -4,11 +4,13 @@
 #include <vtkPointData.h>
 
 #include <algorithm>
+#include <algorithm>
 #include <array>
 #include <fstream>
 
 #include "core/utf8.h"
 #include "postproc/importers/importer.h"
+#include "postproc/importers/options_used.h"
 #include "postproc/importers/understood.h"
 #include "postproc/importers/unknown_content.h"
 
@@ -156,9 +158,12 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
                                known.empty() ? "known formats: " + known_formats() : "it looks like " + known);
     }
     progress.report(0, "reading " + path.filename().string());
+    refuse_useless_options(importer->format, options, place);
+    ReadOptions asking = options;
+    asking.asked_units = std::make_shared<AskedUnits>();
     const auto read = [&] {
         try {
-            return telling([&] { return importer->read(path, options, progress); }, [&] { return "the format, " + importer->format + ", nothing else yet"; });
+            return telling([&] { return importer->read(path, asking, progress); }, [&] { return "the format, " + importer->format + ", nothing else yet"; });
         } catch (const core::InputError&) {
             if (fs::is_regular_file(status) && has_lone_returns(path)) {
                 throw core::InputError("format", "its lines end in carriage returns alone", place, "make them line feeds: tr '\\r' '\\n' < FILE > NEW");
@@ -167,6 +172,12 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
         }
     };
     Field field = read();
+    check_options_used(field, asking, place);
+    // The file that the user named stands first, whichever of a pair that is.
+    const auto own = std::find_if(field.files.begin(), field.files.end(), [&](const std::string& file) { return fs::equivalent(file, path, error); });
+    if (own != field.files.end()) {
+        std::rotate(field.files.begin(), own, own + 1);
+    }
     make_names_utf8(field);
     const auto is_time = [](const auto& entry) { return entry.first == "time"; };
     if (options.time && std::none_of(field.metadata.begin(), field.metadata.end(), is_time)) {

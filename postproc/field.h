@@ -6,6 +6,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -73,6 +74,8 @@ struct Field {
     [[nodiscard]] const Zone* find(const std::string& name) const;
 };
 
+class AskedUnits;
+
 /// What the caller knows that a file may not say.
 struct ReadOptions {
     std::string length_unit;                ///< for formats without one; empty: refuse where it matters, else SI
@@ -83,9 +86,12 @@ struct ReadOptions {
     std::filesystem::path companion;        ///< the mesh of a results file, when it cannot be found by name
     /// Units that the file does not say: original column or variable name -> unit ("Pressure" -> "Pa").
     std::vector<std::pair<std::string, std::string>> units;
+    /// The variables that importers found, kept by `read_field` itself: whoever states a unit for another made a slip.
+    std::shared_ptr<AskedUnits> asked_units;
 };
 
-/// Reads any known file, found by its content. Throws core::InputError (file, line or byte) when it is damaged or unknown.
+/// Reads any known file, found by its content. Throws core::InputError (file, line or byte) when it is damaged or unknown,
+/// and where the format has no use for an option that is given (a time, a companion, a unit of a variable that is not there).
 Field read_field(const std::filesystem::path& path, const ReadOptions& options = {},
                  core::Progress& progress = core::Progress::none());
 

@@ -153,6 +153,7 @@ void to_json(nlohmann::json& json, const FieldSummary& summary) {
         json["arrays"].push_back({{"name", array.name}, {"unit", array.unit}, {"on", array.on}, {"components", array.components}, {"min", array.min}, {"max", array.max},
                                   {"missing", array.missing}, {"zones", array.zones}, {"original_name", array.original_name}, {"original_unit", array.original_unit}});
     }
+    json["points_counted"] = "zone by zone: points of several zones count in each of them";
     json["metadata"] = nlohmann::json::object();
     for (const auto& [key, value] : summary.metadata) {
         json["metadata"][key] = value;

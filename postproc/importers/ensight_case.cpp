@@ -321,6 +321,9 @@ void CaseReader::choose_time() {
         return a.second.steps < b.second.steps;
     });
     if (longest == sets_.end()) {
+        if (time_) {
+            (void)step_at({}, *time_, path_.string());
+        }
         return;
     }
     const TimeSet& set = longest->second;

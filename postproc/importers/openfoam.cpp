@@ -137,6 +137,9 @@ void Reader::choose_time() {
     for (const auto& [time, folder] : times) {
         times_.push_back(time);
     }
+    if (times.empty() && options_.time) {
+        (void)step_at({}, *options_.time, folder_.string());
+    }
     if (times.empty()) {
         problems_.push_back(
             {core::Problem::Severity::note, "the case has no times: only its mesh is read", {folder_.string(), {}, {}, {}}});

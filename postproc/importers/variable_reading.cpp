@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "postproc/importers/array_names.h"
+#include "postproc/importers/options_used.h"
 
 namespace underbody::postproc {
 
@@ -18,6 +19,9 @@ constexpr std::string_view unstated = " (unit not stated)";
 
 /// The caller's word, which may be written in other letters if nothing has the very name.
 const std::string* stated_unit(const ReadOptions& options, const std::string& variable) {
+    if (options.asked_units != nullptr && !options.units.empty()) {
+        options.asked_units->add(variable);
+    }
     const auto stated = [&](const auto& same) {
         const auto found = std::find_if(options.units.begin(), options.units.end(), [&](const auto& entry) { return same(entry.first); });
         return found != options.units.end() ? &found->second : nullptr;
@@ -114,6 +118,7 @@ VariableReading read_variable_name(const std::string& original, const ReadOption
     VariableReading reading = unit.empty() ? VariableReading{written.name, canonical.name, canonical.unit, "", {}}
                                            : quantity_in(written.name, canonical, unit, place);
     if (original == foam_shear) {
+        say_once(problems, {core::Problem::Severity::note, "'" + original + "' is OpenFOAM's, which acts on the fluid: turned round, wall_shear acts on the body", place});
         reading.convert = {-reading.convert.scale, -reading.convert.offset};
     }
     return reading;

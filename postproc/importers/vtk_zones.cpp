@@ -328,6 +328,8 @@ public:
         field.pressure = first_->pressure;
         field.density = first_->density;
         field.metadata = first_->metadata;
+        std::erase_if(field.metadata, [](const auto& entry) { return entry.first == "length unit"; });
+        field.metadata.emplace_back("length unit", "m");
         if (first_->format != field.format) {
             field.metadata.emplace_back("imported from", first_->format);
         }
@@ -396,7 +398,6 @@ void add_described_zones(Field& field, const std::string& name, vtkDataSet& data
             return std::find_if(described.begin(), described.end(), [&](const ArrayInfo& other) { return other.name == info.name && other.on == info.on; }) - described.begin();
         };
         std::stable_sort(zone.arrays.begin(), zone.arrays.end(), [&](const ArrayInfo& a, const ArrayInfo& b) { return place(a) < place(b); });
-        scale_to_metres(*vtkPointSet::SafeDownCast(part.data), options);
         field.zones.push_back(std::move(zone));
     }
 }

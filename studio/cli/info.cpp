@@ -56,6 +56,9 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
         zones.push_back({zone.name, zone.kind, std::to_string(zone.points), std::to_string(zone.faces), std::to_string(zone.cells), extent});
     }
     print_columns(shell, zones);
+    if (summary.zones.size() > 1) {
+        shell.print("\n" + std::to_string(summary.points) + " points zone by zone: those that zones share count in each");
+    }
     Rows arrays = {{"array", "unit", "on", "min", "max", "in the file"}};
     for (const auto& array : summary.arrays) {
         arrays.push_back({array.name + (array.components > 1 ? " (" + std::to_string(array.components) + ")" : ""), array.unit.empty() ? "?" : array.unit, array.on, number(array.min),

@@ -460,7 +460,8 @@ TEST(FluentHdf5, ACaseTakesNoDataOfAnotherRun) {
     EXPECT_EQ(read_field(folder.path() / "wing-10.cas.h5").files.size(), 1U);
     const auto later = read_field(folder.path() / "run-1-00010.dat.h5");  // results of a series belong to the case they began with
     ASSERT_EQ(later.files.size(), 2U);
-    EXPECT_THAT(later.files[0], HasSubstr("run.cas.h5"));
+    EXPECT_THAT(later.files[0], HasSubstr("run-1-00010.dat.h5"));  // the one that was asked for
+    EXPECT_THAT(later.files[1], HasSubstr("run.cas.h5"));
 }
 
 TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {

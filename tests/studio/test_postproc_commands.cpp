@@ -363,6 +363,39 @@ TEST_F(PostprocCommands, ImportWritesVtkFiles) {
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a.xyz"));
 }
 
+TEST_F(PostprocCommands, InfoNamesTheFileOfTheUserAndSaysWhatItCounts) {
+    const std::string data = (test::data_folder() / "fluent_legacy/ascii.dat").string();
+    const json info = run_json({"info", data});
+    EXPECT_EQ(info["file"], data);
+    EXPECT_TRUE(info.contains("points_counted"));
+    EXPECT_THAT(run({"info", data}).output, testing::AllOf(testing::StartsWith(data), testing::HasSubstr("points zone by zone")));
+    core::write_file(folder_.path() / "wall.vtk",
+                     "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\nCELL_DATA 1\n"
+                     "VECTORS wallShearStress double\n1 2 3\n");
+    EXPECT_THAT(run({"info", "wall.vtk", "--unit", "wallShearStress=Pa", "--verbose"}).errors, testing::HasSubstr("turned round"));
+}
+
+TEST_F(PostprocCommands, OptionsThatAFileHasNoUseForAreTold) {
+    const auto refused = [&](const std::vector<std::string>& arguments) {
+        const auto result = run(arguments);
+        EXPECT_EQ(result.exit_code, 3) << result.output;
+        return result.errors;
+    };
+    EXPECT_THAT(refused({"loads", "a-h5.csv", "--unit", "Presure=kPa"}), testing::HasSubstr("did you mean 'Pressure'?"));
+    EXPECT_THAT(refused({"info", "a-h5.csv", "--unit", "Helicity=m/s^2"}), testing::HasSubstr("there is no variable 'Helicity'"));
+    EXPECT_EQ(run({"loads", "a-h5.csv", "--unit", "pressure=Pa"}).exit_code, 0);
+    EXPECT_EQ(run({"loads", "a-h5.csv", "--unit", "X=m"}).exit_code, 0);
+    EXPECT_THAT(refused({"loads", "a-h5.csv", "--time", "3"}), testing::HasSubstr("of one time each"));
+    EXPECT_THAT(refused({"loads", "a-h5.csv", "--mesh", "b-h10.csv"}), testing::HasSubstr("leave --mesh away"));
+    EXPECT_EQ(run({"import", "a-h5.csv", "--out", "a.vtp"}).exit_code, 0);
+    const auto lengths = run({"info", "a.vtp", "--length-unit", "mm", "--json"});
+    EXPECT_EQ(lengths.exit_code, 0);
+    EXPECT_THAT(lengths.errors, testing::HasSubstr("its lengths are in m, as it says"));
+    EXPECT_EQ(json::parse(lengths.output)["zones"][0]["bounding_box"][1][0], 2.0);
+    const std::string box = (test::data_folder() / "openfoam/ascii").string();
+    EXPECT_THAT(run({"info", box, "--length-unit", "mm"}).errors, testing::HasSubstr("its lengths are in m, as it says"));
+}
+
 TEST_F(PostprocCommands, ImportLosesNoFile) {
     const auto exists = [&](const char* name) { return std::filesystem::exists(folder_.path() / name); };
     for (const char* name : {"a/body.csv", "b/body.csv", "b/body.vtk.csv"}) {
