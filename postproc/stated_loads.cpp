@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 #include "core/file.h"
 #include "core/text.h"
 #include "postproc/importers/cfx_output.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/openfoam_forces.h"
+#include "postproc/importers/openfoam_keys.h"
 #include "postproc/importers/reports.h"
 #include "postproc/stated_parts.h"
 #include "postproc/vector_math.h"
@@ -93,14 +93,16 @@ namespace {
 /// The integrated zones that OpenFOAM's list of patches (names and regular expressions) means; its own words when none.
 std::vector<std::string> zones_of(const std::vector<std::string>& patches, const LoadsResult& result) {
     std::vector<std::string> zones;
+    const auto fits_expression = [](const std::string& patch, const std::string& name) {
+        try {
+            return FoamKey(patch, true).fits(name);
+        } catch (const InputError&) {
+            return false;  // no expression: a plain name
+        }
+    };
     for (const auto& zone : result.zones) {
         for (const auto& patch : patches) {
-            bool fits = patch == zone.name;
-            try {
-                fits = fits || std::regex_match(zone.name, std::regex(patch));
-            } catch (const std::regex_error&) {
-                // no expression: a plain name
-            }
+            const bool fits = patch == zone.name || fits_expression(patch, zone.name);
             if (fits && std::find(zones.begin(), zones.end(), zone.name) == zones.end()) {
                 zones.push_back(zone.name);
             }

@@ -142,7 +142,7 @@ void CsvText::check_names(std::vector<CsvBlock>& blocks) const {
         const auto [first, is_new] = places.emplace(block.name, block.name_at);
         if (!is_new) {
             throw InputError("zone", "two zones are called '" + block.name + "'", place_of(block.name_at, false),
-                             "the first stands in line " + std::to_string(*place_of(first->second).line));
+                             "the first stands in line " + std::to_string(*place_of(first->second).line) + ": give one of them another name below its [Name], or export them into files of their own");
         }
     }
 }
