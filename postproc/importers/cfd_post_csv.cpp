@@ -17,6 +17,7 @@
 #include "postproc/importers/csv_columns.h"
 #include "postproc/importers/csv_rows.h"
 #include "postproc/importers/csv_sections.h"
+#include "postproc/importers/csv_tail.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/understood.h"
 #include "postproc/surface_check.h"
@@ -120,7 +121,7 @@ private:
                              std::to_string(*stated_rows), text_.place_of(data->at, false), "the file is cut short or damaged");
         }
         read_connectivity(faces, lines, rows, last, zone);
-        check_tail(block, last);
+        check_tail(block, zone, last);
         field_.zones.push_back(std::move(zone));
     }
 
@@ -381,7 +382,7 @@ private:
     }
 
     /// A last line without its end may be whole (an editor) or the place where a copy broke off.
-    void check_tail(const CsvBlock& block, bool last) {
+    void check_tail(const CsvBlock& block, const Zone& zone, bool last) {
         if (!last || text_.text().empty() || text_.text().back() == '\n') {
             return;
         }
@@ -399,10 +400,11 @@ private:
                 throw InputError("parse", "the file ends in the middle of the number '" + std::string(cut) + "'", text_.place_of(tail), "the file is cut short: export it again");
             }
         }
-        // A number that lost its last digit names another node, and nobody can see it.
-        const bool faces = block.sections.back().word == "faces";
-        note(faces ? Severity::error : Severity::warning,
-             std::string("the file does not end with a line end: it may be cut short") + (faces ? " within its last face" : ""), text_.place_of(tail, false));
+        const bool faces = block.sections.back().word == "faces" && zone.surface->GetNumberOfPolys() > 0;
+        const bool cut = faces && last_face_is_cut(*zone.surface, bare(text_.text().substr(start + 1)));
+        note(cut ? Severity::error : Severity::warning,
+             std::string("the file does not end with a line end: ") + (cut ? "it is cut short within its last face, which its neighbours do not meet" : "it may be cut short"),
+             text_.place_of(tail, false));
     }
 
     void note_surfaces_without_faces() {

@@ -4,6 +4,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include <algorithm>
 #include <chrono>
 #include <clocale>
 #include <cmath>
@@ -157,6 +158,29 @@ TEST(CfdPostCsv, NeverTakesATruncatedFileForAWholeOne) {
         }
     }
     EXPECT_EQ(silent, 0);
+}
+
+TEST(CfdPostCsv, SeesThatANodeOfTheLastFaceLostADigit) {
+    const core::TemporaryFolder folder;
+    std::string text = "[Name]\nprism\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n";
+    for (int i = 0; i < 12; ++i) {
+        const double angle = M_PI / 3 * (i % 6);
+        text += std::to_string(std::cos(angle)) + ", " + std::to_string(std::sin(angle)) + ", " + std::to_string(i / 6) + ", 1\n";
+    }
+    text += "\n[Faces]\n0, 5, 4, 3, 2, 1\n6, 7, 8, 9, 10, 11\n";
+    for (int i = 0; i < 6; ++i) {
+        text += std::to_string(i) + ", " + std::to_string((i + 1) % 6) + ", " + std::to_string((i + 1) % 6 + 6) + ", " + std::to_string(i + 6) + "\n";
+    }
+    const auto errors = [&](std::size_t missing) {
+        core::write_file(folder.path() / "prism.csv", text.substr(0, text.size() - missing));
+        const auto field = postproc::read_field(folder.path() / "prism.csv");
+        return std::count_if(field.problems.begin(), field.problems.end(), [](const auto& p) { return p.severity == core::Problem::Severity::error; });
+    };
+    EXPECT_EQ(errors(0), 0);
+    EXPECT_EQ(errors(1), 0);  // the last line end alone
+    EXPECT_EQ(errors(2), 1);  // 5, 0, 6, 1
+    EXPECT_EQ(errors(3), 1);  // 5, 0, 6,
+    EXPECT_EQ(errors(5), 1);  // 5, 0, 6
 }
 
 TEST(CfdPostCsv, TellsDecimalCommasAndTakesSemicolonsWithPoints) {
