@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <memory>
 
 #include "core/random.h"
 
@@ -20,59 +22,47 @@ using Point = std::array<double, 3>;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
+using Place = std::function<Point(double, double)>;
+
 /// Quads over a grid of places.
-WallShape sheet(const std::string& name, int columns, int rows, const std::function<Point(double, double)>& place, bool known = true) {
-    vtkNew<vtkPolyData> surface;
+vtkSmartPointer<vtkPolyData> quads(int columns, int rows, const Place& place) {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     vtkNew<vtkCellArray> cells;
     for (int j = 0; j <= rows; ++j) {
         for (int i = 0; i <= columns; ++i) {
             points->InsertNextPoint(place(double(i) / columns, double(j) / rows).data());
-        }
-    }
-    for (vtkIdType j = 0; j < rows; ++j) {
-        for (vtkIdType i = 0; i < columns; ++i) {
             const vtkIdType a = i + (columns + 1) * j;
-            cells->InsertNextCell({a, a + 1, a + columns + 2, a + columns + 1});
+            if (i < columns && j < rows) {
+                cells->InsertNextCell({a, a + 1, a + columns + 2, a + columns + 1});
+            }
         }
     }
+    auto surface = vtkSmartPointer<vtkPolyData>::New();
     surface->SetPoints(points);
     surface->SetPolys(cells);
-    return shape_of(name, SurfaceArrays(*surface), known);
+    return surface;
+}
+
+WallShape sheet(const std::string& name, int columns, int rows, const Place& place, bool known = true) {
+    return shape_of(name, SurfaceArrays(*quads(columns, rows, place)), known);
 }
 
 /// Walls that keep their faces, so that one can look which of them meet; their sides are not known.
 class Walls {
 public:
-    using Place = std::function<Point(double, double)>;
     WallShape make(const std::string& name, int columns, int rows, const Place& place) {
-        made_.push_back(std::make_unique<Made>());
-        auto& own = *made_.back();
-        vtkNew<vtkPoints> points;
-        points->SetDataTypeToDouble();
-        vtkNew<vtkCellArray> cells;
-        for (int j = 0; j <= rows; ++j) {
-            for (int i = 0; i <= columns; ++i) {
-                points->InsertNextPoint(place(double(i) / columns, double(j) / rows).data());
-                const vtkIdType a = i + (columns + 1) * j;
-                if (i < columns && j < rows) {
-                    cells->InsertNextCell({a, a + 1, a + columns + 2, a + columns + 1});
-                }
-            }
-        }
-        own.polygons->SetPoints(points);
-        own.polygons->SetPolys(cells);
-        own.arrays = std::make_unique<SurfaceArrays>(*own.polygons);
-        WallShape shape = shape_of(name, *own.arrays, false);
-        shape.surface = own.arrays.get();
+        made_.push_back(std::make_unique<Made>(quads(columns, rows, place)));
+        WallShape shape = shape_of(name, made_.back()->arrays, false);
+        shape.surface = &made_.back()->arrays;
         return shape;
     }
 
 private:
     struct Made {
-        vtkNew<vtkPolyData> polygons;
-        std::unique_ptr<SurfaceArrays> arrays;
+        explicit Made(vtkSmartPointer<vtkPolyData> surface) : polygons(std::move(surface)), arrays(*polygons) {}
+        vtkSmartPointer<vtkPolyData> polygons;
+        SurfaceArrays arrays;
     };
     std::vector<std::unique_ptr<Made>> made_;
 };
@@ -182,7 +172,7 @@ TEST(BodyZones, ATunnelAroundTheBodyIsNoneWhenItsFluidIsInside) {
 
 TEST(BodyZones, ATunnelOfWhichNobodyKnowsTheSideIsKnownByWhatLiesInside) {
     Walls walls_made;
-    const auto wall = [&](const std::string& name, int columns, int rows, const Walls::Place& place) { return walls_made.make(name, columns, rows, place); };
+    const auto wall = [&](const std::string& name, int columns, int rows, const Place& place) { return walls_made.make(name, columns, rows, place); };
     const auto ball = [&](const std::string& name, double radius, double at) {
         return wall(name, 24, 12, [=](double s, double t) {
             return Point{at + radius * std::sin(M_PI * t) * std::cos(2 * M_PI * s), radius * std::sin(M_PI * t) * std::sin(2 * M_PI * s), radius * std::cos(M_PI * t)};
