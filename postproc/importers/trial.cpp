@@ -40,7 +40,12 @@ void limit([[maybe_unused]] std::uintmax_t size) {
         }
     };
     set(RLIMIT_CORE, 0);
-    const std::uintmax_t seconds = 20 + size / 2000000;
+#ifdef UNDERBODY_ADDRESS_SANITIZER
+    constexpr std::uintmax_t least = 20;
+#else
+    constexpr std::uintmax_t least = 5;
+#endif
+    const std::uintmax_t seconds = least + size / 2000000;
     set(RLIMIT_CPU, seconds);
     ::alarm(static_cast<unsigned int>(std::min<std::uintmax_t>(5 * seconds, 86400)));
 #ifndef UNDERBODY_ADDRESS_SANITIZER
