@@ -114,7 +114,7 @@ void DataReader::read_variable(const std::string& group, const std::string& vari
         }
         any_ = true;
         const std::uint64_t limit = on_cells ? mesh_.cells : mesh_.faces;
-        if (*first < 1 || *last + 1 < *first || static_cast<std::uint64_t>(*last) > limit) {
+        if (*first < 1 || static_cast<std::uint64_t>(*last) > limit || *last + 1 < *first) {
             other_case(path + " has ids " + std::to_string(*first) + " to " + std::to_string(*last) +
                        ", the case has " + number(limit) + (on_cells ? " cells" : " faces"));
         }

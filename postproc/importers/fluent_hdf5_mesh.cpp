@@ -103,7 +103,7 @@ std::vector<Part> Reader::parts(const std::string& path) const {
         if (!first || !last) {
             continue;
         }
-        if (*first < 1 || *last + 1 < *first || *last > 0x7fffffffLL) {
+        if (*first < 1 || *last > 0x7fffffffLL || *last + 1 < *first) {
             refuse(inner, "ids " + std::to_string(*first) + " to " + std::to_string(*last));
         }
         result.push_back({inner, static_cast<std::uint64_t>(*first), static_cast<std::uint64_t>(*last - *first + 1)});

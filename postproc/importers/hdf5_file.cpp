@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "postproc/importers/hdf5_chunks.h"
 #include "postproc/importers/hdf5_handle.h"
+#include "postproc/importers/hdf5_numbers.h"
 #include "postproc/importers/hdf5_rows.h"
 #include "postproc/importers/trial.h"
 
@@ -292,6 +293,7 @@ std::optional<std::int64_t> Hdf5File::attribute(const std::string& path, const s
     const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
     std::int64_t value = 0;
     if (!space.good() || H5Sget_simple_extent_npoints(space.get()) != 1 || H5Tget_class(type.get()) != H5T_INTEGER ||
+        conversion_from(type.get(), false) == nullptr ||  // the library converts what has any number of bits, without a look at where they end
         H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) {
         fail(path, "its attribute " + name + " is not one whole number");
     }

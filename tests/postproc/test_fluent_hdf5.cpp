@@ -7,6 +7,7 @@
 
 #include <array>
 #include <fstream>
+#include <limits>
 
 #include "core/file.h"
 #include "import_support.h"
@@ -486,6 +487,20 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
     EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1", "faceCount", 12); }), HasSubstr("missing"));
     EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1", "cellCount", 3); }), HasSubstr("cells"));
     EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1/faces/c0/1", "maxId", -5); }), HasSubstr("ids 1 to -5"));
+    EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1/faces/c0/1", "maxId", std::numeric_limits<std::int64_t>::max()); }), HasSubstr("ids 1 to 9223372036854775807"));
+    EXPECT_THAT(damaged([&](hid_t f) {  // an attribute of a number with bits elsewhere
+                    const hid_t owner = H5Oopen(f, "/meshes/1/faces/c0/1", H5P_DEFAULT);
+                    H5Adelete(owner, "maxId");
+                    const hid_t odd = H5Tcopy(H5T_STD_I64LE);
+                    H5Tset_precision(odd, 40);
+                    H5Tset_offset(odd, 24);
+                    const hid_t space = H5Screate(H5S_SCALAR);
+                    H5Aclose(H5Acreate2(owner, "maxId", odd, space, H5P_DEFAULT, H5P_DEFAULT));
+                    H5Sclose(space);
+                    H5Tclose(odd);
+                    H5Oclose(owner);
+                }),
+                HasSubstr("its attribute maxId is not one whole number"));
     EXPECT_THAT(damaged([&](hid_t f) { H5Ldelete(f, "/meshes/1/faces/nodes/1/nodes", H5P_DEFAULT); }), HasSubstr("faces/nodes/1"));
     EXPECT_THAT(damaged([&](hid_t f) { H5Ldelete(f, "/meshes/1/faces/c0", H5P_DEFAULT); }), HasSubstr("understood so far"));
     const auto values = [](hid_t file, const char* name, std::vector<std::int32_t> list) {
