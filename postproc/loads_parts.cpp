@@ -63,22 +63,6 @@ private:
         return pi * std::max(y, 0.0);
     }
 
-    /// The same without points that no face has: a surface cut out of another may bring all points of that, and what lies
-    /// elsewhere is not where the body ends.
-    [[nodiscard]] static vtkSmartPointer<vtkPolyData> with_used_points(const vtkSmartPointer<vtkPolyData>& surface) {
-        const SurfaceArrays arrays(*surface);
-        std::vector<bool> used(arrays.nodes(), false);
-        for (const Index node : arrays.connectivity()) {
-            used[static_cast<std::size_t>(node)] = true;
-        }
-        if (std::find(used.begin(), used.end(), false) == used.end()) {
-            return surface;
-        }
-        std::vector<std::size_t> faces(arrays.faces());
-        std::iota(faces.begin(), faces.end(), std::size_t{0});
-        return surface_of_faces(*surface, arrays, faces);
-    }
-
     /// The lines of a plane case as a strip. The normal of a line n0 -> n1 that looks into the fluid is z x t.
     [[nodiscard]] vtkSmartPointer<vtkPolyData> extruded(const Zone& zone) const {
         vtkPolyData& lines = *zone.surface;
@@ -202,9 +186,10 @@ private:
             }
             Part part;
             part.zone = zone;
-            part.polygons = has_polygons(*zone) ? with_used_points(zone->surface) : extruded(*zone);
+            part.name = zone->name;
+            part.polygons = has_polygons(*zone) ? zone->surface : extruded(*zone);
             part.surface = std::make_unique<SurfaceArrays>(*part.polygons);
-            add_shells(std::move(part));
+            add_parts(std::move(part));
         }
         if (options_.zones.empty() && parts_.size() > 1) {
             leave_out_other_walls();
@@ -231,45 +216,62 @@ private:
         }
     }
 
-    /// A zone whose sides nobody knows may hold several closed shells, each with a winding of its own; what is open stays
-    /// together, as the file has it.
-    void add_shells(Part&& part) {
-        const auto numbers = part.zone->normals_into_fluid || field_.dimension == 2 ? std::vector<std::uint32_t>{} : connected_parts(*part.surface);
-        std::vector<std::vector<std::size_t>> faces;
+    /// Some of the faces of a part, with the points that these use.
+    [[nodiscard]] static Part part_of(const Part& part, const std::vector<std::size_t>& faces) {
+        Part some;
+        some.zone = part.zone;
+        some.name = part.name;
+        some.polygons = surface_of_faces(*part.polygons, *part.surface, faces);
+        some.surface = std::make_unique<SurfaceArrays>(*some.polygons);
+        return some;
+    }
+
+    /// Without points that no face has: a surface cut out of another may bring all points of that, and what lies elsewhere
+    /// is not where the body ends. A zone whose sides nobody knows may hold several closed shells, each with a winding of its
+    /// own: they come apart.
+    void add_parts(Part&& part) {
+        ConnectedFaces connected(*part.surface);
+        const auto numbers = part.zone->normals_into_fluid || field_.dimension == 2 ? std::vector<std::uint32_t>{} : connected.parts();
+        if (connected.leaves_points_out()) {
+            std::vector<std::size_t> all(part.surface->faces());
+            std::iota(all.begin(), all.end(), std::size_t{0});
+            part = part_of(part, all);
+        }
+        std::vector<Part> shells = shells_of(part, numbers);
+        if (shells.empty()) {
+            parts_.push_back(std::move(part));
+        }
+        for (std::size_t i = 0; i < shells.size(); ++i) {
+            shells[i].name += " (part " + std::to_string(i + 1) + " of " + std::to_string(shells.size()) + ")";
+            parts_.push_back(std::move(shells[i]));
+        }
+    }
+
+    /// The closed shells of a part, and behind them what is open, together as the file has it. Nothing when that is one.
+    /// `numbers`: of the connected part that each face belongs to.
+    [[nodiscard]] static std::vector<Part> shells_of(const Part& part, const std::vector<std::uint32_t>& numbers) {
+        constexpr std::size_t most = 1000;  // droplets
+        std::vector<std::vector<std::size_t>> faces(numbers.empty() ? 0 : 1 + *std::max_element(numbers.begin(), numbers.end()));
+        if (faces.size() > most) {
+            return {};
+        }
         for (std::size_t face = 0; face < numbers.size(); ++face) {
-            faces.resize(std::max<std::size_t>(faces.size(), numbers[face] + 1));
             faces[numbers[face]].push_back(face);
         }
         std::vector<Part> shells;
         std::vector<std::size_t> open;
-        constexpr std::size_t most = 1000;  // droplets
-        for (std::size_t i = 0; i < faces.size() && faces.size() <= most; ++i) {
-            Part shell;
-            shell.zone = part.zone;
-            shell.polygons = surface_of_faces(*part.polygons, *part.surface, faces[i]);
-            shell.surface = std::make_unique<SurfaceArrays>(*shell.polygons);
+        for (const auto& own : faces) {
+            Part shell = part_of(part, own);
             if (bounds_a_volume(integrate_faces(*shell.surface, {}, {}))) {
                 shells.push_back(std::move(shell));
             } else {
-                open.insert(open.end(), faces[i].begin(), faces[i].end());
+                open.insert(open.end(), own.begin(), own.end());
             }
         }
-        if (shells.size() + (open.empty() ? 0 : 1) < 2) {
-            part.name = part.zone->name;
-            parts_.push_back(std::move(part));
-            return;
+        if (!shells.empty() && !open.empty()) {
+            shells.push_back(part_of(part, open));
         }
-        if (!open.empty()) {
-            Part rest;
-            rest.zone = part.zone;
-            rest.polygons = surface_of_faces(*part.polygons, *part.surface, open);
-            rest.surface = std::make_unique<SurfaceArrays>(*rest.polygons);
-            shells.push_back(std::move(rest));
-        }
-        for (std::size_t i = 0; i < shells.size(); ++i) {
-            shells[i].name = part.zone->name + " (part " + std::to_string(i + 1) + " of " + std::to_string(shells.size()) + ")";
-            parts_.push_back(std::move(shells[i]));
-        }
+        return shells.size() > 1 ? std::move(shells) : std::vector<Part>{};
     }
 
     /// A ground or a tunnel is a wall too. `audit` refuses when the rest does not close either.

@@ -6,50 +6,15 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "core/parallel.h"
 #include "postproc/places.h"
 
 namespace underbody::postproc {
 
 namespace {
-
-/// Sets of nodes that are joined two by two.
-class NodeSets {
-public:
-    explicit NodeSets(std::size_t nodes) : parent_(nodes) { std::iota(parent_.begin(), parent_.end(), std::uint32_t{0}); }
-
-    std::uint32_t find(std::uint32_t node) {
-        while (parent_[node] != node) {
-            node = parent_[node] = parent_[parent_[node]];
-        }
-        return node;
-    }
-    /// Joins all nodes of a face; how many sets fewer there are then.
-    template <typename Number>
-    std::size_t join(const Number* nodes, std::size_t count) {
-        std::size_t joined = 0;
-        std::uint32_t root = count > 0 ? find(static_cast<std::uint32_t>(nodes[0])) : 0;
-        for (std::size_t i = 1; i < count; ++i) {
-            const auto node = static_cast<std::uint32_t>(nodes[i]);
-            const std::uint32_t other = find(node);
-            if (other != root) {
-                const auto [low, high] = std::minmax(root, other);
-                parent_[high] = low;
-                root = low;
-                ++joined;
-            }
-            parent_[node] = root;  // the way is short next time
-        }
-        return joined;
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
 
 double size_of(const SurfaceArrays& surface) {
     double square = 0;
@@ -67,42 +32,70 @@ double size_of(const SurfaceArrays& surface) {
 
 }  // namespace
 
-std::vector<std::uint32_t> connected_parts(const SurfaceArrays& surface) {
+ConnectedFaces::ConnectedFaces(const SurfaceArrays& surface) : surface_(surface), sets_(surface.nodes()), used_(surface.nodes()) {
     const auto offsets = surface.offsets();
     const auto nodes = surface.connectivity();
-    NodeSets sets(surface.nodes());
-    std::size_t parts = surface.nodes();
-    for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
-        parts -= sets.join(nodes.data() + offsets[f], static_cast<std::size_t>(offsets[f + 1] - offsets[f]));
-    }
-    if (parts > 1) {
-        Places places(1e-6 * size_of(surface));
-        std::vector<std::uint32_t> first;  // node at each place
-        for (std::size_t node = 0; node < surface.nodes() && parts > 1; ++node) {
-            const auto place = static_cast<std::size_t>(places.number(surface.points().data() + 3 * node));
-            if (place == first.size()) {
-                first.push_back(static_cast<std::uint32_t>(node));
-            }
-            const std::uint32_t both[] = {first[place], static_cast<std::uint32_t>(node)};
-            parts -= sets.join(both, 2);
+    std::atomic<std::size_t> joined = 0;
+    constexpr std::size_t at_once = std::size_t{1} << 16;
+    core::parallel_blocks(surface.faces(), at_once, [&](std::size_t begin, std::size_t end) {
+        std::size_t some = 0;
+        for (std::size_t f = begin; f < end; ++f) {
+            some += sets_.join(nodes.data() + offsets[f], static_cast<std::size_t>(offsets[f + 1] - offsets[f]));
         }
+        joined += some;
+    });
+    parts_ = surface.nodes() - joined;
+    if (parts_ > 1) {  // else all nodes hang together, and none is without a face
+        std::vector<bool> used(surface.nodes(), false);
+        for (const Index node : nodes) {
+            used[static_cast<std::size_t>(node)] = true;
+        }
+        used_ = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+        parts_ -= surface.nodes() - used_;
     }
-    if (parts <= 1) {
-        return {};
-    }
-    constexpr auto none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> number(surface.nodes(), none);
-    std::vector<std::uint32_t> part(surface.faces(), 0);
-    std::uint32_t count = 0;
-    for (std::size_t f = 0; f < part.size(); ++f) {
-        if (offsets[f] == offsets[f + 1]) {
+}
+
+void ConnectedFaces::join_places() {
+    Places places(1e-6 * size_of(surface_));
+    std::vector<std::uint32_t> first;  // node at each place
+    std::vector<bool> placed(surface_.nodes(), false);
+    for (const Index node : surface_.connectivity()) {
+        if (placed[static_cast<std::size_t>(node)]) {
             continue;
         }
-        std::uint32_t& own = number[sets.find(static_cast<std::uint32_t>(nodes[static_cast<std::size_t>(offsets[f])]))];
-        own = own == none ? count++ : own;
-        part[f] = own;
+        placed[static_cast<std::size_t>(node)] = true;
+        const auto place = static_cast<std::size_t>(places.number(surface_.points().data() + 3 * node));
+        if (place == first.size()) {
+            first.push_back(static_cast<std::uint32_t>(node));
+        }
+        const std::uint32_t both[] = {first[place], static_cast<std::uint32_t>(node)};
+        parts_ -= sets_.join(both, 2);
+        if (parts_ == 1) {
+            return;
+        }
     }
-    return count > 1 ? part : std::vector<std::uint32_t>{};  // points without faces are parts of nothing
+}
+
+std::vector<std::uint32_t> ConnectedFaces::parts() {
+    if (parts_ > 1) {
+        join_places();
+    }
+    if (parts_ <= 1) {
+        return {};
+    }
+    const auto offsets = surface_.offsets();
+    constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> number(surface_.nodes(), none);
+    std::vector<std::uint32_t> part(surface_.faces(), 0);
+    std::uint32_t count = 0;
+    for (std::size_t f = 0; f < part.size(); ++f) {
+        if (offsets[f] < offsets[f + 1]) {
+            std::uint32_t& own = number[sets_.find(static_cast<std::uint32_t>(surface_.connectivity()[static_cast<std::size_t>(offsets[f])]))];
+            own = own == none ? count++ : own;
+            part[f] = own;
+        }
+    }
+    return part;
 }
 
 vtkSmartPointer<vtkPolyData> surface_of_faces(vtkPolyData& surface, const SurfaceArrays& arrays, std::span<const std::size_t> faces) {
@@ -113,19 +106,26 @@ vtkSmartPointer<vtkPolyData> surface_of_faces(vtkPolyData& surface, const Surfac
     result->GetPointData()->CopyAllocate(surface.GetPointData());
     result->GetCellData()->CopyAllocate(surface.GetCellData());
     const vtkIdType before = surface.GetNumberOfVerts() + surface.GetNumberOfLines();  // their values come first
-    std::vector<vtkIdType> place(arrays.nodes(), -1);
+    const auto corners = [&](std::size_t face) {
+        const auto first = static_cast<std::size_t>(arrays.offsets()[face]);
+        return arrays.connectivity().subspan(first, static_cast<std::size_t>(arrays.offsets()[face + 1]) - first);
+    };
+    std::vector<Index> used;  // in order: a small part of a large surface takes no memory for all of it
+    for (const std::size_t face : faces) {
+        used.insert(used.end(), corners(face).begin(), corners(face).end());
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        points->InsertNextPoint(arrays.points().data() + 3 * used[i]);
+        result->GetPointData()->CopyData(surface.GetPointData(), used[i], static_cast<vtkIdType>(i));
+    }
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        const std::size_t face = faces[i];
-        cells->InsertNextCell(static_cast<int>(arrays.offsets()[face + 1] - arrays.offsets()[face]));
-        for (auto k = static_cast<std::size_t>(arrays.offsets()[face]); k < static_cast<std::size_t>(arrays.offsets()[face + 1]); ++k) {
-            const auto node = static_cast<std::size_t>(arrays.connectivity()[k]);
-            if (place[node] < 0) {
-                place[node] = points->InsertNextPoint(arrays.points().data() + 3 * node);
-                result->GetPointData()->CopyData(surface.GetPointData(), static_cast<vtkIdType>(node), place[node]);
-            }
-            cells->InsertCellPoint(place[node]);
+        cells->InsertNextCell(static_cast<int>(corners(faces[i]).size()));
+        for (const Index node : corners(faces[i])) {
+            cells->InsertCellPoint(std::lower_bound(used.begin(), used.end(), node) - used.begin());
         }
-        result->GetCellData()->CopyData(surface.GetCellData(), before + static_cast<vtkIdType>(face), static_cast<vtkIdType>(i));
+        result->GetCellData()->CopyData(surface.GetCellData(), before + static_cast<vtkIdType>(faces[i]), static_cast<vtkIdType>(i));
     }
     result->SetPoints(points);
     result->SetPolys(cells);

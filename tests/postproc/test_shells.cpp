@@ -11,6 +11,8 @@
 
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace underbody::postproc {
 namespace {
 
@@ -45,23 +47,61 @@ vtkSmartPointer<vtkPolyData> empty_surface() {
     return surface;
 }
 
-TEST(ConnectedParts, AreOneWhereFacesShareNodesOrPlaces) {
+std::vector<std::uint32_t> parts_of(vtkPolyData& surface) {
+    const SurfaceArrays arrays(surface);
+    return ConnectedFaces(arrays).parts();
+}
+
+bool leaves_points_out(vtkPolyData& surface) {
+    const SurfaceArrays arrays(surface);
+    return ConnectedFaces(arrays).leaves_points_out();
+}
+
+TEST(ConnectedFaces, AreOnePartWhereTheyShareNodesOrPlaces) {
     for (const bool own : {false, true}) {
         const auto surface = empty_surface();
         add_fan(*surface, 0, 5, own);
-        EXPECT_THAT(connected_parts(SurfaceArrays(*surface)), IsEmpty()) << own;
+        EXPECT_THAT(parts_of(*surface), IsEmpty()) << own;
+        EXPECT_FALSE(leaves_points_out(*surface)) << own;
         surface->GetPoints()->InsertNextPoint(7, 7, 7);  // of no face
-        EXPECT_THAT(connected_parts(SurfaceArrays(*surface)), IsEmpty()) << own;
+        EXPECT_TRUE(leaves_points_out(*surface)) << own;
+        EXPECT_THAT(parts_of(*surface), IsEmpty()) << own;
     }
-    EXPECT_THAT(connected_parts(SurfaceArrays(*empty_surface())), IsEmpty());
+    EXPECT_THAT(parts_of(*empty_surface()), IsEmpty());
 }
 
-TEST(ConnectedParts, AreNumberedInTheOrderOfTheFaces) {
+TEST(ConnectedFaces, AreNumberedInTheirOrder) {
     const auto surface = empty_surface();
     add_fan(*surface, 0, 2, true);
     add_fan(*surface, 5, 1, false);
     add_fan(*surface, 0, 1, false);  // of the first again, by its places
-    EXPECT_THAT(connected_parts(SurfaceArrays(*surface)), ElementsAre(0, 0, 1, 0));
+    EXPECT_THAT(parts_of(*surface), ElementsAre(0, 0, 1, 0));
+}
+
+TEST(ConnectedFaces, AreTheSameWithAnyNumberOfThreads) {
+    // Strips of triangles, many blocks of faces long, each strip a part; their faces take turns.
+    constexpr std::uint32_t strips = 7;
+    constexpr vtkIdType length = 60000;
+    const auto surface = empty_surface();
+    for (vtkIdType i = 0; i < length; ++i) {
+        for (std::uint32_t s = 0; s < strips; ++s) {
+            surface->GetPoints()->InsertNextPoint(double(i / 2), double(i % 2) + 10.0 * s, 0);
+        }
+    }
+    for (vtkIdType i = 0; i + 2 < length; ++i) {
+        for (vtkIdType s = 0; s < strips; ++s) {
+            surface->GetPolys()->InsertNextCell({strips * i + s, strips * (i + 1) + s, strips * (i + 2) + s});
+        }
+    }
+    for (const int threads : {1, 2, 5, 0}) {
+        core::set_threads(threads);
+        const auto parts = parts_of(*surface);
+        ASSERT_EQ(parts.size(), strips * (length - 2));
+        for (std::size_t f = 0; f < parts.size(); ++f) {
+            ASSERT_EQ(parts[f], f % strips) << threads;
+        }
+    }
+    core::set_threads(0);
 }
 
 TEST(SurfaceOfFaces, BringsItsPointsAndValuesAlong) {
