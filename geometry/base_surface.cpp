@@ -9,7 +9,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 class BaseMaker {
 public:

@@ -12,7 +12,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Half an outline of the ellipsoid piece at a height, at the local edge length.
 std::vector<Vec3> half_ring(const ExactBody& body, double height, double edge) {

@@ -10,7 +10,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A root of f between two heights where it changes its sign.
 template <class F>

@@ -10,7 +10,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Gauss-Legendre on [-1, 1], 16 points (positive half).
 constexpr std::array<double, 8> nodes{0.0950125098376374, 0.2816035507792589, 0.4580167776572274, 0.6178762444026438,

@@ -9,12 +9,12 @@ namespace underbody::geometry {
 namespace {
 
 // Integrals of 1, x, y, z, x^2, y^2, z^2, xy, yz, zx over the volume, by Eberly's sub-expressions for each triangle.
-struct Moments {
+struct VolumeMoments {
     double one = 0;
     std::array<double, 3> first{}, square{}, product{};
 };
 
-void add_triangle(Moments& m, const Vec3& p, const Vec3& q, const Vec3& r) {
+void add_triangle(VolumeMoments& m, const Vec3& p, const Vec3& q, const Vec3& r) {
     const Vec3 d = cross(q - p, r - p);
     const std::array<double, 3> normal{d.x, d.y, d.z};
     const std::array<std::array<double, 3>, 3> w{{{p.x, q.x, r.x}, {p.y, q.y, r.y}, {p.z, q.z, r.z}}};
@@ -48,7 +48,7 @@ MassProperties mass_properties(const SurfaceMesh& mesh) {
     MassProperties mass;
     mass.bounding_box = bounding_box(mesh);
     const Vec3 middle = 0.5 * (mass.bounding_box.lower + mass.bounding_box.upper);
-    Moments m;
+    VolumeMoments m;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         add_triangle(m, mesh.corner(i, 0) - middle, mesh.corner(i, 1) - middle, mesh.corner(i, 2) - middle);
     }

@@ -9,23 +9,23 @@ namespace underbody::geometry {
 
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
+using SearchKernel = CGAL::Simple_cartesian<double>;
+using Triangles = std::vector<SearchKernel::Triangle_3>;
+using Primitive = CGAL::AABB_triangle_primitive<SearchKernel, Triangles::const_iterator>;
 
-Kernel::Point_3 point(const Vec3& p) { return {p.x, p.y, p.z}; }
+SearchKernel::Point_3 search_point(const Vec3& p) { return {p.x, p.y, p.z}; }
 
 }  // namespace
 
 struct NearestPoint::Tree {
     Triangles triangles;
-    CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> boxes;
+    CGAL::AABB_tree<CGAL::AABB_traits<SearchKernel, Primitive>> boxes;
 };
 
 NearestPoint::NearestPoint(const SurfaceMesh& mesh, std::int32_t patch) : tree_(std::make_unique<Tree>()) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (patch < 0 || mesh.patch[i] == patch) {
-            tree_->triangles.emplace_back(point(mesh.corner(i, 0)), point(mesh.corner(i, 1)), point(mesh.corner(i, 2)));
+            tree_->triangles.emplace_back(search_point(mesh.corner(i, 0)), search_point(mesh.corner(i, 1)), search_point(mesh.corner(i, 2)));
         }
     }
     if (!tree_->triangles.empty()) {
@@ -40,7 +40,7 @@ NearestPoint::NearestPoint(NearestPoint&&) noexcept = default;
 NearestPoint& NearestPoint::operator=(NearestPoint&&) noexcept = default;
 
 Vec3 NearestPoint::operator()(const Vec3& p) const {
-    const Kernel::Point_3 q = tree_->boxes.closest_point(point(p));
+    const SearchKernel::Point_3 q = tree_->boxes.closest_point(search_point(p));
     return {q.x(), q.y(), q.z()};
 }
 

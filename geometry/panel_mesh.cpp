@@ -29,7 +29,7 @@ using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 using Point = Traits::Point;
 
-Point point(const Vec3& p) { return {p.x, p.y, p.z}; }
+Point mesh_point(const Vec3& p) { return {p.x, p.y, p.z}; }
 Vec3 vec(const Point& p) { return {p[0], p[1], p[2]}; }
 
 // Twice the area, in the direction of the normal.
@@ -88,7 +88,7 @@ public:
 private:
     void fill() {
         for (const Vec3& p : surface_.points) {
-            mesh_.add_vertex(point(p));
+            mesh_.add_vertex(mesh_point(p));
         }
         for (std::size_t i = 0; i < surface_.triangles.size(); ++i) {
             const Triangle& t = surface_.triangles[i];
@@ -176,7 +176,7 @@ private:
         const bool feature = mesh_.data(edge).feature;
         const std::int32_t left_patch = mesh_.data(mesh_.face_handle(h)).patch,
                            right_patch = mesh_.data(mesh_.face_handle(o)).patch;
-        const VertexHandle v = mesh_.add_vertex(feature ? at : point(on_patch_[index(left_patch)](vec(at))));
+        const VertexHandle v = mesh_.add_vertex(feature ? at : mesh_point(on_patch_[index(left_patch)](vec(at))));
         mesh_.split(edge, v);
         for (const VertexHandle end : {a, b}) {
             mesh_.data(between(v, end)).feature = feature;
@@ -322,7 +322,7 @@ private:
             }
             const Point here = mesh_.point(v), way = sum / weights - here, n = up / up.norm();
             const std::int32_t patch = mesh_.data(*mesh_.cvf_iter(v)).patch;
-            const Point there = point(on_patch_[index(patch)](vec(here + way - (way | n) * n)));
+            const Point there = mesh_point(on_patch_[index(patch)](vec(here + way - (way | n) * n)));
             if (may_move(v, there)) {
                 mesh_.set_point(v, there);
             }

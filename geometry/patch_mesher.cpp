@@ -15,21 +15,21 @@ namespace underbody::geometry {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using FlatKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 struct FaceInfo {
     std::int32_t label = -1;
 };
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
-using FaceInfoBase = CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel>;
-using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, FaceInfoBase>;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, FlatKernel>;
+using FaceInfoBase = CGAL::Triangulation_face_base_with_info_2<FaceInfo, FlatKernel>;
+using FaceBase = CGAL::Constrained_triangulation_face_base_2<FlatKernel, FaceInfoBase>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
+    CGAL::Constrained_Delaunay_triangulation_2<FlatKernel, Structure,
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Face = Triangulation::Face_handle;
-using Point = Kernel::Point_2;
+using FlatPoint = FlatKernel::Point_2;
 
-double squared(const Point& a, const Point& b) {
+double squared(const FlatPoint& a, const FlatPoint& b) {
     const double dx = a.x() - b.x(), dy = a.y() - b.y();
     return dx * dx + dy * dy;
 }
@@ -66,7 +66,7 @@ private:
         std::vector<Triangulation::Vertex_handle> handles;
         Face hint;
         for (std::size_t i = 0; i < problem_.points.size(); ++i) {
-            const auto handle = triangulation_.insert(Point(problem_.points[i].u, problem_.points[i].v), hint);
+            const auto handle = triangulation_.insert(FlatPoint(problem_.points[i].u, problem_.points[i].v), hint);
             handle->info() = static_cast<std::int32_t>(i);
             hint = handle->face();
             handles.push_back(handle);
@@ -88,7 +88,7 @@ private:
             f->info().label = f->info().label == outside ? -1 : 0;
         }
         for (const PatchProblem::Seed& seed : problem_.seeds) {
-            const Face start = triangulation_.locate(Point(seed.at.u, seed.at.v));
+            const Face start = triangulation_.locate(FlatPoint(seed.at.u, seed.at.v));
             if (start->info().label < 0) {
                 throw std::logic_error("a seed of a patch lies outside");
             }
@@ -114,8 +114,8 @@ private:
     }
 
     struct Candidate {
-        Point at;
-        Point inside;  // of the triangle: the centroid
+        FlatPoint at;
+        FlatPoint inside;  // of the triangle: the centroid
         double edge;
         bool too_large;
     };
@@ -127,8 +127,8 @@ private:
             if (f->info().label < 0) {
                 continue;
             }
-            const Point &a = f->vertex(0)->point(), &b = f->vertex(1)->point(), &c = f->vertex(2)->point();
-            const Point middle((a.x() + b.x() + c.x()) / 3, (a.y() + b.y() + c.y()) / 3);
+            const FlatPoint &a = f->vertex(0)->point(), &b = f->vertex(1)->point(), &c = f->vertex(2)->point();
+            const FlatPoint middle((a.x() + b.x() + c.x()) / 3, (a.y() + b.y() + c.y()) / 3);
             const double edge = problem_.edge({middle.x(), middle.y()});
             const double ab = squared(a, b), bc = squared(b, c), ca = squared(c, a);
             const double shortest = std::min({ab, bc, ca}), longest = std::max({ab, bc, ca});
@@ -145,7 +145,7 @@ private:
     }
 
     // True when the point was inserted: far enough from points and boundary, and inside.
-    bool insert(const Point& p, double edge, Face& hint) {
+    bool insert(const FlatPoint& p, double edge, Face& hint) {
         Triangulation::Locate_type where;
         int index = 0;
         const Face face = triangulation_.locate(p, where, index, hint);
@@ -175,17 +175,17 @@ private:
         return true;
     }
 
-    bool too_near(const Face& face, const Point& p, double edge) const {
+    bool too_near(const Face& face, const FlatPoint& p, double edge) const {
         if (triangulation_.is_infinite(face)) {
             return false;
         }
         for (int k = 0; k < 3; ++k) {
-            const Point& a = face->vertex(k)->point();
+            const FlatPoint& a = face->vertex(k)->point();
             if (squared(a, p) < 0.42 * edge * edge) {
                 return true;
             }
             if (face->is_constrained(k)) {
-                const Point &b = face->vertex((k + 1) % 3)->point(), &c = face->vertex((k + 2) % 3)->point();
+                const FlatPoint &b = face->vertex((k + 1) % 3)->point(), &c = face->vertex((k + 2) % 3)->point();
                 const double twice = (c.x() - b.x()) * (p.y() - b.y()) - (c.y() - b.y()) * (p.x() - b.x());
                 if (twice * twice < 0.2 * std::max(edge * edge * 0.5, squared(b, c)) * squared(b, c)) {
                     return true;
@@ -198,14 +198,14 @@ private:
     bool refine_once() {
         std::vector<Candidate> wanted = candidates();
         std::vector<std::ptrdiff_t> order(wanted.size());
-        std::vector<Point> places;
+        std::vector<FlatPoint> places;
         for (const Candidate& c : wanted) {
             places.push_back(c.at);
         }
         for (std::size_t i = 0; i < order.size(); ++i) {
             order[i] = static_cast<std::ptrdiff_t>(i);
         }
-        using Map = CGAL::Spatial_sort_traits_adapter_2<Kernel, Point*>;
+        using Map = CGAL::Spatial_sort_traits_adapter_2<FlatKernel, FlatPoint*>;
         CGAL::spatial_sort(order.begin(), order.end(), Map(places.data()));
         bool any = false;
         Face hint;

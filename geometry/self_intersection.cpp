@@ -13,8 +13,8 @@ namespace underbody::geometry {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
+using ExactKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using ExactPoint = ExactKernel::Point_3;
 
 struct FloatBox {
     std::array<float, 3> low{}, high{};
@@ -76,7 +76,7 @@ public:
 
 private:
     static constexpr std::size_t leaf_size = 4;
-    [[nodiscard]] const Point& at(std::int32_t i) const { return points_[static_cast<std::size_t>(i)]; }
+    [[nodiscard]] const ExactPoint& at(std::int32_t i) const { return points_[static_cast<std::size_t>(i)]; }
 
     void order_along_curve() {
         const Box box = bounding_box(mesh_);
@@ -209,8 +209,8 @@ private:
         if (one_side(s, t, -1) || one_side(t, s, -1)) {
             return false;
         }
-        return CGAL::do_intersect(Kernel::Triangle_3(at(s[0]), at(s[1]), at(s[2])),
-                                  Kernel::Triangle_3(at(t[0]), at(t[1]), at(t[2])));
+        return CGAL::do_intersect(ExactKernel::Triangle_3(at(s[0]), at(s[1]), at(s[2])),
+                                  ExactKernel::Triangle_3(at(t[0]), at(t[1]), at(t[2])));
     }
 
     [[nodiscard]] bool at_corner(const Triangle& s, std::size_t i, const Triangle& t, std::size_t j) const {
@@ -218,14 +218,14 @@ private:
             return false;
         }
         // They have more in common than the corner exactly when the far edge of one meets the other.
-        const Kernel::Segment_3 far_s(at(s[(i + 1) % 3]), at(s[(i + 2) % 3])),
+        const ExactKernel::Segment_3 far_s(at(s[(i + 1) % 3]), at(s[(i + 2) % 3])),
             far_t(at(t[(j + 1) % 3]), at(t[(j + 2) % 3]));
-        return CGAL::do_intersect(far_s, Kernel::Triangle_3(at(t[0]), at(t[1]), at(t[2]))) ||
-               CGAL::do_intersect(far_t, Kernel::Triangle_3(at(s[0]), at(s[1]), at(s[2])));
+        return CGAL::do_intersect(far_s, ExactKernel::Triangle_3(at(t[0]), at(t[1]), at(t[2]))) ||
+               CGAL::do_intersect(far_t, ExactKernel::Triangle_3(at(s[0]), at(s[1]), at(s[2])));
     }
 
     [[nodiscard]] bool at_edge(const Triangle& s, std::size_t i, const Triangle& t, std::size_t j) const {
-        const Point &p = at(s[(i + 1) % 3]), &q = at(s[(i + 2) % 3]), &a = at(s[i]), &b = at(t[j]);
+        const ExactPoint &p = at(s[(i + 1) % 3]), &q = at(s[(i + 2) % 3]), &a = at(s[i]), &b = at(t[j]);
         return CGAL::orientation(p, q, a, b) == CGAL::COPLANAR &&
                CGAL::coplanar_orientation(p, q, a, b) == CGAL::POSITIVE;
     }
@@ -233,7 +233,7 @@ private:
     const SurfaceMesh& mesh_;
     std::size_t limit_;
     core::Progress& progress_;
-    std::vector<Point> points_;
+    std::vector<ExactPoint> points_;
     std::vector<std::uint32_t> order_;
     std::vector<FloatBox> boxes_, nodes_;
     std::size_t leaves_ = 1;

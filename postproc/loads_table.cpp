@@ -9,6 +9,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "postproc/loads_parts.h"
 
 namespace underbody::postproc {
 
@@ -109,14 +110,6 @@ std::vector<std::string> differences(const SetPoint& a, const SetPoint& b) {
         }
     }
     return names;
-}
-
-std::string quoted(const std::vector<std::string>& names) {
-    std::string text;
-    for (const auto& name : names) {
-        text += (text.empty() ? "'" : ", '") + name + "'";
-    }
-    return text;
 }
 
 /// Cases on one mesh each, by set points.

@@ -20,11 +20,9 @@ namespace {
 
 using core::format_number;
 
-std::string number(double v, int digits = 6) { return format_number(v, digits); }
-
 // m as mm; the rounding errors of symmetric bodies (1e-13 mm) are shown as 0.
-std::string mm(double metres) { return number(std::abs(metres) < 1e-12 ? 0.0 : 1e3 * metres, 5); }
-std::string degrees(double radians) { return number(std::abs(radians) < 1e-12 ? 0.0 : 57.29577951308232 * radians, 4); }
+std::string mm(double metres) { return rounded(std::abs(metres) < 1e-12 ? 0.0 : 1e3 * metres, 5); }
+std::string degrees(double radians) { return rounded(std::abs(radians) < 1e-12 ? 0.0 : 57.29577951308232 * radians, 4); }
 
 double positive(const std::string& text, const char* unit, const char* option) {
     const double value = core::parse_in(text, unit);
@@ -104,7 +102,7 @@ struct MakeOptions {
 std::string picture_of(const geometry::Body& body, const geometry::SurfaceMesh& mesh) {
     postproc::Scene scene;
     scene.title = body.name;
-    scene.subtitle = number(1e6 * body.mass.volume, 5) + " cm^3, from below";
+    scene.subtitle = rounded(1e6 * body.mass.volume, 5) + " cm^3, from below";
     scene.camera.towards = {-0.9, -0.8, 0.75};
     constexpr std::array<std::array<double, 3>, 5> colours{
         {{0.90, 0.62, 0.0}, {0.72, 0.75, 0.78}, {0.84, 0.37, 0.0}, {0.0, 0.45, 0.70}, {0.34, 0.71, 0.91}}};
@@ -129,51 +127,51 @@ void print_body(const geometry::Body& body, Shell& shell) {
     const geometry::Certificate& quality = body.certificate;
     shell.print(body.name + ": " + std::to_string(body.mesh.triangles.size()) +
                 " triangles, closed, free of self-intersection");
-    shell.print("volume      " + number(mass.volume * 1e6) + " cm^3, buoyancy " + number(mass.buoyancy(body.density)) +
+    shell.print("volume      " + rounded(mass.volume * 1e6) + " cm^3, buoyancy " + rounded(mass.buoyancy(body.density)) +
                 " N");
-    shell.print("area        " + number(mass.area * 1e4) + " cm^2");
+    shell.print("area        " + rounded(mass.area * 1e4) + " cm^2");
     shell.print("centroid    " + mm(mass.centroid.x) + ", " + mm(mass.centroid.y) + ", " + mm(mass.centroid.z) +
                 " mm from the centre of the base (x forward, y to port, z up)");
     for (const geometry::PatchSummary& patch : geometry::patches(body.mesh)) {
         shell.print("patch       " + patch.name + ": " + std::to_string(patch.faces) + " triangles, " +
-                    number(patch.area * 1e4, 5) + " cm^2");
+                    rounded(patch.area * 1e4, 5) + " cm^2");
     }
-    std::string line = "quality     smallest angle " + number(quality.smallest_angle * 57.29578, 3) +
-                       " deg, largest aspect ratio " + number(quality.largest_aspect_ratio, 3);
+    std::string line = "quality     smallest angle " + rounded(quality.smallest_angle * 57.29578, 3) +
+                       " deg, largest aspect ratio " + rounded(quality.largest_aspect_ratio, 3);
     if (quality.exact) {
-        line += ", off the exact shape by " + number(quality.exact->distance_rms * 1e6, 3) + " um (RMS), " +
-                number(quality.exact->distance_largest * 1e6, 3) + " um at most; volume " +
-                number(100 * quality.exact->volume_error, 3) + " %";
+        line += ", off the exact shape by " + rounded(quality.exact->distance_rms * 1e6, 3) + " um (RMS), " +
+                rounded(quality.exact->distance_largest * 1e6, 3) + " um at most; volume " +
+                rounded(100 * quality.exact->volume_error, 3) + " %";
     }
     shell.print(line);
     if (body.trim) {
         const geometry::Trim& t = *body.trim;
-        shell.print("trim        mass " + number(t.mass, 5) + " kg, net weight " + number(t.net_weight, 4) + " N, " +
+        shell.print("trim        mass " + rounded(t.mass, 5) + " kg, net weight " + rounded(t.net_weight, 4) + " N, " +
                     (t.stable ? "pitch " + degrees(t.pitch) + " deg, roll " + degrees(t.roll) + " deg, righting " +
-                                    number(t.righting_stiffness, 4) + " N m/rad"
+                                    rounded(t.righting_stiffness, 4) + " N m/rad"
                               : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));
     }
     if (body.added_mass) {
         const auto& a = body.added_mass->matrix;
         shell.print(
-            "added mass  surge " + number(a[0][0], 4) + ", sway " + number(a[1][1], 4) + ", heave " +
-            number(a[2][2], 4) + " kg; roll " + number(a[3][3], 4) + ", pitch " + number(a[4][4], 4) + ", yaw " +
-            number(a[5][5], 4) + " kg m^2" +
-            (body.placement ? " at a gap of " + number(1e3 * body.placement->gap, 4) + " mm" : " in free water"));
+            "added mass  surge " + rounded(a[0][0], 4) + ", sway " + rounded(a[1][1], 4) + ", heave " +
+            rounded(a[2][2], 4) + " kg; roll " + rounded(a[3][3], 4) + ", pitch " + rounded(a[4][4], 4) + ", yaw " +
+            rounded(a[5][5], 4) + " kg m^2" +
+            (body.placement ? " at a gap of " + rounded(1e3 * body.placement->gap, 4) + " mm" : " in free water"));
         const geometry::Vec3& about = body.added_mass->reference;
         line = "            moments about the " +
                std::string(body.trim ? "centre of gravity" : "centroid of the volume") + " (" + mm(about.x) + ", " +
                mm(about.y) + ", " + mm(about.z) + ") mm; " + std::to_string(body.added_mass->panels) + " panels";
         if (body.added_mass->fit) {
-            line += " made from the triangles, off them by " + number(1e3 * body.added_mass->fit->distance_rms, 3) +
-                    " mm (RMS), " + number(1e3 * body.added_mass->fit->distance_largest, 3) + " mm at most";
+            line += " made from the triangles, off them by " + rounded(1e3 * body.added_mass->fit->distance_rms, 3) +
+                    " mm (RMS), " + rounded(1e3 * body.added_mass->fit->distance_largest, 3) + " mm at most";
         }
         shell.print(line);
     }
     if (body.clearance) {
-        shell.print("clearance   " + number(1e3 * body.clearance->smallest, 4) +
-                    " mm at x = " + number(1e3 * body.clearance->where.x, 4) +
-                    ", y = " + number(1e3 * body.clearance->where.y, 4) + " mm (" + body.clearance->patch + ")");
+        shell.print("clearance   " + rounded(1e3 * body.clearance->smallest, 4) +
+                    " mm at x = " + rounded(1e3 * body.clearance->where.x, 4) +
+                    ", y = " + rounded(1e3 * body.clearance->where.y, 4) + " mm (" + body.clearance->patch + ")");
         const auto angle = [](const std::optional<double>& v) {
             return v ? degrees(*v) + " deg" : std::string("none");
         };
@@ -212,8 +210,8 @@ int make_body(const MakeOptions& o, Shell& shell) {
             geometry::ballast_position(body.mass, *body.loading, o.ballast, core::parse_in(o.trim_pitch, "rad"),
                                        core::parse_in(o.trim_roll, "rad"));
         document["ballast_position"] = {at.x, at.y, at.z};
-        shell.print("ballast     '" + o.ballast + "' at " + number(1e3 * at.x, 5) + ", " + number(1e3 * at.y, 5) +
-                    ", " + number(1e3 * at.z, 5) + " mm");
+        shell.print("ballast     '" + o.ballast + "' at " + rounded(1e3 * at.x, 5) + ", " + rounded(1e3 * at.y, 5) +
+                    ", " + rounded(1e3 * at.z, 5) + " mm");
     }
     if (!o.out.empty()) {
         const geometry::MeshFormat format = geometry::mesh_format_of(o.out);

@@ -13,6 +13,9 @@
 
 namespace underbody::studio {
 
+/// A number with at most `digits` significant digits.
+inline std::string rounded(double value, int digits = 6) { return core::format_number(value, digits); }
+
 /// The options of the sub-commands that take one body.
 struct BodyInput {
     std::string shape, unit, gap, pitch, roll, density = "1000 kg/m^3";

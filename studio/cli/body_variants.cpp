@@ -16,8 +16,6 @@ namespace {
 
 using core::format_number;
 
-std::string number(double v, int digits = 6) { return format_number(v, digits); }
-
 // ---- body compare A B ----
 
 int compare_bodies(const std::string& a, const std::string& b, std::size_t triangles, Shell& shell) {
@@ -36,14 +34,14 @@ int compare_bodies(const std::string& a, const std::string& b, std::size_t trian
         shell.print(d.name + (d.unit.empty() || d.unit == "1" ? "" : " [" + d.unit + "]") + ": " + d.a + " -> " + d.b);
     }
     const auto change = [&](const char* name, double x, double y, double scale, const char* unit) {
-        shell.print(std::string(name) + ": " + number(scale * x) + " -> " + number(scale * y) + " " + unit + " (" +
-                    number(100 * (y / x - 1), 3) + " %)");
+        shell.print(std::string(name) + ": " + rounded(scale * x) + " -> " + rounded(scale * y) + " " + unit + " (" +
+                    rounded(100 * (y / x - 1), 3) + " %)");
     };
     change("volume", c.volume_a, c.volume_b, 1e6, "cm^3");
     change("area", c.mass_a.area, c.mass_b.area, 1e4, "cm^2");
     change("base area", c.base_area_a, c.base_area_b, 1e4, "cm^2");
-    shell.print("surfaces differ by at most " + number(1e3 * c.largest_distance, 4) + " mm, at (" +
-                number(1e3 * c.where.x, 4) + ", " + number(1e3 * c.where.y, 4) + ", " + number(1e3 * c.where.z, 4) +
+    shell.print("surfaces differ by at most " + rounded(1e3 * c.largest_distance, 4) + " mm, at (" +
+                rounded(1e3 * c.where.x, 4) + ", " + rounded(1e3 * c.where.y, 4) + ", " + rounded(1e3 * c.where.z, 4) +
                 ") mm");
     return done;
 }

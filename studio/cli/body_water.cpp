@@ -16,8 +16,6 @@ namespace {
 
 using core::format_number;
 
-std::string number(double v, int digits = 6) { return format_number(v, digits); }
-
 // ---- body added-mass ----
 
 struct AddedMassCommand {
@@ -46,7 +44,7 @@ std::vector<double> gaps_of(const AddedMassCommand& o) {
     }
     for (const double gap : gaps) {
         if (!(gap > 0)) {
-            throw core::UsageError("range", "a gap of " + number(gap) + " m", {}, "gaps are positive");
+            throw core::UsageError("range", "a gap of " + rounded(gap) + " m", {}, "gaps are positive");
         }
     }
     return gaps;
@@ -117,7 +115,7 @@ int write_domain(DomainCommand& o, Shell& shell) {
     const auto files = o.solver == "openfoam" ? geometry::write_openfoam_case(body.mesh, o.flow, o.out)
                                               : geometry::write_ansys_case(body.mesh, o.flow, o.out);
     if (domain.cells_in_gap < 3 && o.solver == "openfoam") {
-        shell.warn("only " + number(domain.cells_in_gap, 2) +
+        shell.warn("only " + rounded(domain.cells_in_gap, 2) +
                    " cells across the smallest clearance: choose a smaller --cell");
     }
     nlohmann::json document{{"solver", o.solver},

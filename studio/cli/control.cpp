@@ -21,7 +21,7 @@ namespace {
 
 using namespace estimator;
 
-struct Arguments {
+struct ControlArguments {
     std::string model, hold, from, observer = "disturbance", conditions, out, plot, region, axes, limit, lag, step = "0.02 s", duration = "60 s",
                        gap_noise, velocity_noise, disturbance, feedback = "measured";
     double pole1 = -1, pole2 = -1, observer_rate = 4;
@@ -34,7 +34,7 @@ double quantity(const std::string& text, const char* unit, double fallback) {
     return text.empty() ? fallback : core::parse_in(text, unit);
 }
 
-LoopDesign design_for(const Arguments& a, const LoopOptions& o) {
+LoopDesign design_for(const ControlArguments& a, const LoopOptions& o) {
     LoopDesign d;
     d.rate = a.observer_rate;
     d.step = o.step;
@@ -45,7 +45,7 @@ LoopDesign design_for(const Arguments& a, const LoopOptions& o) {
 }
 
 /// Every estimator in the same loop.
-nlohmann::json compare_estimators(const Arguments& a, const SeparatedPlant& plant, const ControlLaw& law, LoopOptions o, std::string& text) {
+nlohmann::json compare_estimators(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, LoopOptions o, std::string& text) {
     nlohmann::json list = nlohmann::json::array();
     text += "estimator      held, mm  spread, mm  error of F_T, mN  at the limit, %\n";
     for (const std::string& name : loop_estimators()) {
@@ -92,7 +92,7 @@ core::Figure figure_of(const LoopRun& run, double hold) {
     return f;
 }
 
-nlohmann::json draw_region(const Arguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
+nlohmann::json draw_region(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
                            const LoopOptions& o, Shell& shell, std::string& text) {
     LoopRegionOptions options;
     const double lower = std::max(plant.lower, plant.contact_gap);
@@ -108,7 +108,7 @@ nlohmann::json draw_region(const Arguments& a, const SeparatedPlant& plant, cons
     return region;
 }
 
-int run(const Arguments& a, Shell& shell) {
+int run_control(const ControlArguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
     dynamics::Conditions held;
     for (const auto& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
@@ -202,7 +202,7 @@ int run(const Arguments& a, Shell& shell) {
 
 void add_control_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("control", "hold a gap with the estimated forces cancelled");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<ControlArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--hold", a->hold, "the gap to hold, for instance 20mm")->required();
     command->add_option("--from", a->from, "start: gap=..., heave_velocity=...")->required();
@@ -236,7 +236,7 @@ void add_control_command(CLI::App& app, Shell& shell) {
         "  underbody control model.toml --hold 50mm --from gap=0.1 --observer extended --no-velocity --disturbance 3mN\n"
         "  underbody control model.toml --hold 50mm --from gap=0.1 --limit 30mN --lag 0.2s --gap-noise 0.2mm --region loop.png\n"
         "u = -k_w w - k_h (gap - hold) - total_force_estimate - bias, gains from the two poles and the virtual mass.");
-    shell.on(command, [a, &shell] { return run(*a, shell); });
+    shell.on(command, [a, &shell] { return run_control(*a, shell); });
 }
 
 }  // namespace underbody::studio

@@ -19,7 +19,7 @@ namespace underbody::studio {
 
 namespace {
 
-struct Arguments {
+struct DiscoverArguments {
     std::string model;
     std::string data;
     std::string out;
@@ -80,7 +80,7 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
 }
 
 /// The studies that ship, one report each and an overview.
-int study_measurements(Shell& shell, const Arguments& arguments, const discovery::FigureRenderer& renderer) {
+int study_measurements(Shell& shell, const DiscoverArguments& arguments, const discovery::FigureRenderer& renderer) {
     const std::vector<cases::MeasuredStudy> studies = cases::measured_studies(arguments.measured, shell.progress());
     if (studies.empty()) {
         throw core::InputError("missing", "none of the measurements of cases/measured is in this folder", core::Place{arguments.measured, {}, {}, {}},
@@ -103,7 +103,7 @@ int study_measurements(Shell& shell, const Arguments& arguments, const discovery
 }
 
 /// A raw log to forces at set points.
-int reduce(Shell& shell, const Arguments& arguments) {
+int reduce(Shell& shell, const DiscoverArguments& arguments) {
     discovery::LoadCellOptions options;
     options.settle = core::parse_in(arguments.settle, "s");
     options.without_thrust = arguments.without_thrust;
@@ -121,7 +121,7 @@ int reduce(Shell& shell, const Arguments& arguments) {
 
 void add_discover_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("discover", "find what the model lacks: from measured data to the effect, and the error before and after");
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<DiscoverArguments>();
     command->add_option("model", arguments->model, "the declared model (model.toml)");
     command->add_option("--data", arguments->data, "folder of measurements (with dataset.toml)");
     command->add_option("--out", arguments->out, "folder for model.toml, report.html and discovery.json")->required();

@@ -25,7 +25,7 @@ namespace underbody::studio {
 
 namespace {
 
-struct Arguments {
+struct EstimateArguments {
     std::string model, data, out, plot, poles, export_c, gap_noise, velocity_noise, blind, consistency, surface_plot;
     std::vector<std::string> surfaces;
     double switching = 0;
@@ -59,7 +59,7 @@ estimator::Poles parse_poles(const std::string& text) {
     return poles;
 }
 
-nlohmann::json identify(const Arguments& a, const dynamics::Measurements& data, const estimator::FilterNoise& noise, std::string& text,
+nlohmann::json identify(const EstimateArguments& a, const dynamics::Measurements& data, const estimator::FilterNoise& noise, std::string& text,
                         core::Figure& figure) {
     std::vector<std::pair<std::string, dynamics::Model>> models;
     for (const auto& item : a.surfaces) {
@@ -76,7 +76,7 @@ nlohmann::json identify(const Arguments& a, const dynamics::Measurements& data, 
 }
 
 /// What the sensors can know along the gap: bounds drawn, and the filter's own statements tried on simulated runs.
-nlohmann::json along_gap(const Arguments& a, const dynamics::Model& model, const dynamics::Measurements& data,
+nlohmann::json along_gap(const EstimateArguments& a, const dynamics::Model& model, const dynamics::Measurements& data,
                          const estimator::Estimation& result, Shell& shell, std::string& text) {
     const estimator::SeparatedPlant plant = estimator::separate(model, dynamics::signals_of(data.runs.front()).held);
     estimator::InformationOptions o;
@@ -102,7 +102,7 @@ nlohmann::json along_gap(const Arguments& a, const dynamics::Model& model, const
     return {{"information", map}, {"consistency", consistency}, {"observability", observability}};
 }
 
-int run(const Arguments& a, Shell& shell) {
+int run_estimate(const EstimateArguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
     shell.show(data.problems);
@@ -177,7 +177,7 @@ int run(const Arguments& a, Shell& shell) {
 
 void add_estimate_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("estimate", "forces of ground and drag from measured gap and velocity");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<EstimateArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--data", a->data, "folder of measurements (with dataset.toml, time series)")->required();
     command->add_option("--out", a->out, "estimates with their sigmas as a table (CSV)");
@@ -205,7 +205,7 @@ void add_estimate_command(CLI::App& app, Shell& shell) {
         "  underbody estimate model.toml --data runs --surface smooth=model.toml --surface rough=rough.toml\n"
         "What can be separated is said: the total force is observed; ground and drag force are told apart by the drag law\n"
         "that the model holds, and are labelled model-dependent.");
-    shell.on(command, [a, &shell] { return run(*a, shell); });
+    shell.on(command, [a, &shell] { return run_estimate(*a, shell); });
 }
 
 }  // namespace underbody::studio

@@ -22,7 +22,7 @@ namespace underbody::studio {
 
 namespace {
 
-std::string number(double value) { return std::isfinite(value) ? core::format_number(value, 5) : "-"; }
+std::string short_number(double value) { return std::isfinite(value) ? core::format_number(value, 5) : "-"; }
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -51,7 +51,7 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
     for (const auto& zone : summary.zones) {
         std::string extent;
         for (std::size_t k = 0; k < 3; ++k) {
-            extent += std::string(k == 0 ? "" : "  ") + "xyz"[k] + " " + number(zone.lower[k]) + " .. " + number(zone.upper[k]);
+            extent += std::string(k == 0 ? "" : "  ") + "xyz"[k] + " " + short_number(zone.lower[k]) + " .. " + short_number(zone.upper[k]);
         }
         zones.push_back({zone.name, zone.kind, std::to_string(zone.points), std::to_string(zone.faces), std::to_string(zone.cells), extent});
     }
@@ -61,13 +61,13 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
     }
     Rows arrays = {{"array", "unit", "on", "min", "max", "in the file"}};
     for (const auto& array : summary.arrays) {
-        arrays.push_back({array.name + (array.components > 1 ? " (" + std::to_string(array.components) + ")" : ""), array.unit.empty() ? "?" : array.unit, array.on, number(array.min),
-                          number(array.max),
+        arrays.push_back({array.name + (array.components > 1 ? " (" + std::to_string(array.components) + ")" : ""), array.unit.empty() ? "?" : array.unit, array.on, short_number(array.min),
+                          short_number(array.max),
                           array.original_name + (array.original_unit.empty() ? "" : " [" + array.original_unit + "]") + (array.missing > 0 ? ", " + std::to_string(array.missing) + " missing" : "")});
     }
     print_columns(shell, arrays);
     shell.print("\npressure is " + (summary.pressure_reference == "unknown" ? std::string("gauge or absolute: the file does not say") : summary.pressure_reference) +
-                (summary.operating_pressure != 0 ? ", operating pressure " + number(summary.operating_pressure) + " Pa" : ""));
+                (summary.operating_pressure != 0 ? ", operating pressure " + short_number(summary.operating_pressure) + " Pa" : ""));
     for (const auto& [key, value] : summary.metadata) {
         shell.print(key + ": " + value);
     }
@@ -76,10 +76,10 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
 void print(Shell& shell, const postproc::Monitor& monitor, const std::vector<std::optional<postproc::IterationScatter>>& scatter) {
     const auto& steps = monitor.values.front();
     shell.print("\n" + (monitor.title.empty() ? "" : monitor.title + ": ") + std::to_string(steps.size()) + " rows, " + monitor.columns.front() + " " +
-                number(steps.front()) + " to " + number(steps.back()));
+                short_number(steps.front()) + " to " + short_number(steps.back()));
     Rows rows = {{"column", "last", "the last rows"}};
     for (std::size_t c = 1; c < monitor.columns.size(); ++c) {
-        rows.push_back({core::as_utf8(monitor.columns[c]), number(monitor.values[c].back()), scatter[c] ? scatter[c]->text : "too few to judge, or not all finite"});
+        rows.push_back({core::as_utf8(monitor.columns[c]), short_number(monitor.values[c].back()), scatter[c] ? scatter[c]->text : "too few to judge, or not all finite"});
     }
     print_columns(shell, rows);
 }
@@ -89,7 +89,7 @@ void print(Shell& shell, const postproc::Plot& plot) {
     Rows rows = {{"curve", "points", "x", "y"}};
     const auto range = [](const std::vector<double>& values) {
         const auto [least, most] = std::minmax_element(values.begin(), values.end());
-        return values.empty() ? std::string("-") : number(*least) + " .. " + number(*most);
+        return values.empty() ? std::string("-") : short_number(*least) + " .. " + short_number(*most);
     };
     for (const auto& curve : plot.curves) {
         rows.push_back({core::as_utf8(curve.name), std::to_string(curve.x.size()), range(curve.x), range(curve.y)});
@@ -98,11 +98,11 @@ void print(Shell& shell, const postproc::Plot& plot) {
 }
 
 void print(Shell& shell, const postproc::ForceReport& report) {
-    const auto triple = [](const std::array<double, 3>& v) { return "(" + number(v[0]) + " " + number(v[1]) + " " + number(v[2]) + ")"; };
+    const auto triple = [](const std::array<double, 3>& v) { return "(" + short_number(v[0]) + " " + short_number(v[1]) + " " + short_number(v[2]) + ")"; };
     shell.print(std::string("\n") + (report.moments ? "moments [N m] about " + triple(report.centre) + ", axis " : "forces [N] along ") + triple(report.direction));
     Rows rows = {{"zone", "pressure", "viscous", "total"}};
     for (const auto& row : report.rows) {
-        rows.push_back({core::as_utf8(row.zone), number(row.pressure), number(row.viscous), number(row.total)});
+        rows.push_back({core::as_utf8(row.zone), short_number(row.pressure), short_number(row.viscous), short_number(row.total)});
     }
     print_columns(shell, rows);
 }

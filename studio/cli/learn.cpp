@@ -27,7 +27,7 @@ namespace {
 
 using namespace estimator;
 
-struct Arguments {
+struct LearnArguments {
     std::string model, method = "grid", fit, offset = "mean", correction = "p1", excitation = "pink", region, mesh, input_sigma, duration,
                 interval, auxiliaries, conditions, data, moments_of, samples_out, out, focus, step = "0.1 s", horizon = "10 s", plot;
     std::size_t order = 0, samples = 50000;
@@ -69,7 +69,7 @@ Value choose(const std::string& text, const std::vector<std::pair<std::string, V
     throw core::UsageError("name", std::string(option) + " does not know '" + text + "'", {}, core::did_you_mean(text, names));
 }
 
-TrainingOptions training_options(const Arguments& a, const SeparatedPlant& plant) {
+TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& plant) {
     TrainingOptions o;
     o.method = choose<TrainingOptions::Method>(
         a.method,
@@ -175,7 +175,7 @@ struct Learned {
     std::string tested_on;
 };
 
-bool by_snapshots(const Arguments& a) { return a.method == "dmdc" || a.method == "edmd"; }
+bool by_snapshots(const LearnArguments& a) { return a.method == "dmdc" || a.method == "edmd"; }
 
 bool has_forces(const Layout& layout) {
     const auto count = [&](const char* name) { return std::count(layout.states.begin(), layout.states.end(), name); };
@@ -183,7 +183,7 @@ bool has_forces(const Layout& layout) {
 }
 
 /// The model and its peers on motions that none of them has seen.
-void compare(const Arguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
+void compare(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
              const RunSplit& split, Learned& out, Shell& shell) {
     const double step = core::parse_in(a.step, "s"), horizon = core::parse_in(a.horizon, "s");
     NamedModels models;
@@ -215,13 +215,13 @@ void compare(const Arguments& a, const dynamics::Model& declared, const Separate
     }
 }
 
-TrainingSet samples_for(const Arguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
+TrainingSet samples_for(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
                         const RunSplit& split, Shell& shell) {
     return a.data.empty() ? training_set(plant, training, shell.progress())
                           : training_from_runs(declared, split.train, training.auxiliaries, {}, shell.progress());
 }
 
-void learn_from_samples(const Arguments& a, const SeparatedPlant& plant, const TrainingOptions& training, const Layout& layout,
+void learn_from_samples(const LearnArguments& a, const SeparatedPlant& plant, const TrainingOptions& training, const Layout& layout,
                         LearnOptions options, Learned& out) {
     options.virtual_mass = plant.virtual_mass;
     if (options.offset == OffsetMode::equilibrium) {
@@ -238,7 +238,7 @@ void learn_from_samples(const Arguments& a, const SeparatedPlant& plant, const T
     }
 }
 
-Learned learn_model(const Arguments& a, const dynamics::Model& declared, const LearnOptions& options, Shell& shell) {
+Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, const LearnOptions& options, Shell& shell) {
     dynamics::Conditions held;
     for (const core::NamedValue& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         held.set(v.name, v.value);
@@ -346,7 +346,7 @@ std::string text_of(const Learned& l) {
     return text;
 }
 
-int run(const Arguments& a, Shell& shell) {
+int run_learn(const LearnArguments& a, Shell& shell) {
     const dynamics::Model declared = dynamics::read_model(a.model);
     LearnOptions options;
     options.order = a.order;
@@ -378,7 +378,7 @@ int run(const Arguments& a, Shell& shell) {
 
 void add_learn_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("learn", "the data-driven linear model of velocity, gap and forces");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<LearnArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--method", a->method, "grid: samples of the region (default); time: along trajectories; dmdc, edmd: dynamic mode "
                                                        "decomposition with control from snapshots, plain or over the auxiliaries as a dictionary");
@@ -418,7 +418,7 @@ void add_learn_command(CLI::App& app, Shell& shell) {
         "  underbody learn model.toml --method edmd --auxiliaries ground_force,gap_squared --compare --plot peers.png\n"
         "  underbody learn model.toml --data runs --compare --horizon 5s\n"
         "States are heave_velocity, gap and the auxiliaries; the input is input_force; dx = A x + B u + offset.");
-    shell.on(command, [a, &shell] { return run(*a, shell); });
+    shell.on(command, [a, &shell] { return run_learn(*a, shell); });
 }
 
 }  // namespace underbody::studio

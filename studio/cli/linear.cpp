@@ -21,7 +21,7 @@ namespace underbody::studio {
 
 namespace {
 
-struct Arguments {
+struct LinearArguments {
     std::string model;
     std::string conditions;
     std::string sweep;
@@ -174,7 +174,7 @@ void heave_pitch(const dynamics::Model& model, const dynamics::Conditions& held,
 
 /// Yaw rate against the difference of the two aft jets, and what their angles do.
 void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficients& c, double speed, double friction,
-                  const Arguments& a, nlohmann::json& json, std::string& text) {
+                  const LinearArguments& a, nlohmann::json& json, std::string& text) {
     const std::optional<dynamics::EvieJets> layout = dynamics::turning_layout(model.jets);
     if (!layout) {
         if (!a.gamma_chart.empty()) {
@@ -221,7 +221,7 @@ void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficie
                        core::format_number(degrees * chart.best_gamma, 4) + " deg\n");
 }
 
-void surface(const dynamics::Model& model, const dynamics::Conditions& held, const Arguments& a, nlohmann::json& json,
+void surface(const dynamics::Model& model, const dynamics::Conditions& held, const LinearArguments& a, nlohmann::json& json,
              std::string& text) {
     const double speed = held.get(dynamics::Channel::speed, 0.35);
     if (!(speed > 0)) {
@@ -315,7 +315,7 @@ bool whole_body(const dynamics::Model& model) {
            !std::isnan(v.base_depth) && !std::isnan(v.base_half_length);
 }
 
-void sweep(const dynamics::Model& model, const dynamics::Conditions& held, const Arguments& a, nlohmann::json& json) {
+void sweep(const dynamics::Model& model, const dynamics::Conditions& held, const LinearArguments& a, nlohmann::json& json) {
     const std::vector<core::NamedRange> ranges = core::parse_ranges(a.sweep);
     dynamics::Channel channel{};
     if (!dynamics::find_channel(ranges.at(0).name, channel)) {
@@ -335,7 +335,7 @@ void sweep(const dynamics::Model& model, const dynamics::Conditions& held, const
     }
 }
 
-int run(const Arguments& a, Shell& shell) {
+int run_linear(const LinearArguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
     dynamics::Conditions given;
     for (const core::NamedValue& value :
@@ -396,7 +396,7 @@ int run(const Arguments& a, Shell& shell) {
 void add_linear_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand(
         "linear", "small motion about each equilibrium: matrices, named modes, controllability, LQR gains, jet angles");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<LinearArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
     command->add_option("--at", a->at,
@@ -419,7 +419,7 @@ void add_linear_command(CLI::App& app, Shell& shell) {
         "  underbody linear model.toml --gamma-chart gamma.png --sideslip 6deg\n"
         "Heave always; heave and pitch where the model has a pitch_moment table; surge, sway, yaw on the ground where "
         "it has a yaw inertia, with the poles and the zero of yaw rate per thrust difference where it has jets.");
-    shell.on(command, [a, &shell] { return run(*a, shell); });
+    shell.on(command, [a, &shell] { return run_linear(*a, shell); });
 }
 
 }  // namespace underbody::studio

@@ -24,7 +24,7 @@ namespace underbody::studio {
 
 namespace {
 
-struct Options {
+struct LoadsArguments {
     std::vector<std::string> files;
     std::string manifest, out;
     std::string reference, base = "*base*", forward = "+x", up = "+z", symmetry, fluid = "automatic";
@@ -94,7 +94,7 @@ std::optional<postproc::Vector> reference_of(const std::string& text, const Cond
 }
 
 /// Conditions that mean something here are in a unit of theirs, and not below nothing.
-void check_conditions(const Batch& batch, const Options& given) {
+void check_conditions(const Batch& batch, const LoadsArguments& given) {
     std::vector<std::pair<std::string, std::string>> units = {
         {"density", "kg/m^3"}, {"speed", "m/s"}, {"reference_x", "m"}, {"reference_y", "m"}, {"reference_z", "m"}};
     if (!given.mesh_study.empty()) {
@@ -120,7 +120,7 @@ void check_conditions(const Batch& batch, const Options& given) {
     }
 }
 
-postproc::LoadsOptions loads_options(const Options& given) {
+postproc::LoadsOptions loads_options(const LoadsArguments& given) {
     postproc::LoadsOptions options;
     options.zones = given.field.zones;
     options.base = given.base;
@@ -294,7 +294,7 @@ void add_new(std::vector<postproc::StatedLoad>& stated, const std::vector<postpr
 }
 
 /// What the solver states of a case: beside the file, in the reports and monitors that were named; the later counts.
-void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one, core::Problems& problems) {
+void take_stated(Shell& shell, const LoadsArguments& given, postproc::LoadsCase& one, core::Problems& problems) {
     auto stated = postproc::stated_beside(one.file, one.loads);
     for (const auto& report : given.reports) {
         const std::string path = beside(report, one.file);
@@ -319,7 +319,7 @@ void take_stated(Shell& shell, const Options& given, postproc::LoadsCase& one, c
 }
 
 /// The zones that were asked for; all of them when there are none of some name, for the error to know what there is.
-postproc::Field field_of(Shell& shell, const Options& given, const std::string& path) {
+postproc::Field field_of(Shell& shell, const LoadsArguments& given, const std::string& path) {
     postproc::ReadOptions read = given.field.read_options();
     read.zones = given.field.zones;
     read.surfaces_only = true;
@@ -335,7 +335,7 @@ postproc::Field field_of(Shell& shell, const Options& given, const std::string& 
     return field;
 }
 
-postproc::LoadsCase case_of(Shell& shell, const Options& given, const ConditionedFile& file, postproc::LoadsOptions options, core::Problems& problems) {
+postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const ConditionedFile& file, postproc::LoadsOptions options, core::Problems& problems) {
     const postproc::Field field = field_of(shell, given, file.path);
     problems = field.problems;
     options.reference = reference_of(given.reference, file);
@@ -368,7 +368,7 @@ struct Failure {
 
 /// The loads of every file that can be used. All files are tried, so that one run names all that is wrong; unless
 /// asked to keep going, one that is wrong is an error then.
-std::vector<postproc::LoadsCase> cases_of(Shell& shell, const Options& given, const Batch& batch, std::vector<Failure>& failures) {
+std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& given, const Batch& batch, std::vector<Failure>& failures) {
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
     BatchProblems said;
@@ -405,7 +405,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const Options& given, co
     return cases;
 }
 
-int run(Shell& shell, const Options& given) {
+int run_loads(Shell& shell, const LoadsArguments& given) {
     const Batch batch = find_files(given.files, given.manifest);
     shell.show(batch.problems);
     if (batch.files.empty()) {
@@ -455,7 +455,7 @@ int run(Shell& shell, const Options& given) {
 
 void add_loads_command(CLI::App& app, Shell& shell) {
     auto* command = app.add_subcommand("loads", "forces and moments on a body, pressure and viscous part, per zone");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<LoadsArguments>();
     command->add_option("files", o->files, "CFD files, or patterns such as 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv'");
     command->add_option("--manifest", o->manifest, "table with a column `file`; its other columns are the conditions")->check(CLI::ExistingFile);
     command->add_option("-o,--out", o->out, "write a table (CSV) with one row a file");
@@ -503,7 +503,7 @@ void add_loads_command(CLI::App& app, Shell& shell) {
         "  underbody loads case.dat.h5 --monitor lift_force=lift-rfile.out --monitor \"drag_force [N]=report.out:drag\"\n"
         "  underbody loads --manifest forces.csv --symmetry y --reference \"0,0,gap\" --check 0.01\n"
         "  underbody loads --manifest forces.csv --symmetry y --mesh-study cells --out loads.csv");
-    shell.on(command, [&shell, o] { return run(shell, *o); });
+    shell.on(command, [&shell, o] { return run_loads(shell, *o); });
 }
 
 }  // namespace underbody::studio

@@ -16,7 +16,7 @@ namespace underbody::studio {
 
 namespace {
 
-struct Arguments {
+struct PredictArguments {
     std::string model;
     std::string data;
     std::string horizon = "2 s";
@@ -24,7 +24,7 @@ struct Arguments {
     std::string plot;
 };
 
-int run(const Arguments& a, Shell& shell) {
+int run_predict(const PredictArguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
     shell.show(data.problems);
@@ -62,7 +62,7 @@ int run(const Arguments& a, Shell& shell) {
 
 void add_predict_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("predict", "the model against measured runs");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<PredictArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--data", a->data, "folder of measurements (with dataset.toml)")->required();
     command->add_option("--horizon", a->horizon, "length of a prediction of a time series (default 2 s)");
@@ -75,7 +75,7 @@ void add_predict_command(CLI::App& app, Shell& shell) {
         "A static set gives one row a set point. A time series is cut into windows of the horizon; each starts from "
         "the state that fits\n"
         "the measurements before it best, and nothing measured later is used.");
-    shell.on(command, [a, &shell] { return run(*a, shell); });
+    shell.on(command, [a, &shell] { return run_predict(*a, shell); });
 }
 
 }  // namespace underbody::studio

@@ -20,7 +20,7 @@ namespace underbody::studio {
 
 namespace {
 
-struct Options {
+struct ProbeArguments {
     std::string file, out, line, plane, points_file, forward = "+x", up = "+z", symmetry, base = "*base*", density;
     std::vector<std::string> points, arrays;
     int count = 101, rows = 0, gap = 0;
@@ -47,7 +47,7 @@ std::vector<postproc::Vector> points_from(std::string_view text, std::size_t cou
     return points;
 }
 
-core::Table look(const postproc::Field& field, const Options& given, Shell& shell) {
+core::Table look(const postproc::Field& field, const ProbeArguments& given, Shell& shell) {
     postproc::ProbeOptions options;
     options.arrays = given.arrays;
     options.zones = given.field.zones;
@@ -111,7 +111,7 @@ nlohmann::json json_of(const core::Table& table) {
 
 void add_probe_command(CLI::App& app, Shell& shell) {
     auto* command = app.add_subcommand("probe", "values at points, on a line or a plane; what flows through the gap");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ProbeArguments>();
     command->add_option("file", o->file, "a CFD file")->required();
     command->add_option("--point", o->points, "a point \"x,y,z\" in the file's axes; may be repeated");
     command->add_option("--points", o->points_file, "a table with columns x, y, z")->check(CLI::ExistingFile);

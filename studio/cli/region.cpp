@@ -20,7 +20,7 @@ namespace underbody::studio {
 
 namespace {
 
-struct Arguments {
+struct RegionArguments {
     std::string model;
     std::string axes = "gap=0:0.5,heave_velocity=-0.1:0.1";
     std::string grid = "200x200";
@@ -44,7 +44,7 @@ struct Arguments {
 };
 
 /// Feedback in the motion that the map is of.
-void close_loop(const Arguments& a, const dynamics::Model& model, dynamics::RegionOptions& options) {
+void close_loop(const RegionArguments& a, const dynamics::Model& model, dynamics::RegionOptions& options) {
     if (a.feedback.empty() && a.lqr.empty()) {
         return;
     }
@@ -61,7 +61,7 @@ void close_loop(const Arguments& a, const dynamics::Model& model, dynamics::Regi
     }
 }
 
-dynamics::RegionOptions options_of(const Arguments& a, const dynamics::Model& model) {
+dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Model& model) {
     dynamics::RegionOptions options;
     options.axes = core::parse_ranges(a.axes);
     const std::vector<std::string_view> sizes = core::split(a.grid, 'x');
@@ -103,7 +103,7 @@ void print_classes(Shell& shell, const std::vector<dynamics::EndClass>& classes)
     shell.print(text);
 }
 
-int run_starts(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
+int run_starts(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
     const core::Table starts = core::read_csv(std::filesystem::path(a.starts));
     std::vector<dynamics::EndClass> classes;
     const core::Table ends = dynamics::ends_of_starts(model, starts, options, classes, shell.progress());
@@ -138,7 +138,7 @@ int run_starts(const Arguments& a, const dynamics::Model& model, const dynamics:
     return ExitCode::done;
 }
 
-int run_probability(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
+int run_probability(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
                     Shell& shell) {
     const dynamics::ProbabilityMap map = dynamics::probability_map(model, options, a.draws, a.seed, shell.progress());
     shell.show(map.remarks);
@@ -155,7 +155,7 @@ int run_probability(const Arguments& a, const dynamics::Model& model, const dyna
     return ExitCode::done;
 }
 
-int run_sweep(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
+int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
     const std::vector<core::NamedRange> ranges = core::parse_ranges(a.sweep);
     if (ranges.size() != 1) {
         throw core::UsageError("range", "--sweep takes one range, such as jet_voltage=4V:12V");
@@ -191,7 +191,7 @@ int run_sweep(const Arguments& a, const dynamics::Model& model, const dynamics::
     return ExitCode::done;
 }
 
-int run_variants(const Arguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
+int run_variants(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
                  Shell& shell) {
     std::vector<dynamics::StabilityRegion> regions{dynamics::stability_region(model, options, shell.progress())};
     std::vector<std::string> names{a.model};
@@ -217,7 +217,7 @@ int run_variants(const Arguments& a, const dynamics::Model& model, const dynamic
     return ExitCode::done;
 }
 
-int run(const Arguments& a, Shell& shell) {
+int run_region(const RegionArguments& a, Shell& shell) {
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::RegionOptions options = options_of(a, model);
     if (!a.starts.empty()) {
@@ -270,7 +270,7 @@ int run(const Arguments& a, Shell& shell) {
 
 void add_region_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("region", "stability region: for each start, where the motion ends");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<RegionArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--axes", a->axes,
                         "the two axes of starts and their ranges (default gap=0:0.5,heave_velocity=-0.1:0.1)");
@@ -315,7 +315,7 @@ void add_region_command(CLI::App& app, Shell& shell) {
         "  underbody region model.toml --sweep jet_voltage=6V:12V --out boundaries.png --shares shares.png\n"
         "Classes: each attractor by name (A is nearest the ground), contact, escape, cycle, undecided in the time "
         "given.");
-    shell.on(command, [a, &shell] { return run(*a, shell); });
+    shell.on(command, [a, &shell] { return run_region(*a, shell); });
 }
 
 }  // namespace underbody::studio

@@ -23,7 +23,7 @@ namespace {
 
 using dynamics::Channel;
 
-struct Arguments {
+struct SimulateArguments {
     std::string model;
     std::string from;
     std::string duration = "60 s";
@@ -200,7 +200,7 @@ struct Job {
     }
 };
 
-Job job_of(const Arguments& a) {
+Job job_of(const SimulateArguments& a) {
     Job job{dynamics::read_model(a.model), {}, {}, {}, {}, {}};
     job.inputs.thrust.resize(job.model.jets.size());
     if (!a.inputs.empty()) {
@@ -236,7 +236,7 @@ double needed_gap(const Start& start) {
 }
 
 template <class Motion>
-void write_motion(const Motion& motion, const core::Figure& figure, const Arguments& a, Shell& shell) {
+void write_motion(const Motion& motion, const core::Figure& figure, const SimulateArguments& a, Shell& shell) {
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), motion.table());
     }
@@ -250,19 +250,19 @@ void write_motion(const Motion& motion, const core::Figure& figure, const Argume
     }
 }
 
-std::string mm(double metres, int digits = 6) { return core::format_number(1e3 * metres, digits) + " mm"; }
-std::string degrees(double radians) { return core::format_number(57.29577951308232 * radians, 5) + " deg"; }
+std::string millimetres(double metres, int digits = 6) { return core::format_number(1e3 * metres, digits) + " mm"; }
+std::string angle_in_degrees(double radians) { return core::format_number(57.29577951308232 * radians, 5) + " deg"; }
 
 std::string event_text(const std::vector<dynamics::TrajectoryEvent>& events) {
     std::string text;
     for (const dynamics::TrajectoryEvent& event : events) {
-        text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s, gap " + mm(event.gap, 5) + ", " +
+        text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s, gap " + millimetres(event.gap, 5) + ", " +
                 core::format_number(1e3 * event.velocity, 4) + " mm/s\n";
     }
     return text;
 }
 
-void run_heave(const Arguments& a, Job& job, Shell& shell) {
+void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
     const dynamics::Trajectory motion =
         dynamics::simulate(job.model, needed_gap(job.start), job.start.heave_velocity.value_or(0), job.inputs.signals,
                            job.options, shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
@@ -270,11 +270,11 @@ void run_heave(const Arguments& a, Job& job, Shell& shell) {
     const dynamics::HeavePlant plant = dynamics::plant_for(job.model, job.inputs.signals);
     write_motion(motion, dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a, shell);
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
-                mm(motion.gap.back()) + ", heave velocity " +
+                millimetres(motion.gap.back()) + ", heave velocity " +
                 core::format_number(1e3 * motion.heave_velocity.back(), 4) + " mm/s\n" + event_text(motion.events));
 }
 
-void run_heave_pitch(const Arguments& a, Job& job, Shell& shell) {
+void run_heave_pitch(const SimulateArguments& a, Job& job, Shell& shell) {
     dynamics::HeavePitch plant(job.model, job.inputs.signals.held, dynamics::varying_channels(job.inputs.signals));
     if (const auto feedback = pitch_feedback_of(a.feedback, a.lqr, plant)) {
         plant.close_loop(*feedback);
@@ -288,11 +288,11 @@ void run_heave_pitch(const Arguments& a, Job& job, Shell& shell) {
     write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
     const dynamics::PitchState& last = motion.state.back();
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
-                mm(last[0]) + ", pitch " + degrees(last[2]) + " nose up, contact " +
+                millimetres(last[0]) + ", pitch " + angle_in_degrees(last[2]) + " nose up, contact " +
                 dynamics::contact_state_name(motion.contact.back()) + "\n" + event_text(motion.events));
 }
 
-void run_surface(const Arguments& a, Job& job, Shell& shell) {
+void run_surface(const SimulateArguments& a, Job& job, Shell& shell) {
     const dynamics::SurfaceMotion body(job.model, job.inputs.signals.held,
                                        dynamics::varying_channels(job.inputs.signals));
     const double speed =
@@ -311,11 +311,11 @@ void run_surface(const Arguments& a, Job& job, Shell& shell) {
     write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
     const dynamics::SurfaceState& last = motion.state.back();
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, speed " +
-                core::format_number(last[0], 5) + " m/s, heading " + degrees(last[3]) + ", normal force " +
+                core::format_number(last[0], 5) + " m/s, heading " + angle_in_degrees(last[3]) + ", normal force " +
                 core::format_number(motion.contact.back().normal, 4) + " N\n");
 }
 
-void run_body(const Arguments& a, Job& job, Shell& shell) {
+void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
     const dynamics::RigidBody body(job.model, job.inputs.signals.held,
                                    dynamics::varying_channels(job.inputs.signals));
     const double pitch = job.start.pitch.value_or(0), rise = job.start.heave_velocity.value_or(0);
@@ -338,8 +338,8 @@ void run_body(const Arguments& a, Job& job, Shell& shell) {
     write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
     const dynamics::BodyState& last = motion.state.back();
     std::string text = "ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
-                       mm(motion.gap.back()) + ", pitch " + degrees(last[dynamics::state_theta]) +
-                       " nose up, heading " + degrees(last[dynamics::state_psi]) + ", speed " +
+                       millimetres(motion.gap.back()) + ", pitch " + angle_in_degrees(last[dynamics::state_theta]) +
+                       " nose up, heading " + angle_in_degrees(last[dynamics::state_psi]) + ", speed " +
                        core::format_number(last[dynamics::state_u], 5) + " m/s, contact " +
                        dynamics::contact_state_name(motion.contact.back()) + "\n";
     for (const dynamics::BodyTrajectory::Event& event : motion.events) {
@@ -349,7 +349,7 @@ void run_body(const Arguments& a, Job& job, Shell& shell) {
 }
 
 /// The least motion that has the states of the start.
-std::string motion_of(const Arguments& a, const Job& job) {
+std::string motion_of(const SimulateArguments& a, const Job& job) {
     if (a.motion != "auto") {
         return a.motion;
     }
@@ -359,7 +359,7 @@ std::string motion_of(const Arguments& a, const Job& job) {
     return job.start.turns() ? "heave-pitch" : "heave";
 }
 
-int run(const Arguments& a, Shell& shell) {
+int run_simulate(const SimulateArguments& a, Shell& shell) {
     Job job = job_of(a);
     const std::string motion = motion_of(a, job);
     const bool in_heave = motion == "heave" || motion == "heave-pitch";
@@ -391,7 +391,7 @@ int run(const Arguments& a, Shell& shell) {
 
 void add_simulate_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("simulate", "the motion of a model from a start");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<SimulateArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command
         ->add_option("--from", a->from,
@@ -432,7 +432,7 @@ void add_simulate_command(CLI::App& app, Shell& shell) {
         "  underbody simulate model.toml --motion body --from gap=20mm,speed=0.35m/s --thrust J1=0.1N,J2=0.1N\n"
         "The gap is the height of the base over the ground; heave velocity is positive up, pitch nose up, yaw and "
         "heading to starboard. CVODE integrates and stops exactly at contact, lift-off and escape.");
-    shell.on(command, [a, &shell] { return run(*a, shell); });
+    shell.on(command, [a, &shell] { return run_simulate(*a, shell); });
 }
 
 }  // namespace underbody::studio

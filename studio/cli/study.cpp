@@ -39,7 +39,7 @@ void add_common(CLI::App* command, StudyArguments& arguments) {
     command->add_option("--store", arguments.store, "SQLite file of results (default: STUDY/.underbody/store.sqlite)");
 }
 
-std::string number(double value, const std::string& from, const std::string& to, int digits = 4) {
+std::string in_unit(double value, const std::string& from, const std::string& to, int digits = 4) {
     return std::isfinite(value) ? core::format_number(core::convert(value, from, to), digits) : "-";
 }
 
@@ -86,7 +86,7 @@ int tell(Shell& shell, const cases::StudyResults& results) {
     return results.failed == 0 ? done : wrong_input;
 }
 
-int run(Shell& shell, const StudyArguments& arguments) {
+int run_study(Shell& shell, const StudyArguments& arguments) {
     const auto study = cases::Study::open(arguments.folder);
     const auto results = cases::run_study(study, run_options(arguments), shell.progress());
     const int code = tell(shell, results);
@@ -113,8 +113,8 @@ int list(Shell& shell, const StudyArguments& arguments) {
             const auto loads = nlohmann::json::parse(*document);
             item["lift_force"] = loads.at("lift_force");
             item["drag_force"] = loads.at("drag_force");
-            lift = number(loads.at("lift_force").get<double>(), "N", "N") + " N";
-            drag = number(loads.at("drag_force").get<double>(), "N", "N") + " N";
+            lift = in_unit(loads.at("lift_force").get<double>(), "N", "N") + " N";
+            drag = in_unit(loads.at("drag_force").get<double>(), "N", "N") + " N";
         }
         json.push_back(std::move(item));
         rows.push_back({entry.name, entry.conditions.label(), lift, drag, entry.file.string()});
@@ -236,13 +236,13 @@ void add_study_command(CLI::App& app, Shell& shell) {
     add_common(run_command, *arguments);
     run_command->add_option("--report", arguments->report, "HTML file (default: STUDY/report/index.html)");
     run_command->add_flag("--no-pictures", arguments->no_pictures, "leave the 3D pictures out (they need Xvfb)");
-    shell.on(run_command, [arguments, &shell] { return run(shell, *arguments); });
+    shell.on(run_command, [arguments, &shell] { return run_study(shell, *arguments); });
 
     auto* report_command = study->add_subcommand("report", "the same as run: the report is part of it");
     add_common(report_command, *arguments);
     report_command->add_option("--report,--out", arguments->report, "HTML file (default: STUDY/report/index.html)");
     report_command->add_flag("--no-pictures", arguments->no_pictures, "leave the 3D pictures out (they need Xvfb)");
-    shell.on(report_command, [arguments, &shell] { return run(shell, *arguments); });
+    shell.on(report_command, [arguments, &shell] { return run_study(shell, *arguments); });
 
     auto* list_command = study->add_subcommand("list", "the cases, their conditions and what is known of them");
     add_common(list_command, *arguments);

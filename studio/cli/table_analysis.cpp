@@ -26,10 +26,10 @@ namespace underbody::studio {
 
 namespace {
 
-std::string number(double value, int digits = 5) { return core::format_number(value, digits); }
+std::string five_digits(double value, int digits = 5) { return core::format_number(value, digits); }
 
 std::string eigenvalue(const std::complex<double>& value) {
-    return number(value.real(), 4) + (value.imag() == 0 ? "" : (value.imag() < 0 ? " - " : " + ") + number(std::abs(value.imag()), 4) + " i");
+    return five_digits(value.real(), 4) + (value.imag() == 0 ? "" : (value.imag() < 0 ? " - " : " + ") + five_digits(std::abs(value.imag()), 4) + " i");
 }
 
 struct ContinueCommand {
@@ -41,7 +41,7 @@ struct ContinueCommand {
 /// Each stretch of one stability from end to end, and the folds between them.
 void show_curve(Shell& shell, const tables::ForceTable& table, const tables::EquilibriumCurve& curve) {
     const auto place = [&](double parameter, double gap) {
-        return curve.parameter + " " + number(parameter) + " " + curve.parameter_unit + ", " + curve.axis + " " + shown(table, curve.axis, curve.axis_unit, gap, 6);
+        return curve.parameter + " " + five_digits(parameter) + " " + curve.parameter_unit + ", " + curve.axis + " " + shown(table, curve.axis, curve.axis_unit, gap, 6);
     };
     for (const auto& branch : curve.branches) {
         for (std::size_t i = 0, j = 0; i < branch.size(); i = j) {
@@ -103,12 +103,12 @@ struct PitchCommand {
     std::string held, weight, trim, mass, inertia, picture;
 };
 
-std::string degrees(double radians) { return number(core::convert(std::abs(radians) < 1e-12 ? 0 : radians, "rad", "deg"), 4); }
+std::string angle_in_degrees(double radians) { return five_digits(core::convert(std::abs(radians) < 1e-12 ? 0 : radians, "rad", "deg"), 4); }
 
 void show_windows(Shell& shell, const std::vector<tables::PitchWindow>& windows) {
     for (const auto& w : windows) {
-        shell.print(w.side + ": restores from " + degrees(w.lower) + " to " + degrees(w.upper) + " deg, stiffest at " + degrees(w.best_pitch) + " deg (" + number(w.stiffness, 4) +
-                    " N m/rad); trim torque there " + number(w.trim_torque, 4) + " N m nose up, " + number(w.trim_lower, 4) + " to " + number(w.trim_upper, 4) +
+        shell.print(w.side + ": restores from " + angle_in_degrees(w.lower) + " to " + angle_in_degrees(w.upper) + " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
+                    " N m/rad); trim torque there " + five_digits(w.trim_torque, 4) + " N m nose up, " + five_digits(w.trim_lower, 4) + " to " + five_digits(w.trim_upper, 4) +
                     " N m over the window");
     }
     if (windows.empty()) {
@@ -120,8 +120,8 @@ void show_coupled(Shell& shell, const tables::ForceTable& lift, const std::vecto
     const auto with_error = [](double sigma, const std::string& text) { return sigma > 0 && std::isfinite(sigma) ? " +- " + text : std::string(); };
     for (const auto& e : found) {
         std::string text = e.kind + " balance of heave and pitch at gap " + shown(lift, "gap", "m", e.gap) + with_error(e.gap_sigma, shown(lift, "gap", "m", e.gap_sigma, 2)) +
-                           ", pitch " + degrees(e.pitch) + " deg" + with_error(e.pitch_sigma, number(core::convert(e.pitch_sigma, "rad", "deg"), 2) + " deg");
-        text += e.frequency[0] > 0 ? "; " + number(e.frequency[0], 4) + " and " + number(e.frequency[1], 4) + " Hz"
+                           ", pitch " + angle_in_degrees(e.pitch) + " deg" + with_error(e.pitch_sigma, five_digits(core::convert(e.pitch_sigma, "rad", "deg"), 2) + " deg");
+        text += e.frequency[0] > 0 ? "; " + five_digits(e.frequency[0], 4) + " and " + five_digits(e.frequency[1], 4) + " Hz"
                                    : "; eigenvalues of the stiffness " + std::string(masses ? "over the masses " : "") + eigenvalue(e.eigenvalues[0]) + " and " +
                                          eigenvalue(e.eigenvalues[1]) + (masses ? " 1/s^2" : "");
         shell.print(text);
@@ -162,8 +162,8 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
         const auto found = tables::coupled_equilibria(lift, moment, options);
         if (found.empty()) {
             const auto trim = tables::trim_range(lift, moment, options);
-            shell.print(trim ? "heave and pitch balance nowhere together: where lift holds the weight, the trim torque would be " + number(trim->first, 4) + " to " +
-                                   number(trim->second, 4) + " N m nose up"
+            shell.print(trim ? "heave and pitch balance nowhere together: where lift holds the weight, the trim torque would be " + five_digits(trim->first, 4) + " to " +
+                                   five_digits(trim->second, 4) + " N m nose up"
                              : "heave and pitch balance nowhere together: lift holds the weight nowhere");
             document["trim"] = trim ? nlohmann::json{trim->first, trim->second} : nlohmann::json();
         }
@@ -217,7 +217,7 @@ int run_compare(Shell& shell, const CompareCommand& command) {
     }
     const auto result = tables::compare_tables(all, options);
     for (std::size_t i = 0; i < result.names.size(); ++i) {
-        shell.print(result.names[i] + ": " + result.measure + " " + number(result.values[i]) + " +- " + number(result.errors[i], 2) + " " + result.unit);
+        shell.print(result.names[i] + ": " + result.measure + " " + five_digits(result.values[i]) + " +- " + five_digits(result.errors[i], 2) + " " + result.unit);
     }
     shell.print(result.winner + " wins by " + result.measure + (result.beyond_error ? ", beyond the errors" : ", but within the errors"));
     if (!command.picture.empty()) {
@@ -251,10 +251,10 @@ int run_collapse(Shell& shell, const CollapseCommand& command) {
     for (const auto& g : result.groups) {
         std::string where;
         for (const auto& [from, to] : g.beyond) {
-            where += (where.empty() ? "; off at " : ", ") + result.abscissa + " " + number(from, 4) + (to > from ? " to " + number(to, 4) : "");
+            where += (where.empty() ? "; off at " : ", ") + result.abscissa + " " + five_digits(from, 4) + (to > from ? " to " + five_digits(to, 4) : "");
         }
-        shell.print(result.by + " " + number(g.level) + " " + result.by_unit + ": " + std::to_string(g.points) + " points, " + number(g.mean_ratio, 4) +
-                    " of what the square law says from " + number(result.reference) + " " + result.by_unit + ", exponent " + number(g.exponent, 4) + where);
+        shell.print(result.by + " " + five_digits(g.level) + " " + result.by_unit + ": " + std::to_string(g.points) + " points, " + five_digits(g.mean_ratio, 4) +
+                    " of what the square law says from " + five_digits(result.reference) + " " + result.by_unit + ", exponent " + five_digits(g.exponent, 4) + where);
     }
     shell.print(result.verdict);
     nlohmann::json document = result;

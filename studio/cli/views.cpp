@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ViewsArguments {
     std::vector<std::string> files;
     std::string out = "views";
     std::vector<std::string> names;
@@ -47,7 +47,7 @@ std::string range_unit(const std::string& key) {
     return {};
 }
 
-postproc::ViewOptions view_options(const Options& given) {
+postproc::ViewOptions view_options(const ViewsArguments& given) {
     postproc::ViewOptions options;
     options.forward = postproc::axis_from(given.forward);
     options.up = postproc::axis_from(given.up);
@@ -76,7 +76,7 @@ postproc::ViewOptions view_options(const Options& given) {
 /// Writes pictures and remembers what was written.
 class Album {
 public:
-    Album(Shell& shell, const Options& given) : shell_(shell), given_(given) {}
+    Album(Shell& shell, const ViewsArguments& given) : shell_(shell), given_(given) {}
 
     void keep(const postproc::View& view, const std::string& prefix) {
         const fs::path path = fs::path(given_.out) / (prefix + view.name + ".png");
@@ -102,7 +102,7 @@ public:
 
 private:
     Shell& shell_;
-    const Options& given_;
+    const ViewsArguments& given_;
     nlohmann::json written_ = nlohmann::json::array();
 };
 
@@ -157,7 +157,7 @@ std::vector<std::string> prefixes_of(const std::vector<std::string>& names) {
     return prefixes;
 }
 
-void draw_case(Shell& shell, const Options& given, const postproc::Field& field, const postproc::ViewOptions& shared, const std::string& case_name, const std::string& prefix, Album& album) {
+void draw_case(Shell& shell, const ViewsArguments& given, const postproc::Field& field, const postproc::ViewOptions& shared, const std::string& case_name, const std::string& prefix, Album& album) {
     postproc::ViewOptions options = shared;
     options.case_name = case_name;
     auto possible = postproc::possible_views(field, options);
@@ -193,7 +193,7 @@ void draw_case(Shell& shell, const Options& given, const postproc::Field& field,
 }
 
 /// Pictures show pascal: what a file has over density needs one.
-void use_density(Shell& shell, const Options& given, postproc::Field& field) {
+void use_density(Shell& shell, const ViewsArguments& given, postproc::Field& field) {
     const auto density = given.density.empty() ? std::nullopt : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
     if (!postproc::bring_to_pascal(field, density)) {
         shell.warn(field.files.front() + ": pressure is over density here: --density \"998 kg/m^3\" draws it");
@@ -211,7 +211,7 @@ void name_once(Batch& batch) {
     });
 }
 
-void check_difference(const Options& given, std::size_t files) {
+void check_difference(const ViewsArguments& given, std::size_t files) {
     if (files != 2) {
         throw core::UsageError("usage", "--difference compares two files", {}, "underbody views A B --difference pressure");
     }
@@ -220,7 +220,7 @@ void check_difference(const Options& given, std::size_t files) {
     }
 }
 
-int run(Shell& shell, const Options& given) {
+int run_views(Shell& shell, const ViewsArguments& given) {
     postproc::ViewOptions options = view_options(given);
     Batch batch = find_files(given.files, "");
     shell.show(batch.problems);
@@ -263,7 +263,7 @@ int run(Shell& shell, const Options& given) {
 
 void add_views_command(CLI::App& app, Shell& shell) {
     auto* command = app.add_subcommand("views", "pictures of a field: underbody, hull, symmetry plane, gap; needs no display");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ViewsArguments>();
     command->add_option("files", o->files, "CFD files, or patterns of names; several share colours and camera")->required();
     command->add_option("-o,--out", o->out, "folder for the pictures")->capture_default_str();
     command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',')->transform(trimmed_name);
@@ -285,7 +285,7 @@ void add_views_command(CLI::App& app, Shell& shell) {
         "  underbody views case --density \"998 kg/m^3\" --symmetry y      an OpenFOAM case\n"
         "  underbody views h2.csv h5.csv --symmetry y                    one range and camera for both\n"
         "  underbody views coarse.csv fine.csv --symmetry y --difference pressure");
-    shell.on(command, [&shell, o] { return run(shell, *o); });
+    shell.on(command, [&shell, o] { return run_views(shell, *o); });
 }
 
 }  // namespace underbody::studio

@@ -16,13 +16,12 @@
 #include "postproc/body_zones.h"
 #include "postproc/field.h"
 #include "studio/desktop/jobs.h"
+#include "studio/desktop/qt_text.h"
 #include "studio/desktop/scene.h"
 
 namespace underbody::studio {
 
 namespace {
-
-QString qt(const std::string& text) { return QString::fromStdString(text); }
 
 /// Zones that are the body: those of the case's patterns, else what may be a wall but not the ground.
 bool is_body(const postproc::Field& field, const postproc::Zone& zone, const std::vector<std::string>& patterns) {
@@ -99,7 +98,7 @@ void BodyPanel::build() {
     stack_->addWidget(empty_);
     if (Scene::possible()) {
         scene_ = std::make_unique<Scene>(this);
-        scene_->on_pick = [this](const QString& text) { emit remark(text); };
+        scene_->on_pick = [this](const QString& text) { Q_EMIT remark(text); };
         stack_->addWidget(scene_->widget());
     } else {
         empty_->setText(
@@ -159,7 +158,7 @@ void BodyPanel::show_file(const std::filesystem::path& file, const std::vector<s
                         title_->setText(title);
                         scene_->show(field, first_);
                         for (const auto& found : field->problems) {
-                            emit problem(found);
+                            Q_EMIT problem(found);
                         }
                         fill_zones();
                         fill_arrays();

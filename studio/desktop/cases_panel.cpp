@@ -7,12 +7,11 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/qt_text.h"
 
 namespace underbody::studio {
 
 namespace {
-
-QString qt(const std::string& text) { return QString::fromStdString(text); }
 
 enum Column { name_column, gap_column, pitch_column, lift_column, drag_column, status_column, column_count };
 
@@ -95,7 +94,7 @@ CasesTree::CasesTree(QWidget* parent) : QTreeWidget(parent) {
     connect(this, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
         const QVariant index = item != nullptr ? item->data(0, Qt::UserRole) : QVariant();
         if (session_ && index.isValid() && index.toULongLong() < session_->study.cases.size()) {
-            emit chosen(session_->study.cases[index.toULongLong()]);
+            Q_EMIT chosen(session_->study.cases[index.toULongLong()]);
         }
     });
 }

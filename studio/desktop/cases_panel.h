@@ -15,7 +15,7 @@ public:
     /// Only cases whose name or conditions hold the text.
     void filter(const QString& text);
 
-signals:
+Q_SIGNALS:
     void chosen(const cases::Case& chosen);
 
 private:

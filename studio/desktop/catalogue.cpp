@@ -8,14 +8,13 @@
 #include <QTextBrowser>
 
 #include "core/text.h"
+#include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/effects/effect.h"
 
 namespace underbody::studio {
 
 namespace {
-
-QString html(const std::string& text) { return QString::fromStdString(text).toHtmlEscaped(); }
 
 QString page(const dynamics::EffectInfo& info) {
     QString text = QString("<h2>%1</h2><p><code>%2</code></p><p style='font-size: large'><b>%3</b></p>")

@@ -15,6 +15,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "studio/desktop/catalogue.h"
+#include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
@@ -22,8 +23,6 @@ namespace underbody::studio {
 namespace {
 
 using nlohmann::json;
-
-QString html(const std::string& text) { return QString::fromStdString(text).toHtmlEscaped(); }
 
 /// Text or number of a key, for people; "" when it is not there.
 QString value(const json& object, const char* key, int digits = 3) {

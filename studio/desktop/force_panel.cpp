@@ -18,6 +18,7 @@
 #include "core/units.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/plot_view.h"
+#include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
 #include "surrogates/tables/equilibria.h"
 #include "surrogates/tables/figures.h"
@@ -26,8 +27,6 @@
 namespace underbody::studio {
 
 namespace {
-
-QString qt(const std::string& text) { return QString::fromStdString(text); }
 
 QString number(double value, int digits = 4) {
     if (std::isinf(value)) {
@@ -183,7 +182,7 @@ void ForcePanel::choose_table() {
 
 void ForcePanel::show_table() {
     for (const auto& remark : table_->remarks()) {
-        emit problem(remark);
+        Q_EMIT problem(remark);
     }
     double largest = 0;
     for (const double value : table_->points().numbers(spec_.quantity)) {

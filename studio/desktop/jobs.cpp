@@ -77,19 +77,19 @@ void Jobs::finish(const std::shared_ptr<Job>& job, const std::function<void()>& 
             std::rethrow_exception(error);
         } catch (const core::Cancelled&) {
         } catch (...) {
-            emit failed(job->what, std::current_exception());
+            Q_EMIT failed(job->what, std::current_exception());
         }
     }
     if (!error && !job->dropped && show) {
         try {
             show();
         } catch (...) {
-            emit failed(job->what, std::current_exception());
+            Q_EMIT failed(job->what, std::current_exception());
         }
     }
     tell();
     if (running_.empty()) {
-        emit idle();
+        Q_EMIT idle();
     }
 }
 
@@ -112,11 +112,11 @@ void Jobs::cancel(const QString& slot) {
 void Jobs::tell() {
     for (const auto& job : running_) {
         if (!job->quiet && !job->dropped) {
-            emit progressed(job->fraction, job->doing.isEmpty() ? job->what : job->what + ": " + job->doing);
+            Q_EMIT progressed(job->fraction, job->doing.isEmpty() ? job->what : job->what + ": " + job->doing);
             return;
         }
     }
-    emit progressed(1, {});
+    Q_EMIT progressed(1, {});
 }
 
 }  // namespace underbody::studio

@@ -31,7 +31,7 @@ public:
     void cancel(const QString& slot);
     [[nodiscard]] bool busy() const { return !running_.empty(); }
 
-signals:
+Q_SIGNALS:
     /// fraction 0..1 of the oldest job that is not quiet; `what` is empty when there is none.
     void progressed(double fraction, const QString& what);
     /// A job failed with an exception other than core::Cancelled.

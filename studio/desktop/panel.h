@@ -29,7 +29,7 @@ public:
     /// For --screenshot: does the one thing that shows what the panel is for (moves the slider, clicks a start).
     virtual void demonstrate() {}
 
-signals:
+Q_SIGNALS:
     /// For the status bar: what is under the mouse, what was just done.
     void remark(const QString& text);
     /// A finding for the list of problems.

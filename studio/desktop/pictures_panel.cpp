@@ -10,12 +10,11 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "studio/desktop/qt_text.h"
 
 namespace underbody::studio {
 
 namespace {
-
-QString qt(const std::string& text) { return QString::fromStdString(text); }
 
 /// Title and caption that the store keeps beside a plot; "" when there are none.
 QString caption_of(const cases::StudyResults& results, const std::string& key) {

@@ -24,7 +24,7 @@ PlotView::PlotView(QWidget* parent) : QWidget(parent) {
                     .arg(value, 0, 'g', 4)
                     .arg(QString::fromStdString(pretty_unit(axis.unit)));
             };
-            emit hovered(part(figure_.x, plot_->xAxis->pixelToCoord(event->pos().x())) + "   " +
+            Q_EMIT hovered(part(figure_.x, plot_->xAxis->pixelToCoord(event->pos().x())) + "   " +
                          part(figure_.y, plot_->yAxis->pixelToCoord(event->pos().y())));
         }
     });
@@ -34,7 +34,7 @@ PlotView::PlotView(QWidget* parent) : QWidget(parent) {
         if (!still) {
             zoomed_ = true;
         } else if (shown_ && event->button() == Qt::LeftButton && plot_->axisRect()->rect().contains(event->pos())) {
-            emit clicked(plot_->xAxis->pixelToCoord(event->pos().x()), plot_->yAxis->pixelToCoord(event->pos().y()));
+            Q_EMIT clicked(plot_->xAxis->pixelToCoord(event->pos().x()), plot_->yAxis->pixelToCoord(event->pos().y()));
         }
     });
     connect(plot_, &QCustomPlot::mouseWheel, this, [this] { zoomed_ = true; });

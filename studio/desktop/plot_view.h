@@ -23,7 +23,7 @@ public:
     /// As drawn in a file, by the ending.
     void write(const std::filesystem::path& path) const;
 
-signals:
+Q_SIGNALS:
     /// Coordinates under the mouse, in the axes' units, for the status bar.
     void hovered(const QString& text);
     /// A click (not a drag) inside the axes.

@@ -24,15 +24,14 @@
 #include "core/units.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/plot_view.h"
+#include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
 
 namespace {
 
-QString qt(const std::string& text) { return QString::fromStdString(text); }
-
-QString number(double value, int digits = 4) {
+QString map_number(double value, int digits = 4) {
     return std::isnan(value) ? QString("–") : qt(core::format_number(value, digits)).replace('-', QChar(0x2212));
 }
 
@@ -42,16 +41,16 @@ QString summary(const dynamics::StabilityRegion& region) {
     for (const auto& end : region.classes) {
         QString name = qt(end.name);
         if (std::isfinite(end.gap)) {
-            name += QString(" at %1 mm").arg(number(1000 * end.gap, 3));
+            name += QString(" at %1 mm").arg(map_number(1000 * end.gap, 3));
         }
-        text += QString("<tr><td>%1</td><td align=right>&nbsp;%2 %</td></tr>").arg(name, number(100 * end.fraction, 3));
+        text += QString("<tr><td>%1</td><td align=right>&nbsp;%2 %</td></tr>").arg(name, map_number(100 * end.fraction, 3));
     }
     text += "</table>";
     if (region.outside_fraction > 0) {
         text += QString(
                     "<p>%1 % of the starts lie outside the range of the force tables, which hold their end values "
                     "there.</p>")
-                    .arg(number(100 * region.outside_fraction, 3));
+                    .arg(map_number(100 * region.outside_fraction, 3));
     }
     return text;
 }
@@ -258,11 +257,11 @@ void RegionPanel::choose_parameter() {
         value_->setSingleStep(step);
         value_->setSuffix(parameter.unit.empty() || parameter.unit == "1" ? "" : " " + qt(pretty_unit(parameter.unit)));
         value_->setValue(value);
-        value_->setToolTip(qt(parameter.meaning) + QString("\ndeclared: %1").arg(number(parameter.value)));
+        value_->setToolTip(qt(parameter.meaning) + QString("\ndeclared: %1").arg(map_number(parameter.value)));
     }
     QString text;
     for (const auto& [changed, value] : changes_) {
-        text += QString("%1 = %2 (declared %3)\n").arg(qt(changed), number(value), number(model_->parameter(changed)));
+        text += QString("%1 = %2 (declared %3)\n").arg(qt(changed), map_number(value), map_number(model_->parameter(changed)));
     }
     changes_label_->setText(text.trimmed());
 }
@@ -297,7 +296,7 @@ void RegionPanel::compute() {
 void RegionPanel::show_region() {
     about_->setText(summary(*region_));
     for (const auto& remark : region_->remarks) {
-        emit problem(remark);
+        Q_EMIT problem(remark);
     }
     core::Figure figure = dynamics::region_figure(*region_);
     if (trajectory_) {
@@ -323,7 +322,7 @@ void RegionPanel::start_from(double x, double y) {
     take(region_->axes[0].name, x, figure.x.unit);
     take(region_->axes[1].name, y, figure.y.unit);
     if (std::isnan(gap)) {
-        emit remark("motions are shown for maps over the gap");
+        Q_EMIT remark("motions are shown for maps over the gap");
         return;
     }
     dynamics::TrajectoryOptions options;
@@ -347,10 +346,10 @@ void RegionPanel::start_from(double x, double y) {
 void RegionPanel::show_trajectory() {
     show_region();
     motion_->show_figure(dynamics::trajectory_figure(*trajectory_, region_->equilibria));
-    const QString time = trajectory_->time.empty() ? QString("–") : number(trajectory_->time.back(), 3);
-    emit remark(QString("from %1 mm, %2 mm/s: %3 after %4 s")
-                    .arg(number(1000 * trajectory_->gap.front(), 3))
-                    .arg(number(1000 * trajectory_->heave_velocity.front(), 3))
+    const QString time = trajectory_->time.empty() ? QString("–") : map_number(trajectory_->time.back(), 3);
+    Q_EMIT remark(QString("from %1 mm, %2 mm/s: %3 after %4 s")
+                    .arg(map_number(1000 * trajectory_->gap.front(), 3))
+                    .arg(map_number(1000 * trajectory_->heave_velocity.front(), 3))
                     .arg(trajectory_->end == "time" ? QString("still moving") : qt(trajectory_->end))
                     .arg(time));
 }

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class ActuatorLagEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"actuator_lag",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& actuator_lag_effect() {
-    static const Kind kind;
-    return kind;
+    static const ActuatorLagEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

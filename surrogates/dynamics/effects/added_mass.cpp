@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class AddedMassEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"added_mass",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& added_mass_effect() {
-    static const Kind kind;
-    return kind;
+    static const AddedMassEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

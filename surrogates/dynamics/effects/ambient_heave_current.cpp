@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class AmbientHeaveCurrentEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"ambient_heave_current",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& ambient_heave_current_effect() {
-    static const Kind kind;
-    return kind;
+    static const AmbientHeaveCurrentEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class ConstantForceEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"constant_force",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& constant_force_effect() {
-    static const Kind kind;
-    return kind;
+    static const ConstantForceEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class CoulombFrictionEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"coulomb_friction",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& coulomb_friction_effect() {
-    static const Kind kind;
-    return kind;
+    static const CoulombFrictionEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

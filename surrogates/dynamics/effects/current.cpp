@@ -5,7 +5,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class CurrentEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the =
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& current_effect() {
-    static const Kind kind;
-    return kind;
+    static const CurrentEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

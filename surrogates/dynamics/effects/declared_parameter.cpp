@@ -5,7 +5,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class DeclaredParameterEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"declared_parameter",
@@ -26,8 +26,8 @@ public:
 }  // namespace
 
 const Effect& declared_parameter_effect() {
-    static const Kind kind;
-    return kind;
+    static const DeclaredParameterEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -5,7 +5,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class DriftEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the = of_the_rig({"drift",
@@ -28,8 +28,8 @@ public:
 }  // namespace
 
 const Effect& drift_effect() {
-    static const Kind kind;
-    return kind;
+    static const DriftEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -5,7 +5,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class ForceBiasEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the =
@@ -29,8 +29,8 @@ public:
 }  // namespace
 
 const Effect& force_bias_effect() {
-    static const Kind kind;
-    return kind;
+    static const ForceBiasEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class GapDependentAddedMassEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"gap_dependent_added_mass",
@@ -28,8 +28,8 @@ public:
 }  // namespace
 
 const Effect& gap_dependent_added_mass_effect() {
-    static const Kind kind;
-    return kind;
+    static const GapDependentAddedMassEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

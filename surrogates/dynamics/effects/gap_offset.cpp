@@ -5,7 +5,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class GapOffsetEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the =
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& gap_offset_effect() {
-    static const Kind kind;
-    return kind;
+    static const GapOffsetEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class GapSensorBiasEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"gap_sensor_bias",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& gap_sensor_bias_effect() {
-    static const Kind kind;
-    return kind;
+    static const GapSensorBiasEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

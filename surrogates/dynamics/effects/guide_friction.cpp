@@ -5,7 +5,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class GuideFrictionEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the =
@@ -30,8 +30,8 @@ public:
 }  // namespace
 
 const Effect& guide_friction_effect() {
-    static const Kind kind;
-    return kind;
+    static const GuideFrictionEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

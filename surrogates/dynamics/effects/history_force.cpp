@@ -9,7 +9,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class HistoryForceEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"history_force",
@@ -33,8 +33,8 @@ public:
 }  // namespace
 
 const Effect& history_force_effect() {
-    static const Kind kind;
-    return kind;
+    static const HistoryForceEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class InputDelayEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"input_delay",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& input_delay_effect() {
-    static const Kind kind;
-    return kind;
+    static const InputDelayEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

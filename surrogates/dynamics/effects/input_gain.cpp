@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class InputGainEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{
@@ -25,8 +25,8 @@ public:
 }  // namespace
 
 const Effect& input_gain_effect() {
-    static const Kind kind;
-    return kind;
+    static const InputGainEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

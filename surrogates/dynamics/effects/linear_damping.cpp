@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class LinearDampingEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"linear_damping",
@@ -27,8 +27,8 @@ public:
 }  // namespace
 
 const Effect& linear_damping_effect() {
-    static const Kind kind;
-    return kind;
+    static const LinearDampingEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class PeriodicDisturbanceEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"periodic_disturbance",
@@ -29,8 +29,8 @@ public:
 }  // namespace
 
 const Effect& periodic_disturbance_effect() {
-    static const Kind kind;
-    return kind;
+    static const PeriodicDisturbanceEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -9,7 +9,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class PitchMisalignmentEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the =
@@ -50,8 +50,8 @@ public:
 }  // namespace
 
 const Effect& pitch_misalignment_effect() {
-    static const Kind kind;
-    return kind;
+    static const PitchMisalignmentEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

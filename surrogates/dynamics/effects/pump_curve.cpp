@@ -34,7 +34,7 @@ double seen_by_the_law(double voltage, double reference, const EffectUse& use) {
     return reference * plain(voltage, reference, use) * std::sqrt((1 + use.values[1]) / (1 + use.values[1] * x * x));
 }
 
-class Kind final : public Effect {
+class PumpCurveEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{
@@ -78,8 +78,8 @@ public:
 }  // namespace
 
 const Effect& pump_curve_effect() {
-    static const Kind kind;
-    return kind;
+    static const PumpCurveEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class QuadraticDampingEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{
@@ -28,8 +28,8 @@ public:
 }  // namespace
 
 const Effect& quadratic_damping_effect() {
-    static const Kind kind;
-    return kind;
+    static const QuadraticDampingEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -40,7 +40,7 @@ double part_without_speed(const Model& model, const std::string& quantity, const
     return sum_of_sources(model, quantity, at_rest);
 }
 
-class Kind final : public Effect {
+class SpeedExponentEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"speed_exponent",
@@ -86,8 +86,8 @@ public:
 }  // namespace
 
 const Effect& speed_exponent_effect() {
-    static const Kind kind;
-    return kind;
+    static const SpeedExponentEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class SqueezeFilmDampingEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"squeeze_film_damping",
@@ -28,8 +28,8 @@ public:
 }  // namespace
 
 const Effect& squeeze_film_damping_effect() {
-    static const Kind kind;
-    return kind;
+    static const SqueezeFilmDampingEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

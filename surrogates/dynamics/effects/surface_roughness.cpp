@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class SurfaceRoughnessEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{
@@ -42,8 +42,8 @@ public:
 }  // namespace
 
 const Effect& surface_roughness_effect() {
-    static const Kind kind;
-    return kind;
+    static const SurfaceRoughnessEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

@@ -11,7 +11,7 @@ namespace {
 /// Dynamic viscosity of fresh water, Pa s, T in K.
 double viscosity(double kelvin) { return 2.414e-5 * std::pow(10.0, 247.8 / (kelvin - 140.0)); }
 
-class Kind final : public Effect {
+class TemperatureEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{
@@ -40,8 +40,8 @@ public:
 }  // namespace
 
 const Effect& temperature_effect() {
-    static const Kind kind;
-    return kind;
+    static const TemperatureEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

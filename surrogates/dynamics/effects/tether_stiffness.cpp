@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class TetherStiffnessEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"tether_stiffness",
@@ -30,8 +30,8 @@ public:
 }  // namespace
 
 const Effect& tether_stiffness_effect() {
-    static const Kind kind;
-    return kind;
+    static const TetherStiffnessEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

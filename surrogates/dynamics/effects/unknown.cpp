@@ -6,7 +6,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-class Kind final : public Effect {
+class UnknownEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the{"unknown",
@@ -54,8 +54,8 @@ public:
 }  // namespace
 
 const Effect& unknown_effect() {
-    static const Kind kind;
-    return kind;
+    static const UnknownEffect effect;
+    return effect;
 }
 
 }  // namespace underbody::dynamics

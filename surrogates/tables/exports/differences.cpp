@@ -13,7 +13,7 @@ namespace {
 constexpr double margin = 1.02;
 
 /// Ends, middles and quarters of the cells between the lines; fewer a cell for many axes.
-std::vector<double> samples(const std::vector<double>& lines, std::size_t axes) {
+std::vector<double> sample_points(const std::vector<double>& lines, std::size_t axes) {
     const std::size_t a_cell = axes == 1 ? 8 : axes == 2 ? 4 : 2;
     std::vector<double> result;
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
@@ -74,7 +74,7 @@ double largest(const std::vector<std::vector<double>>& coordinates, core::Progre
 
 double largest_difference_along(std::size_t axis, const CubicGrid& fine, const CubicGrid& coarse, core::Progress& progress) {
     auto coordinates = coarse.points();
-    coordinates[axis] = samples(fine.axis(axis).points(), fine.dimensions());
+    coordinates[axis] = sample_points(fine.axis(axis).points(), fine.dimensions());
     return largest(coordinates, progress, [&](const double* at) { return fine.value(at, nullptr) - coarse.value(at, nullptr); });
 }
 
@@ -85,7 +85,7 @@ Resampled resampled(const CubicGrid& fine, std::vector<std::vector<double>> poin
     }
     CubicGrid coarse = fine.resampled(std::move(points));
     for (auto& x : coordinates) {
-        x = samples(x, coordinates.size());
+        x = sample_points(x, coordinates.size());
     }
     const double difference = largest(coordinates, progress, [&](const double* at) { return fine.value(at, nullptr) - coarse.value(at, nullptr); });
     return {std::move(coarse), difference};
@@ -97,7 +97,7 @@ Resampled straight_resampled(const CubicGrid& fine, std::vector<std::vector<doub
     for (std::size_t k = 0; k < n; ++k) {
         std::vector<double> lines;
         std::set_union(coordinates[k].begin(), coordinates[k].end(), points[k].begin(), points[k].end(), std::back_inserter(lines));
-        coordinates[k] = samples(lines, n);
+        coordinates[k] = sample_points(lines, n);
     }
     CubicGrid coarse = fine.resampled(points);
     std::vector<double> values;
