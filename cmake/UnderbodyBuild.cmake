@@ -21,6 +21,48 @@ if(UNDERBODY_ASSERTIONS)
   target_compile_options(underbody_options INTERFACE -UNDEBUG -D_GLIBCXX_ASSERTIONS)
 endif()
 
+# What most sources include, parsed once for all targets. Off in the presets for writing code: a compiler cache cannot
+# keep what was compiled with it.
+if(UNDERBODY_PRECOMPILE)
+  file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "")
+  add_library(underbody_precompiled STATIC ${CMAKE_BINARY_DIR}/precompiled.cpp)
+  target_link_libraries(underbody_precompiled PRIVATE underbody_options)
+  target_precompile_headers(underbody_precompiled PRIVATE
+    <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory> <mutex>
+    <numbers> <numeric> <optional> <set> <span> <sstream> <string> <string_view> <unordered_map> <utility> <vector>
+    <nlohmann/json.hpp>)
+endif()
+
+# underbody_precompile(TARGET): the target takes the headers precompiled above.
+function(underbody_precompile target)
+  if(UNDERBODY_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM underbody_precompiled)
+  endif()
+endfunction()
+
+# underbody_optimise_hard(FILE...): sources whose speed the benchmarks show; they are compiled by themselves.
+function(underbody_optimise_hard)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>"
+    SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# underbody_units(TARGET SOURCE...): compiles several sources as one unit where CMAKE_UNITY_BUILD is on (preset release):
+# most of the time of a small source goes into headers and templates that its neighbours share.
+function(underbody_units target)
+  if(CMAKE_UNITY_BUILD)
+    file(GLOB_RECURSE headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.h)
+    execute_process(COMMAND awk -v most=${CMAKE_UNITY_BUILD_BATCH_SIZE} -f ${CMAKE_SOURCE_DIR}/cmake/unity_groups.awk ${headers} ${ARGN}
+      WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE groups COMMAND_ERROR_IS_FATAL ANY)
+    string(REGEX MATCHALL "[0-9]+" groups "${groups}")
+    foreach(source group IN ZIP_LISTS ARGN groups)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endforeach()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+    # What only one file would be warned of is checked by the presets that compile file by file.
+    target_compile_options(${target} PRIVATE -Wno-shadow -Wno-subobject-linkage)
+  endif()
+endfunction()
+
 # underbody_library(NAME [USES target...] [HIDES target...])
 #
 # One library from all sources of the current folder and of its sub-folders that have no CMakeLists.txt of their own.
@@ -46,6 +88,8 @@ function(underbody_library name)
   foreach(hidden IN LISTS ARG_HIDES)
     target_link_libraries(${target} PRIVATE ${hidden})
   endforeach()
+  underbody_precompile(${target})
+  underbody_units(${target} ${sources})
   install(TARGETS ${target} EXPORT UnderbodyTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   foreach(header IN LISTS headers)
     get_filename_component(folder ${header} DIRECTORY)
