@@ -55,7 +55,7 @@ Body read_body(const std::filesystem::path& path, const BodyOptions& options = {
 /// Throws core::InputError (kind "contact") when the lowest point is not above the ground.
 void require_clearance(const SurfaceMesh& body, const Placement& placement);
 
-/// interfaces.md section 7, command `body`.
+/// docs/conventions.md section 7, command `body`.
 void to_json(nlohmann::json& json, const Body& body);
 
 }  // namespace underbody::geometry

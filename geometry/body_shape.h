@@ -1,4 +1,4 @@
-// The parameters of a body: an ellipsoid with a flat base, its cuts and additions (SHAPE.toml, interfaces section 3).
+// The parameters of a body: an ellipsoid with a flat base, its cuts and additions (SHAPE.toml, docs/files/shape.md).
 #pragma once
 
 #include <filesystem>

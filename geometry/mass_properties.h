@@ -11,7 +11,7 @@ namespace underbody::geometry {
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 constexpr double standard_gravity = 9.80665;      ///< m/s^2
-constexpr double default_water_density = 1000.0;  ///< kg/m^3 (physics.md section 1)
+constexpr double default_water_density = 1000.0;  ///< kg/m^3 (docs/physics.md section 1)
 
 /// SI, in the axes of the mesh.
 struct MassProperties {

@@ -58,7 +58,7 @@ struct Wrench {
     Vector moment{};  ///< N m, about LoadsResult::reference
 };
 
-/// The vehicle's sense (interfaces.md section 1): lift up, drag against the motion, side to starboard,
+/// The vehicle's sense (docs/conventions.md section 1): lift up, drag against the motion, side to starboard,
 /// pitch nose up, roll starboard down, yaw bow to starboard; moments about LoadsResult::reference.
 struct NamedLoads {
     double lift_force = 0;
@@ -140,7 +140,7 @@ struct LoadsResult {
 /// importer's error (unless accepted), a half model on both sides of its plane, gauge and absolute pressures side by side.
 LoadsResult loads(const Field& field, const LoadsOptions& options = {}, core::Progress& progress = core::Progress::none());
 
-/// Keys of interfaces.md section 7.
+/// Keys of docs/conventions.md section 7.
 void to_json(nlohmann::json& json, const LoadsResult& result);
 
 /// Every quantity of a result that goes into a table, with its SI unit: lift_force, drag_force, ..., closure.

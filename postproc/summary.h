@@ -54,7 +54,7 @@ struct FieldSummary {
 
 FieldSummary summarise(const Field& field);
 
-/// Keys of interfaces.md section 7.
+/// Keys of docs/conventions.md section 7.
 void to_json(nlohmann::json& json, const FieldSummary& summary);
 
 }  // namespace underbody::postproc

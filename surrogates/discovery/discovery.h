@@ -123,7 +123,7 @@ struct DiscoverOptions {
 Discovery discover(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options = {},
                    core::Progress& progress = core::Progress::none());
 
-/// `discovery.json` of interfaces.md section 6.
+/// `discovery.json` of docs/conventions.md section 6.
 nlohmann::json to_json(const Discovery& discovery);
 
 /// PNG bytes of a figure: the drawing library lives above this room.

@@ -137,7 +137,7 @@ private:
     bool hold_ = true;
 };
 
-/// Names of variables as in interfaces.md.
+/// Names of variables as in docs/conventions.md section 1.
 const char* variable_name(FlexibleForce::Variable variable);
 
 }  // namespace underbody::discovery

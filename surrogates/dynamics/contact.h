@@ -1,6 +1,6 @@
 // Contact of a flat base with the ground at its nose edge and its tail edge: gap >= 0, force >= 0, one of them zero.
-// The contact states of design notes 3.3 are the sets of edges that bear: none (free), both (flat), tail edge, nose
-// edge.
+// The contact states of docs/physics.md section 3.3 are the sets of edges that bear: none (free), both (flat), tail
+// edge, nose edge.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Thin films of water between base and ground: Reynolds' equation for a sliding body, the radial film of a bottom jet,
-// the squeeze film. Frame: the vertical channel, forces positive up. SI. Formulas: design notes, sections 4 and 5
+// the squeeze film. Frame: the vertical channel, forces positive up. SI. Formulas: docs/physics.md sections 4 and 5
 // (thesis chapters 4 and 5, corrected).
 #pragma once
 

@@ -10,7 +10,7 @@ namespace underbody::dynamics {
 
 /// What is held and how hard. A gain that is NaN is chosen for the model (see `complete`).
 struct VehicleHold {
-    std::optional<double> heading;  ///< rad: N = K2 (heading - psi) - K1 r (design notes 3.5)
+    std::optional<double> heading;  ///< rad: N = K2 (heading - psi) - K1 r (docs/physics.md section 3.5)
     std::optional<double> speed;    ///< m/s: X = drag at that speed + K (speed - u)
     std::optional<double> gap;      ///< m: up = weight - lift at that gap - k_h (h - gap) - k_w dh/dt
     std::optional<double> pitch;    ///< rad: M = moment that the tables leave there - k_p (theta - pitch) - k_q q

@@ -23,7 +23,7 @@ double dot(const Vector3& a, const Vector3& b);
 /// Sum of the thrusts and of r x F. One thrust a jet.
 Wrench jet_wrench(std::span<const Jet> jets, std::span<const double> thrust);
 
-/// Angles and arms of EVIE's jets (design notes 2.1). rad, m.
+/// Angles and arms of EVIE's jets (docs/physics.md section 2.1). rad, m.
 struct EvieJets {
     double alpha = 0, beta = 0, gamma = 0;
     double turn_x = 0, turn_y = 0, turn_z = 0;             ///< L_tu, L_tv, L_tw of J1, J2, J5, J6
@@ -46,8 +46,8 @@ double needed_yaw_torque(double munk_coefficient, double speed, double sideslip,
 /// Munk's moment in yaw, 1/2 C_mm U^2 sin(2 sideslip), C_mm = A_x - A_y.
 double munk_yaw_moment(double munk_coefficient, double speed, double sideslip);
 
-/// Thrusts of the turning jets (J1, J2, J5, J6) for (F_x, F_y, M_z): the exact inverse of design notes 2.2, made
-/// non-negative by the null vector.
+/// Thrusts of the turning jets (J1, J2, J5, J6) for (F_x, F_y, M_z): the exact inverse of docs/physics.md section 2.2,
+/// made non-negative by the null vector.
 struct TurnAllocation {
     double thrust[4] = {};
     double pressing_force = 0;  ///< F_z that the null vector costs, N (down)

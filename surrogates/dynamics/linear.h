@@ -56,7 +56,7 @@ struct Regulator {
 };
 Regulator lqr(const LinearSystem& system, const Dense& q, const Dense& r);
 
-// ---- Surface motion, states u, v, r, psi about a steady run at speed U (design notes 3.5). ----
+// ---- Surface motion, states u, v, r, psi about a steady run at speed U (docs/physics.md section 3.5). ----
 
 struct SurfaceCoefficients {
     double mass_x = 0, mass_y = 0, inertia_r = 0;  ///< S_x, S_y, S_r

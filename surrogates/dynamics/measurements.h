@@ -1,4 +1,4 @@
-// Measured data: a folder with `dataset.toml` and its runs (tables with units), `interfaces.md` section 4.
+// Measured data: a folder with `dataset.toml` and its runs (tables with units), docs/conventions.md section 4.
 #pragma once
 
 #include <filesystem>

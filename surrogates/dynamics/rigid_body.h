@@ -1,8 +1,8 @@
 // The vehicle over the ground with roll held at zero: eleven states, jets, drag, ground effect, contact.
 // Body frame x forward, y starboard, z down, origin at the centre of gravity; world X forward, Y right, Z down with the
-// ground at Z = 0. Equations: design notes 3.1 (Fossen; Kirchhoff's equations with a diagonal added mass and a full
-// inertia tensor, projected onto the motions that keep roll at zero, which is the roll-constraint moment). Heave added
-// mass may follow the gap; effects of the model act upward at the centre of gravity.
+// ground at Z = 0. Equations: docs/physics.md section 3.1 (Fossen; Kirchhoff's equations with a diagonal added mass and
+// a full inertia tensor, projected onto the motions that keep roll at zero, which is the roll-constraint moment). Heave
+// added mass may follow the gap; effects of the model act upward at the centre of gravity.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Motion on the ground, flat on its base: surge, sway, yaw and heading (design notes 3.1 and 3.3, contact state "flat").
+// Motion on the ground, flat on its base: surge, sway, yaw and heading (docs/physics.md sections 3.1 and 3.3, contact
+// state "flat").
 #pragma once
 
 #include <array>

@@ -196,7 +196,7 @@ void releases(ThesisDynamics& study) {
     ReleaseSetup dry = setup;
     dry.squeeze = false;
     const double without = escape_threshold(dry, 0.1, 1e-7);
-    study.checks.push_back({"5-22-threshold", "figure 5-22, section 5.3 of the design notes",
+    study.checks.push_back({"5-22-threshold", "figure 5-22, docs/physics.md section 5.3",
                             "a released body escapes once it is light enough",
                             "static threshold " + n(1e3 * threshold) + " mN; with the squeeze film it escapes from " +
                                 n(1e3 * with) + " mN, without from " + n(1e3 * without, 2) + " mN",

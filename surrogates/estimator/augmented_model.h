@@ -1,8 +1,10 @@
-// The data-driven augmented linear model: states, auxiliary forces and inputs in one linear law, from moments of samples.
+// The data-driven augmented linear model: states, auxiliary forces and inputs in one linear law, from moments of
+// samples.
 //
 //     d x = A x + B u + offset,   x = (measured states; auxiliary variables), SI throughout
 //
-// Source: thesis chapter 7 with the corrections of physics.md section 6. Frame: gap up, lift positive up, drag a resistance.
+// Source: thesis chapter 7 with the corrections of docs/physics.md section 6. Frame: gap up, lift positive up, drag a
+// resistance.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

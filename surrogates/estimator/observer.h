@@ -1,7 +1,8 @@
-// Observers of separate and total forces. All linear ones compile to one small filter without allocation, which exports to C99.
+// Observers of separate and total forces. All linear ones compile to one small filter without allocation, which exports
+// to C99.
 //
-// Split of an augmented model: x measured (heave_velocity, gap), zeta auxiliary (ground_force, drag_force ...). Source: thesis 8.2-8.3
-// with the corrections of physics.md section 7. Error convention: e = truth - estimate.
+// Split of an augmented model: x measured (heave_velocity, gap), zeta auxiliary (ground_force, drag_force ...). Source:
+// thesis 8.2-8.3 with the corrections of docs/physics.md section 7. Error convention: e = truth - estimate.
 #pragma once
 
 #include <cstddef>

@@ -12,8 +12,9 @@
 namespace underbody::tables {
 
 struct CollapseOptions {
-    /// What differs: "speed" or "length" (force as C = 2 F/(rho U^2 S) over gap/length: physics notes 4.4), "jet_voltage" (F/V^2 over gap) or "jet_flow"
-    /// (F/q^2 over gap: physics notes 5.1). Empty: the first of these that varies.
+    /// What differs: "speed" or "length" (force as C = 2 F/(rho U^2 S) over gap/length: docs/physics.md section 4.4),
+    /// "jet_voltage" (F/V^2 over gap) or "jet_flow" (F/q^2 over gap: docs/physics.md section 5.1). Empty: the first of
+    /// these that varies.
     std::string by;
     double density = 998;  ///< kg/m^3
     double length = 0;     ///< m, where there is no column `length`; 0: the gap is not divided

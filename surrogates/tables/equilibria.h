@@ -1,7 +1,9 @@
-// Where lift and net weight balance: every equilibrium in the range of a table, how stiff, how fast, and what it survives.
+// Where lift and net weight balance: every equilibrium in the range of a table, how stiff, how fast, and what it
+// survives.
 //
-// The force is scale * table(gap, held others) - net_weight, positive up. Sources: physics notes 4.5 (stiffness k = -dF/dh,
-// frequency sqrt(k/S_z)); the energy barrier is the integral of that force, exact for the piecewise cubic of the table.
+// The force is scale * table(gap, held others) - net_weight, positive up. Sources: docs/physics.md section 4.5
+// (stiffness k = -dF/dh, frequency sqrt(k/S_z)); the energy barrier is the integral of that force, exact for the
+// piecewise cubic of the table.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -75,7 +77,8 @@ Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options
 /// The net force along the axis whose zeros these are.
 Line net_force(const ForceTable& table, const EquilibriumOptions& options);
 
-/// Keys of interfaces.md section 7 (`equilibria`: gap, stable, stiffness, frequency in Hz, kick_velocity, sigma, ...).
+/// Keys of docs/conventions.md section 7 (`equilibria`: gap, stable, stiffness, frequency in Hz, kick_velocity, sigma,
+/// ...).
 void to_json(nlohmann::json& json, const Equilibrium& equilibrium);
 void to_json(nlohmann::json& json, const Equilibria& equilibria);
 

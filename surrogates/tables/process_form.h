@@ -1,8 +1,8 @@
 // What a Gaussian process of a force table sees: coordinates, known laws, sizes. For the files of this room only.
 //
-// Known laws (physics notes 4.4 and 5.2): force ~ speed^2 and ~ jet voltage^2 (the process then models force over that square); film terms ~ 1/h^2 and
-// 1/h^3 over a gap axis; a constant free-stream value at large gaps, to which the rest decays with a power of the gap; gaps that span decades act
-// through their logarithm.
+// Known laws (docs/physics.md sections 4.4 and 5.2): force ~ speed^2 and ~ jet voltage^2 (the process then models force
+// over that square); film terms ~ 1/h^2 and 1/h^3 over a gap axis; a constant free-stream value at large gaps, to which
+// the rest decays with a power of the gap; gaps that span decades act through their logarithm.
 #pragma once
 
 #include <cmath>

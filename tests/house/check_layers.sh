@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fails on an include that points upward in the house (design.md: a folder uses only folders above it in the list),
+# Fails on an include that points upward in the house (docs/architecture.md section 1: a folder uses only folders above it in the list),
 # on Qt or the command line inside a library, and on a heavy header in a public header.
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 bad=0

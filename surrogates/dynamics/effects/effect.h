@@ -35,7 +35,7 @@ enum class SeenIn { time_series, static_set, both };
 struct EffectInfo {
     std::string name;     ///< as in model.toml and discovery.json
     std::string title;    ///< for people
-    std::string formula;  ///< plain text, with the signs of interfaces.md
+    std::string formula;  ///< plain text, with the signs of docs/conventions.md section 1
     SeenIn seen_in = SeenIn::time_series;
     std::vector<std::string> depends_on;  ///< quantity names
     std::vector<EffectParameter> parameters;
@@ -91,7 +91,7 @@ protected:
     }
 };
 
-/// All effects in the order of the catalogue (interfaces.md section 6).
+/// All effects in the order of the catalogue (docs/conventions.md section 6).
 const std::vector<const Effect*>& effects();
 /// nullptr when there is none of that name.
 const Effect* find_effect(std::string_view name);

@@ -22,7 +22,7 @@ inline Model spring_model(double stiffness, double mass, double linear, double q
     return free_model(mass, 0, linear, quadratic).with_effect(make_use("tether_stiffness", {{"stiffness", stiffness}, {"gap", 0.1}}));
 }
 
-/// REF-A of the design notes, section 6.3: knots in m and mN, not-a-knot cubic spline.
+/// REF-A of docs/physics.md section 6.3: knots in m and mN, not-a-knot cubic spline.
 inline core::Table ref_a_table() {
     const double knots[][2] = {{-.05, 40},   {-.04, 28.4}, {-.03, 18.8}, {-.02, 11},   {-.01, 4.9},  {0, 0},       {.01, -4.1},
                                {.02, -7.4},  {.03, -10},   {.04, -12},   {.05, -13.4}, {.06, -14.2}, {.07, -14.45}, {.08, -14.2},

@@ -1,4 +1,5 @@
-// The oracles of the design notes (physics-oracles.csv) on jets, rigid body, linear model, LQR, films, release, scaling.
+// The oracles of docs/physics.md section 9 (docs/physics-oracles.csv) on jets, rigid body, linear model, LQR, films,
+// release, scaling.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -134,7 +134,8 @@ TEST(RigidBody, SlidesFlatAndStopsByFriction) {
         }
         EXPECT_NEAR(motion.gap[i], 0, 1e-7);
     }
-    // The resultant moves forward while it slides: mu L_nw before the centre (design notes 3.3, with M_y = M_uu = 0).
+    // The resultant moves forward while it slides: mu L_nw before the centre (docs/physics.md section 3.3, with M_y =
+    // M_uu = 0).
     const auto& n = motion.normal.front();
     EXPECT_NEAR(.0717 * (n[0] - n[1]) / (n[0] + n[1]), .3 * .0514, 1e-3);
 }

@@ -9,7 +9,7 @@
 
 namespace underbody::test {
 
-/// REF-A of the physics notes: gap (m) and force (mN), a made-up curve with zeros at 0 and 0.16 m.
+/// REF-A of docs/physics.md section 6.3: gap (m) and force (mN), a made-up curve with zeros at 0 and 0.16 m.
 inline core::Table ref_a() {
     const std::vector<double> gap = {-.05, -.04, -.03, -.02, -.01, 0,   .01, .02, .03, .04, .05, .06, .07, .08, .09, .10, .12, .14, .16, .18,
                                      .20,  .25,  .30,  .35,  .40,  .45, .50, .60, .70, .80, .90, 1.0, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8};

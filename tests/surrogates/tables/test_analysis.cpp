@@ -236,7 +236,8 @@ TEST(Collapse, HoldsForTheSquareLawAndSaysTheExponentWhereItDoesNot) {
 }
 
 TEST(Collapse, PutsSizesOnOneCurveOfTheLiftCoefficientOverGapByLength) {
-    // F = 1/2 rho U^2 S C_L(h/c) with C_L(e) = 0.05/(e + 0.02): physics notes 4.4. Bodies of one and of two lengths, speeds apart too.
+    // F = 1/2 rho U^2 S C_L(h/c) with C_L(e) = 0.05/(e + 0.02): docs/physics.md section 4.4. Bodies of one and of two
+    // lengths, speeds apart too.
     const auto made = [](double extra) {
         std::string text = "gap [mm], length [mm], width [mm], speed [m/s], lift_force [N], lift_force_sigma [N]\n";
         for (const double length : {200.0, 400.0}) {

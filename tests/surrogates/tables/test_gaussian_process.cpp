@@ -96,7 +96,7 @@ FitOptions process() {
 }
 
 TEST(GaussianProcessTable, PredictsTheForcesOfAFilmAndItsSlopesFromScatteredPoints) {
-    // Film force of the physics notes, 5.2: A3/h^3 - B2/h^2 with h* = 1.2568669 mm, minimum at 1.5 h*.
+    // Film force of docs/physics.md section 5.2: A3/h^3 - B2/h^2 with h* = 1.2568669 mm, minimum at 1.5 h*.
     const double h_star = 1.2568669e-3;
     const double b2 = 0.021899722 * 27 / 4 * h_star * h_star;
     const double a3 = b2 * h_star;
