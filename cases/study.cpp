@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "cases/study_format.h"
 #include "cases/sweep.h"
 #include "core/name_pattern.h"
 #include "core/text.h"
@@ -141,12 +142,21 @@ std::string unique_name(const TomlTable& table, std::set<std::string>& taken) {
     return name;
 }
 
+/// A list that must have an entry: without one the step would do nothing.
+std::vector<std::string> required_strings(const TomlTable& table, const char* key) {
+    std::vector<std::string> list = table.strings(key);
+    if (list.empty()) {
+        (void)table.string(key);  // throws: it is missing, with an example; or an empty list, which is no text
+    }
+    return list;
+}
+
 MeshSpec read_mesh(const TomlTable& table, std::set<std::string>& taken) {
     MeshSpec mesh;
     mesh.name = unique_name(table, taken);
     mesh.where = read_conditions(table.table_or_empty("where"));
     mesh.column = table.string_or("column", "mesh");
-    mesh.quantities = table.strings("quantities");
+    mesh.quantities = required_strings(table, "quantities");
     const TomlTable cells = table.table("cells");
     for (const auto& key : cells.keys()) {
         mesh.cells.emplace_back(key, cells.quantity(key, "1"));
@@ -167,16 +177,13 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const
         }
     }
     spec.quantity = table.choice("quantity", quantities);
-    spec.axes = table.strings("axes");
+    spec.axes = required_strings(table, "axes");
     spec.where = read_conditions(table.table_or_empty("where"));
     spec.relative_sigma = table.quantity_or("relative_sigma", "1", 0);
     spec.mesh_uncertainty = table.string_or("mesh_uncertainty", "");
     spec.net_weight = table.find_quantity("net_weight", "N");
     spec.virtual_mass = table.quantity_or("virtual_mass", "kg", 0);
     spec.exports = table.strings("exports");
-    if (spec.axes.empty()) {
-        throw core::InputError("missing", "'" + table.path_of("axes") + "' is missing", table.place(), "axes = [\"gap\"]");
-    }
     if (study.select(spec.where).empty()) {
         throw core::InputError("missing", "no case fits 'where' of the table '" + spec.name + "'", table.place("where"),
                                "underbody study list shows the cases and their conditions");
@@ -281,7 +288,7 @@ Study Study::open(const fs::path& path) {
         throw core::InputError("missing", fs::exists(path) ? "there is no study.toml in this folder" : "there is no such folder",
                                {path.string(), {}, {}, {}}, "a study is a folder with a study.toml; see cases/evie");
     }
-    const TomlTable root = core::read_toml(file);
+    const TomlTable root = core::read_toml(file, study_format());
     Study study;
     study.folder_ = file.has_parent_path() ? file.parent_path() : fs::path(".");
     study.title = root.string("title");
@@ -334,7 +341,9 @@ Study Study::open(const fs::path& path) {
         spec.model = table.file("model");
         spec.forces = table.strings("forces");
         check_tables(study, table, "forces", spec.forces);
-        spec.axes = table.string("axes");
+        for (const auto& axis : required_strings(table, "axes")) {
+            spec.axes += (spec.axes.empty() ? "" : ",") + axis;
+        }
         spec.duration = table.quantity_or("for", "s", 60);
         spec.columns = static_cast<int>(table.integer_or("columns", 400));
         spec.rows = static_cast<int>(table.integer_or("rows", 400));
@@ -357,13 +366,13 @@ Study Study::open(const fs::path& path) {
         spec.name = unique_name(table, verifications);
         spec.table = table.file("table");
         spec.where = read_conditions(table.table_or_empty("where"));
-        spec.quantities = table.strings("quantities");
+        spec.quantities = required_strings(table, "quantities");
         spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
         study.verifications.push_back(std::move(spec));
     }
     std::set<std::string> comparisons;
     for (const auto& table : root.tables("compare")) {
-        study.comparisons.push_back({unique_name(table, comparisons), table.strings("tables")});
+        study.comparisons.push_back({unique_name(table, comparisons), required_strings(table, "tables")});
         check_tables(study, table, "tables", study.comparisons.back().tables);
     }
     root.finish();

@@ -57,9 +57,9 @@ private:
     std::size_t rows_ = 0;
 };
 
-/// Reads docs/conventions.md section 2: UTF-8 (a BOM is skipped), header `name [unit]`, '#' comments, empty field =
-/// missing. A column without a unit holds text. Columns whose name is a known quantity, or `NAME_sigma` of one, must
-/// have its dimension. Throws InputError naming file, line and column: no header, duplicate name, missing or unknown
+/// Reads docs/conventions.md section 2: UTF-8, BOM skipped, header `name [unit]`, '#' comments, empty field = missing.
+/// A column without a unit holds text. Columns whose name is a known quantity, or `NAME_sigma` of one, must have
+/// its dimension. Throws InputError naming file, line and column: no header, duplicate name, missing or unknown
 /// unit, wrong dimension, ragged line, a number that does not parse, a non-finite value. A table without rows is an
 /// error.
 Table read_csv(const std::filesystem::path& path);

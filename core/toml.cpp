@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/file_format.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -20,6 +21,7 @@ struct TomlTable::Shared {
     toml::table root;
     std::string source;
     fs::path folder;
+    const FileFormat* format = nullptr;
     /// For each table: the keys somebody asked for, present or not.
     std::map<const void*, std::set<std::string, std::less<>>> asked;
 };
@@ -61,22 +63,49 @@ double number_of(const toml::node& node, std::string_view unit, const std::strin
                      "write " + path + " = \"1 " + std::string(unit) + "\"");
 }
 
+std::string below(const std::string& path, std::string_view key) {
+    return key.empty() ? path : path.empty() ? std::string(key) : path + "." + std::string(key);
+}
+
+/// A key that the program asks for must be described, and as `kind` (a unit, a word that it may be; empty: any).
+void expect_described(const FileFormat* format, const std::string& path, std::string_view key, std::string_view kind) {
+    if (format == nullptr) {
+        return;
+    }
+    const FileKey* entry = format->key(path, key);
+    const bool fits = entry != nullptr && (entry->name == "*" || entry->kind.find(kind) != std::string::npos ||
+                                           entry->kind.find("unit") != std::string::npos);
+    if (kind.empty() ? !format->knows(path, key) : !fits) {
+        throw std::logic_error("the format '" + format->name + "' does not describe " + below(path, key) +
+                               (kind.empty() ? "" : " as " + std::string(kind)));
+    }
+}
+
+/// What to do about a missing key: the format's example, else `otherwise`.
+std::string how_to_add(const FileFormat* format, const std::string& path, std::string_view key,
+                       std::string_view otherwise) {
+    const FileKey* entry = format != nullptr ? format->key(path, key) : nullptr;
+    const bool described = entry != nullptr && entry->name != "*";
+    if (!described && otherwise.empty()) {
+        return {};
+    }
+    const std::string heading = heading_of(path);
+    return "add " + std::string(key) + " = " + (described ? entry->example : std::string(otherwise)) +
+           (heading.empty() ? "" : " under " + heading) + (described ? " (" + entry->meaning + ")" : "");
+}
+
 }  // namespace
 
 TomlTable::TomlTable(std::shared_ptr<Shared> shared, const void* node, std::string path)
     : shared_(std::move(shared)), node_(node), path_(std::move(path)) {}
 
 const void* TomlTable::value(std::string_view key) const {
+    expect_described(shared_->format, path_, key, {});
     shared_->asked[node_].emplace(key);
     return as_table(node_).get(key);
 }
 
-std::string TomlTable::path_of(std::string_view key) const {
-    if (key.empty()) {
-        return path_;
-    }
-    return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
-}
+std::string TomlTable::path_of(std::string_view key) const { return below(path_, key); }
 
 Place TomlTable::place(std::string_view key) const {
     const toml::table& table = as_table(node_);
@@ -90,6 +119,7 @@ Place TomlTable::place(std::string_view key) const {
 bool TomlTable::has(std::string_view key) const { return value(key) != nullptr; }
 
 std::optional<double> TomlTable::find_quantity(std::string_view key, std::string_view unit_si) const {
+    expect_described(shared_->format, path_, key, unit_si);
     const auto* node = static_cast<const toml::node*>(value(key));
     if (node == nullptr) {
         return std::nullopt;
@@ -102,8 +132,7 @@ double TomlTable::quantity(std::string_view key, std::string_view unit_si) const
         return *found;
     }
     throw InputError("missing", "'" + path_of(key) + "' is missing", place(),
-                     "add " + std::string(key) + " = \"... " + std::string(unit_si) + "\"" +
-                         (path_.empty() ? std::string() : " under [" + path_ + "]"));
+                     how_to_add(shared_->format, path_, key, "\"1 " + std::string(unit_si) + "\""));
 }
 
 double TomlTable::quantity_or(std::string_view key, std::string_view unit_si, double fallback) const {
@@ -111,9 +140,11 @@ double TomlTable::quantity_or(std::string_view key, std::string_view unit_si, do
 }
 
 std::vector<double> TomlTable::quantities(std::string_view key, std::string_view unit_si) const {
+    expect_described(shared_->format, path_, key, unit_si);
     const auto* node = static_cast<const toml::node*>(value(key));
     if (node == nullptr) {
-        throw InputError("missing", "'" + path_of(key) + "' is missing", place());
+        throw InputError("missing", "'" + path_of(key) + "' is missing", place(),
+                         how_to_add(shared_->format, path_, key, "[\"1 " + std::string(unit_si) + "\"]"));
     }
     std::vector<double> values;
     if (const auto* array = node->as_array()) {
@@ -129,7 +160,8 @@ std::vector<double> TomlTable::quantities(std::string_view key, std::string_view
 std::string TomlTable::string(std::string_view key) const {
     const auto* node = static_cast<const toml::node*>(value(key));
     if (node == nullptr) {
-        throw InputError("missing", "'" + path_of(key) + "' is missing", place());
+        throw InputError("missing", "'" + path_of(key) + "' is missing", place(),
+                         how_to_add(shared_->format, path_, key, {}));
     }
     if (const auto text = node->value_exact<std::string>()) {
         return *text;
@@ -143,6 +175,11 @@ std::string TomlTable::string_or(std::string_view key, std::string fallback) con
 
 std::string TomlTable::choice(std::string_view key, const std::vector<std::string>& choices,
                               std::optional<std::string> fallback) const {
+    for (const auto& choice : choices) {
+        if (!choice.empty()) {
+            expect_described(shared_->format, path_, key, choice);
+        }
+    }
     if (!has(key) && fallback) {
         return *fallback;
     }
@@ -204,7 +241,17 @@ std::int64_t TomlTable::integer_or(std::string_view key, std::int64_t fallback) 
 TomlTable TomlTable::table(std::string_view key) const {
     const auto* node = static_cast<const toml::node*>(value(key));
     if (node == nullptr) {
-        throw InputError("missing", "the table [" + path_of(key) + "] is missing", place());
+        std::string lines;
+        const FileTable* described = shared_->format != nullptr ? shared_->format->table(path_of(key)) : nullptr;
+        for (const FileKey& entry : described != nullptr ? described->keys : std::vector<FileKey>{}) {
+            if (entry.required()) {
+                lines += (lines.empty() ? ": " : ", ") + entry.name + " = " + entry.example;
+            }
+        }
+        throw InputError("missing", "the table [" + path_of(key) + "] is missing", place(),
+                         described != nullptr
+                             ? "add [" + path_of(key) + "]" + (lines.empty() ? "" : " and its keys") + lines
+                             : std::string());
     }
     if (const auto* table = node->as_table()) {
         return {shared_, table, path_of(key)};
@@ -276,7 +323,10 @@ fs::path TomlTable::file(std::string_view key) const {
 
 fs::path TomlTable::folder() const { return shared_->folder; }
 
-void TomlTable::accept(std::string_view key) const { shared_->asked[node_].emplace(key); }
+void TomlTable::accept(std::string_view key) const {
+    expect_described(shared_->format, path_, key, {});
+    shared_->asked[node_].emplace(key);
+}
 
 void TomlTable::finish() const {
     const auto asked_here = shared_->asked.find(node_);
@@ -286,6 +336,12 @@ void TomlTable::finish() const {
             std::vector<std::string> known;
             if (asked_here != shared_->asked.end()) {
                 known.assign(asked_here->second.begin(), asked_here->second.end());
+            }
+            const FileKey* entry = shared_->format != nullptr ? shared_->format->key(path_, name) : nullptr;
+            if (entry != nullptr && entry->name != "*") {
+                throw InputError(
+                    "key", "'" + path_of(name) + "' has no use beside the other keys", place(name),
+                    entry->meaning + (entry->instead_of.empty() ? "" : ", in place of '" + entry->instead_of + "'"));
             }
             throw InputError("key", "unknown key '" + path_of(name) + "'", place(name), did_you_mean(name, known));
         }
@@ -305,12 +361,29 @@ void TomlTable::finish() const {
     }
 }
 
-TomlTable read_toml(const fs::path& path) {
-    const MappedFile file(path);
-    return read_toml_text(file.bytes(), path.string(), path.has_parent_path() ? path.parent_path() : fs::path("."));
+namespace {
+
+/// Throws for the first name, in the file's order, that the format does not know.
+void check_names(const TomlTable& table, const toml::table& node, const FileFormat& format) {
+    for (const std::string& name : table.keys()) {
+        if (!format.knows(table.path_of({}), name)) {
+            throw InputError("key", "unknown key '" + table.path_of(name) + "'", table.place(name),
+                             did_you_mean(name, format.names(table.path_of({}))));
+        }
+        const std::string path = table.path_of(name);
+        if (node.get(name)->is_table() && format.table(path) != nullptr) {
+            check_names(table.table(name), *node.get_as<toml::table>(name), format);
+        }
+        if (const auto* array = node.get_as<toml::array>(name); array != nullptr && array->is_array_of_tables()) {
+            const std::vector<TomlTable> entries = table.tables(name);
+            for (std::size_t i = 0; i < entries.size() && format.table(path + "[]") != nullptr; ++i) {
+                check_names(entries[i], *array->get_as<toml::table>(i), format);
+            }
+        }
+    }
 }
 
-TomlTable read_toml_text(std::string_view text, const std::string& source, const fs::path& folder) {
+std::shared_ptr<TomlTable::Shared> parsed(std::string_view text, const std::string& source, const fs::path& folder) {
     auto shared = std::make_shared<TomlTable::Shared>();
     shared->source = source;
     shared->folder = folder;
@@ -320,8 +393,34 @@ TomlTable read_toml_text(std::string_view text, const std::string& source, const
         throw InputError("parse", std::string(error.description()), place_of(error.source(), source),
                          "this is a TOML file: key = value, [table], [[list of tables]]");
     }
-    const void* root = &shared->root;
-    return {std::move(shared), root, {}};
+    return shared;
+}
+
+}  // namespace
+
+TomlTable read_toml(const fs::path& path, const FileFormat& format) {
+    const MappedFile file(path);
+    return read_toml_text(file.bytes(), path.string(), path.has_parent_path() ? path.parent_path() : fs::path("."),
+                          format);
+}
+
+TomlTable read_toml_text(std::string_view text, const std::string& source, const fs::path& folder,
+                         const FileFormat& format) {
+    const std::shared_ptr<TomlTable::Shared> shared = parsed(text, source, folder);
+    check_names({shared, &shared->root, {}}, shared->root, format);
+    shared->format = &format;
+    shared->asked.clear();  // the check has asked for every key; the reader must do so itself
+    return {shared, &shared->root, {}};
+}
+
+TomlTable read_toml(const fs::path& path) {
+    const MappedFile file(path);
+    return read_toml_text(file.bytes(), path.string(), path.has_parent_path() ? path.parent_path() : fs::path("."));
+}
+
+TomlTable read_toml_text(std::string_view text, const std::string& source, const fs::path& folder) {
+    const std::shared_ptr<TomlTable::Shared> shared = parsed(text, source, folder);
+    return {shared, &shared->root, {}};
 }
 
 std::string toml_string(std::string_view text) {

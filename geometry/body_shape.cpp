@@ -7,6 +7,7 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "geometry/loading.h"
+#include "geometry/shape_format.h"
 
 namespace underbody::geometry {
 
@@ -79,7 +80,7 @@ BodyShape shape_from(const core::TomlTable& root, const std::string& name) {
 }
 
 BodyShape read_shape(const std::filesystem::path& path) {
-    const core::TomlTable root = core::read_toml(path);
+    const core::TomlTable root = core::read_toml(path, shape_format());
     BodyShape shape = shape_from(root, path.stem().string());
     loading_from(root);  // a typo in [mass] is an error here too
     root.finish();
@@ -87,7 +88,7 @@ BodyShape read_shape(const std::filesystem::path& path) {
 }
 
 BodyShape parse_shape(std::string_view text, const std::string& source) {
-    const core::TomlTable root = core::read_toml_text(text, source);
+    const core::TomlTable root = core::read_toml_text(text, source, ".", shape_format());
     BodyShape shape = shape_from(root, std::filesystem::path(source).stem().string());
     loading_from(root);
     root.finish();

@@ -43,7 +43,7 @@ struct FlowDomain {
 /// half model of a body that is rolled or not symmetric.
 FlowDomain flow_domain(const SurfaceMesh& body, const FlowOptions& options);
 
-/// Writes a case for OpenFOAM 1912 into a new or empty folder: `./Allrun` in it makes the mesh (blockMesh,
+/// Writes a case for OpenFOAM 1912 into a new or empty folder: its script Allrun makes the mesh (blockMesh,
 /// surfaceFeatureExtract, snappyHexMesh), checks it and runs simpleFoam with k-omega SST and forces; nothing else is
 /// needed but Debian's package `openfoam`. The surface is written in metres, one region a patch. Returns the files.
 /// Throws also core::InputError (kind "exists") when the folder holds something.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "geometry/shape_format.h"
 
 namespace underbody::geometry {
 
@@ -86,7 +87,7 @@ std::optional<Loading> loading_from(const core::TomlTable& root) {
 }
 
 std::optional<Loading> read_loading(const std::filesystem::path& path) {
-    const core::TomlTable root = core::read_toml(path);
+    const core::TomlTable root = core::read_toml(path, shape_format());
     return loading_from(root);
 }
 

@@ -8,6 +8,8 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body_surface.h"
+#include "geometry/loading.h"
+#include "geometry/shape_format.h"
 
 namespace underbody::geometry {
 
@@ -48,7 +50,7 @@ Vary vary_from(const core::TomlTable& table) {
     const std::string unit = unit_of(vary.key, table.place("key"));
     if (unit.empty()) {
         vary.values = table.strings("values");
-    } else if (table.has("values")) {
+    } else if (table.has("values") || !table.has("from")) {  // without both the values are what is missing
         for (const double v : table.quantities("values", unit)) {
             vary.values.push_back(written(v, unit));
         }
@@ -102,7 +104,7 @@ double base_area(const SurfaceMesh& mesh) {
 }  // namespace
 
 VariantSet read_variants(const std::filesystem::path& path) {
-    const core::TomlTable root = core::read_toml(path);
+    const core::TomlTable root = core::read_toml(path, shape_format());
     VariantSet set;
     set.name = path.stem().string();
     std::vector<Vary> varies;
@@ -124,6 +126,7 @@ VariantSet read_variants(const std::filesystem::path& path) {
         ties.push_back(tie_from(table));
     }
     const BodyShape common = shape_from(root, set.name);
+    static_cast<void>(loading_from(root));  // a typo in [mass] is an error here too
     root.finish();
     std::map<std::string, std::string> seen;
     for (std::size_t i = 0; i < count; ++i) {

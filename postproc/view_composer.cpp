@@ -33,15 +33,21 @@ std::string view_unit(const std::string& array) { return array == "velocity" ? "
 const std::vector<ViewComposer::Kind>& ViewComposer::kinds() {
     using C = ViewComposer;
     static const std::vector<Kind> all = {
-        {"pressure-underbody", "pressure", &C::underbody_view, &C::on_underbody},
-        {"pressure-hull", "pressure", &C::hull_view, &C::on_hull},
-        {"shear-underbody", "wall_shear", &C::underbody_view, &C::on_underbody},
-        {"shear-hull", "wall_shear", &C::hull_view, &C::on_hull_alone},
-        {"pressure-symmetry", "pressure", &C::symmetry_view, &C::in_volume},
-        {"speed-symmetry", "velocity", &C::symmetry_view, &C::in_volume},
-        {"streamlines-gap", "velocity", &C::gap_view, &C::in_gap},
-        {"pressure-plane", "pressure", &C::plane_view, &C::in_plane},
-        {"speed-plane", "velocity", &C::plane_view, &C::in_plane},
+        {"pressure-underbody", "pressure", "pressure on the body seen from below", &C::underbody_view,
+         &C::on_underbody},
+        {"pressure-hull", "pressure", "pressure on the body seen from above and ahead", &C::hull_view, &C::on_hull},
+        {"shear-underbody", "wall_shear", "wall shear stress on the body seen from below", &C::underbody_view,
+         &C::on_underbody},
+        {"shear-hull", "wall_shear", "wall shear stress on the hull, of a body without a zone that is its base",
+         &C::hull_view, &C::on_hull_alone},
+        {"pressure-symmetry", "pressure", "pressure in the plane of symmetry, of a field with a volume",
+         &C::symmetry_view, &C::in_volume},
+        {"speed-symmetry", "velocity", "speed in the plane of symmetry, of a field with a volume", &C::symmetry_view,
+         &C::in_volume},
+        {"streamlines-gap", "velocity", "streamlines in the gap under the base, of a field with a volume", &C::gap_view,
+         &C::in_gap},
+        {"pressure-plane", "pressure", "pressure of a two-dimensional case", &C::plane_view, &C::in_plane},
+        {"speed-plane", "velocity", "speed of a two-dimensional case", &C::plane_view, &C::in_plane},
     };
     return all;
 }
@@ -53,6 +59,14 @@ std::string array_of_view(const std::string& name) {
         }
     }
     return {};
+}
+
+std::vector<ViewKind> view_kinds() {
+    std::vector<ViewKind> all;
+    for (const auto& kind : ViewComposer::kinds()) {
+        all.push_back({kind.name, view_unit(kind.array), kind.meaning});
+    }
+    return all;
 }
 
 std::vector<RangeKey> range_keys() {

@@ -67,12 +67,14 @@ private:
     struct Kind {
         const char* name;
         const char* array;
+        const char* meaning;
         ComposedView (ViewComposer::*compose)(const std::string& array) const;
         bool (ViewComposer::*possible)(const std::string& array) const;
     };
     static const std::vector<Kind>& kinds();
     static std::vector<std::string> keys_of_ranges();
     friend std::vector<RangeKey> range_keys();
+    friend std::vector<ViewKind> view_kinds();
     friend std::string array_of_view(const std::string& name);
 
     [[nodiscard]] bool on_underbody(const std::string& array) const;

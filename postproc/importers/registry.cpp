@@ -1,27 +1,36 @@
 // The list of formats. A new one is one file beside this and one line here; the most specific come first.
 #include "postproc/importers/importer.h"
 
-#define UNDERBODY_IMPORTERS(X) \
-    X(cfd_post_csv) \
-    X(fluent_legacy) \
-    X(fluent_hdf5) \
-    X(fluent_ascii) \
-    X(ensight) \
-    X(cgns) \
-    X(vtk_xml) \
-    X(vtk_legacy) \
-    X(openfoam) \
-    X(tecplot) \
-    X(surface_file)
+#define UNDERBODY_IMPORTERS(X)                                                        \
+    X(cfd_post_csv, ".csv exported by CFD-Post or CFX, blocks [Name] [Data] [Faces]") \
+    X(fluent_legacy, ".cas, .dat, .msh of Fluent, also .gz, ASCII or binary")         \
+    X(fluent_hdf5, ".cas.h5, .dat.h5, .msh.h5 of Fluent")                             \
+    X(fluent_ascii, "text that Fluent exports: nodenumber or cellnumber and columns") \
+    X(ensight, ".case or .encas of EnSight Gold with its .geo and variables")         \
+    X(cgns, ".cgns of CFX, Fluent, ICEM and others, ADF or HDF5")                     \
+    X(vtk_xml, ".vtu, .vtp, .vtm and other XML files of VTK")                         \
+    X(vtk_legacy, ".vtk")                                                             \
+    X(openfoam, "the folder of an OpenFOAM case")                                     \
+    X(tecplot, ".dat, .plt of Tecplot, ASCII")                                        \
+    X(surface_file, ".stl, .obj, .ply: surfaces without values")
 
 namespace underbody::postproc {
 
-#define UNDERBODY_DECLARE(name) Importer name##_importer();
+#define UNDERBODY_DECLARE(name, files) Importer name##_importer();
 UNDERBODY_IMPORTERS(UNDERBODY_DECLARE)
 #undef UNDERBODY_DECLARE
 
+namespace {
+
+Importer described(Importer importer, const char* files) {
+    importer.files = files;
+    return importer;
+}
+
+}  // namespace
+
 const std::vector<Importer>& importers() {
-#define UNDERBODY_LIST(name) name##_importer(),
+#define UNDERBODY_LIST(name, files) described(name##_importer(), files),
     static const std::vector<Importer> all = {UNDERBODY_IMPORTERS(UNDERBODY_LIST)};
 #undef UNDERBODY_LIST
     return all;

@@ -10,25 +10,27 @@ namespace underbody::studio {
 class Shell;
 
 #define UNDERBODY_COMMANDS(X) \
-    X(body) \
-    X(info) \
-    X(import) \
-    X(loads) \
-    X(views) \
-    X(probe) \
-    X(discover) \
-    X(simulate) \
-    X(predict) \
-    X(region) \
-    X(table) \
-    X(export) \
-    X(study) \
-    X(solve) \
-    X(sweep) \
-    X(learn) \
-    X(estimate) \
-    X(control) \
-    X(linear)
+    X(body)                   \
+    X(info)                   \
+    X(import)                 \
+    X(loads)                  \
+    X(views)                  \
+    X(probe)                  \
+    X(discover)               \
+    X(simulate)               \
+    X(predict)                \
+    X(region)                 \
+    X(table)                  \
+    X(export)                 \
+    X(study)                  \
+    X(solve)                  \
+    X(sweep)                  \
+    X(learn)                  \
+    X(estimate)               \
+    X(control)                \
+    X(linear)                 \
+    X(new)                    \
+    X(list)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

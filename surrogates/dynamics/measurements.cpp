@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "core/toml.h"
 #include "core/units.h"
+#include "surrogates/dynamics/file_formats.h"
 
 namespace underbody::dynamics {
 
@@ -133,7 +134,7 @@ Measurements read_measurements(const std::filesystem::path& folder) {
                                    "a data set is a folder with dataset.toml, which names its runs");
         }
     }
-    const core::TomlTable root = core::read_toml(file);
+    const core::TomlTable root = core::read_toml(file, dataset_format());
     Measurements data;
     data.folder = file.parent_path();
     data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady

@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/dynamics/file_formats.h"
 #include "surrogates/dynamics/mixed_drag.h"
 #include "surrogates/dynamics/model_items.h"
 
@@ -354,13 +355,13 @@ Vector3 Vehicle::base_centre() const {
 ContactLaw::ContactLaw() : gap(not_given) {}
 
 Model read_model_text(std::string_view text, const std::string& source, const std::filesystem::path& folder) {
-    Model model = read(core::read_toml_text(text, source, folder), text);
+    Model model = read(core::read_toml_text(text, source, folder, model_format()), text);
     model.name = source;
     return model;
 }
 
 Model read_model(const std::filesystem::path& file) {
-    Model model = read(core::read_toml(file), core::read_file(file));
+    Model model = read(core::read_toml(file, model_format()), core::read_file(file));
     model.name = file.string();
     model.file = file;
     return model;

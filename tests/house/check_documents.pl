@@ -64,7 +64,7 @@ for my $page (@pages) {
 }
 
 for my $file (@files) {
-    next if $file eq 'tests/house/check_documents.pl';
+    next if $file eq "tests/house/check_documents.pl" || $file eq "docs/mkdocs.yml";  # mkdocs checks its own
     my $text = slurp($file);
     while ($text =~ m{(?<![\w/.])(docs/[\w./-]+\.(?:md|csv|svg|png|1))((?:,? (?://+ ?)?sections? [\d., and]+\d)?)}g) {
         my ($path, $cited) = ($1, $2);
