@@ -6,7 +6,7 @@
 
 namespace underbody::cases {
 
-namespace {
+namespace study_keys {
 
 using core::FileKey;
 using core::FileTable;
@@ -179,13 +179,14 @@ std::vector<FileTable> checks() {
             selection("picture[]")};
 }
 
-}  // namespace
+}  // namespace study_keys
 
 const core::FileFormat& study_format() {
     static const core::FileFormat format = [] {
         core::FileFormat made{"study", "study.toml", "a folder of cases that becomes one report", {}};
-        made.tables = {top(), frame(), reference()};
-        for (const auto& group : {inputs(), sweep(), results(), checks()}) {
+        made.tables = {study_keys::top(), study_keys::frame(), study_keys::reference()};
+        for (const auto& group :
+             {study_keys::inputs(), study_keys::sweep(), study_keys::results(), study_keys::checks()}) {
             made.tables.insert(made.tables.end(), group.begin(), group.end());
         }
         return made;

@@ -28,7 +28,7 @@ std::string without_numbers(std::string_view place) {
 }
 
 /// How many parts of the described path are "*" when the place fits it; -1 when it does not fit.
-int fit(std::string_view described, std::string_view place) {
+int fit_of_place(std::string_view described, std::string_view place) {
     const auto wanted = split(described, '.'), found = split(place, '.');
     if (wanted.size() != found.size()) {
         return -1;
@@ -42,10 +42,6 @@ int fit(std::string_view described, std::string_view place) {
         }
     }
     return any;
-}
-
-std::string below(std::string_view place, std::string_view name) {
-    return place.empty() ? std::string(name) : std::string(place) + "." + std::string(name);
 }
 
 /// The name of the table just below `place` on the way to `path`; empty when the path does not lead through it.
@@ -71,7 +67,7 @@ const FileTable* FileFormat::table(std::string_view place) const {
     const FileTable* best = nullptr;
     int fewest = 0;
     for (const FileTable& candidate : tables) {
-        const int any = fit(candidate.path, plain);
+        const int any = fit_of_place(candidate.path, plain);
         if (any >= 0 && (best == nullptr || any < fewest)) {
             best = &candidate;
             fewest = any;
@@ -179,7 +175,12 @@ void write_table(std::string& out, const FileFormat& format, const FileTable& ta
     }
 }
 
-std::string cell(std::string text) {
+std::string sentence(std::string text) {
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
+}
+
+std::string markdown_cell(std::string text) {
     for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) {
         text.insert(at, "\\");
     }
@@ -206,16 +207,18 @@ std::string markdown_keys(const FileFormat& format) {
     for (const FileTable& table : format.tables) {
         out += (out.empty() ? "" : "\n");
         const std::string heading = table.path.empty() ? "Top of the file" : "`" + heading_of(table.path) + "`";
-        out += "### " + heading + "\n\n" + table.meaning +
-               (table.required && !table.path.empty() ? " (required)" : "") +
-               ".\n\n| key | unit or kind | default | meaning | example |\n|---|---|---|---|---|\n";
+        out += "### " + heading + "\n\n" + sentence(table.meaning) +
+               (table.required && !table.path.empty() ? " (required)." : ".") +
+               (table.one_line.empty() ? "" : " On one line: `" + table.one_line + "`.") +
+               "\n\n| key | unit or kind | default | meaning | example |\n|---|---|---|---|---|\n";
         for (const FileKey& key : table.keys) {
-            const std::string standing = key.required()            ? "required"
-                                         : !key.instead_of.empty() ? "in place of `" + key.instead_of + "`"
-                                         : key.fallback.empty()    ? ""
-                                                                   : key.fallback;
-            out += "| " + (key.name == "*" ? std::string("any") : "`" + key.name + "`") + " | " + cell(key.kind) +
-                   " | " + cell(standing) + " | " + cell(key.meaning) + " | `" + cell(key.example) + "` |\n";
+            std::string standing = key.required() ? "required" : key.fallback;
+            if (!key.instead_of.empty()) {
+                standing += (standing.empty() ? "in place of `" : "; in place of `") + key.instead_of + "`";
+            }
+            out += "| " + (key.name == "*" ? std::string("any") : "`" + key.name + "`") + " | " +
+                   markdown_cell(key.kind) + " | " + markdown_cell(standing) + " | " + markdown_cell(key.meaning) +
+                   " | `" + markdown_cell(key.example) + "` |\n";
         }
     }
     return out;

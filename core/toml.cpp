@@ -63,7 +63,7 @@ double number_of(const toml::node& node, std::string_view unit, const std::strin
                      "write " + path + " = \"1 " + std::string(unit) + "\"");
 }
 
-std::string below(const std::string& path, std::string_view key) {
+std::string key_path(const std::string& path, std::string_view key) {
     return key.empty() ? path : path.empty() ? std::string(key) : path + "." + std::string(key);
 }
 
@@ -76,7 +76,7 @@ void expect_described(const FileFormat* format, const std::string& path, std::st
     const bool fits = entry != nullptr && (entry->name == "*" || entry->kind.find(kind) != std::string::npos ||
                                            entry->kind.find("unit") != std::string::npos);
     if (kind.empty() ? !format->knows(path, key) : !fits) {
-        throw std::logic_error("the format '" + format->name + "' does not describe " + below(path, key) +
+        throw std::logic_error("the format '" + format->name + "' does not describe " + key_path(path, key) +
                                (kind.empty() ? "" : " as " + std::string(kind)));
     }
 }
@@ -94,6 +94,24 @@ std::string how_to_add(const FileFormat* format, const std::string& path, std::s
            (heading.empty() ? "" : " under " + heading) + (described ? " (" + entry->meaning + ")" : "");
 }
 
+/// The same of a table: its heading and its required keys, or its line.
+std::string how_to_add_table(const FileFormat* format, const std::string& parent, const std::string& path) {
+    const FileTable* described = format != nullptr ? format->table(path) : nullptr;
+    if (described == nullptr) {
+        return {};
+    }
+    if (!described->one_line.empty()) {
+        return "add " + described->one_line + (parent.empty() ? "" : " under " + heading_of(parent));
+    }
+    std::string lines;
+    for (const FileKey& entry : described->keys) {
+        if (entry.required()) {
+            lines += (lines.empty() ? ": " : ", ") + entry.name + " = " + entry.example;
+        }
+    }
+    return "add " + heading_of(path) + (lines.empty() ? "" : " and its keys") + lines;
+}
+
 }  // namespace
 
 TomlTable::TomlTable(std::shared_ptr<Shared> shared, const void* node, std::string path)
@@ -105,7 +123,7 @@ const void* TomlTable::value(std::string_view key) const {
     return as_table(node_).get(key);
 }
 
-std::string TomlTable::path_of(std::string_view key) const { return below(path_, key); }
+std::string TomlTable::path_of(std::string_view key) const { return key_path(path_, key); }
 
 Place TomlTable::place(std::string_view key) const {
     const toml::table& table = as_table(node_);
@@ -241,17 +259,8 @@ std::int64_t TomlTable::integer_or(std::string_view key, std::int64_t fallback) 
 TomlTable TomlTable::table(std::string_view key) const {
     const auto* node = static_cast<const toml::node*>(value(key));
     if (node == nullptr) {
-        std::string lines;
-        const FileTable* described = shared_->format != nullptr ? shared_->format->table(path_of(key)) : nullptr;
-        for (const FileKey& entry : described != nullptr ? described->keys : std::vector<FileKey>{}) {
-            if (entry.required()) {
-                lines += (lines.empty() ? ": " : ", ") + entry.name + " = " + entry.example;
-            }
-        }
         throw InputError("missing", "the table [" + path_of(key) + "] is missing", place(),
-                         described != nullptr
-                             ? "add [" + path_of(key) + "]" + (lines.empty() ? "" : " and its keys") + lines
-                             : std::string());
+                         how_to_add_table(shared_->format, path_, path_of(key)));
     }
     if (const auto* table = node->as_table()) {
         return {shared_, table, path_of(key)};
@@ -371,7 +380,7 @@ void check_names(const TomlTable& table, const toml::table& node, const FileForm
                              did_you_mean(name, format.names(table.path_of({}))));
         }
         const std::string path = table.path_of(name);
-        if (node.get(name)->is_table() && format.table(path) != nullptr) {
+        if (node.get(name)->is_table() && (format.takes_any_name(path) || !format.names(path).empty())) {
             check_names(table.table(name), *node.get_as<toml::table>(name), format);
         }
         if (const auto* array = node.get_as<toml::array>(name); array != nullptr && array->is_array_of_tables()) {

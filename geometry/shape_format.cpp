@@ -5,7 +5,7 @@
 
 namespace underbody::geometry {
 
-namespace {
+namespace shape_keys {
 
 std::string millimetres(double metres) { return core::format_number(metres * 1e3, 6) + " mm"; }
 
@@ -83,16 +83,16 @@ std::vector<core::FileTable> variation() {
               {"offset", "the unit of the key", "\"0 mm\"", "0", "offset"}}}};
 }
 
-}  // namespace
+}  // namespace shape_keys
 
 const core::FileFormat& shape_format() {
     static const core::FileFormat format = [] {
         core::FileFormat made{"shape", "SHAPE.toml", "a body: an ellipsoid with a flat base", {}};
-        made.tables = {body(), protrusion(), nozzle()};
-        for (auto& table : loading()) {
+        made.tables = {shape_keys::body(), shape_keys::protrusion(), shape_keys::nozzle()};
+        for (auto& table : shape_keys::loading()) {
             made.tables.push_back(std::move(table));
         }
-        for (auto& table : variation()) {
+        for (auto& table : shape_keys::variation()) {
             made.tables.push_back(std::move(table));
         }
         return made;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "postproc/field.h"
+#include "postproc/lists.h"
 #include "postproc/vehicle_axes.h"
 #include "postproc/view_parts.h"
 #include "postproc/views.h"

@@ -117,14 +117,6 @@ std::vector<RangeKey> range_keys();
 /// Throws core::InputError when the field has nothing of these.
 std::vector<View> views(const Field& field, const ViewOptions& options = {}, core::Progress& progress = core::Progress::none());
 
-/// A kind of view, whatever the field: `possible_views` says which of them a field allows.
-struct ViewKind {
-    std::string name;
-    std::string unit;  ///< SI, of what its colours show
-    std::string meaning;
-};
-std::vector<ViewKind> view_kinds();
-
 /// Names that `views` can make of this field.
 std::vector<std::string> possible_views(const Field& field, const ViewOptions& options = {});
 

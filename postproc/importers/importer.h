@@ -14,7 +14,6 @@ struct Importer {
     /// True if the first bytes (at most 64 KiB) and the name are of this format. Content decides; the ending is a hint.
     bool (*recognises)(std::string_view head, const std::filesystem::path& path);
     Field (*read)(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress);
-    std::string files = {};  ///< what its files are called, for lists; set by the registry
 };
 
 /// All importers, most specific first.

@@ -1,5 +1,6 @@
 // The list of formats. A new one is one file beside this and one line here; the most specific come first.
 #include "postproc/importers/importer.h"
+#include "postproc/lists.h"
 
 #define UNDERBODY_IMPORTERS(X)                                                        \
     X(cfd_post_csv, ".csv exported by CFD-Post or CFX, blocks [Name] [Data] [Faces]") \
@@ -20,19 +21,17 @@ namespace underbody::postproc {
 UNDERBODY_IMPORTERS(UNDERBODY_DECLARE)
 #undef UNDERBODY_DECLARE
 
-namespace {
-
-Importer described(Importer importer, const char* files) {
-    importer.files = files;
-    return importer;
-}
-
-}  // namespace
-
 const std::vector<Importer>& importers() {
-#define UNDERBODY_LIST(name, files) described(name##_importer(), files),
+#define UNDERBODY_LIST(name, files) name##_importer(),
     static const std::vector<Importer> all = {UNDERBODY_IMPORTERS(UNDERBODY_LIST)};
 #undef UNDERBODY_LIST
+    return all;
+}
+
+const std::vector<CfdFormat>& cfd_formats() {
+#define UNDERBODY_DESCRIBE(name, files) {name##_importer().format, files},
+    static const std::vector<CfdFormat> all = {UNDERBODY_IMPORTERS(UNDERBODY_DESCRIBE)};
+#undef UNDERBODY_DESCRIBE
     return all;
 }
 

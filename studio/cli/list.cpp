@@ -9,8 +9,7 @@
 #include "cases/file_templates.h"
 #include "core/file_format.h"
 #include "core/units.h"
-#include "postproc/importers/importer.h"
-#include "postproc/views.h"
+#include "postproc/lists.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "surrogates/dynamics/effects/effect.h"
@@ -18,7 +17,7 @@
 
 namespace underbody::studio {
 
-namespace {
+namespace lists {
 
 /// What every list has: a name, a unit (may be empty), what it means; `more` goes into the JSON only.
 struct Row {
@@ -77,8 +76,8 @@ Rows views() {
 
 Rows formats() {
     Rows rows;
-    for (const auto& importer : postproc::importers()) {
-        rows.push_back({importer.format, "", importer.files});
+    for (const auto& format : postproc::cfd_formats()) {
+        rows.push_back({format.name, "", format.files});
     }
     return rows;
 }
@@ -149,7 +148,7 @@ void add_list(CLI::App& command, Shell& shell, const std::string& what, const st
     });
 }
 
-}  // namespace
+}  // namespace lists
 
 void add_list_command(CLI::App& app, Shell& shell) {
     auto* command = app.add_subcommand(
@@ -161,16 +160,17 @@ void add_list_command(CLI::App& app, Shell& shell) {
         "  underbody list effects --json        what a model may lack, with formula and parameters\n"
         "  underbody list keys study            every key of study.toml with unit and default\n"
         "  underbody new study                  the same as a file to begin with");
-    add_list(*command, shell, "quantities", "names of quantities in files, options and JSON", quantities);
-    add_list(*command, shell, "effects", "effects that a model may have or lack, with their parameters", effects);
-    add_list(*command, shell, "views", "pictures of a field", views);
-    add_list(*command, shell, "formats", "CFD files that are read", formats);
-    add_list(*command, shell, "exports", "formats of force tables for controllers", exports);
+    lists::add_list(*command, shell, "quantities", "names of quantities in files, options and JSON", lists::quantities);
+    lists::add_list(*command, shell, "effects", "effects that a model may have or lack, with their parameters",
+                    lists::effects);
+    lists::add_list(*command, shell, "views", "pictures of a field", lists::views);
+    lists::add_list(*command, shell, "formats", "CFD files that are read", lists::formats);
+    lists::add_list(*command, shell, "exports", "formats of force tables for controllers", lists::exports);
     auto* sub = command->add_subcommand("keys", "keys of a file that you write: shape, study, model, dataset");
     auto format = std::make_shared<std::string>();
     sub->add_option("format", *format, "shape, study, model or dataset")->required();
     shell.on(sub, [&shell, format] {
-        show(shell, "keys", keys(cases::file_format(*format)));
+        lists::show(shell, "keys", lists::keys(cases::file_format(*format)));
         return static_cast<int>(done);
     });
 }

@@ -9,7 +9,7 @@
 
 namespace underbody::dynamics {
 
-namespace {
+namespace file_keys {
 
 std::string joined(const std::vector<std::string>& words) {
     std::string text;
@@ -184,29 +184,31 @@ core::FileTable held_conditions(const std::string& path, const std::string& mean
               "a state or condition by its name: speed, jet_voltage, temperature"}}};
 }
 
-}  // namespace
+}  // namespace file_keys
 
 const core::FileFormat& model_format() {
     static const core::FileFormat format = [] {
         core::FileFormat made{"model", "model.toml", "a vehicle over the ground", {}};
         made.tables.push_back(
             {"", "What stands before the first table", {{"title", "text", "\"EVIE\"", "none", "for people"}}});
-        made.tables.push_back(vehicle());
-        made.tables.push_back(items_of("environment", "the water"));
-        made.tables.push_back(held_conditions("conditions", "conditions that hold where nothing else is said"));
+        made.tables.push_back(file_keys::vehicle());
+        made.tables.push_back(file_keys::items_of("environment", "the water"));
+        made.tables.push_back(
+            file_keys::held_conditions("conditions", "conditions that hold where nothing else is said"));
         for (const char* direction : {"heave", "surge", "sway", "pitch", "yaw"}) {
-            made.tables.push_back(drag(direction));
+            made.tables.push_back(file_keys::drag(direction));
         }
-        made.tables.push_back(items_of("contact", "contact with the ground"));
-        core::FileTable coupling = items_of("coupling", "how passive and jet-induced ground effect act together");
+        made.tables.push_back(file_keys::items_of("contact", "contact with the ground"));
+        core::FileTable coupling =
+            file_keys::items_of("coupling", "how passive and jet-induced ground effect act together");
         coupling.keys.insert(coupling.keys.begin(), {"law", "sum | sheltered", "\"sum\"", "sum",
                                                      "both as if alone, or the jet's part weakened by cross-flow"});
         made.tables.push_back(std::move(coupling));
-        for (auto& table : forces()) {
+        for (auto& table : file_keys::forces()) {
             made.tables.push_back(std::move(table));
         }
-        made.tables.push_back(jet());
-        for (auto& table : effect_tables()) {
+        made.tables.push_back(file_keys::jet());
+        for (auto& table : file_keys::effect_tables()) {
             made.tables.push_back(std::move(table));
         }
         made.tables.push_back(
@@ -231,14 +233,15 @@ const core::FileFormat& dataset_format() {
             {"noise",
              "one standard deviation of each sensor; left out, it is estimated from the data",
              {{"*", "the unit of the quantity", "gap = \"0.2 mm\"", "", "a measured quantity by its name"}}});
-        made.tables.push_back(held_conditions("conditions", "conditions of all runs"));
+        made.tables.push_back(file_keys::held_conditions("conditions", "conditions of all runs"));
         made.tables.push_back({"run[]",
                                "one file of measurements",
                                {{"file", "file", "\"run-01.csv\"", "", "CSV table, relative to this file"},
                                 {"use", "train | test", "\"test\"", "the program splits by whole runs and says how",
                                  "what the run is for"}},
                                true});
-        core::FileTable own = held_conditions("run[].conditions", "conditions of this run, over those of all");
+        core::FileTable own =
+            file_keys::held_conditions("run[].conditions", "conditions of this run, over those of all");
         own.one_line = "conditions = { jet_voltage = \"10 V\" }";
         made.tables.push_back(std::move(own));
         return made;

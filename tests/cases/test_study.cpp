@@ -47,7 +47,8 @@ TEST_F(StudyFolder, TakesConditionsFromNamesAndFromTheCase) {
 TEST_F(StudyFolder, IsRefusedWithPlaceAndHint) {
     put("fields/a-h5.csv", "x");
     const std::string head = "title = \"t\"\n[[case]]\nfiles = \"fields/{variant}-h{gap:mm}.csv\"\n";
-    EXPECT_THAT(refused("titel = \"t\"\n").what(), HasSubstr("'title' is missing"));
+    EXPECT_THAT(refused("titel = \"t\"\n").what(), HasSubstr("did you mean 'title'"));
+    EXPECT_THAT(refused("summary = \"t\"\n").what(), HasSubstr("'title' is missing"));
     EXPECT_THAT(refused(head + "[[regoin]]\nname = \"r\"\n").hint(), HasSubstr("'region'"));
     EXPECT_THAT(refused("title = \"t\"\n[[case]]\nfiles = \"field/*.csv\"\n").message(), HasSubstr("no file fits"));
     EXPECT_THAT(refused(head + "[[case]]\nfiles = \"fields/*.csv\"\n").message(), HasSubstr("occurs twice"));

@@ -103,7 +103,8 @@ std::string document(const FileFormat& format, const FileTable& of, const FileKe
         const std::string instead = here && key != nullptr && !left_out ? key->instead_of : "";
         const bool optional_part = !table.one_line.empty() && !table.required && !here;
         const bool empty_part =
-            !here && std::none_of(table.keys.begin(), table.keys.end(), [](const FileKey& k) { return k.required(); });
+            !here && !table.required &&
+            std::none_of(table.keys.begin(), table.keys.end(), [](const FileKey& k) { return k.required(); });
         if (optional_part || empty_part || table.path == "vary[]" || table.path == "tie[]" ||
             (table.path == "effect[].*" && !here)) {
             if (!(here && (table.path == "vary[]" || table.path == "tie[]")) &&
@@ -126,6 +127,9 @@ std::string document(const FileFormat& format, const FileTable& of, const FileKe
         // What the reader wants beside.
         if (table.path == "sweep" && !(here && key != nullptr && key->name == "speed")) {
             text += "speed = \"0.5 m/s\"\n";
+        }
+        if (here && key != nullptr && (key->name == "base_length" || key->name == "base_width")) {
+            text += "base = \"rectangle\"\n";
         }
         if (table.path == "mesh_uncertainty[].cells") {
             text += "coarse = 57280\n" + std::string(here ? "" : "fine = 374400\n");
@@ -209,7 +213,7 @@ TEST(KeysOfModel, OfSomeEffectsAreRead) {
     for (const std::string& effect :
          {std::string("name = \"declared_parameter\"\nparameter = \"vehicle.mass\"\nvalue = \"2.1 kg\"\n"),
           std::string("name = \"unknown\"\ntable = \"lift.csv\"\n"),
-          std::string("name = \"force_bias\"\nquantity = \"lift_force\"\nvalue = \"0.01 N\"\n")}) {
+          std::string("name = \"force_bias\"\nquantity = \"lift_force\"\nbias = \"0.01 N\"\n")}) {
         core::write_file(folder / "model.toml", start + effect);
         EXPECT_NO_THROW((void)dynamics::read_model(folder / "model.toml")) << effect;
     }
