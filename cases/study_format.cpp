@@ -109,6 +109,16 @@ std::vector<FileTable> sweep() {
                "halvings of that cell at the body"},
               {"layers", "whole number", "3", std::to_string(usual.layers), "layers of cells on the walls"},
               {"iterations", "whole number", "400", std::to_string(usual.iterations), "iterations of the solver"}}},
+            {"sweep.slurm",
+             "what Slurm is asked for; options of the command line count over it",
+             {{"partition", "text", "\"short\"", "the site's", "partition, as sbatch takes it"},
+              {"time", "text", "\"02:00:00\"", "the site's", "limit of a case"},
+              {"memory", "text", "\"4G\"", "the site's", "memory of a case"},
+              {"account", "text", "\"ground-effect\"", "the site's", "account, as sbatch takes it"},
+              {"throttle", "whole number", "8", "0 (no limit)", "cases at a time"},
+              {"max_array", "whole number", "1000", "0 (what scontrol says, else 1000)",
+               "cases in one job array; more make several"},
+              {"options", "list of texts", "[\"--nice=100\"]", "none", "further options of sbatch"}}},
             conditions("sweep.conditions", "further conditions of these cases", "conditions = { mesh = \"coarse\" }")};
 }
 
@@ -131,6 +141,10 @@ std::vector<FileTable> results() {
          {name_key("\"lift\""),
           {"quantity", loads_in_words(), "\"lift_force\"", "", "the load"},
           {"axes", "list of texts", "[\"gap\"]", "", "conditions that are its axes"},
+          {"fit", "automatic | interpolation | gaussian_process | spline", "\"automatic\"", "automatic",
+           "how values between the points are found, here, in its exports and in maps"},
+          {"speed_exponent", "1", "2", "2",
+           "of the force in a [[region]] where `where` holds the speed: (speed / that speed)^exponent"},
           {"relative_sigma", "1", "0.02", "0", "standard deviation of each value as a share of it, added in squares"},
           {"mesh_uncertainty", "text", "\"5 mm\"", "none",
            "name of the [[mesh_uncertainty]] whose error all points carry"},

@@ -212,6 +212,15 @@ const core::FileFormat& model_format() {
             made.tables.push_back(std::move(table));
         }
         made.tables.push_back(
+            {"records",
+             "how logs of this vehicle are read where they say something else than what acted; a discovery writes it",
+             {{"input_force_between", "held | linear", "\"linear\"", "what fits the data better",
+               "what the input did between its samples"},
+              {"input_force_factor", "1", "-1", "1",
+               "input that acted over the logged one: -1 for a sign turned round"},
+              {"input_force_advance", "s", "\"0.1 s\"", "0", "the logged input comes so long after it acted"},
+              {"heave_velocity_factor", "1", "-1", "1", "heave velocity over the logged one"}}});
+        made.tables.push_back(
             {"lineage",
              "what a written model was made of",
              {{"made_from", "list of texts", "[\"model.toml\"]", "none", "files and what was done"}}});
