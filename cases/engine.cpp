@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cases/claim.h"
 #include "cases/code_version.h"
 #include "core/file.h"
 #include "core/hash.h"
@@ -13,51 +14,173 @@ namespace underbody::cases {
 namespace fs = std::filesystem;
 
 Key::Key(const std::string& kind, const std::vector<std::string>& rooms) {
-    add(kind).add(code_versions().at("core"));
+    options_.emplace_back("kind", kind);
+    for (const char* room : {"core", "cases"}) {
+        code_.emplace_back(room, code_versions().at(room));
+    }
     for (const auto& room : rooms) {
-        add(code_versions().at(room));
+        code_.emplace_back(room, code_versions().at(room));
     }
 }
 
-Key& Key::add(const std::string& part) {
-    parts_ += std::to_string(part.size()) + ":" + part;
+Key& Key::add(const std::string& label, const std::string& value) {
+    options_.emplace_back(label, value);
     return *this;
 }
 
-Key& Key::add(double part) { return add(core::format_number(part)); }
+Key& Key::add(const std::string& label, double value) { return add(label, core::format_number(value)); }
 
-Key& Key::add(const Conditions& conditions) {
+Key& Key::add(const std::string& label, const Conditions& conditions) {
     for (const auto& [name, value] : conditions.numbers) {
-        add(name).add(value);
+        add(label + "." + name, value);
     }
     for (const auto& [name, value] : conditions.texts) {
-        add(name).add(value);
+        add(label + "." + name, value);
     }
     return *this;
 }
 
-std::string Key::digest() const { return core::content_hash(parts_); }
+Key& Key::from(const Made& made) {
+    through(made.kind, made.name);
+    return add("made of " + made.kind + " '" + made.name + "'", made.identity);
+}
+
+Key& Key::through(const std::string& kind, const std::string& name) {
+    from_.emplace_back(kind, name);
+    return *this;
+}
+
+std::string Key::digest() const {
+    core::Hasher hasher;
+    for (const auto* parts : {&code_, &options_}) {
+        for (const auto& [label, value] : *parts) {
+            hasher.add(label).add(value);
+        }
+        hasher.add("");
+    }
+    return hasher.digest();
+}
+
+std::string Key::about() const {
+    nlohmann::json about = {{"code", nlohmann::json::object()},
+                            {"options", nlohmann::json::object()},
+                            {"from", nlohmann::json::array()}};
+    for (const auto& [room, version] : code_) {
+        about["code"][room] = version;
+    }
+    for (const auto& [label, value] : options_) {
+        about["options"][label] = value;
+    }
+    for (const auto& [kind, name] : from_) {
+        about["from"].push_back({{"kind", kind}, {"name", name}});
+    }
+    return about.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 namespace {
+
 fs::path store_file(const Study& study, const RunOptions& options) {
     return options.store.empty() ? study.folder() / ".underbody" / "store.sqlite" : options.store;
 }
+
+std::shared_ptr<Store> open_store(const Study& study, const RunOptions& options, Engine::Mode mode) {
+    const fs::path file = store_file(study, options);
+    std::error_code error;
+    if (mode == Engine::Mode::look && !fs::exists(file, error)) {
+        return nullptr;
+    }
+    return std::make_shared<Store>(file, mode == Engine::Mode::look ? Store::Access::read : Store::Access::write);
+}
+
+std::string place_in_index(const std::string& kind, const std::string& name) { return kind + '\n' + name; }
+
 }  // namespace
 
-Engine::Engine(const Study& the_study, const RunOptions& the_options, core::Progress& the_progress)
-    : study(the_study), options(the_options), progress(the_progress), store_(store_file(the_study, the_options)) {}
+Engine::Engine(const Study& the_study, const RunOptions& the_options, Mode the_mode, core::Progress& the_progress)
+    : study(the_study),
+      options(the_options),
+      mode(the_mode),
+      progress(the_progress),
+      store_(open_store(the_study, the_options, the_mode)),
+      states_(the_study.folder(), store_ ? store_->file_hashes() : Store::FileHashes()) {
+    if (!store_) {
+        return;
+    }
+    for (auto& result : store_->results()) {
+        auto& same = index_[place_in_index(result.kind, result.name)];
+        same.insert(same.begin(), std::move(result));
+    }
+    tell_version();
+}
 
-std::optional<std::string> Engine::make(const std::string& kind, const std::string& name, const Key& key,
-                                        const std::function<std::string()>& work) {
+void Engine::tell_version() {
+    if (store_->found_version() == 1) {
+        results.notes.push_back(
+            "the store was written by Underbody 0.1.0, whose results do not record every file that they rest on: they are "
+            "computed again, once; nothing in it is deleted");
+    }
+}
+
+bool Engine::is_true(const StoredResult& result) {
+    return std::all_of(result.inputs.begin(), result.inputs.end(), [this](const StoredInput& input) { return states_.still(input); });
+}
+
+std::optional<StoredResult> Engine::known(const std::string& kind, const std::string& name, const std::string& digest) {
+    const auto found = index_.find(place_in_index(kind, name));
+    if (found != index_.end()) {
+        for (const auto& result : found->second) {
+            if (result.key == digest && is_true(result)) {
+                return result;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+StoredResult Engine::make_now(const std::string& kind, const std::string& name, const std::string& digest, const Key& key,
+                              const std::function<Value()>& work) {
+    core::InputRecord read([this](const core::Input& input) { return states_.state_of(input); });
+    std::optional<Value> value;
+    {
+        const core::RecordInputs scope(read);
+        value = work();
+    }
+    StoredResult result;
+    result.kind = kind;
+    result.name = name;
+    result.key = digest;
+    result.summary = std::move(value->summary);
+    for (auto& [input, state] : read.entries()) {
+        result.inputs.push_back({input.kind, states_.stored_path(input.path), input.pattern, state});
+    }
+    result.id = store_->put(result, key.about(), value->bytes);
+    return result;
+}
+
+std::optional<Made> Engine::make(const std::string& kind, const std::string& name, const Key& key,
+                                 const std::function<Value()>& work, const std::string& shown,
+                                 StepResult* told) {
     progress.check();
-    StepResult step{kind, name, true, {}};
     const std::string digest = key.digest();
-    std::optional<std::string> value = store_.find(digest);
-    if (!value) {
-        step.reused = false;
+    std::optional<StoredResult> result = known(kind, name, digest);
+    StepResult step{kind, shown.empty() ? name : shown, StepState::unchanged, {}};
+    if (!result && mode == Mode::look) {
+        step.state = index_.contains(place_in_index(kind, name)) ? StepState::changed : StepState::missing;
+    } else if (!result) {
         try {
-            value = work();
-            store_.put(digest, kind, name, *value);
+            std::optional<Claim> claim;
+            if (store_->writable()) {
+                claim.emplace(store_->file(), kind, name, progress);
+            }
+            for (auto& candidate : store_->results(kind, name, digest)) {  // another run may have made it meanwhile
+                if (!result && is_true(candidate)) {
+                    result = std::move(candidate);
+                }
+            }
+            if (!result) {
+                step.state = StepState::computed;
+                result = make_now(kind, name, digest, key, work);
+            }
         } catch (const core::Cancelled&) {
             throw;
         } catch (const core::SystemError& error) {
@@ -68,26 +191,56 @@ std::optional<std::string> Engine::make(const std::string& kind, const std::stri
         } catch (const core::Error& error) {
             step.error = error.what();
         }
+        step.state = step.error.empty() ? step.state : StepState::failed;
     }
+    if (told != nullptr) {
+        *told = step;
+    }
+    record(std::move(step));
+    if (!result) {
+        return std::nullopt;
+    }
+    if (watcher_) {
+        const std::lock_guard lock(mutex_);
+        watcher_(shown.empty() ? name : shown, *result);
+    }
+    return Made{kind, name, result->id, result->identity(), std::move(result->summary)};
+}
+
+std::string Engine::value(const Made& made) {
+    auto bytes = store_->value(made.id);
+    if (!bytes) {
+        throw core::SystemError("store", made.kind + " '" + made.name + "' has left the store during this run: another run made it anew",
+                                {store_->file().string(), {}, {}, {}}, "run the study again");
+    }
+    return std::move(*bytes);
+}
+
+void Engine::record(StepResult step) {
     const std::lock_guard lock(mutex_);
-    ++(!step.error.empty() ? results.failed : step.reused ? results.reused : results.computed);
+    switch (step.state) {
+        case StepState::computed: ++results.computed; break;
+        case StepState::unchanged: ++results.reused; break;
+        case StepState::failed: ++results.failed; break;
+        case StepState::changed: ++results.changed; break;
+        case StepState::missing: ++results.missing; break;
+    }
     results.steps.push_back(std::move(step));
-    return value;
 }
 
 void Engine::figure(const std::string& name, const Key& key, const std::function<core::Figure()>& work) {
-    if (!options.renderer) {
+    if (!options.renderer && mode == Mode::compute) {
         return;
     }
-    Key with_renderer = Key("figure", {"studio/figures"});
-    with_renderer.add(key.digest()).add(name);
+    Key with_renderer = key;
+    with_renderer.add("drawn by studio/figures", code_versions().at("studio/figures"));
     // Captions travel with the picture: JSON head, then the PNG.
-    const auto value = make("figure", name, with_renderer, [&] {
+    const auto made = make("figure", name, with_renderer, [&] {
         const core::Figure figure = work();
         return nlohmann::json({{"title", figure.title}, {"caption", figure.caption}}).dump() + "\n" + options.renderer(figure);
     });
-    if (value) {
-        unpack("figure/" + name, *value);
+    if (made) {
+        unpack("figure/" + name, value(*made));
     }
 }
 
@@ -95,10 +248,8 @@ void Engine::picture(const std::string& kind, const std::string& name, const Key
     if (!options.pictures) {
         return;
     }
-    Key of_picture(kind, {"postproc"});
-    of_picture.add(key.digest()).add(name);
-    if (const auto value = make(kind, name, of_picture, work)) {
-        unpack(kind + "/" + name, *value);
+    if (const auto made = make(kind, name, key, work)) {
+        unpack(kind + "/" + name, value(*made));
     }
 }
 
@@ -109,35 +260,7 @@ void Engine::unpack(const std::string& name, const std::string& value) {
 }
 
 std::string Engine::hash_of(const fs::path& file) {
-    {
-        const std::lock_guard lock(mutex_);
-        const auto known = hashes_.find(file);
-        if (known != hashes_.end()) {
-            return known->second;
-        }
-    }
-    std::string hash = core::content_hash_of_file(file);
-    const std::lock_guard lock(mutex_);
-    return hashes_.emplace(file, std::move(hash)).first->second;
-}
-
-std::string Engine::hash_of_folder(const fs::path& folder) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::recursive_directory_iterator(folder, error)) {
-        if (entry.is_regular_file(error)) {
-            files.push_back(entry.path());
-        }
-    }
-    if (error) {
-        throw core::InputError("file", "cannot be read: " + error.message(), {folder.string(), {}, {}, {}});
-    }
-    std::sort(files.begin(), files.end());
-    core::Hasher hasher;
-    for (const auto& file : files) {
-        hasher.add(file.lexically_relative(folder).generic_string()).add(hash_of(file));
-    }
-    return hasher.digest();
+    return states_.state_of({core::Input::Kind::content, file, {}});
 }
 
 void Engine::add_document(const std::string& key, const std::string& json) {
@@ -151,9 +274,8 @@ void Engine::add_picture(const std::string& key, const std::string& png) {
 }
 
 void Engine::fail(const std::string& kind, const std::string& name, const std::string& what) {
-    const std::lock_guard lock(mutex_);
-    results.steps.push_back({kind, name, false, what});
-    ++results.failed;
+    const bool looking = mode == Mode::look;  // nothing was tried
+    record({kind, name, looking ? StepState::missing : StepState::failed, looking ? std::string() : what});
 }
 
 fs::path Engine::report_file() const {
@@ -173,64 +295,84 @@ void Engine::write_if_changed(const fs::path& file, const std::string& bytes) {
     core::write_file(file, bytes);
 }
 
-const std::string* StudyResults::document(const std::string& key) const {
-    for (const auto& [name, text] : documents) {
-        if (name == key) {
-            return &text;
-        }
+void Engine::remember_files() {
+    if (store_) {
+        store_->remember(states_.learned());
     }
-    return nullptr;
 }
 
-const std::string* StudyResults::picture(const std::string& key) const {
-    for (const auto& [name, bytes] : pictures) {
-        if (name == key) {
-            return &bytes;
+std::string digest_of(const core::Table& table) {
+    core::Hasher hasher;
+    for (const auto& column : table.columns()) {
+        hasher.add(column.name).add(column.unit);
+        for (const double value : column.numbers) {
+            hasher.add(value);
+        }
+        for (const auto& value : column.text) {
+            hasher.add(value);
         }
     }
-    return nullptr;
+    return hasher.digest();
 }
+
+namespace {
+
+struct Stage {
+    double at;
+    const char* what;
+    void (*run)(Engine&);
+};
+
+constexpr Stage stages[] = {
+    {0.00, "bodies", run_bodies},
+    {0.05, "loads", run_loads},
+    {0.25, "pictures", run_pictures},
+    {0.40, "mesh uncertainty", run_meshes},
+    {0.42, "verification", run_verifications},
+    {0.45, "force tables", run_tables},
+    {0.55, "comparison", run_comparisons},
+    {0.60, "stability maps", run_regions},
+    {0.75, "measurements", run_measurements},
+    {0.90, "thesis", run_thesis},
+};
+
+}  // namespace
 
 StudyResults run_study(const Study& study, const RunOptions& options, core::Progress& progress) {
-    Engine engine(study, options, progress);
-    struct Stage {
-        double at;
-        const char* what;
-        void (*run)(Engine&);
-    };
-    static constexpr Stage stages[] = {
-        {0.00, "bodies", run_bodies},          {0.05, "loads", run_loads},
-        {0.25, "pictures", run_pictures},      {0.40, "mesh uncertainty", run_meshes},
-        {0.42, "verification", run_verifications}, {0.45, "force tables", run_tables},
-        {0.55, "comparison", run_comparisons}, {0.60, "stability maps", run_regions},
-        {0.75, "measurements", run_measurements}, {0.90, "thesis", run_thesis},            {0.97, "report", write_report},
-    };
+    Engine engine(study, options, Engine::Mode::compute, progress);
     for (const auto& stage : stages) {
         progress.report(stage.at, stage.what);
         stage.run(engine);
     }
+    engine.remember_files();
+    if (options.write_report) {
+        progress.report(0.97, "report");
+        write_report(engine);
+    }
     progress.report(1, "done");
     engine.results.report = engine.report_file();
+    engine.results.store = engine.store();
     return std::move(engine.results);
 }
 
-void to_json(nlohmann::json& json, const StudyResults& results) {
-    json = {{"computed", results.computed}, {"reused", results.reused}, {"failed", results.failed}};
-    json["report"] = results.report.string();
-    json["steps"] = nlohmann::json::array();
-    for (const auto& step : results.steps) {
-        nlohmann::json entry = {{"kind", step.kind}, {"name", step.name}, {"reused", step.reused}};
-        if (!step.error.empty()) {
-            entry["error"] = step.error;
-        }
-        json["steps"].push_back(std::move(entry));
+void look_at_all(Engine& engine) {
+    for (const auto& stage : stages) {
+        stage.run(engine);
     }
-    json["results"] = nlohmann::json::object();
-    for (const auto& [key, text] : results.documents) {
-        if (!key.starts_with("figure/")) {
-            json["results"][key] = nlohmann::json::parse(text, nullptr, false);
-        }
-    }
+}
+
+StudyResults stored_results(const Study& study, const RunOptions& options) {
+    Engine engine(study, options, Engine::Mode::look, core::Progress::none());
+    look_at_all(engine);
+    engine.results.store = engine.store();
+    return std::move(engine.results);
+}
+
+StudyResults stored_loads(const Study& study, const RunOptions& options) {
+    Engine engine(study, options, Engine::Mode::look, core::Progress::none());
+    run_loads(engine);
+    engine.results.store = engine.store();
+    return std::move(engine.results);
 }
 
 }  // namespace underbody::cases

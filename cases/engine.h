@@ -1,58 +1,102 @@
-// Runs the steps of a study: what did not change comes out of the store.
+// Runs the steps of a study: what rests on nothing that changed comes out of the store.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "cases/file_states.h"
 #include "cases/store.h"
 #include "cases/study.h"
+#include "core/file.h"
+#include "core/inputs.h"
 
 namespace underbody::cases {
 
-/// What a step depends on; its digest is the key of its result.
+/// A result that a step has got, new or out of the store.
+struct Made {
+    std::string kind;
+    std::string name;
+    std::int64_t id = 0;   ///< in the store
+    std::string identity;  ///< StoredResult::identity
+    std::string summary;
+};
+
+/// What a result is made with besides files: options, conditions, code, other results. Files are noted when they are
+/// read (core/inputs.h).
 class Key {
 public:
-    /// `rooms`: whose code makes the result ("postproc", "surrogates/tables", ...); core is always in.
+    /// `rooms`: whose code makes the result ("postproc", "surrogates/tables", ...); core and cases are always in.
     Key(const std::string& kind, const std::vector<std::string>& rooms);
-    Key& add(const std::string& part);
-    Key& add(double part);
-    Key& add(const Conditions& conditions);
+    Key& add(const std::string& label, const std::string& value);
+    Key& add(const std::string& label, double value);
+    Key& add(const std::string& label, const Conditions& conditions);
+    /// It is made out of that result: another one, another key.
+    Key& from(const Made& made);
+    /// It is made out of that result, whose numbers stand among the options: where they are the same, the key is.
+    Key& through(const std::string& kind, const std::string& name);
     [[nodiscard]] std::string digest() const;
+    /// The same for people, as JSON: `code`, `options`, `from`.
+    [[nodiscard]] std::string about() const;
 
 private:
-    std::string parts_;
+    std::vector<std::pair<std::string, std::string>> code_;
+    std::vector<std::pair<std::string, std::string>> options_;
+    std::vector<std::pair<std::string, std::string>> from_;
+};
+
+/// What a piece of work gives.
+struct Value {
+    std::string bytes;
+    std::string summary;
+    Value(std::string all) : bytes(std::move(all)) {}  // NOLINT: a value without summary is a string
+    Value(std::string all, std::string brief) : bytes(std::move(all)), summary(std::move(brief)) {}
 };
 
 class Engine {
 public:
-    Engine(const Study& study, const RunOptions& options, core::Progress& progress);
+    enum class Mode {
+        compute,  ///< what is missing or no longer true is made
+        look,     ///< it is left out, and told to be
+    };
+    Engine(const Study& study, const RunOptions& options, Mode mode, core::Progress& progress);
 
     const Study& study;
     const RunOptions& options;
+    const Mode mode;
     core::Progress& progress;
     StudyResults results;
 
-    /// The value for the key: from the store, or made and put there. A failure (not a cancel) is recorded as a step
-    /// and gives nothing: the other steps go on.
-    std::optional<std::string> make(const std::string& kind, const std::string& name, const Key& key,
-                                    const std::function<std::string()>& work);
+    /// The result for the key whose inputs are as they were: from the store, or made and put there. A failure (not a cancel)
+    /// is recorded as a step (under the name `shown`, or its own) and gives nothing: the other steps go on. Two runs at once
+    /// do not make one result twice. `step`: also told here.
+    std::optional<Made> make(const std::string& kind, const std::string& name, const Key& key,
+                             const std::function<Value()>& work, const std::string& shown = {},
+                             StepResult* step = nullptr);
+    /// Its bytes, out of the store.
+    std::string value(const Made& made);
     /// A plot of the step, drawn when there is a renderer; kept under `figure/NAME`.
     void figure(const std::string& name, const Key& key, const std::function<core::Figure()>& work);
     /// A 3D picture: `work` gives one line of JSON ({"caption"}) and the PNG behind it. Nothing without RunOptions::pictures.
     void picture(const std::string& kind, const std::string& name, const Key& key, const std::function<std::string()>& work);
-    /// Hash of a file's content, read once a run.
-    std::string hash_of(const std::filesystem::path& file);
-    /// Hash over all regular files below a folder.
-    std::string hash_of_folder(const std::filesystem::path& folder);
 
     void add_document(const std::string& key, const std::string& json);
     void add_picture(const std::string& key, const std::string& png);
     /// Records a failure that no `make` covers.
     void fail(const std::string& kind, const std::string& name, const std::string& what);
+
+    /// Path of a file as results name it: relative to the study.
+    [[nodiscard]] std::string path_in_study(const std::filesystem::path& file) const { return states_.stored_path(file); }
+    /// Path of a file that results name so.
+    [[nodiscard]] std::filesystem::path path_of(const std::string& named) const { return states_.path_of(named); }
+    /// Hash of a file's content, "absent" when there is none.
+    std::string hash_of(const std::filesystem::path& file);
 
     /// Folder of the report: exports and models are written beside it.
     [[nodiscard]] std::filesystem::path report_folder() const;
@@ -60,15 +104,78 @@ public:
     /// Writes the file unless it holds these bytes already.
     static void write_if_changed(const std::filesystem::path& file, const std::string& bytes);
 
+    /// For what several results share (Shared).
+    [[nodiscard]] FileStates& states() { return states_; }
+    /// What the next run need not find out again.
+    void remember_files();
+    [[nodiscard]] std::shared_ptr<Store> store() const { return store_; }
+
+    /// Told of every result that a step gets, with the name that people know it by.
+    using Watcher = std::function<void(const std::string& shown, const StoredResult& result)>;
+    void watch(Watcher watcher) { watcher_ = std::move(watcher); }
+
 private:
+    bool is_true(const StoredResult& result);
+    std::optional<StoredResult> known(const std::string& kind, const std::string& name, const std::string& digest);
+    StoredResult make_now(const std::string& kind, const std::string& name, const std::string& digest, const Key& key,
+                          const std::function<Value()>& work);
+    void record(StepResult step);
     void unpack(const std::string& name, const std::string& value);
-    Store store_;
+    void tell_version();
+
+    std::shared_ptr<Store> store_;
+    FileStates states_;
+    Watcher watcher_;
     std::mutex mutex_;
-    std::map<std::filesystem::path, std::string> hashes_;
+    std::unordered_map<std::string, std::vector<StoredResult>> index_;  ///< by kind and name, newest first
 };
 
+/// A thing that several results are made of, made when the first of them needs it: what it read, they all read.
+template <class T>
+class Shared {
+public:
+    /// `engine` gives the states of what is read.
+    Shared(FileStates& states, std::function<T()> make) : states_(states), make_(std::move(make)) {}
+    const T& get() {
+        if (!value_) {
+            core::InputRecord record([this](const core::Input& input) { return states_.state_of(input); });
+            {
+                const core::RecordInputs scope(record);
+                value_ = make_();
+            }
+            read_ = record.entries();
+        } else {
+            core::note(read_);
+        }
+        return *value_;
+    }
+
+private:
+    FileStates& states_;
+    std::function<T()> make_;
+    std::optional<T> value_;
+    std::vector<core::InputRecord::Entry> read_;
+};
+
+/// A folder for what a step writes and reads again: no input of the result.
+class Scratch {
+public:
+    Scratch() : own_(folder_.path()) {}
+    [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
+
+private:
+    core::TemporaryFolder folder_;
+    core::RecordInputs own_;
+};
+
+/// Digest of all values of a table.
+std::string digest_of(const core::Table& table);
+
 /// One row a case: its conditions, then what the loads give. Cases without loads are left out.
-core::Table loads_table(const Study& study, const std::vector<std::pair<const Case*, nlohmann::json>>& done);
+core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads);
+
+/// All steps of an engine that only looks.
+void look_at_all(Engine& engine);
 
 // The steps, in order. Each fills `engine.results`.
 void run_bodies(Engine& engine);        // step_bodies.cpp

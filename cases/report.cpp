@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 
 #include "cases/code_version.h"
 #include "cases/engine.h"
@@ -43,6 +44,7 @@ public:
         }
         key_figures();
         failures();
+        warnings();
         bodies();
         fields();
         tables();
@@ -133,6 +135,13 @@ private:
             if (!step.error.empty()) {
                 page_.warning("Not done: " + step.kind + " '" + step.name + "': " + step.error);
             }
+        }
+    }
+
+    /// What makes the loads less than they seem, before anybody reads a number.
+    void warnings() {
+        for (const auto& problem : engine_.results.gathered_warnings()) {
+            page_.warning("Loads: " + problem.place.file + ": " + problem.message);
         }
     }
 
@@ -342,6 +351,14 @@ private:
             return;
         }
         page_.section("How far to trust the numbers");
+        std::vector<std::string> remarks;
+        for (const auto& problem : engine_.results.gathered_warnings()) {
+            remarks.push_back(problem.place.file + ": " + problem.message);
+        }
+        if (!remarks.empty()) {
+            page_.paragraph("The loads themselves carry warnings; what stands on them carries these too:");
+            page_.list(remarks);
+        }
         for (const auto& spec : engine_.study.verifications) {
             if (const auto check = document("verify/" + spec.name)) {
                 page_.paragraph("Our loads against the solver's own " + spec.name + " (" + spec.table.filename().string() + "): " +
@@ -387,15 +404,21 @@ private:
             const auto* found = table.find(name);
             return found == nullptr || found->is_text() ? std::string("-") : shown(found->numbers[row], from, to, 4);
         };
+        std::unordered_set<std::string> warned;
+        for (const auto& one : engine_.results.case_loads) {
+            if (!one.warnings.empty()) {
+                warned.insert(one.name);
+            }
+        }
         std::vector<std::vector<std::string>> rows;
         for (std::size_t row = 0; row < table.rows(); ++row) {
             rows.push_back({table.text("case")[row], column("gap", row, "m", "mm"), column("pitch", row, "rad", "deg"),
                             column("speed", row, "m/s", "m/s"), column("lift_force", row, "N", "N"),
                             column("drag_force", row, "N", "N"), column("pitch_moment", row, "N m", "mN m"),
-                            column("closure", row, "1", "1")});
+                            column("closure", row, "1", "1"), warned.contains(table.text("case")[row]) ? "see the warnings" : ""});
         }
         page_.folded_table(std::to_string(rows.size()) + " cases",
-                           {"case", "gap (mm)", "pitch (deg)", "speed (m/s)", "lift (N)", "drag (N)", "pitch moment (mN m)", "closure"}, rows);
+                           {"case", "gap (mm)", "pitch (deg)", "speed (m/s)", "lift (N)", "drag (N)", "pitch moment (mN m)", "closure", ""}, rows);
         page_.paragraph("Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
                         "Closure is the size of the summed area vector over the area: 0 for a closed surface.");
     }
@@ -406,15 +429,14 @@ private:
         for (const auto& [room, version] : code_versions()) {
             rows.push_back({room, version.substr(0, 12)});
         }
-        page_.paragraph("By Underbody from study.toml in " + std::filesystem::weakly_canonical(engine_.study.folder()).string() +
-                        ". Every result is keyed by the content of the files it came from and by the code that made it.");
+        page_.paragraph("By Underbody from study.toml. Every result is kept with the content of all files that were read for it, the options "
+                        "and the versions of the code that made it; one of them another, and it is computed again.");
         page_.folded_table("Versions of the code, by room", {"room", "sources"}, rows);
         std::vector<std::vector<std::string>> files;
-        for (const auto& entry : engine_.study.cases) {
-            files.push_back({entry.file.lexically_relative(engine_.study.folder()).string(), entry.conditions.label(),
-                             engine_.hash_of(entry.file).substr(0, 12)});
+        for (const auto& one : engine_.results.case_loads) {
+            files.push_back({one.file, engine_.study.cases[one.entry].conditions.label(), one.origin.substr(0, 12)});
         }
-        page_.folded_table("Files of the cases", {"file", "conditions", "content"}, files);
+        page_.folded_table("Files of the cases", {"file", "conditions", "all that was read"}, files);
     }
 
     Engine& engine_;
@@ -423,10 +445,6 @@ private:
 
 }  // namespace
 
-void write_report(Engine& engine) {
-    if (engine.options.write_report) {
-        Engine::write_if_changed(engine.report_file(), Report(engine).make());
-    }
-}
+void write_report(Engine& engine) { Engine::write_if_changed(engine.report_file(), Report(engine).make()); }
 
 }  // namespace underbody::cases

@@ -48,15 +48,12 @@ std::string draw_body(Engine& engine, const BodySpec& spec) {
 
 void run_bodies(Engine& engine) {
     for (const auto& spec : engine.study.bodies) {
-        try {
-            Key key("body", {"geometry"});
-            key.add(engine.hash_of(spec.shape)).add(engine.study.reference);
-            if (const auto made = engine.make("body", spec.name, key, [&] { return compute_body(engine, spec); })) {
-                engine.add_document("body/" + spec.name, *made);
-                engine.picture("body picture", spec.name, key, [&] { return draw_body(engine, spec); });
-            }
-        } catch (const core::InputError& error) {
-            engine.fail("body", spec.name, error.what());
+        Key key("body", {"geometry"});
+        key.add("density", engine.study.reference.number("density").value_or(geometry::default_water_density));
+        if (const auto made = engine.make("body", spec.name, key, [&] { return compute_body(engine, spec); })) {
+            engine.add_document("body/" + spec.name, engine.value(*made));
+            engine.picture("body picture", spec.name, Key("body picture", {"geometry", "postproc"}),
+                           [&] { return draw_body(engine, spec); });
         }
     }
 }

@@ -1,19 +1,22 @@
 // Loads of every case, in parallel, and the table of them.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "cases/engine.h"
+#include "cases/names_in_study.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "postproc/field.h"
 #include "postproc/loads.h"
+#include "postproc/problems_json.h"
 
 namespace underbody::cases {
 
 namespace {
+
+using nlohmann::json;
 
 postproc::LoadsOptions loads_options(const Study& study, const Case& entry) {
     postproc::LoadsOptions options;
@@ -30,76 +33,132 @@ postproc::LoadsOptions loads_options(const Study& study, const Case& entry) {
     return options;
 }
 
-Key loads_key(Engine& engine, const Case& entry) {
+Key loads_key(const Study& study, const Case& entry) {
     Key key("loads", {"postproc"});
-    key.add(engine.hash_of(entry.file)).add(engine.study.forward).add(engine.study.up).add(engine.study.symmetry);
-    key.add(engine.study.reference).add(entry.conditions.number("speed").value_or(0));
-    if (engine.study.moments_about) {
-        for (const double x : *engine.study.moments_about) {
-            key.add(x);
+    key.add("forward", study.forward).add("up", study.up).add("symmetry", study.symmetry);
+    key.add("reference", study.reference).add("speed", entry.conditions.number("speed").value_or(0));
+    if (study.moments_about) {
+        for (const double x : *study.moments_about) {
+            key.add("moments_about", x);
         }
     }
     for (const auto& zone : entry.zones) {
-        key.add(zone);
+        key.add("zone", zone);
     }
     return key;
 }
 
-std::string compute_loads(Engine& engine, const Case& entry) {
+/// Findings of what was read, with the path that they have in the study.
+core::Problems findings(const Engine& engine, const postproc::Field& field, const postproc::LoadsResult& result) {
+    core::Problems all = field.problems;
+    all.insert(all.end(), result.problems.begin(), result.problems.end());
+    name_in_study(engine, all);
+    return all;
+}
+
+std::string one_line(std::string text) {
+    std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+    return text;
+}
+
+/// What a list of cases shows, quick to read for ten thousand of them: a line for each value (name, unit, number) and for each
+/// warning ("!", file, message), parted by tabs.
+std::string brief(const postproc::LoadsResult& result, const core::Problems& problems) {
+    std::string text;
+    for (const auto& column : postproc::table_row(result)) {
+        text += column.name + "\t" + column.unit + "\t" + core::format_number(column.value) + "\n";
+    }
+    for (const auto& problem : problems) {
+        if (problem.severity != core::Problem::Severity::note) {
+            text += "!\t" + one_line(problem.place.file) + "\t" + one_line(problem.message) + "\n";
+        }
+    }
+    return text;
+}
+
+void take_brief(std::string_view text, CaseLoads& loads) {
+    const auto word = [&](char end) {
+        const std::size_t at = std::min(text.find(end), text.size());
+        const std::string_view result = text.substr(0, at);
+        text.remove_prefix(std::min(at + 1, text.size()));
+        return result;
+    };
+    while (!text.empty()) {
+        const std::string_view name = word('\t');
+        const std::string_view unit = word('\t');
+        const std::string_view rest = word('\n');
+        if (name == "!") {
+            loads.warnings.push_back({core::Problem::Severity::warning, std::string(rest), {std::string(unit), {}, {}, {}}});
+        } else {
+            loads.values.push_back({std::string(name), std::string(unit), core::parse_number(rest).value_or(std::nan(""))});
+        }
+    }
+}
+
+Value compute_loads(Engine& engine, const Case& entry) {
     postproc::ReadOptions reading;
     reading.surfaces_only = true;
     const postproc::Field field = postproc::read_field(entry.file, reading, engine.progress);
     const postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);
-    nlohmann::json document;
+    const core::Problems problems = findings(engine, field, result);
+    json document;
     postproc::to_json(document, result);
-    document["columns"] = nlohmann::json::array();
+    document["file"] = engine.path_in_study(entry.file);
+    document["problems"] = postproc::json_of(problems);
+    document["columns"] = json::array();
     for (const auto& column : postproc::table_row(result)) {
         document["columns"].push_back({{"name", column.name}, {"unit", column.unit}, {"value", column.value}});
     }
     document["format"] = field.format;
+    document["writer"] = field.writer;
+    document["metadata"] = field.metadata;
     document["pressure_viscous"] = {{"lift_pressure", result.named_pressure.lift_force},
                                     {"lift_viscous", result.named_viscous.lift_force},
                                     {"drag_pressure", result.named_pressure.drag_force},
                                     {"drag_viscous", result.named_viscous.drag_force}};
-    return document.dump();
+    return {document.dump(-1, ' ', false, json::error_handler_t::replace), brief(result, problems)};
 }
 
 }  // namespace
 
-core::Table loads_table(const Study& study, const std::vector<std::pair<const Case*, nlohmann::json>>& done) {
+core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads) {
+    std::vector<const CaseLoads*> done;
+    std::vector<std::string> names;
     std::vector<std::string> texts;
     std::vector<std::string> numbers;
-    const auto remember = [](std::vector<std::string>& names, const std::string& name) {
-        if (std::find(names.begin(), names.end(), name) == names.end()) {
-            names.push_back(name);
+    const auto remember = [](std::vector<std::string>& known, const std::string& name) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            known.push_back(name);
         }
     };
-    for (const auto& [entry, document] : done) {
-        for (const auto& [name, value] : entry->conditions.texts) {
+    for (const auto& one : loads) {
+        if (one.values.empty()) {
+            continue;
+        }
+        done.push_back(&one);
+        names.push_back(one.name);
+        const Conditions& conditions = study.cases[one.entry].conditions;
+        for (const auto& [name, value] : conditions.texts) {
             remember(texts, name);
         }
-        for (const auto& [name, value] : entry->conditions.numbers) {
+        for (const auto& [name, value] : conditions.numbers) {
             remember(numbers, name);
         }
     }
     core::Table table;
     table.source = study.folder().string();
-    std::vector<std::string> names;
-    for (const auto& item : done) {
-        names.push_back(item.first->name);
-    }
     table.add_text("case", names);
     for (const auto& name : texts) {
         std::vector<std::string> values;
-        for (const auto& item : done) {
-            values.push_back(item.first->conditions.text(name).value_or(""));
+        for (const auto* one : done) {
+            values.push_back(study.cases[one->entry].conditions.text(name).value_or(""));
         }
         table.add_text(name, std::move(values));
     }
     for (const auto& name : numbers) {
         std::vector<double> values;
-        for (const auto& item : done) {
-            values.push_back(item.first->conditions.number(name).value_or(std::numeric_limits<double>::quiet_NaN()));
+        for (const auto* one : done) {
+            values.push_back(study.cases[one->entry].conditions.number(name).value_or(std::nan("")));
         }
         const auto* quantity = core::find_quantity(name);
         const std::string unit = quantity != nullptr ? quantity->unit : "1";
@@ -108,19 +167,13 @@ core::Table loads_table(const Study& study, const std::vector<std::pair<const Ca
     if (done.empty()) {
         return table;
     }
-    for (const auto& column : done.front().second.at("columns")) {
+    for (const auto& column : done.front()->values) {
         std::vector<double> values;
-        for (const auto& item : done) {
-            double value = std::numeric_limits<double>::quiet_NaN();
-            for (const auto& candidate : item.second.at("columns")) {
-                if (candidate.at("name") == column.at("name") && candidate.at("value").is_number()) {
-                    value = candidate.at("value").get<double>();
-                }
-            }
-            values.push_back(value);
+        for (const auto* one : done) {
+            values.push_back(one->value(column.name));
         }
-        if (table.find(column.at("name").get<std::string>()) == nullptr) {
-            table.add_numbers(column.at("name"), column.at("unit"), std::move(values));
+        if (table.find(column.name) == nullptr) {
+            table.add_numbers(column.name, column.unit, std::move(values));
         }
     }
     return table;
@@ -128,31 +181,33 @@ core::Table loads_table(const Study& study, const std::vector<std::pair<const Ca
 
 void run_loads(Engine& engine) {
     const auto& cases = engine.study.cases;
-    std::vector<std::optional<std::string>> documents(cases.size());
+    const std::size_t first = engine.results.steps.size();
+    auto& all = engine.results.case_loads;
+    all.resize(cases.size());
     core::parallel_for(
         cases.size(),
         [&](std::size_t i) {
-            try {
-                documents[i] = engine.make("loads", cases[i].name, loads_key(engine, cases[i]),
-                                           [&] { return compute_loads(engine, cases[i]); });
-            } catch (const core::InputError& error) {
-                engine.fail("loads", cases[i].name, error.what());  // the file itself cannot be read
+            CaseLoads& one = all[i];
+            one.entry = i;
+            one.name = cases[i].name;
+            one.file = engine.path_in_study(cases[i].file);
+            StepResult step;
+            const auto made = engine.make("loads", one.file, loads_key(engine.study, cases[i]),
+                                          [&] { return compute_loads(engine, cases[i]); }, one.name, &step);
+            one.state = step.state;
+            one.error = step.error;
+            if (made) {
+                one.id = made->id;
+                one.origin = made->identity;
+                take_brief(made->summary, one);
             }
         },
         engine.progress);
-    std::vector<std::pair<const Case*, nlohmann::json>> done;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        if (documents[i]) {
-            engine.add_document("loads/" + cases[i].name, *documents[i]);
-            done.emplace_back(&cases[i], nlohmann::json::parse(*documents[i]));
-        }
-    }
     // Steps came from many threads: give them the order of the cases.
     auto& steps = engine.results.steps;
-    std::stable_sort(steps.begin(), steps.end(), [](const StepResult& a, const StepResult& b) {
-        return a.kind == "loads" && b.kind == "loads" && a.name < b.name;
-    });
-    engine.results.loads = loads_table(engine.study, done);
+    std::stable_sort(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(),
+                     [](const StepResult& a, const StepResult& b) { return a.name < b.name; });
+    engine.results.loads = loads_table(engine.study, all);
 }
 
 }  // namespace underbody::cases

@@ -66,15 +66,16 @@ void run_meshes(Engine& engine) {
             engine.fail("mesh", spec.name, "fewer than two of its meshes have loads");
             continue;
         }
-        Key key("mesh", {"postproc", "cases"});
+        const auto& files = engine.results.loads.text("case");
+        Key key("mesh", {"postproc"});
         for (const auto& row : rows) {
-            key.add(row.cells);
+            key.add("cells", row.cells).through("loads", files[row.row]);
             for (const auto& quantity : spec.quantities) {
-                key.add(quantity).add(engine.results.loads.numbers(quantity)[row.row]);
+                key.add(quantity, engine.results.loads.numbers(quantity)[row.row]);
             }
         }
         if (const auto made = engine.make("mesh", spec.name, key, [&] { return compute_mesh(engine, spec, rows); })) {
-            engine.add_document("mesh/" + spec.name, *made);
+            engine.add_document("mesh/" + spec.name, engine.value(*made));
         }
     }
 }

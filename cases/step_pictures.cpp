@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
-#include "core/text.h"
 #include "postproc/field.h"
 #include "postproc/loads.h"
 #include "postproc/views.h"
@@ -25,22 +24,38 @@ postproc::ViewOptions view_options(const Study& study, const PictureSpec& spec, 
     return options;
 }
 
+Key picture_key(const std::string& kind, const Engine& engine, const PictureSpec& spec, const Case& entry) {
+    Key key(kind, {"postproc"});
+    key.add("forward", engine.study.forward).add("up", engine.study.up).add("symmetry", engine.study.symmetry);
+    key.add("conditions", entry.conditions).add("picture", spec.name);
+    for (const auto& zone : entry.zones) {
+        key.add("zone", zone);
+    }
+    if (spec.range) {
+        key.add("range", spec.range->first).add("range", spec.range->second);
+    }
+    return key;
+}
+
+/// The views that the spec names, or else all that the case allows, which is a result of its own.
+std::vector<std::string> views_of(Engine& engine, const PictureSpec& spec, const Case& entry, Shared<postproc::Field>& field,
+                                  const postproc::ViewOptions& options) {
+    if (!spec.views.empty()) {
+        return spec.views;
+    }
+    const auto made = engine.make("views", spec.name + "/" + entry.name, picture_key("views", engine, spec, entry),
+                                  [&] { return nlohmann::json(postproc::possible_views(field.get(), options)).dump(); });
+    return made ? nlohmann::json::parse(engine.value(*made)).get<std::vector<std::string>>() : std::vector<std::string>();
+}
+
 void draw_case(Engine& engine, const PictureSpec& spec, const Case& entry) {
-    std::optional<postproc::Field> field;
-    const auto read = [&]() -> const postproc::Field& {
-        if (!field) {
-            field = postproc::read_field(entry.file, {}, engine.progress);
-        }
-        return *field;
-    };
+    Shared<postproc::Field> field(engine.states(), [&] { return postproc::read_field(entry.file, {}, engine.progress); });
     const postproc::ViewOptions options = view_options(engine.study, spec, entry);
-    const auto names = spec.views.empty() ? postproc::possible_views(read(), options) : spec.views;
-    for (const auto& name : names) {
-        Key key("picture", {"postproc"});
-        key.add(engine.hash_of(entry.file)).add(name).add(engine.study.forward).add(engine.study.up).add(engine.study.symmetry);
-        key.add(entry.conditions).add(spec.range ? core::format_number(spec.range->first) + ":" + core::format_number(spec.range->second) : "");
+    for (const auto& name : views_of(engine, spec, entry, field, options)) {
+        Key key = picture_key("picture", engine, spec, entry);
+        key.add("view", name);
         engine.picture("picture", spec.name + "/" + entry.name + "/" + name, key, [&] {
-            const postproc::View view = postproc::view(read(), name, options, engine.progress);
+            const postproc::View view = postproc::view(field.get(), name, options, engine.progress);
             return nlohmann::json({{"title", view.title}, {"caption", spec.name + ": " + view.caption}}).dump() + "\n" + view.png;
         });
     }
@@ -58,11 +73,7 @@ void run_pictures(Engine& engine) {
             engine.fail("picture", spec.name, "no case fits its 'where'");
         }
         for (const Case* entry : chosen) {
-            try {
-                draw_case(engine, spec, *entry);
-            } catch (const core::InputError& error) {
-                engine.fail("picture", spec.name + "/" + entry->name, error.what());
-            }
+            draw_case(engine, spec, *entry);
         }
     }
 }

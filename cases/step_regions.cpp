@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
+#include "cases/names_in_study.h"
 #include "cases/region_model.h"
 #include "core/file.h"
-#include "core/hash.h"
 #include "surrogates/dynamics/model.h"
 #include "surrogates/dynamics/region.h"
 
@@ -15,52 +15,68 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The model as files beside the report, so that the user can go on with it.
-void write_model_once(Engine& engine, const RegionSpec& spec, const dynamics::Model& model, const Key& region_key) {
-    const fs::path file = engine.report_folder() / "models" / spec.name / "model.toml";
-    Key key("model", {});
-    key.add(region_key.digest()).add(file.string());
-    bool written = false;
-    const auto write = [&] {
-        dynamics::write_model(model, file);
-        written = true;
-        return file.string();
-    };
-    if (engine.make("model", spec.name, key, write) && !written && !fs::exists(file)) {
-        write();
+void write_model_files(Engine& engine, const RegionSpec& spec, const Key& key) {
+    const auto made = engine.make("model", spec.name, key, [&] {
+        const Scratch tables;
+        const Scratch written;
+        dynamics::write_model(region_model(engine.study, spec, engine.results, tables.path()), written.path() / "model.toml");
+        nlohmann::json files = nlohmann::json::object();
+        for (const auto& entry : fs::recursive_directory_iterator(written.path())) {
+            if (entry.is_regular_file()) {
+                files[entry.path().lexically_relative(written.path()).generic_string()] = core::read_file(entry.path());
+            }
+        }
+        return files.dump();
+    });
+    if (!made || engine.mode == Engine::Mode::look) {
+        return;
+    }
+    const auto files = nlohmann::json::parse(engine.value(*made));
+    for (const auto& [file, text] : files.items()) {
+        Engine::write_if_changed(engine.report_folder() / "models" / spec.name / file, text.get<std::string>());
     }
 }
 
-void run_one_region(Engine& engine, const RegionSpec& spec) {
-    const core::TemporaryFolder scratch;
-    const dynamics::Model model = region_model(engine.study, spec, engine.results, scratch.path());
-    Key key("region", {"surrogates/tables", "surrogates/dynamics"});
-    key.add(engine.hash_of(spec.model)).add(spec.axes).add(spec.duration).add(spec.columns).add(spec.rows);
+/// The model's own files are noted when it is read; the study's tables are no files.
+Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& spec) {
+    Key key(kind, {"surrogates/tables", "surrogates/dynamics"});
     for (const auto& name : spec.forces) {
-        key.add(name);
+        const TableSpec& table = *engine.study.find_table(name);
+        key.add("force", table.quantity).add("speed", table.where.number("speed").value_or(0)).through("table", name);
+        key.add("points of '" + name + "'", digest_of(table_points(table, engine.results)));
     }
-    for (const auto& force : model.forces) {
-        key.add(core::content_hash_of_file(force.table_path));
-    }
-    std::optional<dynamics::StabilityRegion> region;
-    const auto compute = [&] { return dynamics::stability_region(model, region_options(spec), engine.progress); };
+    return key;
+}
+
+void run_one_region(Engine& engine, const RegionSpec& spec) {
+    Key key = region_key("region", engine, spec);
+    key.add("axes", spec.axes).add("for", spec.duration).add("columns", spec.columns).add("rows", spec.rows);
+    std::string scratch_folder;  // a path of this moment, which a remark about a table may name
+    Shared<dynamics::StabilityRegion> region(engine.states(), [&] {
+        const Scratch scratch;
+        scratch_folder = scratch.path().string() + "/";
+        const auto model = named_in_study(engine, region_model(engine.study, spec, engine.results, scratch.path()), spec.model);
+        return dynamics::stability_region(model, region_options(spec), engine.progress);
+    });
     const auto made = engine.make("region", spec.name, key, [&] {
-        region = compute();
         nlohmann::json document;
-        dynamics::to_json(document, *region);
-        return document.dump();
+        dynamics::to_json(document, region.get());
+        std::string text = document.dump();
+        for (auto at = text.find(scratch_folder); at != std::string::npos; at = text.find(scratch_folder, at)) {
+            text.erase(at, scratch_folder.size());
+        }
+        return text;
     });
     if (!made) {
         return;
     }
-    engine.add_document("region/" + spec.name, *made);
-    engine.figure("region/" + spec.name, key, [&] {
-        if (!region) {
-            region = compute();
-        }
-        return dynamics::region_figure(*region);
-    });
+    engine.add_document("region/" + spec.name, engine.value(*made));
+    key.from(*made);
+    engine.figure("region/" + spec.name, key, [&] { return dynamics::region_figure(region.get()); });
     if (engine.options.write_report) {
-        write_model_once(engine, spec, model, key);
+        Key of_model = region_key("model", engine, spec);
+        of_model.add("title", engine.study.title).add("origin", engine.study.origin);
+        write_model_files(engine, spec, of_model);
     }
 }
 

@@ -16,11 +16,18 @@ namespace underbody::cases {
 
 namespace {
 
-Key table_key(const TableSpec& spec, const core::Table& points) {
-    Key key("table", {"surrogates/tables"});
-    key.add(spec.name).add(spec.quantity).add(core::write_csv(points)).add(spec.net_weight.value_or(std::nan(""))).add(spec.virtual_mass);
+Key table_key(const std::string& kind, const TableSpec& spec, const core::Table& points) {
+    Key key(kind, {"surrogates/tables"});
+    key.add("quantity", spec.quantity).add("points", digest_of(points));
+    key.add("net_weight", spec.net_weight.value_or(std::nan(""))).add("virtual_mass", spec.virtual_mass);
     for (const auto& axis : spec.axes) {
-        key.add(axis);
+        key.add("axis", axis);
+    }
+    for (const auto& name : points.text("case")) {
+        key.through("loads", name);
+    }
+    if (!spec.mesh_uncertainty.empty()) {
+        key.through("mesh", spec.mesh_uncertainty);
     }
     return key;
 }
@@ -38,8 +45,7 @@ tables::EquilibriumOptions equilibrium_options(const TableSpec& spec) {
     return options;
 }
 
-std::string compute_table(const TableSpec& spec, const core::Table& points) {
-    const tables::ForceTable table = fitted(spec, points);
+std::string compute_table(const TableSpec& spec, const core::Table& points, const tables::ForceTable& table) {
     nlohmann::json document;
     if (spec.net_weight) {
         tables::to_json(document, tables::equilibria(table, equilibrium_options(spec)));
@@ -69,27 +75,29 @@ std::string ending_of(const std::string& format) {
     throw core::InputError("name", "unknown export format '" + format + "'", {}, core::did_you_mean(format, known));
 }
 
+using SharedTable = Shared<tables::ForceTable>;
+
 /// Writes the exports beside the report and names them in the document.
-void write_exports(Engine& engine, const TableSpec& spec, const core::Table& points, const Key& key, nlohmann::json& document) {
+void write_exports(Engine& engine, const TableSpec& spec, SharedTable& table, const Key& key, nlohmann::json& document) {
     document["exports"] = nlohmann::json::array();
     for (const auto& format : spec.exports) {
         std::string file = spec.name;
         std::replace_if(file.begin(), file.end(), [](char c) { return c == ' ' || c == ','; }, '_');
         const std::string ending = ending_of(format);
-        Key export_key("export", {"surrogates/tables"});
-        export_key.add(key.digest()).add(format);
-        const auto bytes = engine.make("export", spec.name + " as " + format, export_key, [&] {
-            const core::TemporaryFolder folder;
+        Key export_key = key;
+        export_key.add("format", format).add("name", file).through("table", spec.name);
+        const auto made = engine.make("export", spec.name + " as " + format, export_key, [&] {
+            const Scratch folder;
             const auto path = folder.path() / (file + ending);
             tables::ExportOptions options;
             options.name = file;
-            tables::export_table(fitted(spec, points), format, path, options, engine.progress);
+            tables::export_table(table.get(), format, path, options, engine.progress);
             return core::read_file(path);
         });
-        if (bytes) {
+        if (made) {
             const std::string relative = "exports/" + file + ending;
-            if (engine.options.write_report) {
-                Engine::write_if_changed(engine.report_folder() / relative, *bytes);
+            if (engine.options.write_report && engine.mode == Engine::Mode::compute) {
+                Engine::write_if_changed(engine.report_folder() / relative, engine.value(*made));
             }
             document["exports"].push_back({{"format", format}, {"file", relative}});
         }
@@ -104,26 +112,27 @@ void run_table(Engine& engine, const TableSpec& spec) {
         engine.fail("table", spec.name, error.what());
         return;
     }
-    const Key key = table_key(spec, points);
-    const auto made = engine.make("table", spec.name, key, [&] { return compute_table(spec, points); });
+    SharedTable table(engine.states(), [&] { return fitted(spec, points); });
+    Key key = table_key("table", spec, points);
+    const auto made = engine.make("table", spec.name, key, [&] { return compute_table(spec, points, table.get()); });
     if (!made) {
         return;
     }
-    nlohmann::json document = nlohmann::json::parse(*made);
+    nlohmann::json document = nlohmann::json::parse(engine.value(*made));
     try {
-        write_exports(engine, spec, points, key, document);
+        write_exports(engine, spec, table, table_key("export", spec, points), document);
     } catch (const core::InputError& error) {
         engine.fail("export", spec.name, error.what());
     }
     engine.add_document("table/" + spec.name, document.dump());
+    key.from(*made).add("where", spec.where.label());
     engine.figure("table/" + spec.name, key, [&] {
-        const tables::ForceTable table = fitted(spec, points);
         tables::FigureOptions options;
         if (spec.net_weight) {
             options.equilibria = equilibrium_options(spec);
         }
         options.title = spec.name + " (" + spec.where.label() + ")";
-        return tables::figure(table, options);
+        return tables::figure(table.get(), options);
     });
 }
 
@@ -187,29 +196,41 @@ std::string compute_comparison(const CompareSpec& spec,
     return nlohmann::json({{"rows", rows}, {"remarks", remarks}}).dump();
 }
 
+using Compared = std::vector<std::pair<std::string, tables::ForceTable>>;
+
+Compared fitted_tables(const Engine& engine, const CompareSpec& spec) {
+    Compared compared;
+    for (const auto& name : spec.tables) {
+        const TableSpec& table = *engine.study.find_table(name);
+        compared.emplace_back(name, fitted(table, table_points(table, engine.results)));
+        if (compared.back().second.axes().size() != 1) {
+            throw core::InputError("range", "the table '" + name + "' has more than one axis: only curves can be laid over each other");
+        }
+    }
+    return compared;
+}
+
 void run_comparison(Engine& engine, const CompareSpec& spec) {
-    std::vector<std::pair<std::string, tables::ForceTable>> compared;
-    Key key("compare", {"surrogates/tables", "cases"});
+    if (spec.tables.empty()) {
+        return;
+    }
+    Key key("compare", {"surrogates/tables"});
     try {
         for (const auto& name : spec.tables) {
             const TableSpec& table = *engine.study.find_table(name);
-            const core::Table points = table_points(table, engine.results);
-            key.add(name).add(table_key(table, points).digest());
-            compared.emplace_back(name, fitted(table, points));
-            if (compared.back().second.axes().size() != 1) {
-                throw core::InputError("range", "the table '" + name + "' has more than one axis: only curves can be laid over each other");
-            }
+            key.add("table", name).add("of", table_key("table", table, table_points(table, engine.results)).digest());
+            key.through("table", name);
         }
     } catch (const core::InputError& error) {
         engine.fail("compare", spec.name, error.what());
         return;
     }
-    if (compared.empty()) {
-        return;
-    }
-    if (const auto made = engine.make("compare", spec.name, key, [&] { return compute_comparison(spec, compared); })) {
-        engine.add_document("compare/" + spec.name, *made);
-        engine.figure("compare/" + spec.name, key, [&] { return tables::comparison_figure(compared); });
+    Shared<Compared> compared(engine.states(), [&] { return fitted_tables(engine, spec); });
+    const auto made = engine.make("compare", spec.name, key, [&] { return compute_comparison(spec, compared.get()); });
+    if (made) {
+        engine.add_document("compare/" + spec.name, engine.value(*made));
+        key.from(*made);
+        engine.figure("compare/" + spec.name, key, [&] { return tables::comparison_figure(compared.get()); });
     }
 }
 

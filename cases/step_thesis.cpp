@@ -9,33 +9,30 @@ namespace underbody::cases {
 
 namespace {
 
-/// One part of the thesis: a document of claims and its figures. `compute` makes a study with `figures`, at most once.
-template <class Study, class Compute>
-void run_part(Engine& engine, const std::string& name, const Key& key, const Compute& make) {
-    std::optional<Study> study;
-    const auto compute = [&]() -> const Study& {
-        if (!study) {
-            study = make();
+/// One part of the thesis: a document of claims and its figures. `make` makes a study with `figures`, at most once.
+template <class Study>
+void run_part(Engine& engine, const std::string& name, const Key& key, const std::function<Study()>& make) {
+    Shared<Study> study(engine.states(), make);
+    const auto made = engine.make("thesis", name, key, [&] {
+        nlohmann::json claims;
+        to_json(claims, study.get());
+        claims["figure_names"] = nlohmann::json::array();
+        for (const auto& [figure, drawn] : study.get().figures) {
+            claims["figure_names"].push_back(figure);
         }
-        return *study;
-    };
-    const std::optional<std::string> made = engine.make("thesis", name, key, [&] {
-        nlohmann::json document;
-        to_json(document, compute());
-        document["figure_names"] = nlohmann::json::array();
-        for (const auto& [figure, drawn] : compute().figures) {
-            document["figure_names"].push_back(figure);
-        }
-        return document.dump();
+        return claims.dump();
     });
     if (!made) {
         return;
     }
-    engine.add_document("thesis/" + name, *made);
-    const nlohmann::json document = nlohmann::json::parse(*made);
+    const std::string text = engine.value(*made);
+    engine.add_document("thesis/" + name, text);
+    const auto document = nlohmann::json::parse(text);
     for (const nlohmann::json& figure : document.at("figure_names")) {
-        engine.figure("thesis/" + figure.get<std::string>(), key, [&] {
-            const core::Figure* found = compute().figure(figure.get<std::string>());
+        Key of_figure = key;
+        of_figure.from(*made);
+        engine.figure("thesis/" + figure.get<std::string>(), of_figure, [&] {
+            const core::Figure* found = study.get().figure(figure.get<std::string>());
             if (found == nullptr) {
                 throw core::InputError("missing", "the thesis study lost its figure " + figure.get<std::string>());
             }

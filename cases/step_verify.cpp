@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "cases/engine.h"
 
@@ -9,31 +12,90 @@ namespace underbody::cases {
 
 namespace {
 
-/// The row of the loads that a row of the report is about: by file name first, else by all conditions they share.
-std::optional<std::size_t> find_row(const core::Table& loads, const core::Table& report, std::size_t row) {
-    if (const auto* file = report.find("file"); file != nullptr && file->is_text()) {
-        const std::string stem = std::filesystem::path(file->text[row]).stem().string();
+/// The rows of the loads that rows of the report are about: by file name first, else by all conditions they share.
+class Rows {
+public:
+    Rows(const core::Table& loads, const core::Table& report) : loads_(loads), file_(report.find("file")) {
         const auto& names = loads.text("case");
-        const auto found = std::find(names.begin(), names.end(), stem);
-        return found == names.end() ? std::nullopt : std::optional<std::size_t>(found - names.begin());
-    }
-    for (std::size_t i = 0; i < loads.rows(); ++i) {
-        bool same = true;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            by_name_.emplace(names[i], i);
+        }
         for (const auto& column : report.columns()) {
             const auto* mine = loads.find(column.name);
-            if (mine == nullptr || column.name.ends_with("_force") || column.name.ends_with("_moment")) {
-                continue;
+            if (mine != nullptr && !column.name.ends_with("_force") && !column.name.ends_with("_moment")) {
+                shared_.emplace_back(mine, &column);
+                comparable_ = comparable_ && mine->is_text() == column.is_text();
             }
-            same = same && (column.is_text() ? mine->is_text() && mine->text[i] == column.text[row]
-                                             : !mine->is_text() && std::abs(mine->numbers[i] - column.numbers[row]) <=
-                                                                       1e-6 * std::abs(column.numbers[row]) + 1e-12);
         }
-        if (same) {
-            return i;
+        if (comparable_) {
+            sort_by_most_different_numbers();
         }
     }
-    return std::nullopt;
-}
+
+    [[nodiscard]] std::optional<std::size_t> find(std::size_t row) const {
+        if (file_ != nullptr && file_->is_text()) {
+            const auto found = by_name_.find(std::filesystem::path(file_->text[row]).stem().string());
+            return found == by_name_.end() ? std::nullopt : std::optional<std::size_t>(found->second);
+        }
+        auto first = order_.begin();
+        auto last = order_.end();
+        if (sorted_ != nullptr) {
+            const double wanted = sorted_->second->numbers[row];
+            const auto below = [&](std::size_t i, double bound) { return sorted_->first->numbers[i] < bound; };
+            first = std::lower_bound(first, last, wanted - slack(wanted), below);
+            last = std::lower_bound(first, last, std::nextafter(wanted + slack(wanted), HUGE_VAL), below);
+        }
+        std::optional<std::size_t> best;
+        for (; first != last; ++first) {
+            if (fits(*first, row) && (!best || *first < *best)) {
+                best = *first;
+            }
+        }
+        return best;
+    }
+
+private:
+    using Pair = std::pair<const core::Column*, const core::Column*>;  ///< of the loads, of the report
+
+    static double slack(double value) { return 1e-6 * std::abs(value) + 1e-12; }
+
+    [[nodiscard]] bool fits(std::size_t mine, std::size_t theirs) const {
+        return std::all_of(shared_.begin(), shared_.end(), [&](const Pair& pair) {
+            return pair.first->is_text() ? pair.first->text[mine] == pair.second->text[theirs]
+                                         : std::abs(pair.first->numbers[mine] - pair.second->numbers[theirs]) <= slack(pair.second->numbers[theirs]);
+        });
+    }
+
+    /// Of ten thousand cases few have the same value of the condition that varies most.
+    void sort_by_most_different_numbers() {
+        for (std::size_t i = 0; i < loads_.rows(); ++i) {
+            order_.push_back(i);
+        }
+        std::size_t most = 0;
+        for (const auto& pair : shared_) {
+            if (pair.first->is_text() || std::any_of(pair.first->numbers.begin(), pair.first->numbers.end(), [](double x) { return std::isnan(x); })) {
+                continue;
+            }
+            const std::size_t different = std::set<double>(pair.first->numbers.begin(), pair.first->numbers.end()).size();
+            if (different > most) {
+                most = different;
+                sorted_ = &pair;
+            }
+        }
+        if (sorted_ != nullptr) {
+            const auto& values = sorted_->first->numbers;
+            std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+        }
+    }
+
+    const core::Table& loads_;
+    const core::Column* file_;
+    std::unordered_map<std::string, std::size_t> by_name_;
+    std::vector<Pair> shared_;
+    std::vector<std::size_t> order_;
+    const Pair* sorted_ = nullptr;
+    bool comparable_ = true;  ///< what is a text here is one there
+};
 
 /// The size that a force's error is measured by: the resultant of lift and drag; of a moment, that times the length.
 double size_of(const core::Table& report, std::size_t row, const std::string& quantity, double length) {
@@ -49,11 +111,6 @@ double size_of(const core::Table& report, std::size_t row, const std::string& qu
     return std::sqrt(squares) * (quantity.ends_with("_moment") ? length : 1);
 }
 
-bool fits(const Engine& engine, const std::string& name, const Conditions& where) {
-    const auto chosen = engine.study.select(where);
-    return std::any_of(chosen.begin(), chosen.end(), [&](const Case* entry) { return entry->name == name; });
-}
-
 nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::Table& report) {
     const core::Table& loads = engine.results.loads;
     const double length = engine.study.reference.number("length").value_or(1);
@@ -61,9 +118,14 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
     double worst = 0;
     std::string worst_case;
     std::size_t failed = 0;
+    const Rows rows_of_loads(loads, report);
+    std::unordered_set<std::string> chosen;
+    for (const Case* entry : engine.study.select(spec.where)) {
+        chosen.insert(entry->name);
+    }
     for (std::size_t row = 0; row < report.rows(); ++row) {
-        const auto mine = find_row(loads, report, row);
-        if (!mine || !fits(engine, loads.text("case")[*mine], spec.where)) {
+        const auto mine = rows_of_loads.find(row);
+        if (!mine || !chosen.contains(loads.text("case")[*mine])) {
             continue;
         }
         for (const auto& quantity : spec.quantities) {
@@ -90,26 +152,24 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
 
 void run_verifications(Engine& engine) {
     for (const auto& spec : engine.study.verifications) {
-        const std::string& name = spec.name;
-        try {
-            const core::Table report = core::read_csv(spec.table);
-            Key key("verify", {"cases"});
-            key.add(engine.hash_of(spec.table)).add(core::write_csv(engine.results.loads)).add(spec.tolerance).add(spec.where);
-            for (const auto& quantity : spec.quantities) {
-                key.add(quantity);
+        Key key("verify", {});
+        key.add("loads", digest_of(engine.results.loads)).add("tolerance", spec.tolerance).add("where", spec.where);
+        key.add("length", engine.study.reference.number("length").value_or(1));
+        for (const auto& quantity : spec.quantities) {
+            key.add("quantity", quantity);
+        }
+        for (const Case* entry : engine.study.select(spec.where)) {
+            key.through("loads", entry->name);
+        }
+        const auto made = engine.make("verify", spec.name, key, [&] {
+            const nlohmann::json document = verify(engine, spec, core::read_csv(spec.table));
+            if (document.at("rows").empty()) {
+                throw core::InputError("missing", "no row is about a case of this study", {spec.table.string(), {}, {}, {}});
             }
-            const auto made = engine.make("verify", name, key, [&] {
-                const nlohmann::json document = verify(engine, spec, report);
-                if (document.at("rows").empty()) {
-                    throw core::InputError("missing", "no row is about a case of this study", {spec.table.string(), {}, {}, {}});
-                }
-                return document.dump();
-            });
-            if (made) {
-                engine.add_document("verify/" + name, *made);
-            }
-        } catch (const core::InputError& error) {
-            engine.fail("verify", name, error.what());
+            return document.dump();
+        });
+        if (made) {
+            engine.add_document("verify/" + spec.name, engine.value(*made));
         }
     }
 }

@@ -1,38 +1,103 @@
-// The study's store: results by the content they came from, in one SQLite file in WAL mode.
+// The study's store: what was computed and from what, in one SQLite file in WAL mode.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "core/inputs.h"
 
 namespace SQLite {
 class Database;
+class Statement;
 }
 
 namespace underbody::cases {
 
+/// A thing on disk that a result rests on, as it was when the result was made. Paths are relative to the study where
+/// they can be.
+struct StoredInput {
+    core::Input::Kind kind = core::Input::Kind::content;
+    std::string path;
+    std::string pattern;
+    std::string state;  ///< hash of the content or of the names; "absent", "file", "folder"
+    bool operator==(const StoredInput&) const = default;
+};
+
+/// One result but for its value.
+struct StoredResult {
+    std::int64_t id = 0;
+    std::string kind;
+    std::string name;
+    std::string key;      ///< digest over options, conditions and code
+    std::vector<StoredInput> inputs;
+    std::string summary;  ///< what a list of many results shows; may be empty
+
+    /// Digest over kind, key and inputs: another one, another result.
+    [[nodiscard]] std::string identity() const;
+};
+
 /// Safe to use from many threads and many processes. A killed run leaves the last committed result.
 class Store {
 public:
-    /// Opens or makes the file. Throws core::SystemError (read-only folder, no store) with a hint.
-    explicit Store(const std::filesystem::path& file);
+    enum class Access {
+        write,  ///< opened or made; where that cannot be, and there is a store, as `read`
+        read,   ///< no result is written; on a read-only disk, nothing at all
+    };
+    /// Throws core::SystemError: a folder that cannot be written and no store, a file that is no store, a store of a
+    /// later version of the program.
+    Store(const std::filesystem::path& file, Access access);
     ~Store();
     Store(const Store&) = delete;
     Store& operator=(const Store&) = delete;
 
-    /// The value made for exactly this key, if there is one.
-    [[nodiscard]] std::optional<std::string> find(const std::string& key);
-    /// The last value put for this kind and name, whatever its key.
-    [[nodiscard]] std::optional<std::string> latest(const std::string& kind, const std::string& name);
-    /// In one transaction: puts the value and forgets all but the last four values of the same kind and name.
-    void put(const std::string& key, const std::string& kind, const std::string& name, const std::string& value);
+    [[nodiscard]] bool writable() const { return writable_; }
+    /// Of the file before it was opened: 0 none, 1 made by Underbody 0.1.0, 2 this one.
+    [[nodiscard]] int found_version() const { return found_version_; }
+    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+
+    /// All results, oldest first.
+    [[nodiscard]] std::vector<StoredResult> results();
+    /// Those of one kind, name and key, newest first.
+    [[nodiscard]] std::vector<StoredResult> results(const std::string& kind, const std::string& name,
+                                                    const std::string& key);
+    /// The value of a result; nothing when it has been forgotten meanwhile.
+    [[nodiscard]] std::optional<std::string> value(std::int64_t id);
+    /// How a result was made.
+    struct Made {
+        std::string about;  ///< JSON: what the key was made of, and of which other results
+        std::string when;   ///< UTC
+    };
+    [[nodiscard]] std::optional<Made> made(std::int64_t id);
+    /// In one transaction: puts the result and forgets all but the last four of its kind and name. Gives its id.
+    std::int64_t put(const StoredResult& result, const std::string& about, const std::string& value);
+
+    /// Hashes of files by path: the stamp they had and the hash.
+    using FileHashes = std::map<std::string, std::pair<core::FileStamp, std::string>>;
+    [[nodiscard]] FileHashes file_hashes();
+    /// In one transaction. Does nothing in a store that is only read.
+    void remember(const FileHashes& hashes);
 
 private:
+    void open_for_writing();
+    void open_for_reading();
+    void check_version();
+    void read_copy();
+    void make_tables();
+
     std::mutex mutex_;
+    std::filesystem::path file_;
     std::unique_ptr<SQLite::Database> database_;
-    std::string file_;
+    std::unique_ptr<class ScratchCopy> copy_;
+    std::unique_ptr<SQLite::Statement> value_of_;
+    bool writable_ = false;
+    int found_version_ = 0;
 };
 
 }  // namespace underbody::cases

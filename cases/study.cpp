@@ -5,6 +5,9 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <tuple>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "cases/study_format.h"
 #include "cases/sweep.h"
@@ -12,6 +15,8 @@
 #include "core/text.h"
 #include "core/toml.h"
 #include "core/units.h"
+#include "postproc/importers/importer.h"
+#include "postproc/mirror_plane.h"
 
 namespace underbody::cases {
 
@@ -91,24 +96,76 @@ std::string stem_of(const fs::path& file) {
     return fs::path(name).stem().string();
 }
 
-void add_cases(Study& study, const TomlTable& table) {
-    const std::string pattern = table.string("files");
-    const Conditions held = read_conditions(table.table_or_empty("conditions"));
-    const std::vector<std::string> zones = table.strings("zones");
+/// The path below the study's folder, wherever that lies; else the whole path.
+fs::path below(const fs::path& file, const fs::path& folder) {
+    const fs::path rest = file.lexically_relative(folder);
+    return rest.empty() || *rest.begin() == ".." ? file : rest;
+}
+
+/// What a case is called as long as no other is called so. OpenFOAM's "case.foam" and "system/controlDict" are called alike
+/// in every case: there it is the folder.
+std::string short_name(const fs::path& file, bool folder) {
+    const fs::path parent = file.filename() == "controlDict" ? file.parent_path().parent_path() : file.parent_path();
+    const std::string stem = folder ? file.filename().string() : stem_of(file);
+    const bool named_alike = !folder && (stem == "case" || file.filename() == "controlDict");
+    return named_alike && parent.has_filename() ? parent.filename().string() : stem;
+}
+
+/// Cases of one name get the folder before it that tells them apart.
+void tell_names_apart(std::vector<Case>& cases, const fs::path& folder) {
+    std::unordered_map<std::string, std::vector<Case*>> by_name;
+    for (auto& entry : cases) {
+        by_name[entry.name].push_back(&entry);
+    }
+    for (auto& [name, alike] : by_name) {
+        for (Case* entry : alike) {
+            fs::path before = below(entry->file, folder).parent_path();
+            before = before.filename() == name ? before.parent_path() : before;
+            if (alike.size() > 1 && before.has_filename()) {
+                entry->name = before.filename().string() + "/" + name;
+            }
+        }
+    }
+    std::unordered_set<std::string> taken;
+    for (auto& entry : cases) {
+        if (!taken.insert(entry.name).second) {
+            entry.name = below(entry.file, folder).string();  // no two have that
+            taken.insert(entry.name);
+        }
+    }
+}
+
+std::vector<core::NamePattern::Found> find_cases(const std::string& pattern, const fs::path& folder, const TomlTable& table) {
     std::vector<core::NamePattern::Found> found;
     try {
-        found = core::NamePattern(pattern).files(study.folder());
+        found = core::NamePattern(pattern).files_and_folders(folder);
     } catch (const core::UsageError& error) {
         throw core::InputError(error.kind(), error.message(), table.place("files"), error.hint());
     }
+    std::string folders;
+    std::erase_if(found, [&](const auto& item) {
+        std::error_code error;
+        const bool other = fs::is_directory(item.path, error) && postproc::importer_for(item.path) == nullptr;
+        folders += other && folders.size() < 200 ? (folders.empty() ? "" : ", ") + item.path.string() : "";
+        return other;
+    });
     if (found.empty()) {
         throw core::InputError("missing", "no file fits '" + pattern + "'", table.place("files"),
-                               "the pattern is relative to " + study.folder().string());
+                               folders.empty() ? "the pattern is relative to " + folder.string()
+                                               : "what fits is a folder, and no OpenFOAM case: " + folders);
     }
-    for (auto& item : found) {
+    return found;
+}
+
+void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::string, std::string>& files) {
+    const std::string pattern = table.string("files");
+    const Conditions held = read_conditions(table.table_or_empty("conditions"));
+    const std::vector<std::string> zones = table.strings("zones");
+    for (auto& item : find_cases(pattern, study.folder(), table)) {
         Case entry;
-        entry.name = stem_of(item.path);
         entry.file = item.path;
+        std::error_code error;
+        entry.name = short_name(below(entry.file, study.folder()), fs::is_directory(entry.file, error));
         entry.conditions = held;
         entry.zones = zones;
         for (auto& number : item.match.numbers) {
@@ -119,11 +176,11 @@ void add_cases(Study& study, const TomlTable& table) {
             std::erase_if(entry.conditions.texts, [&](const auto& old) { return old.first == text.first; });
             entry.conditions.texts.push_back(text);
         }
-        const auto same = std::find_if(study.cases.begin(), study.cases.end(),
-                                       [&](const Case& other) { return other.file == entry.file || other.name == entry.name; });
-        if (same != study.cases.end()) {
+        const auto [same, fresh] = files.emplace(entry.file.string(), pattern);
+        if (!fresh) {
             throw core::InputError("duplicate",
-                                   "the case '" + entry.name + "' occurs twice: " + same->file.string() + " and " + entry.file.string(),
+                                   "the case '" + entry.name + "' occurs twice: " + entry.file.string() + " fits '" + same->second +
+                                       "' and '" + pattern + "'",
                                    table.place("files"), "make the patterns exclude each other");
         }
         study.cases.push_back(std::move(entry));
@@ -214,12 +271,34 @@ void check_tables(const Study& study, const TomlTable& table, const char* key, c
     }
 }
 
+/// Half a body has its mirror plane along its middle: one across the vertical or the way forward makes every lift or drag zero.
+void check_symmetry(const Study& study, const TomlTable& frame) {
+    if (study.symmetry.empty()) {
+        return;
+    }
+    try {
+        (void)postproc::mirror_plane_from(study.symmetry);
+    } catch (const core::Error& error) {
+        throw core::InputError("range", error.message(), frame.place("symmetry"),
+                               "its normal axis, with its place if that is not 0: \"y\", or \"y=0.1\"");
+    }
+    for (const auto& [axis, name, load] : {std::tuple(study.up, "up", "lift"), {study.forward, "forward", "drag"}}) {
+        if (study.symmetry.front() == axis.back()) {
+            const std::string side(1, static_cast<char>('x' + 'y' + 'z' - study.up.back() - study.forward.back()));
+            throw core::InputError("range",
+                                   "a symmetry plane across '" + std::string(1, axis.back()) + "' mirrors the " + name +
+                                       " axis: every " + load + " would be zero",
+                                   frame.place("symmetry"), "the plane of a half model lies along the vehicle: symmetry = \"" + side + "\"");
+        }
+    }
+}
+
 void read_frame(Study& study, const TomlTable& root) {
     const TomlTable frame = root.table_or_empty("frame");
     const std::vector<std::string> directions = {"+x", "-x", "+y", "-y", "+z", "-z"};
     study.forward = frame.choice("forward", directions, "+x");
     study.up = frame.choice("up", directions, "+z");
-    study.symmetry = frame.choice("symmetry", {"", "x", "y", "z"}, "");
+    study.symmetry = frame.string_or("symmetry", "");
     if (frame.has("moments_about") && !frame.is_string("moments_about")) {
         const auto point = frame.quantities("moments_about", "m");
         if (point.size() != 3) {
@@ -233,12 +312,30 @@ void read_frame(Study& study, const TomlTable& root) {
     if (study.forward.back() == study.up.back()) {
         throw core::InputError("range", "forward and up lie along one axis", frame.place("up"));
     }
+    check_symmetry(study, frame);
     const TomlTable reference = root.table_or_empty("reference");
     for (const auto& [name, unit] : {std::pair{"length", "m"}, {"width", "m"}, {"height", "m"}, {"density", "kg/m^3"}, {"speed", "m/s"}}) {
         if (const auto value = reference.find_quantity(name, unit)) {
             study.reference.numbers.emplace_back(name, *value);
         }
     }
+}
+
+/// By the parts of their paths.
+void sort_by_file(std::vector<Case>& cases) {
+    std::vector<std::pair<std::string, std::size_t>> order;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        std::string path = cases[i].file.string();
+        std::replace(path.begin(), path.end(), '/', '\0');
+        order.emplace_back(std::move(path), i);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<Case> sorted;
+    sorted.reserve(cases.size());
+    for (const auto& [path, i] : order) {
+        sorted.push_back(std::move(cases[i]));
+    }
+    cases = std::move(sorted);
 }
 
 std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
@@ -288,15 +385,23 @@ Study Study::open(const fs::path& path) {
         throw core::InputError("missing", fs::exists(path) ? "there is no study.toml in this folder" : "there is no such folder",
                                {path.string(), {}, {}, {}}, "a study is a folder with a study.toml; see cases/evie");
     }
-    const TomlTable root = core::read_toml(file, study_format());
+    return read(core::read_toml(file, study_format()), file);
+}
+
+Study Study::from_text(const std::string& text, const fs::path& file) {
+    return read(core::read_toml_text(text, file.string(), file.has_parent_path() ? file.parent_path() : fs::path("."), study_format()), file);
+}
+
+Study Study::read(const TomlTable& root, const fs::path& file) {
     Study study;
     study.folder_ = file.has_parent_path() ? file.parent_path() : fs::path(".");
     study.title = root.string("title");
     study.summary = root.string_or("summary", "");
     study.origin = root.string_or("origin", "");
     read_frame(study, root);
+    std::unordered_map<std::string, std::string> files;  // and the pattern that found them
     for (const auto& table : root.tables("case")) {
-        add_cases(study, table);
+        add_cases(study, table, files);
     }
     std::set<std::string> bodies;
     for (const auto& table : root.tables("body")) {
@@ -304,12 +409,12 @@ Study Study::open(const fs::path& path) {
     }
     study.sweep = read_sweep(study, root);
     for (auto& solved : solved_cases(study)) {
-        const auto same = std::find_if(study.cases.begin(), study.cases.end(), [&](const Case& other) { return other.file == solved.file; });
-        if (same == study.cases.end()) {  // a [[case]] may name them itself
+        if (files.emplace(solved.file.lexically_normal().string(), "[sweep]").second) {  // a [[case]] may name them itself
             study.cases.push_back(std::move(solved));
         }
     }
-    std::sort(study.cases.begin(), study.cases.end(), [](const Case& a, const Case& b) { return a.file < b.file; });
+    tell_names_apart(study.cases, study.folder());
+    sort_by_file(study.cases);
     std::set<std::string> pictures;
     for (const auto& table : root.tables("picture")) {
         PictureSpec spec;

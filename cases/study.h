@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,10 @@
 #include "core/figure.h"
 #include "core/progress.h"
 #include "core/table.h"
+
+namespace underbody::core {
+class TomlTable;
+}
 
 namespace underbody::cases {
 
@@ -32,8 +37,10 @@ struct Conditions {
 
 /// One CFD case of the study.
 struct Case {
-    std::string name;  ///< file name without folder and ending; unique in the study
-    std::filesystem::path file;
+    /// File name without folder and ending, of an OpenFOAM case its folder's; where several would be called so, with as many
+    /// folders before it as tell them apart. Unique in the study.
+    std::string name;
+    std::filesystem::path file;  ///< or the folder of an OpenFOAM case
     Conditions conditions;
     std::vector<std::string> zones;  ///< patterns of the zones that are the body; empty: all walls
 };
@@ -128,6 +135,8 @@ class Study {
 public:
     /// `folder` holds study.toml (or is its path). Throws core::InputError: file, line, column, hint.
     static Study open(const std::filesystem::path& folder);
+    /// The same of a text that is not written yet; `file` is where it will stand.
+    static Study from_text(const std::string& text, const std::filesystem::path& file);
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     std::string title;
@@ -155,6 +164,7 @@ public:
     [[nodiscard]] const TableSpec* find_table(const std::string& name) const;
 
 private:
+    static Study read(const core::TomlTable& root, const std::filesystem::path& file);
     std::filesystem::path folder_;
 };
 
@@ -169,34 +179,81 @@ struct RunOptions {
     bool write_report = true;      ///< also exports and models, beside it
 };
 
+enum class StepState {
+    computed,
+    unchanged,  ///< out of the store: what it rests on is as it was
+    failed,
+    changed,    ///< the store has an earlier one; what it rests on has changed since (stored_results only)
+    missing,    ///< never made (stored_results only)
+};
+/// "computed", "unchanged", "failed", "changed", "not run"
+std::string to_string(StepState state);
+
 /// How far a step came.
 struct StepResult {
     std::string kind;   ///< "loads", "table", "region", ...
     std::string name;
-    bool reused = false;
+    StepState state = StepState::computed;
     std::string error;  ///< empty: done
 };
+
+/// A load, a moment or what goes with them, SI.
+struct LoadValue {
+    std::string name;   ///< "lift_force", "closure", ...
+    std::string unit;
+    double value = 0;
+};
+
+/// What is known of the loads of one case.
+struct CaseLoads {
+    std::size_t entry = 0;        ///< in Study::cases
+    std::string name;             ///< of the case
+    std::string file;             ///< relative to the study
+    StepState state = StepState::missing;
+    std::string error;            ///< of a failed one
+    std::vector<LoadValue> values;  ///< empty unless computed or unchanged
+    core::Problems warnings;      ///< what makes the numbers less than they seem: an open surface, no wall shear, ...
+    std::int64_t id = 0;          ///< in the store
+    std::string origin;           ///< digest over all that it was made from
+
+    /// NaN when it is not known.
+    [[nodiscard]] double value(const std::string& quantity) const;
+};
+
+class Store;
 
 /// Everything a run made, for the report, the desktop and JSON.
 struct StudyResults {
     std::vector<StepResult> steps;
-    core::Table loads;                       ///< one row a case: conditions, forces, moments, closure
+    std::vector<CaseLoads> case_loads;       ///< one a case, in the order of the study
+    core::Table loads;                       ///< one row a case that has loads: conditions, forces, moments, closure
     std::vector<std::pair<std::string, std::string>> documents;  ///< "table/NAME" -> JSON text, "region/NAME" -> ...
     std::vector<std::pair<std::string, std::string>> pictures;   ///< "picture/NAME" -> PNG bytes
     std::filesystem::path report;
     std::size_t computed = 0;
     std::size_t reused = 0;
     std::size_t failed = 0;
+    std::size_t changed = 0;
+    std::size_t missing = 0;
+    std::vector<std::string> notes;          ///< about the run as a whole: why all was computed again, ...
+    std::shared_ptr<Store> store;            ///< nullptr when there is none
 
     [[nodiscard]] const std::string* document(const std::string& key) const;
     [[nodiscard]] const std::string* picture(const std::string& key) const;
+    /// All that is known of the loads of a case, as JSON; empty when there are none.
+    [[nodiscard]] std::string loads_document(const CaseLoads& loads) const;
+    /// The warnings of all loads; those that many cases have alike once, unless `each`.
+    [[nodiscard]] core::Problems gathered_warnings(bool each = false) const;
 };
 
 /// Runs what changed, reuses the rest, writes the report. A failed case does not stop the others: it is in `steps`.
 StudyResults run_study(const Study& study, const RunOptions& options, core::Progress& progress = core::Progress::none());
 
-/// Only what the store holds already (nothing is computed): for opening a study in the desktop.
+/// Only what the store holds already and what is still true (nothing is computed, nothing written): for opening a study
+/// in the desktop.
 StudyResults stored_results(const Study& study, const RunOptions& options);
+/// The same of the loads alone.
+StudyResults stored_loads(const Study& study, const RunOptions& options);
 
 /// The points of a [[table]]: its axes and its quantity with `QUANTITY_sigma`, one row a case that fits, from
 /// `results.loads`. The sigma is the standard uncertainty of the mesh study the table names and the relative error

@@ -62,8 +62,8 @@ FileTable frame() {
             "how the axes of the CFD files lie",
             {{"forward", directions, "\"+x\"", "+x", "direction in which the body moves"},
              {"up", directions, "\"+z\"", "+z", "direction away from the ground"},
-             {"symmetry", "x | y | z", "\"y\"", "none: whole models",
-              "the files hold half a body; its plane of symmetry is normal to this axis"},
+             {"symmetry", "text", "\"y\"", "none: whole models",
+              "the files hold half a body; its plane of symmetry is normal to this axis, with its place if not 0: y=0.1"},
              {"moments_about", "base_centre | list of m", "\"base_centre\"", "base_centre",
               "point of the moments: the centre of the base, or x, y, z in the files' axes"}}};
 }

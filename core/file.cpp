@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/inputs.h"
 
 namespace underbody::core {
 
@@ -72,6 +73,7 @@ void make_parent(const fs::path& path) {
 }  // namespace
 
 MappedFile::MappedFile(const fs::path& path) : name_(path.string()) {
+    note_content(path);
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.get() < 0) {
         const int error = errno;

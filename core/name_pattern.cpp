@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <tuple>
+#include <unordered_set>
 
 #include "core/text.h"
 #include "core/units.h"
@@ -138,49 +139,59 @@ std::optional<NamePattern::Match> NamePattern::match(const std::string& text) co
 
 std::vector<NamePattern::Found> NamePattern::files(const fs::path& root) const { return files_of(parts_, root); }
 
+std::vector<NamePattern::Found> NamePattern::files_and_folders(const fs::path& root) const {
+    return files_of(parts_, root, true);
+}
+
 std::vector<fs::path> NamePattern::near_misses(const fs::path& root) const {
     std::vector<Part> loose = parts_;
     for (auto& part : loose) {
         part.kind = part.kind == Part::Kind::number ? Part::Kind::text : part.kind;
     }
+    std::unordered_set<std::string> taken;
+    for (const auto& found : files(root)) {
+        taken.insert(found.path.string());
+    }
     std::vector<fs::path> missed;
     for (const auto& found : files_of(loose, root)) {
-        missed.push_back(found.path);
+        if (!taken.contains(found.path.string())) {
+            missed.push_back(found.path);
+        }
     }
     std::sort(missed.begin(), missed.end());
-    for (const auto& found : files(root)) {
-        std::erase(missed, found.path);
-    }
     return missed;
 }
 
-std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& parts, const fs::path& root) const {
+std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& parts, const fs::path& root, bool folders) const {
     // Walk from the last folder that stands before the first brace or star.
     const std::size_t first = pattern_.find_first_of("{*?");
     const std::size_t slash = first == std::string::npos ? pattern_.rfind('/') : pattern_.rfind('/', first);
     const bool absolute = !pattern_.empty() && pattern_.front() == '/';
     const std::string fixed = slash == std::string::npos ? std::string() : pattern_.substr(0, slash);
     const fs::path start = absolute ? fs::path(fixed.empty() ? "/" : fixed) : root / fixed;
+    const std::string before = start.native().ends_with('/') ? start.native() : start.native() + "/";  // of what the walk gives
     const auto depth = std::count(pattern_.begin() + static_cast<std::ptrdiff_t>(slash == std::string::npos ? 0 : slash + 1),
                                   pattern_.end(), '/');
     std::vector<Found> found;
     std::error_code error;
     for (auto entry = fs::recursive_directory_iterator(start, fs::directory_options::skip_permission_denied, error);
          !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-        if (entry->is_directory(error)) {
-            if (entry.depth() >= depth) {
-                entry.disable_recursion_pending();
-            }
+        const bool folder = entry->is_directory(error);
+        if (folder && entry.depth() >= depth) {
+            entry.disable_recursion_pending();
+        }
+        if (folder && !folders) {
             continue;
         }
-        const std::string below = entry->path().lexically_relative(start).generic_string();
+        const std::string below = entry->path().native().substr(before.size());
         const std::string name = fixed.empty() ? (absolute ? "/" + below : below) : fixed + "/" + below;
         if (auto match_found = match_all(parts, name)) {
             found.push_back({entry->path().lexically_normal(), std::move(*match_found)});
         }
     }
-    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-        return std::tie(a.match.texts, a.match.numbers, a.path) < std::tie(b.match.texts, b.match.numbers, b.path);
+    const auto texts = [](const Found& one) { return std::tie(one.match.texts, one.match.numbers); };
+    std::sort(found.begin(), found.end(), [&](const Found& a, const Found& b) {
+        return texts(a) < texts(b) || (!(texts(b) < texts(a)) && a.path < b.path);
     });
     return found;
 }

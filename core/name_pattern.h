@@ -32,6 +32,8 @@ public:
     };
     /// All files that fit, by their texts, then by their numbers, then by name; the pattern may have several folders. `root` is where a relative pattern starts.
     [[nodiscard]] std::vector<Found> files(const std::filesystem::path& root = ".") const;
+    /// The same, with the folders that fit.
+    [[nodiscard]] std::vector<Found> files_and_folders(const std::filesystem::path& root = ".") const;
 
     /// Files that would fit if every `{name:unit}` took any text ("run-h5O.csv", "run-h10-old.csv"), by name: what `files` passes over is seldom
     /// meant to be left out.
@@ -49,7 +51,7 @@ public:
     [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
 private:
-    std::vector<Found> files_of(const std::vector<Part>& parts, const std::filesystem::path& root) const;
+    std::vector<Found> files_of(const std::vector<Part>& parts, const std::filesystem::path& root, bool folders = false) const;
 
     std::string pattern_;
     std::vector<Part> parts_;

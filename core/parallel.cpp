@@ -3,9 +3,12 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
+
+#include "core/inputs.h"
 
 namespace underbody::core {
 
@@ -32,13 +35,19 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
                      Progress& progress) {
     block = std::max<std::size_t>(1, block);
     const std::size_t blocks = (count + block - 1) / block;
-    tbb::parallel_for(
-        std::size_t{0}, blocks,
-        [&](std::size_t i) {
-            progress.check();
-            body(i * block, std::min(count, (i + 1) * block));
-        },
-        tbb::simple_partitioner());
+    const RecordInputs* const scope = InputScope::current();
+    // Whoever waits for a loop within a loop does not take up a part of the outer one meanwhile: what a part holds, a lock or a
+    // claim, would be held while it waits for what another holds.
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(
+            std::size_t{0}, blocks,
+            [&](std::size_t i) {
+                const InputScope inputs(scope);  // what any thread reads in the loop, the caller reads
+                progress.check();
+                body(i * block, std::min(count, (i + 1) * block));
+            },
+            tbb::simple_partitioner());
+    });
     progress.check();
 }
 

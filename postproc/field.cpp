@@ -8,6 +8,7 @@
 #include <array>
 #include <fstream>
 
+#include "core/inputs.h"
 #include "core/utf8.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/options_used.h"
@@ -132,6 +133,7 @@ const Importer* importer_for(const fs::path& path) {
 
 Field read_field(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
     const core::Place place{path.string(), {}, {}, {}};
+    core::note_content(path);
     std::error_code error;
     const auto status = fs::status(path, error);
     if (!fs::exists(status)) {

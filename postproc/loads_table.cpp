@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/batch_problems.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/loads_parts.h"
@@ -248,6 +249,7 @@ void check_scatters(const std::vector<std::pair<std::string, double>>& numbers, 
 
 std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const std::string& column, core::Problems& notes) {
     std::vector<Group> groups;
+    std::map<SetPoint, std::size_t> known;
     for (const auto& one : cases) {
         if (!has(one.numbers, column) && column != "faces") {
             std::vector<std::string> names = {"faces"};
@@ -262,12 +264,11 @@ std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const s
                                    core::did_you_mean(column, names));
         }
         SetPoint point = set_point_of(one, column);
-        const auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& group) { return group.point == point; });
-        if (found == groups.end()) {
-            groups.push_back({std::move(point), {&one}});
-        } else {
-            found->cases.push_back(&one);
+        const auto [found, fresh] = known.emplace(point, groups.size());
+        if (fresh) {
+            groups.push_back({std::move(point), {}});
         }
+        groups[found->second].cases.push_back(&one);
     }
     note_what_is_apart(groups, column, notes);
     std::vector<LoadsCase> result;
@@ -381,6 +382,15 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
     }
     table.add_text("values_from", std::move(origins));
     table.add_text("file", std::move(files));
+    core::BatchProblems warnings;  // what makes numbers less than they seem goes with them
+    for (const auto& one : cases) {
+        warnings.add(one.file, one.loads.problems);
+    }
+    for (const auto& problem : warnings.gathered(false)) {
+        if (problem.severity != core::Problem::Severity::note) {
+            table.comments.push_back("warning: " + problem.place.file + ": " + problem.message);
+        }
+    }
     return table;
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
 #include "core/file.h"
+#include "core/inputs.h"
 #include "core/text.h"
 #include "postproc/importers/cfx_output.h"
 #include "postproc/importers/importer.h"
@@ -190,6 +193,25 @@ bool named_after(const std::string& name, const std::string& stem) {
     return name.size() > stem.size() && name.starts_with(stem) && std::string_view("._-").find(name[stem.size()]) != std::string_view::npos;
 }
 
+/// Names in a folder, in their order. Of ten thousand cases in one folder each asks for its own: it is listed again only when it
+/// changed, or has changed just now.
+std::shared_ptr<const std::vector<std::string>> names_in_folder_of(const fs::path& folder) {
+    constexpr std::int64_t settled = 3'000'000'000;  // ns
+    static std::mutex mutex;
+    static fs::path known_folder;
+    static core::FileStamp known_stamp;
+    static std::shared_ptr<const std::vector<std::string>> known;
+    const core::FileStamp stamp = core::stamp_of(folder);
+    const std::lock_guard lock(mutex);
+    if (known != nullptr && folder == known_folder && stamp == known_stamp && core::now_in_nanoseconds() - stamp.changed > settled) {
+        return known;
+    }
+    known = std::make_shared<const std::vector<std::string>>(core::names_in_folder(folder, "*"));
+    known_folder = folder;
+    known_stamp = stamp;
+    return known;
+}
+
 /// Reports are those of the CFD file with the longest stem that fits: "case-coarse.txt" is of case-coarse.csv, not of case.csv.
 std::vector<fs::path> reports_beside(const fs::path& file) {
     const std::string stem = case_stem(file);
@@ -197,16 +219,17 @@ std::vector<fs::path> reports_beside(const fs::path& file) {
     std::vector<fs::path> others;  // CFD files with a longer stem
     std::error_code ignored;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const std::string name = entry.path().filename().string();
-        if (!named_after(name, stem) || !entry.is_regular_file(ignored)) {
+    const auto names = names_in_folder_of(folder);
+    for (auto name = std::lower_bound(names->begin(), names->end(), stem); name != names->end() && name->starts_with(stem); ++name) {
+        const fs::path path = folder / *name;
+        if (!named_after(*name, stem) || !fs::is_regular_file(path, ignored)) {
             continue;
         }
-        const std::string other = case_stem(entry.path());
-        if (is_text_ending(entry.path().extension().string())) {
-            reports.push_back(file.has_parent_path() ? entry.path() : entry.path().filename());
-        } else if (other != name && named_after(other, stem)) {
-            others.push_back(entry.path());
+        const std::string other = case_stem(path);
+        if (is_text_ending(path.extension().string())) {
+            reports.push_back(file.has_parent_path() ? path : path.filename());
+        } else if (other != *name && named_after(other, stem)) {
+            others.push_back(path);
         }
     }
     std::erase_if(reports, [&](const fs::path& report) {

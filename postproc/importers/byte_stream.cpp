@@ -14,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/inputs.h"
+
 namespace underbody::postproc {
 
 namespace {
@@ -253,6 +255,7 @@ private:
 }  // namespace
 
 ByteStream::ByteStream(const std::filesystem::path& path) : name_(path.string()) {
+    core::note_content(path);
     std::error_code error;
     const std::uint64_t size = std::filesystem::file_size(path, error);
     if (error) {

@@ -7,7 +7,9 @@
 #include <fstream>
 
 #include "core/file.h"
+#include "core/inputs.h"
 #include "core/text.h"
+#include "postproc/importers/linked_files.h"
 
 namespace underbody::postproc {
 
@@ -88,6 +90,7 @@ bool CgnsFile::open_newer(bool hdf5) {
 }
 
 CgnsFile::CgnsFile(const std::filesystem::path& path, std::optional<double> time) : name_(path.string()) {
+    core::note_content(path);
     std::error_code error;
     bytes_ = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
@@ -99,6 +102,7 @@ CgnsFile::CgnsFile(const std::filesystem::path& path, std::optional<double> time
         const std::string why = cg_get_error();
         throw core::InputError("format", "CGNS cannot open it: " + why, {name_, {}, {}, {}}, hint_for(why, "the file is cut short or damaged; copy it again"));
     }
+    note_cgns_links(file_, path);
     try {
         std::array<char, 33> base_name{};
         const auto opened = [&](int result, const char* what) {

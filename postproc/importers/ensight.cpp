@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include "core/inputs.h"
 #include "core/text.h"
 #include "postproc/importers/array_names.h"
 #include "postproc/importers/element_zone.h"
@@ -290,6 +291,7 @@ void Reader::read_variable(const EnsightVariable& variable) {
     }
     const core::Place place{variable.file.path.string(), {}, {}, {}};
     std::error_code error;
+    core::note_presence(variable.file.path);
     if (!std::filesystem::is_regular_file(variable.file.path, error)) {
         field_.problems.push_back(
             {core::Problem::Severity::warning, "the file of variable '" + variable.name + "' is not there", place});
@@ -366,6 +368,7 @@ Field Reader::read() {
     field_.files = {path_.string(), files.geometry.path.string()};
     field_.problems = files.problems;
     std::error_code error;
+    core::note_presence(files.geometry.path);
     if (!std::filesystem::is_regular_file(files.geometry.path, error)) {
         throw core::InputError(
             "missing", "the geometry '" + files.geometry.path.filename().string() + "' of this case is not there",

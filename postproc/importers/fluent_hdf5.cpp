@@ -1,6 +1,7 @@
 // Importer of Fluent's common fluids format (.msh.h5, .cas.h5, .dat.h5): finds which file is which, and its partner.
 #include "postproc/importers/fluent_hdf5.h"
 
+#include "core/inputs.h"
 #include "core/text.h"
 #include "postproc/importers/fluent_variables.h"
 #include "postproc/importers/hdf5_file.h"
@@ -43,6 +44,7 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         if (mesh_path.empty()) {
             const std::string named = file_name_in(Hdf5File(path).text("/settings/Case File"));
             const fs::path beside = path.parent_path() / named;
+            core::note_presence(beside);
             mesh_path = !named.empty() && fs::is_regular_file(beside) ? beside : fs::path();
         }
         if (mesh_path.empty()) {

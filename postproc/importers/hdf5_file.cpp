@@ -6,11 +6,13 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/inputs.h"
 #include "core/text.h"
 #include "postproc/importers/hdf5_chunks.h"
 #include "postproc/importers/hdf5_handle.h"
 #include "postproc/importers/hdf5_numbers.h"
 #include "postproc/importers/hdf5_rows.h"
+#include "postproc/importers/linked_files.h"
 #include "postproc/importers/trial.h"
 
 namespace underbody::postproc {
@@ -164,8 +166,24 @@ void look_at_set(hid_t set, const Looked& looked) {
     }
 }
 
-herr_t look_at(hid_t group, const char* name, const H5L_info_t* /*info*/, void* looked) {
+constexpr char link_mark = '\1';  ///< before a name that is none of a path but of a file that a link leads to
+
+void report_link(hid_t group, const char* name, std::size_t bytes, std::string& report) {
+    std::vector<char> value(bytes);
+    unsigned flags = 0;
+    const char* file = nullptr;
+    const char* object = nullptr;
+    if (H5Lget_val(group, name, value.data(), bytes, H5P_DEFAULT) >= 0 &&
+        H5Lunpack_elink_val(value.data(), bytes, &flags, &file, &object) >= 0) {
+        report += link_mark + std::string(file) + '\0';
+    }
+}
+
+herr_t look_at(hid_t group, const char* name, const H5L_info_t* link, void* looked) {
     auto& all = *static_cast<Looked*>(looked);
+    if (link->type == H5L_TYPE_EXTERNAL) {
+        report_link(group, name, link->u.val_size, all.report);
+    }
     const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
     H5O_info_t info{};
     if (!object.good() || H5Oget_info(object.get(), &info) < 0) {
@@ -240,8 +258,14 @@ Paths paths_in(const std::filesystem::path& path) {
 }  // namespace
 
 Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
+    core::note_content(path);
     quiet();
     looked_at_ = paths_in(path);
+    for (const auto& link : *looked_at_) {
+        if (link.starts_with(link_mark)) {
+            note_linked(path, link.substr(1));
+        }
+    }
     std::error_code error;
     bytes_ = std::filesystem::file_size(path, error);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "core/inputs.h"
 #include "core/text.h"
 #include "postproc/importers/face_mesh.h"
 #include "postproc/importers/importer.h"
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_folder(const fs::path& path) {
+    core::note_presence(path);
     std::error_code error;
     return fs::is_directory(path, error);
 }
@@ -41,6 +43,7 @@ fs::path case_folder(const fs::path& path) {
 
 /// Folders whose names are numbers, in their order.
 std::vector<std::pair<double, fs::path>> times_in(const fs::path& folder) {
+    core::note_names(folder, "[-+.0-9]*");  // what else lies there, a log, changes nothing
     std::vector<std::pair<double, fs::path>> times;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -118,6 +121,7 @@ void Reader::find_pieces() {
     for (std::size_t p = 0; is_folder(share(p)); ++p) {
         pieces_.push_back({share(p), {}, 0, 0, 0, {}});
     }
+    core::note_names(folder_, "processor*");
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder_, error)) {
         const std::string name = entry.path().filename().string();

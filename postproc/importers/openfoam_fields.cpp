@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/inputs.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -300,6 +301,7 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
 }
 
 void FoamFields::read(const FoamPiece& piece, const fs::path& time) {
+    core::note_names(time, "[!.]*");
     std::vector<fs::path> files;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(time, error)) {

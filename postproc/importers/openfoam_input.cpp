@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "core/inputs.h"
 #include "core/text.h"
 
 namespace underbody::postproc {
@@ -21,6 +22,8 @@ fs::path present(const fs::path& path) {
     std::error_code error;
     fs::path packed = path;
     packed += ".gz";
+    core::note_presence(path);
+    core::note_presence(packed);
     return !fs::is_regular_file(path, error) && fs::is_regular_file(packed, error) ? packed : path;
 }
 

@@ -1,5 +1,6 @@
 #include "postproc/importers/partner.h"
 
+#include "core/inputs.h"
 #include "core/text.h"
 
 namespace underbody::postproc {
@@ -19,6 +20,7 @@ fs::path partner_by_name(const fs::path& path, const std::vector<std::string>& e
     while (!stem.empty()) {
         for (const auto& other : others) {
             fs::path candidate = path.parent_path() / (stem + other);
+            core::note_presence(candidate);
             std::error_code error;
             if (fs::is_regular_file(candidate, error)) {
                 return candidate;

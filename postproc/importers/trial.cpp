@@ -15,6 +15,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/inputs.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -110,6 +111,7 @@ std::string report_of_child(const std::filesystem::path& path, const std::functi
         throw core::SystemError("process", "cannot start a process to try the file in", {path.string(), {}, {}, {}});
     }
     if (child == 0) {
+        const core::InputScope unheard(nullptr);  // a lock that another thread of the parent held would stay locked here
         ::close(ends[0]);
         for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGALRM, SIGXCPU}) {
             ::signal(signal, SIG_DFL);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "postproc/importers/linked_files.h"
 #include "postproc/importers/trial.h"
 #include "postproc/importers/vtk_problems.h"
 
@@ -22,6 +23,7 @@ void check_leaves(const std::filesystem::path& path, vtkDataObject* object);
 /// the reading proper.
 template <typename Reader, typename Prepare>
 vtkSmartPointer<vtkDataObject> output_of(const std::filesystem::path& path, core::Progress& progress, Prepare&& prepare) {
+    note_vtk_pieces(path);
     try_in_child(path, [&] {
         auto reader = vtkSmartPointer<Reader>::New();
         const VtkProblems problems;

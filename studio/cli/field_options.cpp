@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "core/error.h"
+#include "core/inputs.h"
 #include "core/name_pattern.h"
 #include "core/table.h"
 #include "core/text.h"
@@ -99,6 +101,15 @@ void add_manifest(const std::string& path, Batch& batch) {
     const core::Table table = core::read_csv(fs::path(path));
     const auto& names = table.text("file");
     const bool all = batch.files.empty();
+    using Identity = std::pair<std::uint64_t, std::uint64_t>;  // of a file, whatever its path
+    const auto identity = [](const fs::path& file) {
+        const core::FileStamp stamp = core::stamp_of(file);
+        return Identity(stamp.device, stamp.inode);
+    };
+    std::multimap<Identity, std::size_t> given;
+    for (std::size_t i = 0; i < batch.files.size(); ++i) {
+        given.emplace(identity(batch.files[i].path), i);
+    }
     for (std::size_t row = 0; row < table.rows(); ++row) {
         if (names[row].empty()) {
             throw core::InputError("missing", "row " + std::to_string(row + 1) + " of the manifest names no file", {path, {}, {}, {}});
@@ -109,9 +120,10 @@ void add_manifest(const std::string& path, Batch& batch) {
             add_row(table, row, batch.files.back());
             continue;
         }
-        for (auto& file : batch.files) {
-            std::error_code ignored;
-            if (fs::equivalent(file.path, listed, ignored)) {
+        const auto [first, last] = given.equal_range(fs::exists(listed) ? identity(listed) : Identity(0, 0));
+        for (auto found = first; found != last; ++found) {
+            auto& file = batch.files[found->second];
+            if (fs::exists(file.path)) {
                 if (!file.row.file.empty() || !file.numbers.empty() || !file.texts.empty()) {
                     throw core::InputError("manifest",
                                            "row " + std::to_string(row + 1) + " of the manifest lists '" + names[row] +

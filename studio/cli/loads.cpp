@@ -8,13 +8,14 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/loads_table.h"
 #include "postproc/stated_loads.h"
-#include "studio/cli/batch_problems.h"
+#include "core/batch_problems.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/option_value.h"
@@ -228,8 +229,12 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
     auto comparisons = postproc::compare_with_stated(cases, notes);
     shell.show(notes);
     std::vector<std::string> unchecked;
+    std::set<std::string> checked;
+    for (const auto& stated : comparisons) {
+        checked.insert(stated.file);
+    }
     for (const auto& one : cases) {
-        if (one.comparisons.empty() && std::none_of(comparisons.begin(), comparisons.end(), [&](const auto& stated) { return stated.file == one.file; })) {
+        if (one.comparisons.empty() && !checked.contains(one.file)) {
             unchecked.push_back(one.file);
         }
     }
@@ -371,7 +376,7 @@ struct Failure {
 std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& given, const Batch& batch, std::vector<Failure>& failures) {
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
-    BatchProblems said;
+    core::BatchProblems said;
     for (std::size_t i = 0; i < batch.files.size(); ++i) {
         shell.progress().check();
         shell.progress().report(static_cast<double>(i) / static_cast<double>(batch.files.size()), batch.files[i].path);

@@ -3,7 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/study.h"
+#include "cases/why.h"
 #include "core/file.h"
+#include "core/name_pattern.h"
 #include "core/text.h"
 #include "core/toml.h"
 #include "core/units.h"
@@ -20,9 +22,11 @@ struct StudyArguments {
     std::string store;
     std::string report;
     bool no_pictures = false;
-    bool strict = false;
     std::string files;
     std::vector<std::string> conditions;
+    std::string symmetry;
+    std::string what;
+    std::vector<std::string> zones;
 };
 
 cases::RunOptions run_options(const StudyArguments& arguments) {
@@ -67,13 +71,23 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
     return text;
 }
 
+/// Warnings that change what the numbers mean stand beside them, on stdout.
+void print_warnings(Shell& shell, const cases::StudyResults& results) {
+    for (const auto& problem : results.gathered_warnings(shell.verbose)) {
+        shell.print("warning: " + problem.place.file + ": " + problem.message);
+    }
+}
+
 /// What was done and what went wrong; the exit code.
 int tell(Shell& shell, const cases::StudyResults& results) {
+    for (const auto& note : results.notes) {
+        shell.info(note);
+    }
     for (const auto& step : results.steps) {
         if (!step.error.empty()) {
             shell.warn(step.kind + " '" + step.name + "' failed: " + step.error);
-        } else {
-            shell.detail(step.kind + " '" + step.name + (step.reused ? "': unchanged" : "': computed"));
+        } else if (shell.verbose) {
+            shell.detail(step.kind + " '" + step.name + "': " + to_string(step.state));
         }
     }
     if (shell.json) {
@@ -81,48 +95,90 @@ int tell(Shell& shell, const cases::StudyResults& results) {
         to_json(json, results);
         shell.print_json(json);
     }
+    print_warnings(shell, results);
     shell.print(std::to_string(results.computed) + " results computed, " + std::to_string(results.reused) + " unchanged, " +
                 std::to_string(results.failed) + " failed");
     return results.failed == 0 ? done : wrong_input;
 }
 
-int run_study(Shell& shell, const StudyArguments& arguments) {
+/// The library knows no options; where a store cannot be used, one of them is the way out.
+template <class Work>
+auto with_store_hint(const Work& work) {
+    try {
+        return work();
+    } catch (const core::SystemError& error) {
+        if (error.kind() != "store") {
+            throw;
+        }
+        throw core::SystemError(error.kind(), error.message(), error.place(),
+                                error.hint() + (error.hint().empty() ? "" : "; ") + "--store FILE puts the store elsewhere");
+    }
+}
+
+cases::StudyResults results_of_run(Shell& shell, const cases::Study& study, const cases::RunOptions& options) {
+    return with_store_hint([&] { return cases::run_study(study, options, shell.progress()); });
+}
+
+int run_and_report(Shell& shell, const StudyArguments& arguments) {
     const auto study = cases::Study::open(arguments.folder);
-    const auto results = cases::run_study(study, run_options(arguments), shell.progress());
+    const auto results = results_of_run(shell, study, run_options(arguments));
     const int code = tell(shell, results);
     shell.print("report: " + results.report.string());
     return code;
 }
 
+nlohmann::json json_of_case(const cases::Case& entry, const cases::CaseLoads& loads) {
+    nlohmann::json item = {{"name", entry.name},
+                           {"file", entry.file.string()},
+                           {"conditions", nlohmann::json::object()},
+                           {"state", to_string(loads.state)}};
+    for (const auto& [name, value] : entry.conditions.numbers) {
+        item["conditions"][name] = value;
+    }
+    for (const auto& [name, value] : entry.conditions.texts) {
+        item["conditions"][name] = value;
+    }
+    for (const auto& value : loads.values) {
+        if (value.name == "lift_force" || value.name == "drag_force") {
+            item[value.name] = value.value;
+        }
+    }
+    for (const auto& warning : loads.warnings) {
+        item["warnings"].push_back(warning.message);
+    }
+    return item;
+}
+
 int list(Shell& shell, const StudyArguments& arguments) {
     const auto study = cases::Study::open(arguments.folder);
-    const auto results = cases::stored_results(study, run_options(arguments));
+    const auto results = with_store_hint([&] { return cases::stored_loads(study, run_options(arguments)); });
+    for (const auto& note : results.notes) {
+        shell.info(note);
+    }
     nlohmann::json json = nlohmann::json::array();
-    std::vector<std::vector<std::string>> rows = {{"case", "conditions", "lift", "drag", "file"}};
-    for (const auto& entry : study.cases) {
-        std::string lift = "-";
-        std::string drag = "-";
-        nlohmann::json item = {{"name", entry.name}, {"file", entry.file.string()}, {"conditions", nlohmann::json::object()}};
-        for (const auto& [name, value] : entry.conditions.numbers) {
-            item["conditions"][name] = value;
+    std::vector<std::vector<std::string>> rows = {{"case", "conditions", "lift", "drag", "", "file"}};
+    std::size_t changed = 0;
+    for (const auto& loads : results.case_loads) {
+        const cases::Case& entry = study.cases[loads.entry];
+        changed += loads.state == cases::StepState::changed ? 1 : 0;
+        if (shell.json) {
+            json.push_back(json_of_case(entry, loads));
+            continue;
         }
-        for (const auto& [name, value] : entry.conditions.texts) {
-            item["conditions"][name] = value;
-        }
-        if (const auto* document = results.document("loads/" + entry.name)) {
-            const auto loads = nlohmann::json::parse(*document);
-            item["lift_force"] = loads.at("lift_force");
-            item["drag_force"] = loads.at("drag_force");
-            lift = in_unit(loads.at("lift_force").get<double>(), "N", "N") + " N";
-            drag = in_unit(loads.at("drag_force").get<double>(), "N", "N") + " N";
-        }
-        json.push_back(std::move(item));
-        rows.push_back({entry.name, entry.conditions.label(), lift, drag, entry.file.string()});
+        const bool known = !loads.values.empty();
+        const std::string remark = !known ? to_string(loads.state) : loads.warnings.empty() ? "" : "warning";
+        rows.push_back({entry.name, entry.conditions.label(), known ? in_unit(loads.value("lift_force"), "N", "N") + " N" : "-",
+                        known ? in_unit(loads.value("drag_force"), "N", "N") + " N" : "-", remark, entry.file.string()});
     }
     if (shell.json) {
-        shell.print_json({{"title", study.title}, {"cases", json}});
+        shell.print_json({{"title", study.title}, {"cases", json}, {"notes", results.notes}});
+        return done;
     }
     shell.print(study.title + ": " + std::to_string(study.cases.size()) + " cases\n" + aligned(rows));
+    print_warnings(shell, results);
+    if (changed > 0) {
+        shell.print("changed: for " + std::to_string(changed) + " cases, files, options or code are no longer those of the stored loads; underbody study run computes them again");
+    }
     return done;
 }
 
@@ -130,7 +186,7 @@ int compare(Shell& shell, const StudyArguments& arguments) {
     const auto study = cases::Study::open(arguments.folder);
     cases::RunOptions options = run_options(arguments);
     options.write_report = false;
-    const auto results = cases::run_study(study, options, shell.progress());
+    const auto results = results_of_run(shell, study, options);
     nlohmann::json json = nlohmann::json::object();
     std::vector<std::vector<std::string>> rows = {{"comparison", "table", "winner of", "value"}};
     for (const auto& spec : study.comparisons) {
@@ -158,7 +214,7 @@ int verify(Shell& shell, const StudyArguments& arguments) {
     }
     cases::RunOptions options = run_options(arguments);
     options.write_report = false;
-    const auto results = cases::run_study(study, options, shell.progress());
+    const auto results = results_of_run(shell, study, options);
     nlohmann::json json = nlohmann::json::object();
     std::size_t failed = 0;
     for (const auto& spec : study.verifications) {
@@ -183,34 +239,101 @@ int verify(Shell& shell, const StudyArguments& arguments) {
     return failed == 0 && results.failed == 0 ? done : check_failed;
 }
 
-/// Appends a [[case]] to study.toml (or starts one), checked before anything is written.
-int add(Shell& shell, const StudyArguments& arguments) {
-    const std::filesystem::path file = std::filesystem::path(arguments.folder) / "study.toml";
+std::string lines_of(const char* title, const std::vector<std::pair<std::string, std::string>>& pairs) {
     std::string text;
-    if (std::filesystem::exists(file)) {
-        text = core::read_file(file);
-    } else {
-        text = "title = " + core::toml_string(std::filesystem::path(arguments.folder).lexically_normal().filename().string()) + "\n";
+    for (const auto& [key, value] : pairs) {
+        text += (text.empty() ? std::string("  ") + title + "\n" : "") + "    " + key + (value.empty() ? "" : ": " + value) + "\n";
     }
-    text += "\n[[case]]\nfiles = " + core::toml_string(arguments.files) + "\n";
+    return text;
+}
+
+int why(Shell& shell, const StudyArguments& arguments) {
+    const auto study = cases::Study::open(arguments.folder);
+    const auto all = with_store_hint([&] { return cases::origins(study, run_options(arguments), arguments.what); });
+    if (shell.json) {
+        shell.print_json({{"study", study.title}, {"origins", all}});
+        return done;
+    }
+    for (const auto& origin : all) {
+        std::string text = origin.kind + " '" + origin.name + "'" + (origin.made.empty() ? ": " + to_string(origin.state) : ", made " + origin.made + " UTC") + "\n";
+        text += lines_of("says", origin.facts) + lines_of("made with", origin.options);
+        std::vector<std::pair<std::string, std::string>> read;
+        for (const auto& file : origin.files) {
+            const bool missing = file.state == "absent";
+            if (!missing || shell.verbose) {
+                read.emplace_back(file.path + (file.pattern.empty() ? "" : " (names like " + file.pattern + ")"), file.state);
+            }
+        }
+        std::vector<std::pair<std::string, std::string>> from;
+        for (const auto& [kind, name] : origin.from) {
+            from.emplace_back(kind + " '" + name + "'", "");
+        }
+        text += lines_of("read, with the hash of the content", read) + lines_of("made of", from) + lines_of("by code", origin.code);
+        shell.print(text);
+    }
+    return done;
+}
+
+/// The text with `symmetry` under [frame]. Throws core::UsageError when it says another plane already.
+std::string with_symmetry(std::string text, const std::string& symmetry, const cases::Study* before) {
+    if (symmetry.empty() || (before != nullptr && before->symmetry == symmetry)) {
+        return text;
+    }
+    if (before != nullptr && !before->symmetry.empty()) {
+        throw core::UsageError("range", "the study's half models have their plane across " + before->symmetry + " already", {},
+                               "all cases of a study have one; a study of its own for the others");
+    }
+    if (before != nullptr && !before->cases.empty()) {
+        throw core::UsageError("range", "the cases that the study has already are whole bodies: with a symmetry plane they would be taken for halves", {},
+                               "a study of its own for the half models, or symmetry = " + core::toml_string(symmetry) + " under [frame] by hand");
+    }
+    const std::string line = "symmetry = " + core::toml_string(symmetry) + "\n";
+    const std::size_t frame = ("\n" + text).find("\n[frame]");
+    if (frame == std::string::npos) {
+        return text + "\n[frame]\n" + line;
+    }
+    const std::size_t end = text.find('\n', frame);
+    return end == std::string::npos ? text + "\n" + line : text.insert(end + 1, line);
+}
+
+std::string case_text(const StudyArguments& arguments) {
+    std::string text = "\n[[case]]\nfiles = " + core::toml_string(arguments.files) + "\n";
+    std::string zones;
+    for (const auto& zone : arguments.zones) {
+        zones += (zones.empty() ? "" : ", ") + core::toml_string(zone);
+    }
+    text += zones.empty() ? "" : "zones = [" + zones + "]\n";
     for (const auto& condition : arguments.conditions) {
         const std::size_t equal = condition.find('=');
         if (equal == std::string::npos) {
             throw core::UsageError("parse", "'" + condition + "' is not of the form name=value", {}, "--condition speed=0.5m/s");
         }
-        const std::string value = condition.substr(equal + 1);
-        text += "conditions." + condition.substr(0, equal) + " = " + core::toml_string(value) + "\n";
+        text += "conditions." + condition.substr(0, equal) + " = " + core::toml_string(condition.substr(equal + 1)) + "\n";
     }
-    // Checked in the folder itself, under a name that a crash may leave without harm.
-    core::PendingFile pending(file);
-    core::write_file(pending.path(), text);
-    std::size_t count = 0;
-    {
-        const auto before = std::filesystem::exists(file) ? cases::Study::open(arguments.folder).cases.size() : 0;
-        const auto study = cases::Study::open(pending.path());
-        count = study.cases.size() - before;
+    return text;
+}
+
+/// Appends a [[case]] to study.toml (or starts one), checked before anything is written.
+int add(Shell& shell, const StudyArguments& arguments) {
+    const std::filesystem::path folder = arguments.folder;
+    const std::filesystem::path file = folder / "study.toml";
+    std::optional<cases::Study> before;
+    std::string text = "title = " + core::toml_string(std::filesystem::absolute(folder / ".").lexically_normal().parent_path().filename().string()) + "\n";
+    if (std::filesystem::exists(file)) {
+        text = core::read_file(file);
+        before = cases::Study::from_text(text, file);
     }
-    pending.commit();
+    text = with_symmetry(std::move(text), arguments.symmetry, before ? &*before : nullptr) + case_text(arguments);
+    const std::size_t count = cases::Study::from_text(text, file).cases.size() - (before ? before->cases.size() : 0);
+    core::write_file(file, text);
+    std::string missed;
+    std::size_t misses = 0;
+    for (const auto& path : core::NamePattern(arguments.files).near_misses(folder)) {
+        missed += ++misses > 5 ? "" : (missed.empty() ? "" : ", ") + path.string();
+    }
+    if (misses > 0) {
+        shell.warn(std::to_string(misses) + " files that nearly fit the pattern have no number where it has one, and are not added: " + missed);
+    }
     shell.print(std::to_string(count) + " cases added to " + file.string());
     if (shell.json) {
         shell.print_json({{"added", count}, {"study", file.string()}});
@@ -230,19 +353,21 @@ void add_study_command(CLI::App& app, Shell& shell) {
         "  underbody study run cases/evie --report out/r.html   the report elsewhere\n"
         "  underbody study list cases/evie                      the cases with their conditions and loads\n"
         "  underbody study verify cases/evie                    our loads against the solver's own (exit 4 when beyond)\n"
-        "  underbody study add mystudy --files 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --condition speed=0.5m/s");
+        "  underbody study why cases/evie region/glide          from a number back to the files, settings and code that made it\n"
+        "  underbody study add mystudy --files 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --condition speed=0.5m/s\n"
+        "  underbody study add mystudy --files 'runs/{variant}-h{gap:mm}/case.foam' --symmetry y --zones hull,base");
 
     auto* run_command = study->add_subcommand("run", "compute what changed, write the report");
     add_common(run_command, *arguments);
     run_command->add_option("--report", arguments->report, "HTML file (default: STUDY/report/index.html)");
     run_command->add_flag("--no-pictures", arguments->no_pictures, "leave the 3D pictures out (they need Xvfb)");
-    shell.on(run_command, [arguments, &shell] { return run_study(shell, *arguments); });
+    shell.on(run_command, [arguments, &shell] { return run_and_report(shell, *arguments); });
 
     auto* report_command = study->add_subcommand("report", "the same as run: the report is part of it");
     add_common(report_command, *arguments);
     report_command->add_option("--report,--out", arguments->report, "HTML file (default: STUDY/report/index.html)");
     report_command->add_flag("--no-pictures", arguments->no_pictures, "leave the 3D pictures out (they need Xvfb)");
-    shell.on(report_command, [arguments, &shell] { return run_study(shell, *arguments); });
+    shell.on(report_command, [arguments, &shell] { return run_and_report(shell, *arguments); });
 
     auto* list_command = study->add_subcommand("list", "the cases, their conditions and what is known of them");
     add_common(list_command, *arguments);
@@ -256,10 +381,17 @@ void add_study_command(CLI::App& app, Shell& shell) {
     add_common(verify_command, *arguments);
     shell.on(verify_command, [arguments, &shell] { return verify(shell, *arguments); });
 
+    auto* why_command = study->add_subcommand("why", "where a number comes from: loads, faces, files with their hashes, settings and code");
+    add_common(why_command, *arguments);
+    why_command->add_option("result", arguments->what, "of the report, a table or an exported file: table/lift, \"lift_force of cube-h2\", exports/lift.h")->required();
+    shell.on(why_command, [arguments, &shell] { return why(shell, *arguments); });
+
     auto* add_command = study->add_subcommand("add", "add cases to a study, or start one");
     add_command->add_option("study", arguments->folder, "folder of the study")->required();
     add_command->add_option("--files", arguments->files, "pattern of the files, relative to the study")->required();
     add_command->add_option("--condition", arguments->conditions, "name=value held for all of them (repeatable)");
+    add_command->add_option("--symmetry", arguments->symmetry, "half models: normal axis of their plane (y), written to [frame]");
+    add_command->add_option("--zones", arguments->zones, "zones that are the body: names, * and ? allowed; several with commas")->delimiter(',');
     shell.on(add_command, [arguments, &shell] { return add(shell, *arguments); });
 }
 

@@ -42,41 +42,35 @@ public:
     }
 };
 
-/// Value of a column of the loads table in the row of a case; NaN when there is none.
-double load_of(const cases::StudyResults& results, const std::string& name, const char* column) {
-    const auto* names = results.loads.find("case");
-    const auto* values = results.loads.find(column);
-    if (names == nullptr || values == nullptr) {
-        return std::nan("");
-    }
-    for (std::size_t row = 0; row < names->text.size() && row < values->numbers.size(); ++row) {
-        if (names->text[row] == name) {
-            return values->numbers[row];
-        }
-    }
-    return std::nan("");
+/// What is known of the loads of a case; nullptr when nothing is.
+const cases::CaseLoads* loads_of(const Session& session, std::size_t index) {
+    const auto& all = session.results.case_loads;
+    return index < all.size() && all[index].entry == index ? &all[index] : nullptr;
 }
 
-QString status_of(const Session& session, const cases::Case& one, bool has_loads) {
+QString status_of(const cases::Case& one, const cases::CaseLoads* loads) {
     std::error_code code;
     if (!std::filesystem::exists(one.file, code)) {
         return "no file";
     }
-    for (const auto& step : session.results.steps) {
-        if (step.kind == "loads" && step.name == one.name && !step.error.empty()) {
-            return "failed";
-        }
+    if (loads == nullptr || loads->state == cases::StepState::missing) {
+        return "not run";
     }
-    return has_loads ? "done" : "not run";
+    if (loads->values.empty()) {
+        return qt(to_string(loads->state));
+    }
+    return loads->warnings.empty() ? "done" : "warning";
 }
 
-QString why(const Session& session, const cases::Case& one) {
-    for (const auto& step : session.results.steps) {
-        if (step.name == one.name && !step.error.empty()) {
-            return "\n" + qt(step.error);
+QString why(const cases::CaseLoads* loads) {
+    QString text;
+    if (loads != nullptr) {
+        text = loads->error.empty() ? "" : "\n" + qt(loads->error);
+        for (const auto& warning : loads->warnings) {
+            text += "\n" + qt(warning.message);
         }
     }
-    return {};
+    return text;
 }
 
 }  // namespace
@@ -124,16 +118,16 @@ void CasesTree::show_session(const SessionPointer& session) {
         item->number(gap_column, one.conditions.number("gap").value_or(std::nan("")) * 1000, 5);
         item->number(pitch_column, core::convert(one.conditions.number("pitch").value_or(std::nan("")), "rad", "deg"),
                      4);
-        const double lift = load_of(session->results, one.name, "lift_force");
-        item->number(lift_column, lift, 3);
-        item->number(drag_column, load_of(session->results, one.name, "drag_force"), 3);
-        const QString status = status_of(*session, one, std::isfinite(lift));
+        const cases::CaseLoads* loads = loads_of(*session, i);
+        item->number(lift_column, loads != nullptr ? loads->value("lift_force") : std::nan(""), 3);
+        item->number(drag_column, loads != nullptr ? loads->value("drag_force") : std::nan(""), 3);
+        const QString status = status_of(one, loads);
         item->setText(status_column, status);
-        item->setToolTip(name_column, qt(one.conditions.label()) + "\n" + qt(one.file.string()) + why(*session, one));
+        item->setToolTip(name_column, qt(one.conditions.label()) + "\n" + qt(one.file.string()) + why(loads));
         item->setToolTip(status_column, item->toolTip(name_column));
         if (status == "failed" || status == "no file") {
             item->setForeground(status_column, QColor(178, 40, 10));
-        } else if (status == "not run") {
+        } else if (status == "not run" || status == "changed" || status == "warning") {
             item->setForeground(status_column, QColor(130, 130, 130));
         } else {
             item->setForeground(status_column, QColor(0, 112, 79));

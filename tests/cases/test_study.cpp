@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cases/store.h"
 #include "core/file.h"
 #include "tests/support/support.h"
 
@@ -67,38 +66,48 @@ TEST_F(StudyFolder, AMissingFolderAndAFolderWithoutStudyAreTold) {
     EXPECT_THROW((void)Study::open(folder.path()), core::InputError);
 }
 
-TEST(Store, GivesBackWhatWasPutUnderTheSameKeyOnly) {
-    const core::TemporaryFolder folder;
-    const std::string bytes("a\0b\n\xff", 5);
-    {
-        Store store(folder.path() / "deep" / "s.sqlite");
-        store.put("k1", "loads", "case", bytes);
-        EXPECT_EQ(store.find("k1"), bytes);
-        EXPECT_FALSE(store.find("k2").has_value());
-    }
-    Store again(folder.path() / "deep" / "s.sqlite");
-    EXPECT_EQ(again.find("k1"), bytes);
-    EXPECT_EQ(again.latest("loads", "case"), bytes);
-    EXPECT_FALSE(again.latest("loads", "other").has_value());
+TEST_F(StudyFolder, NamesThatOccurTwiceGetTheFoldersThatTellThemApart) {
+    put("coarse/run-h5.csv", "x");
+    put("fine/run-h5.csv", "x");
+    put("fine/run-h6.csv", "x");
+    put("study.toml", "title = \"t\"\n[[case]]\nfiles = \"{mesh}/run-h{gap:mm}.csv\"\n");
+    const Study study = Study::open(folder.path());
+    ASSERT_EQ(study.cases.size(), 3U);
+    EXPECT_EQ(study.cases[0].name, "coarse/run-h5");
+    EXPECT_EQ(study.cases[1].name, "fine/run-h5");
+    EXPECT_EQ(study.cases[2].name, "run-h6");
 }
 
-TEST(Store, ForgetsOldValuesOfTheSameName) {
-    const core::TemporaryFolder folder;
-    Store store(folder.path() / "s.sqlite");
-    for (int i = 0; i < 10; ++i) {
-        store.put("k" + std::to_string(i), "loads", "case", std::to_string(i));
+TEST_F(StudyFolder, AFolderMayBeACaseAndAMarkerAPattern) {
+    for (const char* name : {"a", "b"}) {
+        fs::copy(test::data_folder() / "openfoam" / "ascii", folder.path() / "runs" / (std::string(name) + "-h5"),
+                 fs::copy_options::recursive);
+        put("runs/" + std::string(name) + "-h5/case.foam", "");
     }
-    store.put("other", "loads", "other case", "x");
-    EXPECT_FALSE(store.find("k5").has_value());
-    EXPECT_TRUE(store.find("k6").has_value());
-    EXPECT_EQ(store.latest("loads", "case"), "9");
-    EXPECT_TRUE(store.find("other").has_value());
+    fs::create_directories(folder.path() / "runs" / "c-h7");
+    for (const char* pattern : {"runs/{variant}-h{gap:mm}", "runs/{variant}-h{gap:mm}/case.foam", "runs/{variant}-h{gap:mm}/system/controlDict"}) {
+        put("study.toml", "title = \"t\"\n[[case]]\nfiles = \"" + std::string(pattern) + "\"\n");
+        const Study study = Study::open(folder.path());
+        ASSERT_EQ(study.cases.size(), 2U) << pattern;
+        EXPECT_EQ(study.cases[0].name, "a-h5") << pattern;
+        EXPECT_EQ(study.cases[1].name, "b-h5") << pattern;
+        EXPECT_DOUBLE_EQ(study.cases[1].conditions.number("gap").value(), 0.005);
+    }
+    const auto error = refused("title = \"t\"\n[[case]]\nfiles = \"runs/c-h*\"\n");
+    EXPECT_THAT(error.hint(), HasSubstr("no OpenFOAM case"));
 }
 
-TEST(Store, RefusesWhatIsNoStore) {
-    const core::TemporaryFolder folder;
-    core::write_file(folder.path() / "s.sqlite", std::string(5000, 'x'));
-    EXPECT_THROW(Store store(folder.path() / "s.sqlite"), core::SystemError);
+TEST_F(StudyFolder, AMirrorPlaneThatMakesEveryLiftZeroIsRefused) {
+    put("fields/a-h5.csv", "x");
+    const std::string head = "title = \"t\"\n[[case]]\nfiles = \"fields/{variant}-h{gap:mm}.csv\"\n[frame]\n";
+    const auto error = refused(head + "symmetry = \"z\"\n");
+    EXPECT_THAT(error.message(), HasSubstr("every lift would be zero"));
+    EXPECT_THAT(error.hint(), HasSubstr("symmetry = \"y\""));
+    EXPECT_EQ(error.place().line.value_or(0), 5);
+    EXPECT_THAT(refused(head + "symmetry = \"x\"\n").message(), HasSubstr("every drag would be zero"));
+    EXPECT_THAT(refused(head + "symmetry = \"w\"\n").hint(), HasSubstr("normal axis"));
+    put("study.toml", head + "symmetry = \"y=0.1\"\n");
+    EXPECT_EQ(Study::open(folder.path()).symmetry, "y=0.1");
 }
 
 }  // namespace

@@ -7,11 +7,13 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core/file.h"
+#include "core/random.h"
 #include "core/text.h"
 #include "tests/support/small_study.h"
 #include "tests/support/support.h"
@@ -118,33 +120,8 @@ TEST_F(StudyCommand, AReadOnlyFolderIsToldWithTheWayOut) {
     EXPECT_TRUE(fs::exists(scratch.path() / "r.html"));
 }
 
-TEST_F(StudyCommand, AKilledRunLosesNothingAndTheNextOneFinishes) {
-    for (int delay = 5; delay < 200; delay = delay * 2) {
-        const pid_t child = ::fork();
-        if (child == 0) {
-            ::dup2(::open("/dev/null", O_WRONLY), 1);
-            ::dup2(::open("/dev/null", O_WRONLY), 2);
-            const std::string program = (program_folder() / "underbody").string();
-            ::execl(program.c_str(), program.c_str(), "study", "run", study.c_str(), "--no-pictures", nullptr);
-            ::_exit(127);
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(delay));
-        ::kill(child, SIGKILL);
-        ::waitpid(child, nullptr, 0);
-        if (fs::exists(study / "report" / "index.html")) {
-            EXPECT_THAT(core::read_file(study / "report" / "index.html"), testing::EndsWith("</html>\n"));
-        }
-    }
-    const ProgramRun result = run();
-    ASSERT_EQ(result.exit_code, 0) << result.errors;
-    EXPECT_EQ(json::parse(result.output).at("failed"), 0);
-}
-
-TEST_F(StudyCommand, CtrlCEndsWithOneHundredAndThirty) {
-    // A map that takes long enough to be interrupted.
-    std::string text = core::read_file(study / "study.toml");
-    text.replace(text.find("columns = 40\nrows = 40"), 22, "columns = 4000\nrows = 4000");
-    core::write_file(study / "study.toml", text);
+/// A run in the background, without output.
+pid_t start_run(const fs::path& study) {
     const pid_t child = ::fork();
     if (child == 0) {
         ::dup2(::open("/dev/null", O_WRONLY), 1);
@@ -153,6 +130,164 @@ TEST_F(StudyCommand, CtrlCEndsWithOneHundredAndThirty) {
         ::execl(program.c_str(), program.c_str(), "study", "run", study.c_str(), "--no-pictures", nullptr);
         ::_exit(127);
     }
+    return child;
+}
+
+json results_of(const ProgramRun& run) {
+    json all = json::parse(run.output);
+    return all.at("results");
+}
+
+TEST_F(StudyCommand, AKilledRunLosesNothingAndTheNextOneFinishes) {
+    const fs::path other = scratch.path() / "undisturbed";
+    write_small_study(other);
+    const json truth = results_of(run_underbody({"study", "run", other.string(), "--no-pictures", "--json"}));
+    const std::string report = core::read_file(other / "report" / "index.html");
+    // Some kills in every run of the tests; a long campaign on demand (UNDERBODY_KILLS=200).
+    const char* asked = std::getenv("UNDERBODY_KILLS");
+    const int kills = asked != nullptr ? std::stoi(asked) : 8;
+    core::Random random(20261122);
+    for (int i = 0; i < kills; ++i) {
+        if (i % 8 == 0) {  // from the beginning again
+            fs::remove_all(study / ".underbody");
+            fs::remove_all(study / "report");
+        }
+        const pid_t child = start_run(study);
+        std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(std::exp(random.uniform(std::log(2e3), std::log(4e5))))));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        if (fs::exists(study / "report" / "index.html")) {
+            EXPECT_EQ(core::read_file(study / "report" / "index.html"), report);
+        }
+        if (i % 8 == 7 || i + 1 == kills) {
+            const ProgramRun result = run();
+            ASSERT_EQ(result.exit_code, 0) << result.errors;
+            EXPECT_EQ(results_of(result), truth) << "after kill " << i;
+            EXPECT_EQ(core::read_file(study / "report" / "index.html"), report);
+        }
+    }
+}
+
+TEST_F(StudyCommand, TwoRunsAtOnceMakeEachResultOnce) {
+    const pid_t first = start_run(study);
+    const ProgramRun second = run();
+    int status = 0;
+    ::waitpid(first, &status, 0);
+    EXPECT_EQ(status, 0);
+    ASSERT_EQ(second.exit_code, 0) << second.errors;
+    EXPECT_EQ(json::parse(second.output).at("failed"), 0);
+    EXPECT_EQ(json::parse(run().output).at("computed"), 0);
+    // A run that was killed keeps nobody waiting.
+    fs::remove_all(study / ".underbody");
+    const pid_t killed = start_run(study);
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    ::kill(killed, SIGKILL);
+    ::waitpid(killed, nullptr, 0);
+    EXPECT_EQ(run().exit_code, 0);
+}
+
+TEST_F(StudyCommand, AStudyOnAReadOnlyDiskIsListedAndReported) {
+    ASSERT_EQ(run().exit_code, 0);
+    ASSERT_EQ(run().exit_code, 0);
+    std::vector<std::string> program = {"study", "list", study.string(), "--json"};
+    std::string tool = (program_folder() / "underbody").string();
+    if (::geteuid() == 0) {  // root may write anywhere: nobody may not
+        if (run_program("setpriv", {"--version"}).exit_code != 0) {
+            GTEST_SKIP() << "skipped: setpriv (util-linux) is not here";
+        }
+        program.insert(program.begin(), {"--reuid=65534", "--clear-groups", tool});
+        tool = "setpriv";
+    }
+    fs::permissions(scratch.path(), fs::perms::group_all | fs::perms::others_all, fs::perm_options::add);
+    for (const auto& entry : fs::recursive_directory_iterator(study)) {
+        fs::permissions(entry.path(), fs::perms::others_read | (entry.is_directory() ? fs::perms::others_exec : fs::perms::none), fs::perm_options::add);
+    }
+    std::vector<fs::path> folders = {study};
+    for (const auto& entry : fs::recursive_directory_iterator(study)) {
+        if (entry.is_directory()) {
+            folders.push_back(entry.path());
+        }
+    }
+    const auto allow = [&](bool write) {
+        for (const auto& folder : folders) {
+            fs::permissions(folder, fs::perms::owner_write | fs::perms::others_write, write ? fs::perm_options::add : fs::perm_options::remove);
+        }
+    };
+    allow(false);
+    fs::permissions(study, fs::perms::others_read | fs::perms::others_exec, fs::perm_options::add);
+    const ProgramRun list = run_program(tool, program);
+    for (auto& word : program) {
+        word = word == "list" ? "report" : word;
+    }
+    program.push_back("--no-pictures");
+    const ProgramRun reported = run_program(tool, program);
+    program.push_back("--report");
+    program.push_back((scratch.path() / "elsewhere.html").string());
+    const ProgramRun elsewhere = run_program(tool, program);
+    allow(true);
+    if (list.errors.find("Permission denied") != std::string::npos && list.exit_code == 126) {
+        GTEST_SKIP() << "skipped: nobody may not run " << tool;
+    }
+    ASSERT_EQ(list.exit_code, 0) << list.errors;
+    EXPECT_EQ(json::parse(list.output).at("cases")[0].at("state"), "unchanged");
+    EXPECT_EQ(reported.exit_code, 0) << reported.errors;
+    EXPECT_EQ(elsewhere.exit_code, 0) << elsewhere.errors;
+    EXPECT_EQ(core::read_file(scratch.path() / "elsewhere.html"), core::read_file(study / "report" / "index.html"));
+}
+
+TEST_F(StudyCommand, AStoreOfGarbageIsRefusedInPlainWordsAndKept) {
+    core::write_file(study / ".underbody" / "store.sqlite", "this is my shopping list");
+    for (const char* command : {"run", "list", "compare"}) {
+        const ProgramRun result = run_underbody({"study", command, study.string()});
+        EXPECT_EQ(result.exit_code, 3) << command;
+        EXPECT_THAT(result.errors, HasSubstr("not a store of results"));
+        EXPECT_THAT(result.errors, HasSubstr("--store FILE"));
+    }
+    EXPECT_EQ(core::read_file(study / ".underbody" / "store.sqlite"), "this is my shopping list");
+}
+
+TEST_F(StudyCommand, HalfModelsAreToldInListAndRunAndAddTakesTheirPlaneAndZones) {
+    const fs::path halves = scratch.path() / "halves";
+    for (int gap = 2; gap <= 3; ++gap) {
+        core::write_file(halves / "fields" / ("half-h" + std::to_string(gap) + ".csv"), half_cube_field(1e-3 * gap, 500));
+    }
+    const std::vector<std::string> add = {"study", "add", halves.string(), "--files", "fields/{variant}-h{gap:mm}.csv"};
+    ASSERT_EQ(run_underbody(add).exit_code, 0);
+    const ProgramRun first = run_underbody({"study", "run", halves.string(), "--no-pictures"});
+    EXPECT_THAT(first.output, HasSubstr("half model"));
+    EXPECT_THAT(run_underbody({"study", "list", halves.string()}).output, HasSubstr("half model"));
+    const json listed = json::parse(run_underbody({"study", "list", halves.string(), "--json"}).output);
+    EXPECT_THAT(listed.at("cases")[0].at("warnings").dump(), HasSubstr("half model"));
+    EXPECT_NEAR(listed.at("cases")[0].at("lift_force").get<double>(), 0.25, 1e-9);
+    const json table = json::parse(run_underbody({"loads", (halves / "fields/half-h{gap:mm}.csv").string(), "--json"}).output);
+    EXPECT_THAT(table.at("files")[0].at("problems").dump(), HasSubstr("half model"));
+    EXPECT_THAT(run_underbody({"loads", (halves / "fields/half-h{gap:mm}.csv").string()}).output, testing::ContainsRegex("# ?warning: [^\n]*half model"));
+    fs::remove(halves / "study.toml");
+    std::vector<std::string> with_plane = add;
+    with_plane.insert(with_plane.end(), {"--symmetry", "y", "--zones", "hull,base"});
+    const ProgramRun added = run_underbody(with_plane);
+    ASSERT_EQ(added.exit_code, 0) << added.errors;
+    EXPECT_THAT(core::read_file(halves / "study.toml"), testing::AllOf(HasSubstr("[frame]\nsymmetry = \"y\""), HasSubstr("zones = [\"hull\", \"base\"]")));
+    const ProgramRun second = run_underbody({"study", "run", halves.string(), "--no-pictures"});
+    EXPECT_THAT(second.output, testing::Not(HasSubstr("half model")));
+    const json whole = json::parse(run_underbody({"study", "list", halves.string(), "--json"}).output);
+    EXPECT_NEAR(whole.at("cases")[0].at("lift_force").get<double>(), 0.5, 1e-9);
+    // A plane across the lift, or another one than the study has.
+    fs::remove(halves / "study.toml");
+    std::vector<std::string> wrong = add;
+    wrong.insert(wrong.end(), {"--symmetry", "z"});
+    const ProgramRun refused = run_underbody(wrong);
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.errors, HasSubstr("every lift would be zero"));
+    EXPECT_FALSE(fs::exists(halves / "study.toml"));
+}
+
+TEST_F(StudyCommand, CtrlCEndsWithOneHundredAndThirty) {
+    // A map that takes long enough to be interrupted.
+    std::string text = core::read_file(study / "study.toml");
+    text.replace(text.find("columns = 40\nrows = 40"), 22, "columns = 4000\nrows = 4000");
+    core::write_file(study / "study.toml", text);
+    const pid_t child = start_run(study);
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
     ::kill(child, SIGINT);
     int status = 0;

@@ -5,7 +5,10 @@
 
 namespace underbody::test {
 
-std::string cube_field(double gap, double gradient) {
+namespace {
+
+/// Across y from `left` to `right`; a side face closes it on the right, and on the left unless it is cut there.
+std::string field_of_cube(double gap, double gradient, double left, double right, bool cut) {
     using core::format_number;
     constexpr double half = 0.05;
     const auto block = [&](const std::string& name, const std::string& nodes, const std::string& faces) {
@@ -18,12 +21,17 @@ std::string cube_field(double gap, double gradient) {
     };
     std::string corners;
     for (const double z : {0.0, 2 * half}) {
-        corners += node(-half, -half, z) + node(half, -half, z) + node(half, half, z) + node(-half, half, z);
+        corners += node(-half, left, z) + node(half, left, z) + node(half, right, z) + node(-half, right, z);
     }
-    std::string bottom = node(-half, -half, 0) + node(half, -half, 0) + node(half, half, 0) + node(-half, half, 0);
+    std::string bottom = node(-half, left, 0) + node(half, left, 0) + node(half, right, 0) + node(-half, right, 0);
     return block("base", bottom, "0, 3, 2, 1\n") +
-           block("hull", corners, "4, 5, 6, 7\n0, 1, 5, 4\n1, 2, 6, 5\n2, 3, 7, 6\n3, 0, 4, 7\n");
+           block("hull", corners, std::string("4, 5, 6, 7\n") + (cut ? "" : "0, 1, 5, 4\n") + "1, 2, 6, 5\n2, 3, 7, 6\n3, 0, 4, 7\n");
 }
+
+}  // namespace
+
+std::string cube_field(double gap, double gradient) { return field_of_cube(gap, gradient, -0.05, 0.05, false); }
+std::string half_cube_field(double gap, double gradient) { return field_of_cube(gap, gradient, 0, 0.05, true); }
 
 void write_small_study(const std::filesystem::path& folder) {
     std::string forces = "gap [mm], lift_force [N], drag_force [N]\n";

@@ -1,10 +1,10 @@
-#include "studio/cli/batch_problems.h"
+#include "core/batch_problems.h"
 
 #include <algorithm>
 #include <cctype>
 #include <set>
 
-namespace underbody::studio {
+namespace underbody::core {
 
 namespace {
 
@@ -28,8 +28,8 @@ std::string without_numbers(const std::string& text) {
 
 }  // namespace
 
-void BatchProblems::add(const std::string& file, const core::Problems& problems) {
-    for (core::Problem problem : problems) {
+void BatchProblems::add(const std::string& file, const Problems& problems) {
+    for (Problem problem : problems) {
         const std::string words = std::to_string(static_cast<int>(problem.severity)) + without_numbers(problem.message);
         auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& known) { return known.words == words; });
         if (kind == kinds_.end()) {
@@ -42,8 +42,8 @@ void BatchProblems::add(const std::string& file, const core::Problems& problems)
     }
 }
 
-core::Problems BatchProblems::gathered(bool each) const {
-    core::Problems all;
+Problems BatchProblems::gathered(bool each) const {
+    Problems all;
     for (const auto& kind : kinds_) {
         if (each) {
             all.insert(all.end(), kind.problems.begin(), kind.problems.end());
@@ -61,4 +61,4 @@ core::Problems BatchProblems::gathered(bool each) const {
     return all;
 }
 
-}  // namespace underbody::studio
+}  // namespace underbody::core

@@ -1,0 +1,125 @@
+#include "cases/file_states.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/hash.h"
+
+namespace underbody::cases {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Clocks of file systems tick in steps of up to two seconds: of a file that was changed less than this ago, a second
+/// change may leave no trace in its stamp.
+constexpr std::int64_t settled = 3'000'000'000;  // ns
+
+/// What remains of `path` below `folder`; empty when it does not begin with it.
+fs::path rest_below(const fs::path& path, const fs::path& folder) {
+    auto part = path.begin();
+    for (const auto& wanted : folder) {
+        if (wanted.empty()) {
+            continue;  // of a '/' at the end
+        }
+        if (part == path.end() || *part != wanted) {
+            return {};
+        }
+        ++part;
+    }
+    fs::path rest;
+    for (; part != path.end(); ++part) {
+        rest /= *part;
+    }
+    return rest;
+}
+
+}  // namespace
+
+FileStates::FileStates(fs::path folder, Store::FileHashes known)
+    : folder_(std::move(folder)), whole_folder_(fs::absolute(folder_).lexically_normal()), known_(std::move(known)) {}
+
+std::string FileStates::stored_path(const fs::path& path) const {
+    const std::string& text = path.native();
+    const std::string& folder = folder_.native();
+    if (text.size() > folder.size() + 1 && text.starts_with(folder) && text[folder.size()] == '/') {
+        return text.substr(folder.size() + 1);
+    }
+    fs::path rest = rest_below(path, folder_);
+    if (rest.empty()) {
+        rest = rest_below(fs::absolute(path).lexically_normal(), whole_folder_);
+    }
+    if (!rest.empty()) {
+        return rest.string();
+    }
+    if (path == folder_ || fs::absolute(path).lexically_normal() == whole_folder_) {
+        return ".";
+    }
+    return path.is_absolute() ? path.string() : fs::absolute(path).lexically_normal().lexically_relative(whole_folder_).string();
+}
+
+fs::path FileStates::path_of(const std::string& stored) const { return folder_ / stored; }
+
+std::string FileStates::state_of(const core::Input& input) {
+    switch (input.kind) {
+        case core::Input::Kind::content: return content_of(input.path, stored_path(input.path));
+        case core::Input::Kind::presence: {
+            const auto kind = core::stamp_of(input.path).kind;
+            return kind == core::FileStamp::Kind::absent   ? "absent"
+                   : kind == core::FileStamp::Kind::folder ? "folder"
+                                                           : "file";
+        }
+        case core::Input::Kind::names: break;
+    }
+    core::Hasher hasher;
+    for (const auto& name : core::names_in_folder(input.path, input.pattern)) {
+        hasher.add(name);
+    }
+    return hasher.digest();
+}
+
+bool FileStates::still(const StoredInput& input) {
+    const fs::path path = path_of(input.path);
+    if (input.kind == core::Input::Kind::content) {
+        return content_of(path, input.path) == input.state;
+    }
+    return state_of({input.kind, path, input.pattern}) == input.state;
+}
+
+std::string FileStates::content_of(const fs::path& path, const std::string& stored) {
+    const std::int64_t now = core::now_in_nanoseconds();
+    const core::FileStamp stamp = core::stamp_of(path);
+    if (stamp.kind == core::FileStamp::Kind::absent) {
+        return "absent";
+    }
+    if (stamp.kind != core::FileStamp::Kind::file) {
+        return "folder";
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        const auto known = known_.find(stored);
+        if (known != known_.end() && known->second.first == stamp) {
+            return known->second.second;
+        }
+    }
+    const core::InputScope unheard(nullptr);
+    std::string hash;
+    try {
+        hash = core::content_hash_of_file(path);
+    } catch (const core::Error&) {
+        return "unreadable";
+    }
+    const std::lock_guard lock(mutex_);
+    if (now - std::max(stamp.modified, stamp.changed) > settled && core::stamp_of(path) == stamp) {
+        learned_[stored] = {stamp, hash};
+        known_[stored] = {stamp, hash};
+    }
+    return hash;
+}
+
+Store::FileHashes FileStates::learned() const {
+    const std::lock_guard lock(mutex_);
+    return learned_;
+}
+
+}  // namespace underbody::cases

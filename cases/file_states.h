@@ -1,0 +1,41 @@
+// In which state the files are that results rest on: by their content, read again only where it may have changed.
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+#include "cases/store.h"
+#include "core/inputs.h"
+
+namespace underbody::cases {
+
+/// Paths of a study and the states of what they lead to. Safe to use from many threads.
+class FileStates {
+public:
+    /// `folder`: of the study, as the user named it.
+    FileStates(std::filesystem::path folder, Store::FileHashes known);
+
+    /// Hash of the content (content), of the names (names), else "absent", "file", "folder".
+    std::string state_of(const core::Input& input);
+    /// True if the input is now as it was.
+    bool still(const StoredInput& input);
+
+    /// How the store names a path: relative to the study, unless it was named absolutely and lies outside.
+    [[nodiscard]] std::string stored_path(const std::filesystem::path& path) const;
+    [[nodiscard]] std::filesystem::path path_of(const std::string& stored) const;
+
+    /// Hashes made since, of files that had not just been changed: they may be believed the next time.
+    [[nodiscard]] Store::FileHashes learned() const;
+
+private:
+    std::string content_of(const std::filesystem::path& path, const std::string& stored);
+
+    std::filesystem::path folder_;
+    std::filesystem::path whole_folder_;
+    mutable std::mutex mutex_;
+    Store::FileHashes known_;
+    Store::FileHashes learned_;
+};
+
+}  // namespace underbody::cases
