@@ -106,8 +106,38 @@ std::vector<dynamics::HeaveEquilibrium> trims(std::vector<dynamics::HeaveEquilib
     return at ? std::vector<dynamics::HeaveEquilibrium>{*at} : std::move(equilibria);
 }
 
+bool pitches(const dynamics::Model& model) {
+    const std::vector<std::string> quantities = model.quantities();
+    const dynamics::Vehicle& v = model.vehicle;
+    return std::find(quantities.begin(), quantities.end(), "pitch_moment") != quantities.end() &&
+           !std::isnan(v.pitch_inertia) && !std::isnan(v.base_depth) && !std::isnan(v.base_half_length);
+}
+
+/// What the balances in heave alone are worth once nothing holds the pitch; empty for a model without pitch.
+std::string free_in_pitch(const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json) {
+    if (!pitches(model)) {
+        return {};
+    }
+    std::string stable, unstable;
+    for (const dynamics::HeaveEquilibrium& e : dynamics::HeavePitch(model, held).equilibria()) {
+        const std::string where = e.name + " at " + core::format_number(1e3 * e.gap, 5) + " mm, " +
+                                  core::format_number(57.29577951308232 * e.pitch, 4) + " deg nose up";
+        if (e.stable) {
+            stable += (stable.empty() ? "" : "; ") + where;
+        } else {
+            unstable += (unstable.empty() ? "" : "; ") + where + ", growing with " + core::format_number(e.growth, 4) + " 1/s";
+        }
+    }
+    json["stable_in_heave_and_pitch"] = !stable.empty();
+    return !stable.empty() ? "these hold the pitch at 0; free to pitch, the body balances stably: " + stable + "\n"
+           : !unstable.empty()
+               ? "these hold the pitch at 0; free to pitch, no balance is stable: " + unstable + "\n"
+               : "these hold the pitch at 0; free to pitch, the body balances nowhere within the tables\n";
+}
+
 void heave(const dynamics::Model& model, const dynamics::Conditions& held, const std::vector<double>& q,
            const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text) {
+    const char* pitch_held = pitches(model) ? ", pitch held at 0" : "";
     const dynamics::HeavePlant plant(model, held);
     json["heave"] = nlohmann::json::array();
     for (const dynamics::HeaveEquilibrium& e : trims(dynamics::heave_equilibria(plant), at)) {
@@ -127,13 +157,14 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
         one["name"] = e.name;
         one["gap"] = e.gap;
         one["stable"] = stiffness > 0;
+        one["pitch_held"] = pitches(model);
         one["stiffness"] = stiffness;
         one["damping"] = damping;
         one["virtual_mass"] = mass;
         one["force_at_rest"] = trim_force;
         one["lqr"] = {{"velocity_gain", gains.velocity_gain}, {"gap_gain", gains.gap_gain}};
         json["heave"].push_back(one);
-        text += e.name + (stiffness > 0 ? " (stable)" : " (unstable)") + " at " +
+        text += e.name + (stiffness > 0 ? " (stable" : " (unstable") + pitch_held + ") at " +
                 core::format_number(1e3 * e.gap, 6) + " mm: stiffness " + core::format_number(stiffness, 4) + " N/m";
         text += at ? ", held by " + core::format_number(-trim_force, 4) + " N up\n" : "\n";
         for (const dynamics::Mode& mode : modes) {
@@ -370,10 +401,9 @@ int run_linear(const LinearArguments& a, Shell& shell) {
                                "for instance --sweep jet_voltage=3V:12V");
     }
     heave(model, held, weights, at, json, text);
-    const std::vector<std::string> quantities = model.quantities();
+    text += text.empty() ? "" : free_in_pitch(model, held, json);
     const dynamics::Vehicle& v = model.vehicle;
-    if (std::find(quantities.begin(), quantities.end(), "pitch_moment") != quantities.end() &&
-        !std::isnan(v.pitch_inertia) && !std::isnan(v.base_depth) && !std::isnan(v.base_half_length)) {
+    if (pitches(model)) {
         heave_pitch(model, held, at, json, text);
     }
     if (!std::isnan(v.yaw_inertia)) {

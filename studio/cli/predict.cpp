@@ -52,7 +52,15 @@ int run_predict(const PredictArguments& a, Shell& shell) {
                     (channel.noise_declared ? "declared" : "estimated") + " noise of " +
                     core::format_number(channel.noise, 3) + " " + channel.unit;
         }
+        if (prediction.diverged > 0) {
+            text += "; " + std::to_string(prediction.diverged) + " of " + std::to_string(prediction.windows) +
+                    " windows run away: the model is wrong there, the figure does not say by how much";
+        }
         text += "\n";
+    }
+    if (prediction.input_between == "linear") {
+        text += "input_force read as linear between its samples (" +
+                std::string(prediction.input_between_from == "data" ? "the measured motion fits that better" : "the model says so") + ")\n";
     }
     shell.print(text);
     return ExitCode::done;

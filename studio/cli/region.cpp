@@ -22,7 +22,7 @@ namespace {
 
 struct RegionArguments {
     std::string model;
-    std::string axes = "gap=0:0.5,heave_velocity=-0.1:0.1";
+    std::string axes;
     std::string grid = "200x200";
     std::string duration = "60 s";
     std::string conditions;
@@ -63,7 +63,10 @@ void close_loop(const RegionArguments& a, const dynamics::Model& model, dynamics
 
 dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Model& model) {
     dynamics::RegionOptions options;
-    options.axes = core::parse_ranges(a.axes);
+    // Given starts have no range of their own: they escape at the end of the tables, or above the highest start.
+    if (!a.axes.empty() || a.starts.empty()) {
+        options.axes = core::parse_ranges(a.axes.empty() ? "gap=0:0.5,heave_velocity=-0.1:0.1" : a.axes);
+    }
     const std::vector<std::string_view> sizes = core::split(a.grid, 'x');
     const auto columns = core::parse_integer(sizes.front()), rows = core::parse_integer(sizes.back());
     if (sizes.size() > 2 || !columns || !rows || *columns < 1 || *rows < 1 || *columns > 20000 || *rows > 20000) {
@@ -278,7 +281,7 @@ void add_region_command(CLI::App& app, Shell& shell) {
     command->add_option("--for", a->duration, "time of motion given to each start (default 60 s)");
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
     command->add_option("--escape", a->escape,
-                        "gap above which the body counts as gone (default: end of the table or of the axis)");
+                        "gap above which the body counts as gone (default: end of the table or of the axis; the highest of given starts)");
     command->add_option("--feedback", a->feedback, feedback_help());
     command->add_option("--lqr", a->lqr, lqr_help());
     command

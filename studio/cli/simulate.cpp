@@ -194,6 +194,7 @@ struct Job {
         body.output_step = options.output_step;
         body.command_step = hold ? 0.02 : 0;
         body.escape_gap = options.escape_gap;
+        body.tolerance = options.tolerance;
         body.stop_at_contact = options.stop_at_contact;
         body.stop_at_equilibrium = options.stop_at_equilibrium;
         return body;
@@ -318,15 +319,15 @@ void run_surface(const SimulateArguments& a, Job& job, Shell& shell) {
 void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
     const dynamics::RigidBody body(job.model, job.inputs.signals.held,
                                    dynamics::varying_channels(job.inputs.signals));
-    const double pitch = job.start.pitch.value_or(0), rise = job.start.heave_velocity.value_or(0);
+    const double pitch = job.start.pitch.value_or(0);
     dynamics::BodyState start{};
     start[dynamics::state_u] =
         job.start.speed.value_or(job.inputs.signals.held.over(job.model.conditions).get(Channel::speed, 0));
     start[dynamics::state_v] = job.start.sway_velocity.value_or(0);
-    start[dynamics::state_w] = (start[dynamics::state_u] * std::sin(pitch) - rise) / std::cos(pitch);
     start[dynamics::state_q] = job.start.pitch_rate.value_or(0);
     start[dynamics::state_r] = job.start.yaw_rate.value_or(0);
     start[dynamics::state_theta] = pitch;
+    start[dynamics::state_w] = body.down_velocity_for(job.start.heave_velocity.value_or(0), start);
     start[dynamics::state_psi] = job.start.heading.value_or(0);
     start[dynamics::state_x] = job.start.north.value_or(0);
     start[dynamics::state_y] = job.start.east.value_or(0);

@@ -30,7 +30,7 @@ Calibration heave_calibration() {
 HeaveLoop::HeaveLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
                      core::Progress& progress)
     : model_(model), data_(data), options_(options), progress_(progress), calibration_(heave_calibration()),
-      records_(prepare_heave_records(model, data)) {}
+      records_(prepare_heave_records(model, data)), records_read_(model.records) {}
 
 Discovery HeaveLoop::run() {
     split();
@@ -254,6 +254,17 @@ void HeaveLoop::colour_noise() {
     }
 }
 
+/// How logs like these are to be read: what model.toml says of them, so that a prediction reads them as this did.
+dynamics::RecordReading HeaveLoop::reading_found() const {
+    dynamics::RecordReading reading = records_read_;
+    if (records_.input_recorded) {
+        using Between = dynamics::RecordReading::Between;
+        reading.input_between = experiment_->hold() ? Between::held : Between::linear;
+    }
+    reading.velocity_factor *= records_.velocity_turned ? -1 : 1;
+    return reading;
+}
+
 /// Moves the recorded input in time and scales it, in every record there is.
 void HeaveLoop::change_input(double seconds, double factor) {
     const auto change = [&](HeaveRecords& records) {
@@ -313,6 +324,8 @@ void HeaveLoop::check_input() {
         return;
     }
     change_input(-early, factor);
+    records_read_.input_advance += early;
+    records_read_.input_factor *= factor;
     if (factor == 1) {
         warn("the recorded input comes about " + core::format_number(early, 2) +
              " s after the motion that it makes: the clocks of input_force and gap differ; the input was moved forward by that much");

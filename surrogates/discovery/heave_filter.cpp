@@ -1,24 +1,26 @@
 #include "surrogates/discovery/heave_filter.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <complex>
+
+#include "surrogates/dynamics/start_state.h"
 
 namespace underbody::discovery {
 
 namespace {
 
-constexpr double two_pi = 6.283185307179586;
 constexpr double longest_step = 0.05;    ///< s, of the integrator
 constexpr double shortest_step = 0.001;  ///< s
+constexpr double series_holds = 0.8;     ///< of step times stiffness: the series of the matrix functions are cut after four terms
 
-/// The heave equation as plain numbers, with the slopes that the covariance needs.
+/// The heave equation of dynamics with the run's own lift, a force without a law, and memory over steps.
 class Equation {
 public:
     Equation(const HeaveRecord& record, const HeaveExplanation& explanation)
         : terms_(explanation.terms), curve_(record.plant->lift_curve()), flexible_(explanation.flexible),
-          gain_(explanation.lift_gain * record.lift_factor), held_(record.plant->held()),
-          rough_(terms_.rough_near != 0 || terms_.rough_far != 0), history_(terms_.history != 0) {
+          gain_(explanation.lift_gain * record.lift_factor), held_(record.plant->held()), history_(terms_.history != 0) {
         for (double& memory : memory_) {
             memory = 0;
         }
@@ -27,102 +29,37 @@ public:
     /// To be called before the motion to step k is asked for.
     void to_step(const HeaveRecord& record, std::size_t k) { scale_ = record.lift_scale.empty() ? 1 : record.lift_scale[k]; }
 
-    /// Virtual mass and its slope.
-    double inertia(double h, double& slope) const {
-        double mass = terms_.mass;
-        slope = 0;
-        if (!terms_.added_mass.empty()) {
-            mass += terms_.added_mass.value(h, slope);
-        }
-        for (const auto& growth : terms_.growth) {
-            const double base = std::max(h, 0.0) + growth.length;
-            mass += growth.mass * growth.length / base;
-            slope -= growth.mass * growth.length / (base * base);
-        }
-        return mass;
-    }
+    [[nodiscard]] double mass(double h) const { return dynamics::heave_inertia(terms_, h).mass; }
 
     double acceleration(double t, double h, double w, double u, double velocity_variance) const {
-        double slope_h = 0;
-        double slope_w = 0;
-        return acceleration(t, h, w, u, velocity_variance, slope_h, slope_w);
+        dynamics::HeaveSlopes slopes;
+        return acceleration(t, h, w, u, velocity_variance, slopes);
     }
 
-    /// `velocity_variance` blurs the step of Coulomb's law as far as the velocity is unknown (statistical linearisation).
-    double acceleration(double t, double h, double w, double u, double velocity_variance, double& slope_h, double& slope_w) const {
-        double force_h = 0;
-        double lift = curve_.empty() ? 0 : curve_.value(h, force_h);
-        if (rough_) {
-            const double x = h / terms_.rough_length;
-            const double base = 1 + x * x;
-            const double factor = 1 + (terms_.rough_near - terms_.rough_far * x * x) / base;
-            const double factor_slope = -2 * x * (terms_.rough_near + terms_.rough_far) / (base * base) / terms_.rough_length;
-            force_h = force_h * factor + lift * factor_slope;
-            lift *= factor;
-        }
-        force_h *= gain_ * scale_;
-        double force = terms_.constant + u + gain_ * scale_ * lift - terms_.stiffness * (h - terms_.stiffness_gap);
-        force_h -= terms_.stiffness;
-        const double relative = w - terms_.current;
-        const double size = std::abs(relative);
-        double force_w = 0;
-        if (terms_.mixed) {
-            force -= terms_.mixed_law(relative);
-            force_w -= (terms_.mixed_law(relative + 1e-6) - terms_.mixed_law(relative - 1e-6)) / 2e-6;
-        } else {
-            force -= (terms_.linear + terms_.quadratic * size) * relative;
-            force_w -= terms_.linear + 2 * terms_.quadratic * size;
-        }
-        force -= (terms_.extra_linear + terms_.extra_quadratic * size) * relative;
-        force_w -= terms_.extra_linear + 2 * terms_.extra_quadratic * size;
-        if (terms_.friction != 0) {
-            const double width = terms_.friction_width * terms_.friction_width + 1.5707963 * velocity_variance;
-            const double root = std::sqrt(w * w + width);
-            force -= terms_.friction * w / root;
-            force_w -= terms_.friction * width / (root * root * root);
-        }
-        if (terms_.film != 0) {
-            const double gap = std::max(h, 2e-4);
-            const double film = terms_.film / (gap * gap * gap);
-            force -= film * w;
-            force_w -= film;
-            force_h += 3 * film * w / gap;
-        }
-        for (const auto& wave : terms_.waves) {
-            force += wave.amplitude * std::sin(two_pi * wave.frequency * t + wave.phase);
-        }
-        for (const auto& extra : terms_.extras) {
-            force += extra.force(extra.parameters, t, h, w);
+    /// `velocity_variance` blurs the step of Coulomb's law as far as the velocity is unknown (statistical linearisation). Slopes
+    /// with the memory of the history force as it is over the coming step.
+    double acceleration(double t, double h, double w, double u, double velocity_variance, dynamics::HeaveSlopes& slopes) const {
+        dynamics::HeaveLoad load;
+        if (!curve_.empty()) {
+            const double gain = gain_ * scale_;
+            load.force = gain * curve_.value(h, load.slope_h);
+            load.slope_h *= gain;
+            dynamics::roughen(terms_, h, load);
         }
         if (flexible_ != nullptr) {
-            force += flexible_->value(h, w, t, u, force_h, force_w);
+            load.force += flexible_->value(h, w, t, u, load.slope_h, load.slope_w);
         }
-        for (const auto& correction : terms_.corrections) {
-            double point[tables::max_axes] = {};
-            for (std::size_t i = 0; i < correction.axes.size(); ++i) {
-                const dynamics::Channel channel = correction.axes[i];
-                point[i] = channel == dynamics::Channel::gap              ? h
-                           : channel == dynamics::Channel::heave_velocity ? w
-                           : channel == dynamics::Channel::time           ? t
-                           : channel == dynamics::Channel::input_force    ? u
-                                                                          : held_.get(channel, 0);
-            }
-            force += correction.table.value(point);
-        }
-        double mass_slope = 0;
-        double mass = inertia(h, mass_slope);
-        force -= 0.5 * mass_slope * w * w;
+        dynamics::add_forces(terms_, h, w, {t, u, nullptr, nullptr, velocity_variance}, held_, load);
+        dynamics::HeaveMemory memory;
         if (history_) {
             const dynamics::HistoryKernel& kernel = dynamics::history_kernel();
             for (std::size_t i = 0; i < dynamics::history_states; ++i) {
-                force -= terms_.history * kernel.weight[i] * kept_[i] * (w + memory_[i]);
-                mass += terms_.history * kernel.weight[i] * grown_[i];
+                memory.force -= terms_.history * kernel.weight[i] * kept_[i] * (w + memory_[i]);
+                memory.mass += terms_.history * kernel.weight[i] * grown_[i];
             }
-            mass += terms_.history * kernel.mass;
+            memory.mass += terms_.history * kernel.mass;
         }
-        slope_h = (force_h - force / mass * mass_slope) / mass;
-        slope_w = (force_w - mass_slope * w) / mass;
-        return force / mass;
+        return dynamics::heave_acceleration(terms_, h, w, load, memory, slopes);
     }
 
     void start_history(double w) {
@@ -153,19 +90,24 @@ public:
     /// One step of at most `rest`, less where the motion is stiff: exact for the equation linearised where the step begins
     /// (exponential Rosenbrock-Euler, Hochbruck and Ostermann 2010), its matrix functions as series. Returns its length.
     double advance(double t, double rest, double u, double variance, double& h, double& w, Transition& transition) {
-        double slope_h = 0;
-        double slope_w = 0;
+        dynamics::HeaveSlopes slopes;
         remember_over(rest);
-        double a = acceleration(t + 0.5 * rest, h, w, u, variance, slope_h, slope_w);
+        double a = acceleration(t + 0.5 * rest, h, w, u, variance, slopes);
         double dt = rest;
-        const double stiffness = std::max(std::abs(slope_w), std::sqrt(std::abs(slope_h)));
-        if (stiffness * dt > 0.8) {
-            dt = std::max(0.8 / stiffness, std::min(rest, shortest_step));
+        const double stiffness = std::max(std::abs(slopes.velocity), std::sqrt(std::abs(slopes.gap)));
+        if (stiffness * dt > series_holds) {
+            dt = std::max(series_holds / stiffness, std::min(rest, shortest_step));
             if (history_) {
                 remember_over(dt);
-                a = acceleration(t + 0.5 * dt, h, w, u, variance, slope_h, slope_w);
+                a = acceleration(t + 0.5 * dt, h, w, u, variance, slopes);
             }
         }
+        if (stiffness * dt > 2 * series_holds) {
+            fast_step(dt, a, slopes, h, w, transition);
+            return dt;
+        }
+        const double slope_h = slopes.gap;
+        const double slope_w = slopes.velocity;
         const double jerk = slope_h * w + slope_w * a;
         const double snap = slope_h * a + slope_w * jerk;
         const double before = w;
@@ -176,15 +118,44 @@ public:
         transition.hw = dt + q * slope_w;
         transition.wh = dt * slope_h + q * slope_h * slope_w;
         transition.ww = std::max(0.0, 1 + dt * slope_w + q * (slope_h + slope_w * slope_w));
-        if (history_) {
-            for (std::size_t i = 0; i < dynamics::history_states; ++i) {
-                memory_[i] = (before + memory_[i]) * decay_[i] + (w - before) * kept_[i] - w;
-            }
-        }
+        remember(before, w);
         return dt;
     }
 
 private:
+    /// The same step where even the shortest is long against the motion (a film at a small gap): the functions of the matrix in closed form
+    /// of its eigenvalues.
+    void fast_step(double dt, double a, const dynamics::HeaveSlopes& slopes, double& h, double& w, Transition& transition) {
+        using Complex = std::complex<double>;
+        const double half = 0.5 * slopes.velocity;
+        const Complex root = std::sqrt(Complex(half * half + slopes.gap));
+        const Complex l1 = half + root;
+        const Complex l2 = std::abs(root) > 1e-6 * std::abs(half) ? half - root : half - root - 1e-6 * std::abs(half) - 1e-9;
+        // f(A) = f(l1) I + (f(l2) - f(l1))/(l2 - l1) (A - l1 I), with A = (0 1; gap velocity)
+        const auto of_matrix = [&](const Complex& f1, const Complex& f2) {
+            const Complex q = (f2 - f1) / (l2 - l1);
+            return Transition{(f1 - q * l1).real(), q.real(), (q * slopes.gap).real(), (f1 + q * (slopes.velocity - l1)).real()};
+        };
+        // (exp(l dt) - 1)/l
+        const auto grown = [&](const Complex& l) {
+            const Complex z = l * dt;
+            return std::abs(z) < 1e-4 ? dt * (1.0 + z / 2.0 + z * z / 6.0) : (std::exp(z) - 1.0) / l;
+        };
+        const Transition over = of_matrix(grown(l1), grown(l2));
+        transition = of_matrix(std::exp(l1 * dt), std::exp(l2 * dt));
+        const double before = w;
+        h += over.hh * before + over.hw * a;
+        w += over.wh * before + over.ww * a;
+        remember(before, w);
+    }
+
+    /// What the memory becomes over a step whose velocity ends at w.
+    void remember(double before, double w) {
+        for (std::size_t i = 0; history_ && i < dynamics::history_states; ++i) {
+            memory_[i] = (before + memory_[i]) * decay_[i] + (w - before) * kept_[i] - w;
+        }
+    }
+
     /// Each part of the memory, q = w + memory, obeys dq/dt = acceleration - rate q. Exact for an acceleration held over the step: of what
     /// was there at its begin the share `kept` acts on the average, and the acceleration itself acts like a mass.
     void remember_over(double dt) {
@@ -207,7 +178,6 @@ private:
     double gain_;
     double scale_ = 1;
     const dynamics::Conditions& held_;
-    bool rough_;
     bool history_;
     double memory_[dynamics::history_states];
     double decay_[dynamics::history_states] = {};
@@ -216,27 +186,12 @@ private:
     double memory_step_ = -1;
 };
 
-/// Where the motion begins, roughly: a straight line through the first second.
+/// Where the motion begins, roughly, and how far it moves there.
 void first_guess(const HeaveRecord& record, double& h, double& w, double& span) {
-    double low = 1e300, high = -1e300;
-    double n = 0, st = 0, sy = 0, stt = 0, sty = 0;
-    const double begin = record.time.front();
-    for (std::size_t k = 0; k < record.time.size() && record.time[k] - begin < 0.6; ++k) {
-        if (std::isfinite(record.gap[k])) {
-            const double t = record.time[k] - begin;
-            low = std::min(low, record.gap[k]);
-            high = std::max(high, record.gap[k]);
-            n += 1;
-            st += t;
-            sy += record.gap[k];
-            stt += t * t;
-            sty += t * record.gap[k];
-        }
-    }
-    const double determinant = n * stt - st * st;
-    w = determinant > 1e-12 ? (n * sty - st * sy) / determinant : 0;
-    h = n > 0 ? (sy - w * st) / n : 0.1;
-    span = n > 0 ? high - low : 0;
+    const dynamics::StartState start = dynamics::start_state(record.time, record.gap, 0, record.time.size() - 1);
+    h = start.readings > 0 ? start.gap : 0.1;
+    w = start.velocity;
+    span = start.range;
 }
 
 /// Three states: gap, velocity, coloured noise of the gap sensor. Symmetric covariance in six numbers.
@@ -267,70 +222,17 @@ double FlexibleForce::value(double h, double w, double t, double u, double& slop
 }
 
 void transform_input(const HeaveRecord& record, const HeaveExplanation& explanation, std::vector<double>& input) {
-    const dynamics::HeaveTerms& terms = explanation.terms;
+    const dynamics::Actuator& actuator = explanation.terms.actuator;
     const std::vector<double>& prepared = explanation.hold ? record.held_input : record.linear_input;
-    if (terms.input_delay == 0 && terms.input_dead_zone == 0 && terms.input_lag == 0 && prepared.size() == record.time.size()) {
-        input = prepared;
-        if (terms.input_gain != 1) {
-            for (double& u : input) {
-                u *= terms.input_gain;
-            }
-        }
+    if (actuator.dead_zone != 0 || actuator.has_states() || prepared.size() != record.time.size()) {
+        actuator.mean_over_steps(record.raw_time, record.raw_input, explanation.hold, record.time, input);
         return;
     }
-    const std::vector<double>& time = record.raw_time;
-    const std::size_t n = time.size();
-    std::vector<double> felt = record.raw_input;
-    if (terms.input_dead_zone != 0 || terms.input_gain != 1) {
-        for (double& u : felt) {
-            u = terms.input_gain * std::copysign(std::max(0.0, std::abs(u) - terms.input_dead_zone), u);
+    input = prepared;
+    if (actuator.gain != 1) {
+        for (double& u : input) {
+            u *= actuator.gain;
         }
-    }
-    // the integral of what the body feels, exact for an input held or linear between samples
-    std::vector<double> integral(n, 0);
-    double lagged = felt.front();
-    for (std::size_t i = 1; i < n; ++i) {
-        const double dt = time[i] - time[i - 1];
-        const double area = dt * (explanation.hold ? felt[i - 1] : 0.5 * (felt[i - 1] + felt[i]));
-        double out = area;
-        if (terms.input_lag > 0) {
-            // area of the lagged signal = area of the input - time constant * growth of the lagged signal
-            const double a = dt / terms.input_lag;
-            const double decay = std::exp(-a);
-            const double ramp = a > 1e-6 ? (1 - decay) / a : 1 - 0.5 * a;
-            const double before = lagged;
-            lagged = explanation.hold ? lagged * decay + felt[i - 1] * (1 - decay)
-                                      : lagged * decay + felt[i] - felt[i - 1] * decay - (felt[i] - felt[i - 1]) * ramp;
-            out = area - terms.input_lag * (lagged - before);
-        }
-        integral[i] = integral[i - 1] + out;
-    }
-    const bool lag = terms.input_lag > 0;
-    std::size_t at = 0;
-    const auto integral_at = [&](double t) {
-        if (t <= time.front()) {
-            return (t - time.front()) * felt.front();
-        }
-        if (t >= time.back()) {
-            return integral.back() + (t - time.back()) * (lag ? lagged : felt.back());
-        }
-        while (at + 2 < n && time[at + 1] < t) {
-            ++at;
-        }
-        const double dt = time[at + 1] - time[at];
-        const double part = t - time[at];
-        if (lag || explanation.hold) {
-            return integral[at] + (integral[at + 1] - integral[at]) * part / dt;
-        }
-        return integral[at] + part * (felt[at] + 0.5 * (felt[at + 1] - felt[at]) * part / dt);
-    };
-    input.resize(record.time.size());
-    double before = integral_at(record.time.front() - terms.input_delay);
-    input[0] = felt.front();
-    for (std::size_t k = 1; k < input.size(); ++k) {
-        const double now = integral_at(record.time[k] - terms.input_delay);
-        input[k] = (now - before) / (record.time[k] - record.time[k - 1]);
-        before = now;
     }
 }
 
@@ -416,12 +318,11 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
             double ch = 1;
             double cw = 0;
             if (delay > 0) {
-                double slope_h = 0;
-                double slope_w = 0;
-                const double a = equation.acceleration(record.time[k], h, w, input[k], p.ww, slope_h, slope_w);
+                dynamics::HeaveSlopes slopes;
+                const double a = equation.acceleration(record.time[k], h, w, input[k], p.ww, slopes);
                 reading += -delay * w + 0.5 * delay * delay * a;
-                ch += 0.5 * delay * delay * slope_h;
-                cw = -delay + 0.5 * delay * delay * slope_w;
+                ch += 0.5 * delay * delay * slopes.gap;
+                cw = -delay + 0.5 * delay * delay * slopes.velocity;
             }
             const double sigma = noise.gap * record.gap_share[k];
             update(record.gap[k] - reading, ch, cw, 1, sigma * sigma);
@@ -447,162 +348,116 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
     return log_determinant;
 }
 
-SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
-                              double force_walk) {
-    using Vector = std::array<double, 3>;
-    using Matrix = std::array<double, 9>;
+namespace {
+
+/// Gap, velocity and residual force at one step of the smoother, with their covariance.
+struct ForceBelief {
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d p = Eigen::Matrix3d::Zero();
+
+    void measure(double residual, const Eigen::Vector3d& c, double variance) {
+        const Eigen::Vector3d pc = p * c;
+        const double s = c.dot(pc) + variance;
+        x += pc * (residual / s);
+        p -= pc * pc.transpose() / s;
+    }
+};
+
+/// Before and after the readings of each step, and how a step changes small differences.
+struct ForceFilter {
+    std::vector<ForceBelief> predicted, filtered;
+    std::vector<Eigen::Matrix3d> transition;
+};
+
+/// Takes the belief over the step that ends at k; returns the step's transition.
+Eigen::Matrix3d over_step(const HeaveRecord& record, Equation& equation, double input, std::size_t k, const HeaveNoise& noise,
+                          double force_walk, ForceBelief& belief) {
+    Eigen::Matrix3d whole = Eigen::Matrix3d::Identity();
+    double rest = record.time[k] - record.time[k - 1];
+    double t = record.time[k - 1];
+    equation.to_step(record, k);
+    while (rest > 1e-9) {
+        const double per_mass = 1 / equation.mass(belief.x[0]);
+        Equation::Transition m;
+        const double dt =
+            equation.advance(t, std::min(rest, longest_step), input + belief.x[2], belief.p(1, 1), belief.x[0], belief.x[1], m);
+        t += dt;
+        rest -= dt;
+        Eigen::Matrix3d f;
+        f << m.hh, m.hw, 0.5 * dt * dt * per_mass, m.wh, m.ww, dt * per_mass, 0, 0, 1;
+        belief.p = f * belief.p * f.transpose();
+        whole = f * whole;
+        belief.p(0, 0) += noise.process * dt * dt * dt / 3;
+        belief.p(0, 1) += noise.process * dt * dt / 2;
+        belief.p(1, 0) = belief.p(0, 1);
+        belief.p(1, 1) += noise.process * dt;
+        belief.p(2, 2) += force_walk * force_walk * dt;
+    }
+    return whole;
+}
+
+ForceFilter filter_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise, double force_walk) {
     Equation equation(record, explanation);
     std::vector<double> input;
     transform_input(record, explanation, input);
-    const std::size_t n = record.time.size();
-    std::vector<Vector> predicted(n), filtered(n);
-    std::vector<Matrix> predicted_p(n), filtered_p(n), transition(n);
-    Vector x{};
+    const double bias = explanation.terms.sensor_bias;
+    ForceFilter all;
+    ForceBelief belief;
     double span = 0;
-    first_guess(record, x[0], x[1], span);
-    x[0] -= explanation.terms.sensor_bias;
-    equation.start_history(x[1]);
-    Matrix p{std::max(1e-4, span * span), 0, 0, 0, std::max(1e-4, span * span), 0, 0, 0, 1e-2};
-    const auto measure = [&](double residual, const Vector& c, double variance) {
-        Vector pc{};
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) {
-                pc[i] += p[3 * i + j] * c[j];
-            }
-        }
-        const double s = c[0] * pc[0] + c[1] * pc[1] + c[2] * pc[2] + variance;
-        for (int i = 0; i < 3; ++i) {
-            x[i] += pc[i] / s * residual;
-        }
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) {
-                p[3 * i + j] -= pc[i] * pc[j] / s;
-            }
-        }
-    };
-    for (std::size_t k = 0; k < n; ++k) {
-        Matrix f{1, 0, 0, 0, 1, 0, 0, 0, 1};
-        if (k > 0) {
-            double rest = record.time[k] - record.time[k - 1];
-            double t = record.time[k - 1];
-            equation.to_step(record, k);
-            while (rest > 1e-9) {
-                double mass_slope = 0;
-                const double per_mass = 1 / equation.inertia(x[0], mass_slope);
-                Equation::Transition m;
-                const double dt = equation.advance(t, std::min(rest, longest_step), input[k] + x[2], p[4], x[0], x[1], m);
-                t += dt;
-                rest -= dt;
-                const Matrix g{m.hh, m.hw, 0.5 * dt * dt * per_mass, m.wh, m.ww, dt * per_mass, 0, 0, 1};
-                Matrix gp{}, next{}, gf{};
-                for (int i = 0; i < 3; ++i) {
-                    for (int j = 0; j < 3; ++j) {
-                        for (int l = 0; l < 3; ++l) {
-                            gp[3 * i + j] += g[3 * i + l] * p[3 * l + j];
-                            gf[3 * i + j] += g[3 * i + l] * f[3 * l + j];
-                        }
-                    }
-                }
-                for (int i = 0; i < 3; ++i) {
-                    for (int j = 0; j < 3; ++j) {
-                        for (int l = 0; l < 3; ++l) {
-                            next[3 * i + j] += gp[3 * i + l] * g[3 * j + l];
-                        }
-                    }
-                }
-                p = next;
-                f = gf;
-                p[0] += noise.process * dt * dt * dt / 3;
-                p[1] += noise.process * dt * dt / 2;
-                p[3] = p[1];
-                p[4] += noise.process * dt;
-                p[8] += force_walk * force_walk * dt;
-            }
-        }
-        predicted[k] = x;
-        predicted_p[k] = p;
-        transition[k] = f;
+    first_guess(record, belief.x[0], belief.x[1], span);
+    belief.x[0] -= bias;
+    equation.start_history(belief.x[1]);
+    belief.p.diagonal() << std::max(1e-4, span * span), std::max(1e-4, span * span), 1e-2;
+    for (std::size_t k = 0; k < record.time.size(); ++k) {
+        all.transition.push_back(k > 0 ? over_step(record, equation, input[k], k, noise, force_walk, belief)
+                                       : Eigen::Matrix3d::Identity().eval());
+        all.predicted.push_back(belief);
         if (std::isfinite(record.gap[k])) {
             const double sigma = noise.gap * record.gap_share[k];
-            measure(record.gap[k] - x[0] - explanation.terms.sensor_bias, {1, 0, 0}, sigma * sigma + noise.slow * noise.slow);
+            belief.measure(record.gap[k] - belief.x[0] - bias, {1, 0, 0}, sigma * sigma + noise.slow * noise.slow);
         }
         if (!record.velocity.empty() && std::isfinite(record.velocity[k])) {
             const double sigma = noise.velocity * record.velocity_share[k];
-            measure(record.velocity[k] - x[1], {0, 1, 0}, sigma * sigma);
+            belief.measure(record.velocity[k] - belief.x[1], {0, 1, 0}, sigma * sigma);
         }
-        filtered[k] = x;
-        filtered_p[k] = p;
+        all.filtered.push_back(belief);
     }
+    return all;
+}
+
+}  // namespace
+
+SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
+                              double force_walk) {
+    const ForceFilter all = filter_force(record, explanation, noise, force_walk);
+    const std::size_t n = record.time.size();
     SmoothedRun run;
     run.time = record.time;
     run.gap.resize(n);
     run.velocity.resize(n);
     run.force.resize(n);
     run.force_sigma.resize(n);
-    Vector s = filtered[n - 1];
-    Matrix sp = filtered_p[n - 1];
-    const auto invert = [](const Matrix& m) {
-        Matrix r{};
-        const double det = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
-        const double inverse = 1 / det;
-        r[0] = (m[4] * m[8] - m[5] * m[7]) * inverse;
-        r[1] = (m[2] * m[7] - m[1] * m[8]) * inverse;
-        r[2] = (m[1] * m[5] - m[2] * m[4]) * inverse;
-        r[3] = (m[5] * m[6] - m[3] * m[8]) * inverse;
-        r[4] = (m[0] * m[8] - m[2] * m[6]) * inverse;
-        r[5] = (m[2] * m[3] - m[0] * m[5]) * inverse;
-        r[6] = (m[3] * m[7] - m[4] * m[6]) * inverse;
-        r[7] = (m[1] * m[6] - m[0] * m[7]) * inverse;
-        r[8] = (m[0] * m[4] - m[1] * m[3]) * inverse;
-        return r;
-    };
+    ForceBelief later = all.filtered.back();
     for (std::size_t k = n; k-- > 0;) {
         if (k + 1 < n) {
-            const Matrix inverse = invert(predicted_p[k + 1]);
-            Matrix pf{}, gain{};
-            for (int i = 0; i < 3; ++i) {
-                for (int j = 0; j < 3; ++j) {
-                    for (int l = 0; l < 3; ++l) {
-                        pf[3 * i + j] += filtered_p[k][3 * i + l] * transition[k + 1][3 * j + l];
-                    }
-                }
-            }
-            for (int i = 0; i < 3; ++i) {
-                for (int j = 0; j < 3; ++j) {
-                    for (int l = 0; l < 3; ++l) {
-                        gain[3 * i + j] += pf[3 * i + l] * inverse[3 * l + j];
-                    }
-                }
-            }
-            Vector next = filtered[k];
-            Matrix difference{}, gd{}, np = filtered_p[k];
-            for (int i = 0; i < 9; ++i) {
-                difference[i] = sp[i] - predicted_p[k + 1][i];
-            }
-            for (int i = 0; i < 3; ++i) {
-                for (int j = 0; j < 3; ++j) {
-                    next[i] += gain[3 * i + j] * (s[j] - predicted[k + 1][j]);
-                    for (int l = 0; l < 3; ++l) {
-                        gd[3 * i + j] += gain[3 * i + l] * difference[3 * l + j];
-                    }
-                }
-            }
-            for (int i = 0; i < 3; ++i) {
-                for (int j = 0; j < 3; ++j) {
-                    for (int l = 0; l < 3; ++l) {
-                        np[3 * i + j] += gd[3 * i + l] * gain[3 * j + l];
-                    }
-                }
-            }
-            s = next;
-            sp = np;
+            const ForceBelief& next = all.predicted[k + 1];
+            ForceBelief now = all.filtered[k];
+            const Eigen::Matrix3d gain = now.p * all.transition[k + 1].transpose() * next.p.inverse();
+            now.x += gain * (later.x - next.x);
+            now.p += gain * (later.p - next.p) * gain.transpose();
+            later = now;
         }
-        run.gap[k] = s[0];
-        run.velocity[k] = s[1];
-        run.force[k] = s[2];
-        run.force_sigma[k] = std::sqrt(std::max(0.0, sp[8]));
+        run.gap[k] = later.x[0];
+        run.velocity[k] = later.x[1];
+        run.force[k] = later.x[2];
+        run.force_sigma[k] = std::sqrt(std::max(0.0, later.p(2, 2)));
     }
     return run;
+}
+
+double acceleration_of(const HeaveRecord& record, const HeaveExplanation& explanation, double t, double h, double w, double input,
+                       dynamics::HeaveSlopes& slopes) {
+    return Equation(record, explanation).acceleration(t, h, w, input, 0, slopes);
 }
 
 void step_once(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t k, double& gap,

@@ -7,7 +7,7 @@
 
 #include "surrogates/discovery/flexible.h"
 #include "surrogates/discovery/heave_record.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/heave_equation.h"
 
 namespace underbody::discovery {
 
@@ -77,6 +77,10 @@ struct SmoothedRun {
 /// `force_walk` N/sqrt(s): how fast the residual force may change.
 SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
                               double force_walk);
+
+/// dw/dt of an explanation at a moment and its slopes, without memory: what the filter integrates.
+double acceleration_of(const HeaveRecord& record, const HeaveExplanation& explanation, double t, double h, double w, double input,
+                       dynamics::HeaveSlopes& slopes);
 
 /// Motion of the explanation from step k - 1 to step k under input[k]. Without the memory of a history force.
 void step_once(const HeaveRecord& record, const HeaveExplanation& explanation, const std::vector<double>& input, std::size_t k, double& gap,

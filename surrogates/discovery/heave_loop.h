@@ -34,6 +34,7 @@ private:
     void colour_noise();
     void check_input();
     void change_input(double seconds, double factor);
+    [[nodiscard]] dynamics::RecordReading reading_found() const;
 
     // heave_gate.cpp: is anything there, and is anything left?
     /// Linearised answers of one thing that may be missing.
@@ -104,6 +105,7 @@ private:
     double gate_ = 1;
     double named_gate_ = 1;                  ///< chance that noise alone would give as much to any named effect
     Attribution attribution_;
+    dynamics::RecordReading records_read_;   ///< how the logs are to be read: as declared, and what was found wrong with them
     std::vector<dynamics::EffectUse> uses_;
     Discovery result_;
 };

@@ -9,6 +9,8 @@
 #include "core/text.h"
 #include "surrogates/discovery/heave_filter.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/predict.h"
+#include "surrogates/dynamics/sensor_noise.h"
 
 namespace underbody::discovery {
 
@@ -142,9 +144,9 @@ std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector
 }
 
 /// Readings at the ends of a sensor's range: many at exactly one value, several in one piece, and hardly any beyond (outliers may be).
-std::size_t drop_saturated(std::vector<double>& values) {
+std::size_t drop_saturated(const std::vector<double>& time, std::vector<double>& values) {
     std::size_t dropped = 0;
-    const double step = reading_step(values);
+    const double step = dynamics::reading_step(values);
     for (const bool upper : {true, false}) {
         double end = upper ? -1e300 : 1e300;
         std::size_t same = 1;
@@ -157,7 +159,7 @@ std::size_t drop_saturated(std::vector<double>& values) {
         // a sensor without noise of its own repeats values by rounding; a saturated one repeats its end alone
         std::vector<double> inside = values;
         std::replace(inside.begin(), inside.end(), end, std::nan(""));
-        const double noise = noise_from_second_differences(inside);
+        const double noise = dynamics::sensor_noise(time, inside);
         const auto at_end = static_cast<std::size_t>(std::count(values.begin(), values.end(), end));
         // one that rounds repeats every value: its end counts only when it has far more readings than the value beside it
         const double beside = end + (upper ? -step : step);
@@ -367,6 +369,7 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
         }
     }
     result.velocity_measured = turn;
+    result.velocity_turned = turn;
 }
 
 }  // namespace
@@ -396,8 +399,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         record.plant = plant;
         const std::vector<double>& time = run.table.numbers("time");
         std::vector<double> gap = run.table.numbers("gap");
-        const std::size_t saturated = drop_saturated(gap);
-        const double noise = noise_from_second_differences(gap);   // a reading at the end of the range has none
+        const std::size_t saturated = drop_saturated(time, gap);
+        const double noise = dynamics::sensor_noise(time, gap);   // a reading at the end of the range has none
         if (saturated > 0) {
             remark(result.problems, std::to_string(saturated) + " gap readings of " + run.name +
                                         " stand exactly at the end of the sensor's range (saturated): not used", file);
@@ -417,7 +420,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
             remark(result.problems, run.name + " " + doubt, file);
         }
         const std::vector<double> pushed = run.values("input_force");
-        const double input_noise = pushed.size() == gap.size() ? noise_from_second_differences(pushed) : 0;
+        const double input_noise = pushed.size() == gap.size() ? dynamics::sensor_noise(time, pushed) : 0;
         const std::optional<double> declared = data.declared_noise("gap");
         if (declared && noise < 0.05 * *declared && input_noise > 0.5 * *declared && input_noise < 2 * *declared) {
             remark(result.problems, run.name + " is left out: gap has no noise and input_force that of the gap sensor; the two columns look swapped", file);
@@ -445,8 +448,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         }
         const core::Column* velocity = run.table.find("heave_velocity");
         if (velocity != nullptr && !velocity->is_text()) {
-            std::vector<double> values = velocity->numbers;
-            const double own = noise_from_second_differences(values);
+            std::vector<double> values = dynamics::as_read(run, "heave_velocity", model.records);
+            const double own = dynamics::sensor_noise(time, values);
             if (stuck(values) || !std::isfinite(own)) {
                 remark(result.problems, "heave_velocity of " + run.name + " stands still for a fifth of the run or is missing: it is not used", file);
             } else {
@@ -457,7 +460,10 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
             }
         }
         record.raw_time = time;
-        record.raw_input = run.values("input_force");
+        for (double& t : record.raw_time) {
+            t -= model.records.input_advance;
+        }
+        record.raw_input = dynamics::as_read(run, "input_force", model.records);
         if (record.raw_input.empty()) {
             record.raw_input.assign(time.size(), 0);
         } else {

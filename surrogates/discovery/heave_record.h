@@ -37,6 +37,7 @@ inline constexpr double record_step = 0.04;
 struct HeaveRecords {
     std::vector<HeaveRecord> records;
     bool velocity_measured = false;
+    bool velocity_turned = false;        ///< its sign was found turned round and is mended here
     bool input_recorded = false;
     double raw_step = 0;                 ///< median step of the files, s
     double gap_noise = 0;                ///< estimated white noise of a single reading, m

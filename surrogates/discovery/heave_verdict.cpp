@@ -153,6 +153,7 @@ void HeaveLoop::decide() {
     result_.gate = gate_;
     result_.none_probability = attribution_.none_probability;
     result_.model = model_;
+    result_.model.records = reading_found();
     after_noise_ = null_noise_;
     if (result_.verdict == "effect") {
         uses_ = found_effect(fitted_[attribution_.chosen], 1).uses;

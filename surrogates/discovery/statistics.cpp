@@ -80,58 +80,12 @@ double chi_squared_limit(double tail, double dof) {
     return boost::math::quantile(boost::math::complement(boost::math::chi_squared(dof), tail));
 }
 
-double reading_step(std::span<const double> values) {
-    double step = std::numeric_limits<double>::infinity();
-    std::size_t pairs = 0;
-    std::size_t equal = 0;
-    const auto each_difference = [&values](const auto& use) {
-        for (std::size_t i = 1; i < values.size(); ++i) {
-            const double difference = std::abs(values[i] - values[i - 1]);
-            if (std::isfinite(difference)) {
-                use(difference);
-            }
-        }
-    };
-    // files have nine digits or so: what is closer than that is the same reading
-    double largest = 0;
-    each_difference([&largest](double difference) { largest = std::max(largest, difference); });
-    const double tiny = 1e-6 * largest;
-    each_difference([&](double difference) {
-        ++pairs;
-        equal += difference <= tiny ? 1 : 0;
-        step = difference > tiny ? std::min(step, difference) : step;
-    });
-    if (5 * equal < pairs || !std::isfinite(step)) {
-        return 0;
-    }
-    std::size_t on_grid = 0;
-    each_difference([&](double difference) { on_grid += std::abs(difference / step - std::round(difference / step)) < 0.02 ? 1 : 0; });
-    return 100 * on_grid >= 98 * pairs ? step : 0;
-}
-
 double sum_of_squares(std::span<const double> values) {
     double sum = 0;
     for (const double value : values) {
         sum += value * value;
     }
     return sum;
-}
-
-double noise_from_second_differences(std::span<const double> values) {
-    std::vector<double> differences;
-    for (std::size_t i = 2; i < values.size(); ++i) {
-        const double difference = values[i] - 2 * values[i - 1] + values[i - 2];
-        if (std::isfinite(difference)) {
-            differences.push_back(difference);
-        }
-    }
-    if (differences.size() < 6) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    // the variance of y[i] - 2 y[i-1] + y[i-2] is (1 + 4 + 1) sigma^2
-    const double scatter = robust_sigma(differences) / std::sqrt(6.0);
-    // a coarse sensor repeats its reading more often than not: half of its differences, and with them the middle, are naught
-    return std::max(scatter, reading_step(values) / std::sqrt(12.0));
 }
 
 double autocorrelation(std::span<const double> values, std::size_t lag) {

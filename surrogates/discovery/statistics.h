@@ -31,16 +31,7 @@ double f_tail(double x, double dof_above, double dof_below);
 /// The x that a chi-squared variable exceeds with probability `tail`.
 double chi_squared_limit(double tail, double dof);
 
-/// The step of a sensor that rounds: the grid on which nearly all readings lie when a fifth of them or more repeat the one before.
-/// 0 when there is none.
-double reading_step(std::span<const double> values);
-
 double sum_of_squares(std::span<const double> values);
-
-/// Standard deviation of white noise on a smooth signal sampled at (nearly) equal steps, from second differences with a robust
-/// middle (so that outliers and kinks do not count); of a sensor that rounds at least that of its steps, step/sqrt(12).
-/// Missing values are skipped. NaN when there are fewer than eight values.
-double noise_from_second_differences(std::span<const double> values);
 
 /// Autocorrelation of a series at a lag; 0 when it is constant.
 double autocorrelation(std::span<const double> values, std::size_t lag);

@@ -1,7 +1,7 @@
+#include "surrogates/dynamics/curve.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "surrogates/dynamics/heave_terms.h"
 
 namespace underbody::dynamics {
 
@@ -46,17 +46,22 @@ void Curve::build_index() {
 }
 
 double Curve::value(double x, double& slope) const noexcept {
+    double curvature = 0;
+    return value(x, slope, curvature);
+}
+
+double Curve::value(double x, double& slope, double& curvature) const noexcept {
+    slope = curvature = 0;
     if (x <= x_.front()) {
-        slope = 0;
         return end_[0];
     }
     if (x >= x_.back()) {
-        slope = 0;
         return end_[1];
     }
     const Piece& p = pieces_[piece(x)];
     const double d = x - p.x;
     slope = p.c1 + d * (2 * p.c2 + d * 3 * p.c3);
+    curvature = 2 * p.c2 + d * 6 * p.c3;
     return p.c0 + d * (p.c1 + d * (p.c2 + d * p.c3));
 }
 

@@ -145,6 +145,9 @@ std::vector<Eigen1> eigen(const Dense& a) {
 }
 
 std::vector<double> singular_values(const Dense& a) {
+    if (a.rows() == 0 || a.columns() == 0) {
+        return {};
+    }
     const int m = static_cast<int>(a.rows()), n = static_cast<int>(a.columns()), one = 1;
     std::vector<double> data = by_columns(a), s(std::min(a.rows(), a.columns())),
                         work(10 * (a.rows() + a.columns()) + 64);

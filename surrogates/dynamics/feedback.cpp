@@ -5,24 +5,18 @@
 
 namespace underbody::dynamics {
 
-namespace {
-
-double limited(const double* p, double, double h, double w) {
-    return std::clamp(-p[1] * w - p[0] * (h - p[2]), -p[3], p[3]);
-}
-
-}  // namespace
-
 void close_loop(HeavePlant& plant, const HeaveFeedback& feedback) {
-    if (feedback.limit > 0) {
-        plant.terms.extras.push_back(
-            {&limited, {feedback.gap_gain, feedback.velocity_gain, feedback.reference, feedback.limit, 0, 0}});
+    HeaveTerms& terms = plant.terms;
+    if (feedback.limit > 0 || terms.actuator.dead_zone > 0 || terms.actuator.has_states()) {
+        plant.loop = feedback;
         return;
     }
-    plant.terms.constant += feedback.gap_gain * (feedback.reference - plant.terms.stiffness_gap);
-    plant.terms.stiffness += feedback.gap_gain;
-    plant.terms.extra_linear += feedback.velocity_gain;
-    plant.terms.constant -= feedback.velocity_gain * plant.terms.current;  // the feedback acts on w itself
+    const double gap_gain = terms.actuator.gain * feedback.gap_gain,
+                 velocity_gain = terms.actuator.gain * feedback.velocity_gain;
+    terms.constant += gap_gain * (feedback.reference - terms.stiffness_gap);
+    terms.stiffness += gap_gain;
+    terms.extra_linear += velocity_gain;
+    terms.constant -= velocity_gain * terms.current;  // the feedback acts on w itself
 }
 
 HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,

@@ -13,15 +13,9 @@
 
 namespace underbody::dynamics {
 
-/// u = -velocity_gain w - gap_gain (h - reference), up, limited to +-limit (0: no limit).
-struct HeaveFeedback {
-    double gap_gain = 0;       ///< N/m
-    double velocity_gain = 0;  ///< N s/m
-    double reference = 0;      ///< m
-    double limit = 0;          ///< N
-};
-/// Adds the feedback to a plant; without a limit it is a spring and a damper, so that the energy argument of the region
-/// still holds.
+/// Closes the loop through the actuator that the model declares (input_delay, input_dead_zone, input_gain,
+/// actuator_lag). With neither limit nor delay, dead zone or lag it is a spring and a damper, so that the energy argument
+/// of the region still holds.
 void close_loop(HeavePlant& plant, const HeaveFeedback& feedback);
 
 /// LQR gains of heave at a gap: states (heave_velocity, gap), weights q = (q_w, q_h), r, on M dw/dt = -k (h - h0) - d w

@@ -1,14 +1,16 @@
 // Heave: one degree of freedom over recorded or given inputs.
 #pragma once
 
+#include <algorithm>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/figure.h"
 #include "core/progress.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/heave_equation.h"
 #include "surrogates/dynamics/model.h"
 
 namespace underbody::dynamics {
@@ -18,6 +20,7 @@ struct InputSignals {
     /// What the input force does between samples: `held` is what a digital controller does (a record of its commands).
     enum class Between { linear, held };
     Between input_between = Between::linear;
+    double input_advance = 0;  ///< s: the input is recorded so long after it acts
     std::vector<double> time;
     struct Signal {
         Channel channel;
@@ -27,22 +30,17 @@ struct InputSignals {
     Conditions held;              ///< over the whole run
 };
 
-/// The Basset kernel 1/sqrt(t) as a sum of exponentials: error below 0.5 % from 20 ms to 200 s; what is faster acts as
-/// mass.
-inline constexpr std::size_t history_states = 10;
-struct HistoryKernel {
-    double rate[history_states];    ///< 1/s
-    double weight[history_states];  ///< s^-1/2
-    double mass;                    ///< s^1/2: kernel that is faster than the last rate, times history gives kg
-};
-const HistoryKernel& history_kernel();
-
-/// What a moment brings from outside.
-struct HeaveMoment {
-    double t = 0;
-    double input = 0;                  ///< N, as it reaches the body
-    const double* factors = nullptr;   ///< one per varying source
-    const double* channels = nullptr;  ///< channel_count values, for tables over other channels
+/// u = -velocity_gain w - gap_gain (h - reference), up, limited to +-limit (0: no limit).
+struct HeaveFeedback {
+    double gap_gain = 0;       ///< N/m
+    double velocity_gain = 0;  ///< N s/m
+    double reference = 0;      ///< m
+    double limit = 0;          ///< N
+    /// What the controller asks for, N.
+    [[nodiscard]] double command(double h, double w) const {
+        const double u = -velocity_gain * w - gap_gain * (h - reference);
+        return limit > 0 ? std::clamp(u, -limit, limit) : u;
+    }
 };
 
 /// The model's heave equation with all its effects, ready to run. Safe to use from many threads while nobody changes
@@ -53,20 +51,32 @@ public:
     /// Throws core::InputError: a table that needs a channel nobody gives; virtual mass that is not positive.
     explicit HeavePlant(const Model& model, const Conditions& held = {}, const std::vector<Channel>& varying = {});
 
-    HeaveTerms terms;  ///< numbers may be changed between runs (discovery's inner loop); after sources or corrections:
-                       ///< refresh()
+    HeaveTerms terms;  ///< numbers may be changed between runs; after sources or corrections: refresh()
 
-    /// Folds the sources whose scales and axes are constant into one curve, and corrections of one variable into
-    /// curves.
+    /// Folds the sources whose scales and axes are constant into one curve.
     void refresh();
 
+    /// Feedback whose command passes the actuator of the model (delay, dead zone, gain, lag); see close_loop().
+    /// With it HeaveMoment::input is what else is commanded, before the actuator, unless loop_has_states().
+    std::optional<HeaveFeedback> loop;
+    /// True when the actuator in the loop has states of its own (delay or lag): integrators carry them and bring the
+    /// force that reaches the body as HeaveMoment::input.
+    [[nodiscard]] bool loop_has_states() const { return loop && terms.actuator.has_states(); }
+    /// The force that reaches the body at rest in this state, N, with what else is commanded.
+    [[nodiscard]] HeaveLoad closed_input(double h, double w, double given) const;
+
     using Moment = HeaveMoment;
-    /// The moment with inputs as held.
-    [[nodiscard]] Moment held_moment(double t = 0) const {
-        return {t, held_.get(Channel::input_force, 0.0), nullptr, nullptr};
+    /// The constant input of the conditions: as it reaches the body, or before the actuator of a closed loop, N.
+    [[nodiscard]] double held_input() const {
+        const double u = held_.get(Channel::input_force, 0.0);
+        return loop ? u : terms.actuator.felt(u);
     }
-    /// Lift of the tables at this gap, N (includes roughness).
-    [[nodiscard]] double lift(double h, const Moment& moment = {}) const;
+    /// The moment with inputs as held.
+    [[nodiscard]] Moment held_moment(double t = 0) const { return {t, held_input(), nullptr, nullptr}; }
+    /// Lift of the tables at this gap, N (includes roughness); w: where a table has an axis of it.
+    [[nodiscard]] double lift(double h, const Moment& moment = {}, double w = 0) const;
+    /// The same with its slopes.
+    [[nodiscard]] HeaveLoad table_lift(double h, double w, const Moment& moment = {}) const;
     /// Resistance of the water and everything else that follows the velocity, N, sign of w. Without history.
     [[nodiscard]] double resistance(double h, double w) const;
     /// Its parts: the water's drag law at a velocity through the water, and what follows the velocity in the guide or
@@ -86,6 +96,8 @@ public:
     [[nodiscard]] double inertia(double h, double& slope) const;
     /// dw/dt. `memory`: history_states states y_i with y_i' = -rate_i (y_i + w), or nullptr.
     [[nodiscard]] double acceleration(double h, double w, const Moment& moment, const double* memory = nullptr) const;
+    /// The same with its slopes along gap and velocity (memory held).
+    double acceleration(double h, double w, const Moment& moment, const double* memory, HeaveSlopes& slopes) const;
     /// Force at rest with inputs held: all that depends on the gap alone, N.
     [[nodiscard]] double static_force(double h) const { return static_force(h, held_moment()); }
     [[nodiscard]] double static_force(double h, const Moment& moment) const;
@@ -101,14 +113,13 @@ public:
 private:
     friend class HeaveRun;
     Curve folded_;
-    Curve gap_correction_, velocity_correction_;
-    std::vector<std::size_t> varying_;            ///< indices of sources that vary
-    std::vector<std::size_t> table_corrections_;  ///< indices of corrections over other variables
+    std::vector<std::size_t> varying_;  ///< indices of sources that vary
     std::vector<Channel> varying_channels_;
     bool needs_channels_ = false, keeps_channels_ = false;
     Conditions held_;
-    [[nodiscard]] double varying_lift(double h, const Moment& moment) const;
-    [[nodiscard]] double table_corrections(double h, double w, const Moment& moment) const;
+    [[nodiscard]] HeaveLoad varying_lift(double h, double w, const Moment& moment) const;
+    template <bool Slopes>
+    double evaluate(double h, double w, const Moment& moment, const double* memory, HeaveSlopes& slopes) const;
 };
 
 /// A recorded run made ready for one plant: inputs transformed (delay, dead zone, gain, lag) and resampled to a fixed
@@ -144,8 +155,8 @@ public:
 
 private:
     [[nodiscard]] HeavePlant::Moment moment_at(std::size_t half, double t) const;
-    void transform_linear(const HeaveTerms& terms, const std::vector<double>& values);
-    void transform_held(const HeaveTerms& terms, std::vector<double> values);
+    void transform_linear(const Actuator& actuator, const std::vector<double>& values);
+    void transform_held(const Actuator& actuator, std::vector<double> values);
     std::vector<double> time_;
     std::vector<std::size_t> start_;  ///< sample -> index of its half step
     std::vector<double> half_time_;

@@ -18,6 +18,8 @@ double needed(double value, const char* name, const Model& model) {
     return value;
 }
 
+double limited(double value, double limit) { return limit > 0 ? std::clamp(value, -limit, limit) : value; }
+
 }  // namespace
 
 HeavePitch::HeavePitch(const Model& declared, const Conditions& given, const std::vector<Channel>& varying)
@@ -33,7 +35,7 @@ HeavePitch::HeavePitch(const Model& declared, const Conditions& given, const std
     friction_ = model.contact.friction;
     restitution_ = model.contact.restitution;
     speed_ = held_.get(Channel::speed, 0.0);
-    input_ = held_.get(Channel::input_force, 0.0);
+    input_ = vertical_.held_input();
     drag_pitch_ = model.drag_pitch;
     water_ = model.environment;
     drag_moment_ = v.drag_height * drag(model.drag_surge, water_, speed_);
@@ -73,9 +75,8 @@ void HeavePitch::table_loads(const PitchState& y, const Surroundings& around, do
 
 void HeavePitch::forces(const PitchState& y, const Surroundings& around, bool waves, Loads& loads) const {
     const Conditions conditions = seen(y, around);
-    const HeaveMoment moment{around.t, std::isnan(around.input) ? input_ : around.input, nullptr,
-                             conditions.value.data()};
-    const double st = std::sin(y[2]), ct = std::cos(y[2]), reach = depth_ * st + forward_ * ct, w = y[1];
+    const HeaveMoment moment{around.t, input_force(y, around), nullptr, conditions.value.data()};
+    const double st = std::sin(y[2]), ct = std::cos(y[2]), reach = depth_ * st + forward_ * ct, w = centre_velocity(y);
     const double up = vertical_.roughened(lift_(conditions), y[0]);
     loads.force = up + vertical_.other_force(y[0], w, moment, around.memory) -
                   vertical_.water_drag(w - vertical_.terms.current);
@@ -92,21 +93,42 @@ void HeavePitch::forces(const PitchState& y, const Surroundings& around, bool wa
     double slope = 0;
     loads.mass = vertical_.inertia(y[0], slope) + (around.memory ? vertical_.history_mass() : 0);
     if (slope != 0) {
-        loads.force += slope * w * (0.5 * w - (w + reach * y[3]));
+        loads.force += slope * w * (0.5 * w - y[1]);
         loads.moment += 0.5 * slope * w * w * reach;
     }
     if (feedback_) {
-        double force = 0, turn = 0;
+        double turn = 0;
         for (std::size_t i = 0; i < 4; ++i) {
-            force -= feedback_->force_gain[i] * (y[i] - feedback_->reference[i]);
             turn -= feedback_->moment_gain[i] * (y[i] - feedback_->reference[i]);
         }
-        const auto limited = [](double value, double limit) {
-            return limit > 0 ? std::clamp(value, -limit, limit) : value;
-        };
-        loads.force += limited(force, feedback_->force_limit);
         loads.moment += limited(turn, feedback_->moment_limit);
     }
+}
+
+void HeavePitch::close_loop(const PitchFeedback& feedback) {
+    feedback_ = feedback;
+    if (!vertical_.terms.actuator.ideal()) {
+        vertical_.loop = HeaveFeedback{};  // inputs are commands now: the actuator acts on their sum with the feedback
+        input_ = vertical_.held_input();
+    }
+}
+
+double HeavePitch::force_command(const PitchState& y) const {
+    double force = 0;
+    for (std::size_t i = 0; feedback_ && i < 4; ++i) {
+        force -= feedback_->force_gain[i] * (y[i] - feedback_->reference[i]);
+    }
+    return feedback_ ? limited(force, feedback_->force_limit) : 0;
+}
+
+/// What reaches the body of recorded or held input and feedback, N.
+double HeavePitch::input_force(const PitchState& y, const Surroundings& around) const {
+    const bool given = !std::isnan(around.input);
+    if (vertical_.loop_has_states() && given) {
+        return around.input;  // the integrator carries the actuator's states
+    }
+    const double sum = (given ? around.input : input_) + force_command(y);
+    return vertical_.loop ? vertical_.terms.actuator.felt(sum) : sum;
 }
 
 void HeavePitch::statics(double gap, double pitch, double& force, double& moment) const {
@@ -117,7 +139,8 @@ void HeavePitch::statics(double gap, double pitch, double& force, double& moment
 }
 
 double HeavePitch::kinetic_energy(const PitchState& y) const {
-    return 0.5 * (virtual_mass(y[0]) * y[1] * y[1] + inertia_ * y[3] * y[3]);
+    const double w = centre_velocity(y);
+    return 0.5 * (virtual_mass(y[0]) * w * w + inertia_ * y[3] * y[3]);
 }
 
 void HeavePitch::accelerations(const PitchState& y, const Loads& loads, const std::array<double, 2>& normal,
@@ -144,7 +167,7 @@ std::array<double, 2> HeavePitch::edge_gaps(const PitchState& y) const {
 }
 
 std::array<double, 2> HeavePitch::edge_speeds(const PitchState& y) const {
-    const double up = y[1] + arm(y[2]) * y[3], turn = half_length_ * std::cos(y[2]) * y[3];
+    const double up = y[1], turn = half_length_ * std::cos(y[2]) * y[3];
     return {up + turn, up - turn};
 }
 
@@ -153,7 +176,7 @@ ContactProblem HeavePitch::problem(const PitchState& y, const Loads& loads) cons
     const auto gaps = [&](const std::array<double, 2>& normal) {
         double up = 0, turn = 0;
         accelerations(y, loads, normal, up, turn);
-        const double common = up + arm(y[2]) * turn + (depth_ * ct - forward_ * st) * q * q,
+        const double common = up + arm(y[2]) * turn + arm_slope(y[2]) * q * q,
                      side = half_length_ * (ct * turn - st * q * q);
         return std::array<double, 2>{common + side, common - side};
     };
@@ -190,9 +213,10 @@ void HeavePitch::rate(const PitchState& y, ContactState bearing, PitchState& d, 
         }
         normal = holding_forces(p, bearing);
     }
-    d[0] = y[1] + arm(y[2]) * y[3];
+    d[0] = y[1];
     d[2] = y[3];
     accelerations(y, loads, normal, d[1], d[3]);
+    d[1] += arm(y[2]) * d[3] + arm_slope(y[2]) * y[3] * y[3];
 }
 
 ContactState HeavePitch::settle(const PitchState& y, ContactState touching, const Surroundings& around) const {
@@ -211,25 +235,30 @@ ContactState HeavePitch::settle(const PitchState& y, ContactState touching, cons
 
 PitchState HeavePitch::impact(const PitchState& y, ContactState touching) const {
     const double st = std::sin(y[2]), ct = std::cos(y[2]), mass = virtual_mass(y[0]);
-    ContactProblem p;
-    p.rest = edge_speeds(y);
-    std::array<double, 2> lever{};  // moment of a unit impulse, and how the edge moves with q
-    for (std::size_t e = 0; e < 2; ++e) {
-        lever[e] = (forward_ + (e == 0 ? half_length_ : -half_length_)) * ct + depth_ * st;
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t j = 0; j < 2; ++j) {
-            p.matrix[i][j] = 1 / mass + lever[i] * lever[j] / inertia_;
+    // The run over the ground goes on through the impact: it slides, and friction turns the nose down as in contact.
+    for (const double friction : {speed_ == 0 ? 0.0 : -std::copysign(friction_, speed_), 0.0}) {
+        ContactProblem p;
+        p.rest = edge_speeds(y);
+        std::array<double, 2> lever{}, turn{};  // how an edge moves with q; moment of a unit impulse at it
+        for (std::size_t e = 0; e < 2; ++e) {
+            const double rx = forward_ + (e == 0 ? half_length_ : -half_length_);
+            lever[e] = rx * ct + depth_ * st;
+            turn[e] = lever[e] + friction * (depth_ * ct - rx * st);
+        }
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (std::size_t j = 0; j < 2; ++j) {
+                p.matrix[i][j] = 1 / mass + lever[i] * turn[j] / inertia_;
+            }
+        }
+        if (const auto impulses = impact_impulses(p, touching, restitution_)) {
+            PitchState after = y;
+            const double spin = ((*impulses)[0] * turn[0] + (*impulses)[1] * turn[1]) / inertia_;
+            after[1] += ((*impulses)[0] + (*impulses)[1]) / mass + arm(y[2]) * spin;
+            after[3] += spin;
+            return after;
         }
     }
-    const auto impulses = impact_impulses(p, touching, restitution_);
-    if (!impulses) {
-        throw core::Error("contact", "no impulse fits this impact");
-    }
-    PitchState after = y;
-    after[1] += ((*impulses)[0] + (*impulses)[1]) / mass;
-    after[3] += ((*impulses)[0] * lever[0] + (*impulses)[1] * lever[1]) / inertia_;
-    return after;
+    throw core::Error("contact", "no impulse fits this impact");
 }
 
 LinearSystem HeavePitch::linearised(double gap, double pitch) const {
@@ -238,7 +267,7 @@ LinearSystem HeavePitch::linearised(double gap, double pitch) const {
         PitchState d{};
         rate(y, ContactState::free, d);
         std::copy(d.begin(), d.end(), out);
-        out[1] += u[0] / virtual_mass(x[0]);
+        out[1] += u[0] / virtual_mass(x[0]) + arm(x[2]) * u[1] / inertia_;
         out[3] += u[1] / inertia_;
     };
     return linearise(rate_of, {gap, 0, pitch, 0}, {0, 0}, {"gap", "heave_velocity", "pitch", "pitch_rate"},

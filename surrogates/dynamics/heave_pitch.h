@@ -1,6 +1,6 @@
 // Heave and pitch over the ground, coupled through tables of lift and pitch moment over (gap, pitch), with contact at
-// both edges. gap: centre of the base, up; heave_velocity: of the centre of gravity, up; pitch nose up. Moments of
-// tables about the centre of the base.
+// both edges. gap and heave_velocity (its rate dh/dt): of the centre of the base, up; pitch nose up. Moments of tables
+// about the centre of the base.
 #pragma once
 
 #include <array>
@@ -33,6 +33,7 @@ struct PitchFeedback {
     double force_limit = 0, moment_limit = 0;
 };
 
+/// With w the velocity of the centre of gravity, up (dh/dt = w + a q):
 /// S_z(h) dw/dt = -W + F(h, theta) - D_w(w) + effects + N1 + N2 + input - S_z' (dh/dt w - w^2/2)
 /// S_q dq/dt = M(h, theta) + a F - (L cos(theta) - x sin(theta)) D(h, theta) - F_b (L_b sin(theta) - x_b cos(theta)) - D_q(q) + contact + drag moment + S_z' a w^2/2
 /// dh/dt = w + a q, dtheta/dt = q, a = L sin(theta) + x cos(theta); L is the depth and x the distance forward of the
@@ -43,7 +44,12 @@ public:
     /// length not declared, a table axis that nothing supplies.
     explicit HeavePitch(const Model& model, const Conditions& held = {}, const std::vector<Channel>& varying = {});
 
-    void close_loop(const PitchFeedback& feedback) { feedback_ = feedback; }
+    /// The force passes the actuator that the model declares, as input_force does; the moment does not.
+    void close_loop(const PitchFeedback& feedback);
+    /// What the feedback asks of the force, N up, before the actuator; 0 without a loop.
+    [[nodiscard]] double force_command(const PitchState& y) const;
+    /// Velocity of the centre of gravity, up, m/s.
+    [[nodiscard]] double centre_velocity(const PitchState& y) const { return y[1] - arm(y[2]) * y[3]; }
 
     void rate(const PitchState& y, ContactState bearing, PitchState& dydt, const Surroundings& around = {}) const;
     [[nodiscard]] std::array<double, 2> normal_forces(const PitchState& y, ContactState bearing,
@@ -87,6 +93,8 @@ private:
         return vertical_.inertia(gap, slope) + vertical_.history_mass();
     }
     [[nodiscard]] double arm(double pitch) const { return depth_ * std::sin(pitch) + forward_ * std::cos(pitch); }
+    [[nodiscard]] double arm_slope(double pitch) const { return depth_ * std::cos(pitch) - forward_ * std::sin(pitch); }
+    [[nodiscard]] double input_force(const PitchState& y, const Surroundings& around) const;
     [[nodiscard]] Conditions seen(const PitchState& y, const Surroundings& around) const;
     void forces(const PitchState& y, const Surroundings& around, bool waves, Loads& loads) const;
     [[nodiscard]] ContactProblem problem(const PitchState& y, const Loads& loads) const;

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "surrogates/dynamics/heave_pitch.h"
 #include "surrogates/dynamics/heave_pitch_contact.h"
+#include "surrogates/dynamics/loop_actuator.h"
 #include "surrogates/dynamics/ode.h"
 #include "surrogates/dynamics/trajectory_parts.h"
 
@@ -42,7 +43,11 @@ public:
           options_(options),
           inputs_(plant.vertical(), inputs),
           out_(out),
-          states_(plant.remembers() ? 4 + history_states : 4) {}
+          states_(4 + (plant.remembers() ? history_states : 0) + (plant.vertical().loop_has_states() ? 1 : 0)),
+          actuator_(plant.vertical().terms, [this](double t, const double* y) {
+              const double given = inputs_.at(t).input;
+              return (std::isnan(given) ? plant_.vertical().held_input() : given) + plant_.force_command(state_of(y));
+          }) {}
 
     void fly(const PitchState& start, double t0, core::Progress& progress);
 
@@ -50,7 +55,24 @@ private:
     enum Event { nose, tail, escape, settle };
 
     static PitchState state_of(const double* y) { return {y[0], y[1], y[2], y[3]}; }
-    Surroundings around(double t, const double* y) { return inputs_.at(t, plant_.remembers() ? y + 4 : nullptr); }
+    Surroundings around(double t, const double* y) {
+        // The actuator looks at the inputs of another time: it comes before the moment's own, which share a buffer.
+        const double felt = !loop_has_states()   ? 0.0
+                            : actuator_.lagged() ? y[states_ - 1]
+                                                 : actuator_.driven(t, y);
+        Surroundings now = inputs_.at(t, plant_.remembers() ? y + 4 : nullptr);
+        now.input = loop_has_states() ? felt : now.input;
+        return now;
+    }
+    [[nodiscard]] bool loop_has_states() const { return plant_.vertical().loop_has_states(); }
+    /// Tells the actuator of the loop where the motion has come to.
+    void accept(double t, const double* y) {
+        if (loop_has_states()) {
+            std::vector<double> d(states_);
+            rates(t, y, d.data());
+            actuator_.accept(t, y, d.data());
+        }
+    }
     void rates(double t, const double* y, double* d);
     void record(double t, const double* y);
     [[nodiscard]] bool outside(const PitchState& y) const {
@@ -65,7 +87,8 @@ private:
     const TrajectoryOptions& options_;
     RecordedInputs inputs_;
     PitchTrajectory& out_;
-    std::size_t states_;
+    std::size_t states_;  ///< four, the history force's memory, the force after the actuator's lag
+    LoopActuator<4> actuator_;
     ContactState bearing_ = ContactState::free;
 };
 
@@ -76,8 +99,13 @@ void PitchFlight::rates(double t, const double* y, double* d) {
     if (plant_.remembers()) {
         const HistoryKernel& kernel = history_kernel();
         for (std::size_t i = 0; i < history_states; ++i) {
-            d[4 + i] = -kernel.rate[i] * (y[4 + i] + y[1]);
+            d[4 + i] = -kernel.rate[i] * (y[4 + i] + plant_.centre_velocity(state_of(y)));
         }
+    }
+    if (loop_has_states()) {
+        d[states_ - 1] = actuator_.lagged()
+                             ? (actuator_.driven(t, y) - y[states_ - 1]) / plant_.vertical().terms.actuator.lag
+                             : 0;
     }
 }
 
@@ -119,19 +147,25 @@ Ode PitchFlight::piece() {
     options.relative = options_.tolerance;
     options.absolute.assign(states_, options_.tolerance * 1e-3);
     options.max_step = inputs_.max_step();
+    if (loop_has_states() && actuator_.delayed()) {
+        options.max_step = options.max_step > 0 ? std::min(options.max_step, actuator_.max_step()) : actuator_.max_step();
+    }
     return Ode(std::move(problem), options);
 }
 
 /// Rows until the next event or the end.
 Ode::Stop PitchFlight::follow(Ode& ode, double& t, double t0) {
     const double end = t0 + options_.duration, step = options_.output_step;
+    // A delay looks back on the motion, which is kept in pieces much shorter than it.
+    const double piece = loop_has_states() && actuator_.delayed() ? actuator_.max_step() / 8 : 1e300;
     Ode::Stop stop;
     do {
         const double next = step > 0 ? t0 + step * (std::floor((t - t0) / step * (1 + 1e-12)) + 1) : end;
-        const double goal = next < end - 1e-6 * step ? next : end;
+        const double row = next < end - 1e-6 * step ? next : end, goal = std::min(row, t + piece);
         stop = step > 0 ? ode.advance(goal) : ode.one_step(end);
         t = stop.t;
-        if (!stop.event) {
+        accept(t, ode.state());
+        if (!stop.event && (step == 0 || goal == row)) {
             record(t, ode.state());
         }
     } while (!stop.event && t < end);
@@ -159,6 +193,7 @@ bool PitchFlight::after(const Ode::Stop& stop, double t, std::vector<double>& y)
     PitchState state = state_of(y.data());
     land(plant_, state, bearing_, around(t, y.data()));
     std::copy(state.begin(), state.end(), y.begin());
+    accept(t, y.data());
     if (before != ContactState::free && bearing_ == ContactState::free) {
         out_.events.back().kind = "lift_off";
     }
@@ -170,7 +205,13 @@ bool PitchFlight::after(const Ode::Stop& stop, double t, std::vector<double>& y)
 
 void PitchFlight::fly(const PitchState& start, double t0, core::Progress& progress) {
     PitchState first = start;
-    std::vector<double> y(states_, -start[1]);
+    std::vector<double> y(states_, -plant_.centre_velocity(start));
+    std::copy(start.begin(), start.end(), y.begin());
+    if (loop_has_states()) {
+        const std::vector<double> still(4, 0.0);
+        actuator_.start(t0, y.data(), still.data());
+        y.back() = actuator_.driven(t0, y.data());
+    }
     land(plant_, first, bearing_, around(t0, y.data()));
     std::copy(first.begin(), first.end(), y.begin());
     record(t0, y.data());
@@ -183,6 +224,7 @@ void PitchFlight::fly(const PitchState& start, double t0, core::Progress& progre
                               "a little restitution or friction less settles it");
         }
         Ode ode = piece();
+        accept(t, y.data());
         ode.start(t, y);
         const Ode::Stop stop = follow(ode, t, t0);
         y.assign(ode.state(), ode.state() + states_);

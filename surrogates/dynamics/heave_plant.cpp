@@ -129,9 +129,7 @@ HeavePlant::HeavePlant(const Model& declared, const Conditions& held, const std:
 
 void HeavePlant::refresh() {
     folded_ = {};
-    gap_correction_ = velocity_correction_ = {};
     varying_.clear();
-    table_corrections_.clear();
     needs_channels_ = keeps_channels_;
     for (std::size_t s = 0; s < terms.sources.size(); ++s) {
         const HeaveSource& source = terms.sources[s];
@@ -148,22 +146,13 @@ void HeavePlant::refresh() {
             folded_ = folded_.plus(1, source.curve, factor);
         }
     }
-    const double nothing[1] = {0};
-    for (std::size_t i = 0; i < terms.corrections.size(); ++i) {
-        const HeaveTerms::Correction& correction = terms.corrections[i];
-        if (correction.axes.size() == 1 && correction.axes[0] == Channel::gap) {
-            gap_correction_ = gap_correction_.plus(1, Curve::along(correction.table, 0, nothing), 1);
-        } else if (correction.axes.size() == 1 && correction.axes[0] == Channel::heave_velocity) {
-            velocity_correction_ = velocity_correction_.plus(1, Curve::along(correction.table, 0, nothing), 1);
-        } else {
-            table_corrections_.push_back(i);
-            needs_channels_ = true;
-        }
+    for (const HeaveTerms::Correction& correction : terms.corrections) {
+        needs_channels_ = needs_channels_ || correction.curve.empty();
     }
 }
 
-double HeavePlant::varying_lift(double h, const Moment& moment) const {
-    double sum = 0;
+HeaveLoad HeavePlant::varying_lift(double h, double w, const Moment& moment) const {
+    HeaveLoad sum;
     for (std::size_t k = 0; k < varying_.size(); ++k) {
         const HeaveSource& source = terms.sources[varying_[k]];
         double factor = 0;
@@ -176,163 +165,142 @@ double HeavePlant::varying_lift(double h, const Moment& moment) const {
             }
         }
         if (source.table.empty()) {
-            sum += factor * source.curve(h);
+            double slope = 0;
+            sum.force += factor * source.curve.value(h, slope);
+            sum.slope_h += factor * slope;
             continue;
         }
-        double point[tables::max_axes] = {};
+        double point[tables::max_axes] = {}, slope[tables::max_axes] = {};
         for (std::size_t i = 0; i < source.axes.size(); ++i) {
             const auto index = static_cast<std::size_t>(source.axes[i]);
-            point[i] = source.axes[i] == Channel::gap ? h
-                       : moment.channels              ? moment.channels[index]
-                                                      : held_.value[index];
+            point[i] = source.axes[i] == Channel::gap              ? h
+                       : source.axes[i] == Channel::heave_velocity ? w
+                       : moment.channels                           ? moment.channels[index]
+                                                                   : held_.value[index];
         }
-        sum += factor * source.table[0].value(point);
+        sum.force += factor * source.table[0].value(point, slope);
+        for (std::size_t i = 0; i < source.axes.size(); ++i) {
+            sum.slope_h += source.axes[i] == Channel::gap ? factor * slope[i] : 0;
+            sum.slope_w += source.axes[i] == Channel::heave_velocity ? factor * slope[i] : 0;
+        }
     }
     return sum;
 }
 
-double HeavePlant::lift(double h, const Moment& moment) const {
-    double sum = folded_.empty() ? 0.0 : folded_(h);
+HeaveLoad HeavePlant::table_lift(double h, double w, const Moment& moment) const {
+    HeaveLoad sum;
+    if (!folded_.empty()) {
+        sum.force = folded_.value(h, sum.slope_h);
+    }
     if (!varying_.empty()) {
-        sum += varying_lift(h, moment);
+        const HeaveLoad varying = varying_lift(h, w, moment);
+        sum.force += varying.force;
+        sum.slope_h += varying.slope_h;
+        sum.slope_w += varying.slope_w;
     }
-    return roughened(sum, h);
-}
-
-double HeavePlant::table_corrections(double h, double w, const Moment& moment) const {
-    double sum = 0;
-    for (const std::size_t i : table_corrections_) {
-        const HeaveTerms::Correction& correction = terms.corrections[i];
-        double point[tables::max_axes] = {};
-        for (std::size_t a = 0; a < correction.axes.size(); ++a) {
-            const Channel channel = correction.axes[a];
-            const auto index = static_cast<std::size_t>(channel);
-            const double outside = moment.channels ? moment.channels[index] : held_.value[index];
-            point[a] = channel == Channel::gap              ? h
-                       : channel == Channel::heave_velocity ? w
-                       : channel == Channel::time           ? moment.t
-                       : channel == Channel::input_force    ? moment.input
-                                                            : (std::isnan(outside) ? 0.0 : outside);
-        }
-        sum += correction.table.value(point);
-    }
+    roughen(terms, h, sum);
     return sum;
 }
+
+double HeavePlant::lift(double h, const Moment& moment, double w) const { return table_lift(h, w, moment).force; }
 
 double HeavePlant::roughened(double sum, double h) const {
-    if (terms.rough_near != 0 || terms.rough_far != 0) {
-        const double x = h / terms.rough_length;
-        sum *= 1 + (terms.rough_near - terms.rough_far * x * x) / (1 + x * x);
-    }
-    return sum;
+    HeaveLoad lift{sum, 0, 0};
+    roughen(terms, h, lift);
+    return lift.force;
 }
 
 double HeavePlant::static_force(double h, const Moment& moment) const {
-    double force = terms.constant + moment.input + lift(h, moment) - terms.stiffness * (h - terms.stiffness_gap) -
-                   resistance(h, 0.0);
-    if (!gap_correction_.empty()) {
-        force += gap_correction_(h);
-    }
-    if (!table_corrections_.empty()) {
-        force += table_corrections(h, 0, moment);
-    }
-    for (const HeaveTerms::ExtraTerm& extra : terms.extras) {
-        force += extra.force(extra.parameters, moment.t, h, 0);
-    }
-    return force;
+    HeaveLoad load = table_lift(h, 0, moment);
+    HeaveMoment felt = moment;
+    felt.input = closed_input(h, 0, moment.input).force;
+    add_given_forces(terms, h, 0, felt, held_, load);
+    return load.force - resistance(h, 0.0);
 }
 
 double HeavePlant::water_drag(double relative) const {
-    const double size = std::abs(relative);
-    const double force = terms.mixed ? terms.mixed_law(relative) : (terms.linear + terms.quadratic * size) * relative;
-    return force + (terms.extra_linear + terms.extra_quadratic * size) * relative;
+    HeaveLoad load;
+    add_water_drag<false>(terms, relative + terms.current, load);
+    return -load.force;
 }
 
 double HeavePlant::guided_resistance(double h, double w) const {
-    double force = 0;
-    if (terms.friction != 0) {
-        force += terms.friction * w / std::sqrt(w * w + terms.friction_width * terms.friction_width);
-    }
-    if (terms.film != 0) {
-        const double gap = std::max(h, 1e-5);
-        force += terms.film * w / (gap * gap * gap);
-    }
-    if (!velocity_correction_.empty()) {
-        force -= velocity_correction_(w);
-    }
-    return force;
+    HeaveLoad load;
+    add_guided_resistance<false>(terms, h, w, 0, load);
+    return -load.force;
 }
 
 double HeavePlant::resistance(double h, double w) const {
-    return water_drag(w - terms.current) + guided_resistance(h, w);
+    HeaveLoad load;
+    add_water_drag<false>(terms, w, load);
+    add_guided_resistance<false>(terms, h, w, 0, load);
+    return -load.force;
 }
 
-double HeavePlant::wave_force(double t) const {
-    double force = 0;
-    for (const HeaveTerms::Wave& wave : terms.waves) {
-        force += wave.amplitude * std::sin(6.283185307179586 * wave.frequency * t + wave.phase);
-    }
-    return force;
-}
+double HeavePlant::wave_force(double t) const { return dynamics::wave_force(terms, t); }
 
 double HeavePlant::other_force(double h, double w, const Moment& moment, const double* memory) const {
-    double force = terms.constant + moment.input - terms.stiffness * (h - terms.stiffness_gap) - guided_resistance(h, w);
-    if (!gap_correction_.empty()) {
-        force += gap_correction_(h);
-    }
-    if (!table_corrections_.empty()) {
-        force += table_corrections(h, w, moment);
-    }
-    for (const HeaveTerms::ExtraTerm& extra : terms.extras) {
-        force += extra.force(extra.parameters, moment.t, h, w);
-    }
-    if (terms.history != 0 && memory) {
-        const HistoryKernel& kernel = history_kernel();
-        double sum = 0;
-        for (std::size_t i = 0; i < history_states; ++i) {
-            sum += kernel.weight[i] * (w + memory[i]);
-        }
-        force -= terms.history * sum;
-    }
-    return force;
+    HeaveLoad load;
+    add_given_forces(terms, h, w, moment, held_, load);
+    add_guided_resistance<false>(terms, h, w, 0, load);
+    return load.force + heave_memory(terms, w, memory).force;
 }
 
 double HeavePlant::inertia(double h, double& slope) const {
-    double mass = terms.mass;
-    slope = 0;
-    if (!terms.added_mass.empty()) {
-        double s = 0;
-        mass += terms.added_mass.value(h, s);
-        slope += s;
+    const HeaveInertia all = heave_inertia(terms, h);
+    slope = all.slope;
+    return all.mass;
+}
+
+template <bool Slopes>
+double HeavePlant::evaluate(double h, double w, const Moment& moment, const double* memory, HeaveSlopes& slopes) const {
+    HeaveLoad load;
+    if (!Slopes && varying_.empty()) {
+        load.force = folded_.empty() ? 0.0 : folded_(h);
+        roughen(terms, h, load);
+    } else {
+        load = table_lift(h, w, moment);
     }
-    for (const HeaveTerms::Growth& growth : terms.growth) {
-        const double base = std::max(h, 0.0) + growth.length;
-        mass += growth.mass * growth.length / base;
-        slope -= h > 0 ? growth.mass * growth.length / (base * base) : 0.0;
+    if (loop && !loop_has_states()) {
+        HeaveMoment felt = moment;
+        const HeaveLoad input = closed_input(h, w, moment.input);
+        felt.input = input.force;
+        load.slope_h += input.slope_h;
+        load.slope_w += input.slope_w;
+        add_forces<Slopes>(terms, h, w, felt, held_, load);
+    } else {
+        add_forces<Slopes>(terms, h, w, moment, held_, load);
     }
-    return mass;
+    return heave_acceleration<Slopes>(terms, h, w, load, heave_memory(terms, w, memory), slopes);
 }
 
 double HeavePlant::acceleration(double h, double w, const Moment& moment, const double* memory) const {
-    double force =
-        other_force(h, w, moment, memory) + wave_force(moment.t) + lift(h, moment) - water_drag(w - terms.current);
-    double mass = terms.mass;
-    if (!terms.growth.empty() || !terms.added_mass.empty()) {
-        double slope = 0;
-        mass = inertia(h, slope);
-        force -= 0.5 * slope * w * w;
+    HeaveSlopes unused;
+    return evaluate<false>(h, w, moment, memory, unused);
+}
+
+double HeavePlant::acceleration(double h, double w, const Moment& moment, const double* memory,
+                                HeaveSlopes& slopes) const {
+    return evaluate<true>(h, w, moment, memory, slopes);
+}
+
+HeaveLoad HeavePlant::closed_input(double h, double w, double given) const {
+    if (!loop) {
+        return {given, 0, 0};
     }
-    if (memory) {
-        mass += history_mass();
-    }
-    return force / mass;
+    const double asked = loop->command(h, w), command = given + asked;
+    const bool held_by_limit = loop->limit > 0 && std::abs(asked) >= loop->limit;
+    const bool dead = std::abs(command) <= terms.actuator.dead_zone && terms.actuator.dead_zone > 0;
+    const double follows = held_by_limit || dead ? 0 : terms.actuator.gain;
+    return {terms.actuator.felt(command), -follows * loop->gap_gain, -follows * loop->velocity_gain};
 }
 
 bool HeavePlant::autonomous() const {
-    const bool corrections_over_time =
-        std::any_of(table_corrections_.begin(), table_corrections_.end(),
-                    [this](std::size_t i) { return contains(terms.corrections[i].axes, Channel::time); });
-    return terms.waves.empty() && terms.extras.empty() && terms.history == 0 && !corrections_over_time;
+    const bool corrections_over_time = std::any_of(
+        terms.corrections.begin(), terms.corrections.end(),
+        [](const HeaveTerms::Correction& correction) { return contains(correction.axes, Channel::time); });
+    return terms.waves.empty() && terms.extras.empty() && terms.history == 0 && !corrections_over_time &&
+           !loop_has_states();
 }
 
 const HistoryKernel& history_kernel() {

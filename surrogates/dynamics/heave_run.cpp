@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/heave.h"
+#include "surrogates/dynamics/heave_step.h"
 
 namespace underbody::dynamics {
 
@@ -102,10 +103,13 @@ HeaveRun::HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double m
     if (recorded.empty()) {
         recorded.assign(time_.size(), held_input);
     }
+    // In a closed loop it acts on the sum with the feedback.
+    Actuator actuator = plant.loop ? Actuator{} : plant.terms.actuator;
+    actuator.delay -= inputs.input_advance;
     if (inputs.input_between == InputSignals::Between::held) {
-        transform_held(terms, std::move(recorded));
+        transform_held(actuator, std::move(recorded));
     } else {
-        transform_linear(terms, recorded);
+        transform_linear(actuator, recorded);
     }
     const auto value_of = [&](Channel channel, double t, double fallback) {
         for (std::size_t k = 0; k < others.size(); ++k) {
@@ -142,29 +146,21 @@ HeaveRun::HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double m
     }
 }
 
-namespace {
-
-double through_dead_zone(const HeaveTerms& terms, double u) {
-    return terms.input_gain * std::copysign(std::max(0.0, std::abs(u) - terms.input_dead_zone), u);
-}
-
-}  // namespace
-
-void HeaveRun::transform_linear(const HeaveTerms& terms, const std::vector<double>& values) {
+void HeaveRun::transform_linear(const Actuator& actuator, const std::vector<double>& values) {
     input_.resize(half_time_.size());
     std::size_t hint = 0;
     for (std::size_t i = 0; i < input_.size(); ++i) {
-        input_[i] = through_dead_zone(terms, interpolated(time_, values, half_time_[i] - terms.input_delay, hint));
+        input_[i] = actuator.felt(interpolated(time_, values, half_time_[i] - actuator.delay, hint));
     }
-    if (terms.input_lag > 0) {
-        apply_lag(half_time_, input_, terms.input_lag);
+    if (actuator.lag > 0) {
+        apply_lag(half_time_, input_, actuator.lag);
     }
     input_end_ = input_;
 }
 
-void HeaveRun::transform_held(const HeaveTerms& terms, std::vector<double> values) {
+void HeaveRun::transform_held(const Actuator& actuator, std::vector<double> values) {
     for (double& u : values) {
-        u = through_dead_zone(terms, u);
+        u = actuator.felt(u);
     }
     // The mean over a step is exact whatever the delay: from the integral of the steps, which is linear between
     // samples.
@@ -188,10 +184,10 @@ void HeaveRun::transform_held(const HeaveTerms& terms, std::vector<double> value
     for (std::size_t half = 0; half + 2 < half_time_.size(); half += 2) {
         const double width = half_time_[half + 2] - half_time_[half];
         const double mean =
-            (integral(half_time_[half + 2] - terms.input_delay) - integral(half_time_[half] - terms.input_delay)) /
+            (integral(half_time_[half + 2] - actuator.delay) - integral(half_time_[half] - actuator.delay)) /
             width;
-        if (terms.input_lag > 0) {
-            const double decay = std::exp(-0.5 * width / terms.input_lag);
+        if (actuator.lag > 0) {
+            const double decay = std::exp(-0.5 * width / actuator.lag);
             input_[half] = lagged;
             input_[half + 1] = mean + (lagged - mean) * decay;
             lagged = mean + (lagged - mean) * decay * decay;
@@ -200,7 +196,7 @@ void HeaveRun::transform_held(const HeaveTerms& terms, std::vector<double> value
             input_[half] = input_[half + 1] = input_end_[half + 2] = mean;
         }
     }
-    input_.back() = terms.input_lag > 0 ? lagged : input_[input_.size() - 2];
+    input_.back() = actuator.lag > 0 ? lagged : input_[input_.size() - 2];
 }
 
 HeavePlant::Moment HeaveRun::moment_at(std::size_t half, double t) const {
@@ -232,113 +228,37 @@ void HeaveRun::moment(double t, HeavePlant::Moment& out, std::vector<double>& bu
 
 namespace {
 
-struct State {
-    double h, w;
-    double memory[history_states];
+/// The plant over one step with the moments of its begin, middle and end.
+struct PlantLaw {
+    const HeaveRun& run;
+    const HeavePlant& plant;
+    const HeavePlant::Moment &a, &b, &c;
+    double dt;
+    std::vector<double>& buffer;
+
+    double operator()(double part, double h, double w, const double* memory, HeaveSlopes* slopes) const {
+        if (part == 0.0 || part == 0.5 || part == 1.0) {
+            return evaluate(h, w, part == 0.0 ? a : part == 0.5 ? b : c, memory, slopes);
+        }
+        HeavePlant::Moment between;
+        run.moment(a.t + part * dt, between, buffer);
+        return evaluate(h, w, between, memory, slopes);
+    }
+
+private:
+    double evaluate(double h, double w, const HeavePlant::Moment& moment, const double* memory,
+                    HeaveSlopes* slopes) const {
+        return slopes ? plant.acceleration(h, w, moment, memory, *slopes) : plant.acceleration(h, w, moment, memory);
+    }
 };
-
-/// How fast friction and film alone would stop the body, 1/s: what limits an explicit step.
-double stopping_rate(const HeaveTerms& terms, double h, double w) {
-    double slope = terms.linear + std::abs(terms.extra_linear) +
-                   2 * (terms.quadratic + std::abs(terms.extra_quadratic)) * std::abs(w - terms.current);
-    if (terms.friction != 0) {
-        const double width = terms.friction_width;
-        // The worst velocity that the step can pass through.
-        const double size = w * w + width * width;
-        slope += terms.friction * width * width / (size * std::sqrt(size));
-    }
-    if (terms.film != 0) {
-        const double gap = std::max(h, 1e-5);
-        slope += terms.film / (gap * gap * gap);
-    }
-    return slope / terms.mass;
-}
-
-template <bool WithHistory>
-void step(const HeavePlant& plant, State& s, double dt, const HeavePlant::Moment& a, const HeavePlant::Moment& b,
-          const HeavePlant::Moment& c) {
-    const HistoryKernel& kernel = history_kernel();
-    const double* memory = WithHistory ? s.memory : nullptr;
-    const double w1 = s.w;
-    const double a1 = plant.acceleration(s.h, w1, a, memory);
-    const double w2 = s.w + 0.5 * dt * a1;
-    double m2[history_states], m3[history_states], m4[history_states], k1[history_states], k2[history_states],
-        k3[history_states];
-    if constexpr (WithHistory) {
-        for (std::size_t i = 0; i < history_states; ++i) {
-            k1[i] = -kernel.rate[i] * (s.memory[i] + w1);
-            m2[i] = s.memory[i] + 0.5 * dt * k1[i];
-        }
-    }
-    const double a2 = plant.acceleration(s.h + 0.5 * dt * w1, w2, b, WithHistory ? m2 : nullptr);
-    const double w3 = s.w + 0.5 * dt * a2;
-    if constexpr (WithHistory) {
-        for (std::size_t i = 0; i < history_states; ++i) {
-            k2[i] = -kernel.rate[i] * (m2[i] + w2);
-            m3[i] = s.memory[i] + 0.5 * dt * k2[i];
-        }
-    }
-    const double a3 = plant.acceleration(s.h + 0.5 * dt * w2, w3, b, WithHistory ? m3 : nullptr);
-    const double w4 = s.w + dt * a3;
-    if constexpr (WithHistory) {
-        for (std::size_t i = 0; i < history_states; ++i) {
-            k3[i] = -kernel.rate[i] * (m3[i] + w3);
-            m4[i] = s.memory[i] + dt * k3[i];
-        }
-    }
-    const double a4 = plant.acceleration(s.h + dt * w3, w4, c, WithHistory ? m4 : nullptr);
-    s.h += dt / 6 * (w1 + 2 * w2 + 2 * w3 + w4);
-    s.w += dt / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    if constexpr (WithHistory) {
-        for (std::size_t i = 0; i < history_states; ++i) {
-            const double k4 = -kernel.rate[i] * (m4[i] + w4);
-            s.memory[i] += dt / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4);
-        }
-    }
-}
-
-/// The body at the ground: stops, bounces, or leaves when it is lifted.
-void touch(const HeaveTerms& terms, State& s) {
-    if (s.h < terms.contact_gap) {
-        s.h = terms.contact_gap;
-        s.w = s.w < 0 ? -terms.restitution * s.w : s.w;
-    }
-}
-
-template <bool WithHistory>
-void advance(const HeavePlant& plant, State& s, double dt, const HeavePlant::Moment& a, const HeavePlant::Moment& b,
-             const HeavePlant::Moment& c) {
-    const double stiff = dt * stopping_rate(plant.terms, s.h, s.w);
-    if (stiff < 1.2) {
-        step<WithHistory>(plant, s, dt, a, b, c);
-        touch(plant.terms, s);
-        return;
-    }
-    const int parts = static_cast<int>(std::min(std::ceil(stiff), 64.0));
-    const double part = dt / parts;
-    for (int i = 0; i < parts; ++i) {
-        // Inputs within a stiff step: taken from the nearer of its two halves.
-        const HeavePlant::Moment& near = i < parts / 3 ? a : i < 2 * parts / 3 + 1 ? b : c;
-        const double rate = stopping_rate(plant.terms, s.h, s.w);
-        if (part * rate < 2) {
-            step<WithHistory>(plant, s, part, near, near, near);
-        } else {
-            // Linearly implicit in the velocity: damped as the film damps, whatever the step.
-            const double now = plant.acceleration(s.h, s.w, near, WithHistory ? s.memory : nullptr);
-            const double w = s.w + part * now / (1 + part * rate);
-            s.h += part * 0.5 * (s.w + w);
-            s.w = w;
-        }
-        touch(plant.terms, s);
-    }
-}
 
 }  // namespace
 
 void HeaveRun::simulate(const HeavePlant& plant, std::size_t first, std::size_t last, double gap, double velocity,
                         std::span<double> gap_out, std::span<double> velocity_out) const {
-    State s{gap, velocity, {}};
-    const bool history = plant.terms.history != 0;
+    HeaveState s{gap, velocity, {}};
+    const HeaveTerms& terms = plant.terms;
+    std::vector<double> buffer;
     for (double& memory : s.memory) {
         memory = -velocity;
     }
@@ -356,11 +276,11 @@ void HeaveRun::simulate(const HeavePlant& plant, std::size_t first, std::size_t 
             const HeavePlant::Moment b = moment_at(half + 1, half_time_[half + 1]);
             HeavePlant::Moment c = moment_at(half + 2, next);
             c.input = input_end_[half + 2];
-            if (history) {
-                advance<true>(plant, s, next - t, a, b, c);
-            } else {
-                advance<false>(plant, s, next - t, a, b, c);
-            }
+            const PlantLaw law{*this, plant, a, b, c, next - t, buffer};
+            HeaveStepper<PlantLaw>(law, terms.history, terms.contact_gap, terms.restitution)
+                .advance(s, next - t, [&terms](const HeaveState& at, double acceleration, double dt) {
+                    return fastest_rate(terms, at, acceleration, dt);
+                });
         }
     }
 }

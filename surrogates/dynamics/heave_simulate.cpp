@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
 #include "surrogates/dynamics/feedback.h"
 #include "surrogates/dynamics/heave.h"
+#include "surrogates/dynamics/loop_actuator.h"
 #include "surrogates/dynamics/ode.h"
 #include "surrogates/dynamics/surroundings.h"
 #include "surrogates/dynamics/trajectory_parts.h"
@@ -22,21 +24,43 @@ public:
           run_(run),
           options_(options),
           out_(out),
-          states_(plant.terms.history != 0 ? 2 + history_states : 2) {}
+          memory_(plant.terms.history != 0),
+          states_(2 + (memory_ ? history_states : 0) + (plant.loop_has_states() ? 1 : 0)),
+          actuator_(plant.terms, [this](double t, const double* y) {
+              return outside(t).input + plant_.loop->command(y[0], y[1]);
+          }) {}
 
     void fly(double gap, double velocity, double t0, core::Progress& progress);
 
 private:
     enum Event { touch, escape, settle };
 
-    HeaveMoment moment(double t) {
-        HeaveMoment m;
-        m.t = t;
-        m.input = plant_.held().get(Channel::input_force, 0.0);
+    /// What comes from outside; with a loop its input is what is commanded beside the feedback.
+    HeaveMoment outside(double t) {
+        HeaveMoment m = plant_.held_moment(t);
         if (run_) {
             run_->moment(t, m, buffer_);
         }
         return m;
+    }
+    /// What acts at a moment in a state.
+    HeaveMoment moment(double t, const double* y) {
+        // The actuator looks at the inputs of another time: it comes before the moment's own, which share a buffer.
+        const double felt = !plant_.loop_has_states() ? 0.0
+                            : actuator_.lagged()      ? y[states_ - 1]
+                                                      : actuator_.driven(t, y);
+        HeaveMoment m = outside(t);
+        m.input = plant_.loop_has_states() ? felt : m.input;
+        return m;
+    }
+    [[nodiscard]] const double* memory(const double* y) const { return memory_ ? y + 2 : nullptr; }
+    void rates(double t, const double* y, double* rate);
+    enum class At { start, rest, flight };
+    void accept(double t, const double* y, At at);
+    Ode::Stop go_to(Ode& ode, double from, double goal);
+    [[nodiscard]] double input_force(double t, const double* y) {
+        const HeaveMoment m = moment(t, y);
+        return plant_.loop && !plant_.loop_has_states() ? plant_.closed_input(y[0], y[1], m.input).force : m.input;
     }
     void record(double t, const double* y);
     void note(double t, const char* kind, const double* y) { out_.events.push_back({t, kind, y[0], y[1]}); }
@@ -48,19 +72,66 @@ private:
     const HeaveRun* run_;
     const TrajectoryOptions& options_;
     Trajectory& out_;
-    std::size_t states_;
+    bool memory_;
+    std::size_t states_;  ///< gap, velocity, the history force's memory, the force after the actuator's lag
+    LoopActuator<2> actuator_;
     std::vector<double> buffer_;
     double next_output_ = 0;
 };
 
+void Flight::rates(double t, const double* y, double* rate) {
+    rate[0] = y[1];
+    rate[1] = plant_.acceleration(y[0], y[1], moment(t, y), memory(y));
+    if (memory_) {
+        const HistoryKernel& kernel = history_kernel();
+        for (std::size_t i = 0; i < history_states; ++i) {
+            rate[2 + i] = -kernel.rate[i] * (y[2 + i] + y[1]);
+        }
+    }
+    if (plant_.loop_has_states()) {
+        rate[states_ - 1] =
+            actuator_.lagged() ? (actuator_.driven(t, y) - y[states_ - 1]) / plant_.terms.actuator.lag : 0;
+    }
+}
+
+/// Tells the actuator of the loop where the motion has come to.
+void Flight::accept(double t, const double* y, At at) {
+    if (!plant_.loop_has_states()) {
+        return;
+    }
+    std::vector<double> rate(states_, 0.0);
+    if (at == At::start) {
+        actuator_.start(t, y, rate.data());
+        return;
+    }
+    if (at == At::flight) {
+        rates(t, y, rate.data());
+    }
+    actuator_.accept(t, y, rate.data());
+}
+
+/// To `goal` or an event; a delay looks back on the motion, which is kept in pieces much shorter than it.
+Ode::Stop Flight::go_to(Ode& ode, double from, double goal) {
+    const double piece =
+        plant_.loop_has_states() && actuator_.delayed() ? actuator_.max_step() / 8 : std::numeric_limits<double>::max();
+    Ode::Stop stop;
+    do {
+        const double next = std::min(goal, from + piece);
+        stop = options_.output_step > 0 ? ode.advance(next) : ode.one_step(next);
+        accept(stop.t, ode.state(), At::flight);
+        from = stop.t;
+    } while (!stop.event && options_.output_step > 0 && stop.t < goal);
+    return stop;
+}
+
 void Flight::record(double t, const double* y) {
-    const HeaveMoment m = moment(t);
+    const HeaveMoment m = outside(t);
     out_.time.push_back(t);
     out_.gap.push_back(y[0]);
     out_.heave_velocity.push_back(y[1]);
-    out_.lift_force.push_back(plant_.lift(y[0], m));
+    out_.lift_force.push_back(plant_.lift(y[0], m, y[1]));
     out_.heave_drag.push_back(plant_.resistance(y[0], y[1]));
-    out_.input_force.push_back(m.input);
+    out_.input_force.push_back(input_force(t, y));
     out_.outside.push_back(y[0] < plant_.terms.table_lower || y[0] > plant_.terms.table_upper);
 }
 
@@ -77,31 +148,23 @@ double Flight::max_step() const {
         const double period = 0.1 / std::max(wave.frequency, 1e-9);
         step = step > 0 ? std::min(step, period) : period;
     }
+    if (plant_.loop_has_states() && actuator_.delayed()) {
+        step = step > 0 ? std::min(step, actuator_.max_step()) : actuator_.max_step();
+    }
     return step;
 }
 
 std::unique_ptr<Ode> Flight::free_flight() {
     OdeProblem problem;
     problem.size = states_;
-    const bool history = plant_.terms.history != 0;
-    problem.rate = [this, history](double t, const double* y, double* rate) {
-        const HeaveMoment m = moment(t);
-        rate[0] = y[1];
-        rate[1] = plant_.acceleration(y[0], y[1], m, history ? y + 2 : nullptr);
-        if (history) {
-            const HistoryKernel& kernel = history_kernel();
-            for (std::size_t i = 0; i < history_states; ++i) {
-                rate[2 + i] = -kernel.rate[i] * (y[2 + i] + y[1]);
-            }
-        }
-    };
+    problem.rate = [this](double t, const double* y, double* rate) { rates(t, y, rate); };
     problem.direction = {-1, -1, -1};
-    problem.events = [this, history](double t, const double* y, double* g) {
+    problem.events = [this](double t, const double* y, double* g) {
         g[touch] = y[0] - plant_.terms.contact_gap;
         g[escape] = options_.escape_gap > 0 ? options_.escape_gap - y[0] : 1.0;
         g[settle] = 1.0;
         if (options_.stop_at_equilibrium) {
-            const double a = plant_.acceleration(y[0], y[1], moment(t), history ? y + 2 : nullptr);
+            const double a = plant_.acceleration(y[0], y[1], moment(t, y), memory(y));
             const double speed = options_.settle_speed;
             g[settle] = (y[1] * y[1] + a * a) / (speed * speed) - 1;
         }
@@ -117,25 +180,41 @@ std::unique_ptr<Ode> Flight::free_flight() {
 double Flight::rest(double t, double t_end, std::vector<double>& y, core::Progress& progress) {
     y[0] = plant_.terms.contact_gap;
     y[1] = 0;
-    const auto force = [&](double at) { return plant_.acceleration(y[0], 0.0, moment(at)); };
+    // While the body lies still, what its actuator gives goes on.
+    const auto lying = [&](double from, double at) {
+        std::vector<double> state = y;
+        if (plant_.loop_has_states() && actuator_.lagged()) {
+            const double driven = actuator_.driven(at, y.data());
+            state.back() = driven + (y.back() - driven) * std::exp(-(at - from) / plant_.terms.actuator.lag);
+        }
+        return state;
+    };
+    const auto force = [&](double from, double at) {
+        const std::vector<double> state = lying(from, at);
+        return plant_.acceleration(y[0], 0.0, moment(at, state.data()));
+    };
+    accept(t, y.data(), At::rest);
     const double output = options_.output_step > 0 ? options_.output_step : std::max((t_end - t) / 200, 1e-3);
     const double look = std::min(output, run_ || !plant_.autonomous() ? 0.01 : output);
     while (t < t_end) {
         progress.check();
-        if (plant_.autonomous() && !run_ && force(t) <= 0 && options_.output_step == 0) {
+        if (plant_.autonomous() && !run_ && force(t, t) <= 0 && options_.output_step == 0) {
             record(t_end, y.data());
             return t_end;
         }
         double next = std::min(t_end, t + look);
-        if (force(next) > 0) {
+        if (force(t, next) > 0) {
             double lo = t, hi = next;
             for (int i = 0; i < 60; ++i) {
                 const double middle = (lo + hi) / 2;
-                (force(middle) > 0 ? hi : lo) = middle;
+                (force(t, middle) > 0 ? hi : lo) = middle;
             }
+            y = lying(t, hi);
             return hi;
         }
+        y = lying(t, next);
         t = next;
+        accept(t, y.data(), At::rest);
         while (options_.output_step > 0 && next_output_ <= t + 1e-6 * options_.output_step) {
             record(next_output_, y.data());
             next_output_ =
@@ -152,12 +231,16 @@ void Flight::fly(double gap, double velocity, double t0, core::Progress& progres
     std::vector<double> y(states_, -velocity);
     y[0] = gap;
     y[1] = velocity;
+    accept(t0, y.data(), At::start);
+    if (plant_.loop_has_states()) {
+        y.back() = actuator_.driven(t0, y.data());
+    }
     record(t0, y.data());
     next_output_ = t0 + options_.output_step;
     double t = t0;
     out_.end = "time";
     const std::unique_ptr<Ode> ode = free_flight();
-    bool on_ground = gap <= plant_.terms.contact_gap && velocity <= 0 && plant_.acceleration(gap, 0, moment(t)) <= 0;
+    bool on_ground = gap <= plant_.terms.contact_gap && velocity <= 0 && plant_.acceleration(gap, 0, moment(t, y.data())) <= 0;
     if (on_ground) {
         note(t, "contact", y.data());
         if (options_.stop_at_contact) {
@@ -177,13 +260,15 @@ void Flight::fly(double gap, double velocity, double t0, core::Progress& progres
             }
         }
         ode->start(t, y);
+        accept(t, y.data(), At::flight);
         Ode::Stop stop;
+        stop.t = t;
         int count = 0;
         do {
             // An output that rounding puts a hair before the end is the end.
             const bool more = options_.output_step > 0 && next_output_ < t_end - 1e-6 * options_.output_step;
             const double goal = more ? next_output_ : t_end;
-            stop = options_.output_step > 0 ? ode->advance(goal) : ode->one_step(goal);
+            stop = go_to(*ode, stop.t, goal);
             if (++count % 256 == 0) {
                 progress.check();
                 progress.report((stop.t - start) / options_.duration, "simulating");

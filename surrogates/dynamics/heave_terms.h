@@ -2,71 +2,15 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
-#include <span>
 #include <vector>
 
+#include "surrogates/dynamics/actuator.h"
 #include "surrogates/dynamics/channels.h"
+#include "surrogates/dynamics/curve.h"
 #include "surrogates/dynamics/mixed_drag.h"
 #include "surrogates/tables/force_table.h"
 
 namespace underbody::dynamics {
-
-/// A piecewise cubic (C1) of the gap with an index for constant-time look-up. Holds its end value outside its knots.
-/// A table with one axis becomes its own cubic pieces exactly; others are refined to 1e-10 of their range.
-class Curve {
-public:
-    Curve() = default;
-    /// Hermite data: ascending x (at least two), values and slopes.
-    Curve(std::vector<double> x, std::vector<double> value, std::vector<double> slope);
-    /// The table along `axis` with the other axes held at `held` (one entry per axis; the entry of `axis` is ignored).
-    static Curve along(const tables::ForceTable& table, std::size_t axis, std::span<const double> held);
-
-    [[nodiscard]] bool empty() const { return x_.empty(); }
-    [[nodiscard]] double lower() const { return x_.front(); }
-    [[nodiscard]] double upper() const { return x_.back(); }
-    [[nodiscard]] const std::vector<double>& knots() const { return x_; }
-
-    /// The value, and its slope and integral (from lower()) when asked for.
-    [[nodiscard]] double operator()(double x) const noexcept {
-        if (x <= x_.front()) {
-            return end_[0];
-        }
-        if (x >= x_.back()) {
-            return end_[1];
-        }
-        const Piece& p = pieces_[piece(x)];
-        const double d = x - p.x;
-        return p.c0 + d * (p.c1 + d * (p.c2 + d * p.c3));
-    }
-    [[nodiscard]] double value(double x, double& slope) const noexcept;
-    [[nodiscard]] double integral(double x) const noexcept;
-    /// a * this + b * other on the union of the knots (beyond a curve's end its end value).
-    [[nodiscard]] Curve plus(double a, const Curve& other, double b) const;
-    [[nodiscard]] Curve times(double factor) const;
-    /// Zeros inside the knots, ascending, to machine precision.
-    [[nodiscard]] std::vector<double> zeros(double level = 0) const;
-
-private:
-    struct Piece {
-        double x, c0, c1, c2, c3;
-    };
-    void build_index();
-    [[nodiscard]] std::size_t piece(double x) const noexcept {
-        auto bucket = static_cast<std::size_t>((x - x_.front()) * per_bucket_);
-        bucket = bucket < first_.size() ? bucket : first_.size() - 1;
-        std::size_t i = first_[bucket];
-        while (i + 1 < pieces_.size() && x >= pieces_[i + 1].x) {
-            ++i;
-        }
-        return i;
-    }
-    std::vector<double> x_, value_, slope_, integral_;
-    std::vector<Piece> pieces_;
-    std::vector<std::uint32_t> first_;
-    double per_bucket_ = 0;
-    double end_[2] = {0, 0};
-};
 
 /// A source of lift: curve(gap) times the power laws of its scales, or a table of several varying channels.
 struct HeaveSource {
@@ -88,9 +32,11 @@ struct HeaveSource {
 
 /// M(h) dw/dt + 1/2 M'(h) w^2 = F(t, h, w), dh/dt = w   (Lagrange: kinetic energy 1/2 M(h) w^2)
 ///   M = mass + sum of growth L/(h + L)
-///   F = -net_weight + lift(h, channels) + input - drag(w - current) + constant - friction sgn(w) - (linear +
-///   linear_film/h^3) w
-///       - quadratic w|w| - stiffness (h - reference) + amplitude sin(2 pi f t + phase) + corrections + history
+///   F = -net_weight + lift(h, channels) + input - drag(w - current) - linear (w - current)
+///       - quadratic (w - current)|w - current| + constant - friction sgn(w) - film/h^3 w
+///       - stiffness (h - reference) + amplitude sin(2 pi f t + phase) + corrections + history
+/// All damping by the water, declared or an effect, acts on the velocity through the water; friction of a guide and the
+/// film over the ground act on the velocity itself. Evaluated in surrogates/dynamics/heave_equation.h, nowhere else.
 struct HeaveTerms {
     double mass = 1;  ///< virtual mass, kg, far from the ground
     struct Growth {
@@ -108,7 +54,7 @@ struct HeaveTerms {
     bool mixed = false;    ///< mixed law instead of linear + quadratic (drag.h)
     MixedDrag mixed_law;
     double current = 0;       ///< m/s, water that rises with it
-    double extra_linear = 0;  ///< linear_damping: on w itself, N s/m
+    double extra_linear = 0;  ///< linear_damping: on w - current, N s/m
     double extra_quadratic = 0;
     double friction = 0;           ///< N, against the motion: friction w/sqrt(w^2 + width^2)
     double friction_width = 1e-4;  ///< m/s
@@ -123,6 +69,9 @@ struct HeaveTerms {
     struct Correction {
         tables::ForceTable table;
         std::vector<Channel> axes;
+        Curve curve;  ///< the table along its only axis where that is gap or heave_velocity; else empty
+        Correction(tables::ForceTable of, std::vector<Channel> over);
+        [[nodiscard]] bool along(Channel channel) const { return !curve.empty() && axes[0] == channel; }
     };
     std::vector<Correction> corrections;  ///< unknown
     double history = 0;                   ///< N s^1/2 s/m: -history * integral of w'(s)/sqrt(t - s) ds
@@ -134,12 +83,7 @@ struct HeaveTerms {
     };
     std::vector<ExtraTerm> extras;
 
-    // What happens to the recorded input on its way to the body: delay, dead zone, gain, first-order lag, in this
-    // order.
-    double input_delay = 0;      ///< s
-    double input_dead_zone = 0;  ///< N
-    double input_gain = 1;
-    double input_lag = 0;  ///< s, time constant
+    Actuator actuator;  ///< between the input, recorded or commanded, and the body
 
     // What the sensor makes of the gap: reading(t) = gap(t - delay) + bias.
     double sensor_bias = 0;   ///< m

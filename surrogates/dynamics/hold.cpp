@@ -65,7 +65,7 @@ void JetHold::complete(const Model& model, const Conditions& given) {
 
 Wrench JetHold::wanted(const BodyState& y) const {
     const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
-    const double rise = -RigidBody::world_velocity(y)[2];
+    const double rise = -RigidBody::world_velocity(y)[2] + (base_[2] * st + base_[0] * ct) * y[state_q];  // of the base
     Wrench want;
     double along = 0, up = 0;
     if (hold_.speed) {

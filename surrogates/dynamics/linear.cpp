@@ -32,6 +32,33 @@ LinearSystem linearise(const std::function<void(const double* x, const double* u
     return system;
 }
 
+namespace {
+
+/// Share of each state in a mode: |left right|; where eigenvalues coincide without as many eigenvectors (several zeros of
+/// position and heading) left and right are orthogonal, and the right one alone tells.
+std::vector<double> participation_of(const Eigen1& e) {
+    std::vector<double> share(e.right.size());
+    double sum = 0, lefts = 0;
+    for (std::size_t i = 0; i < share.size(); ++i) {
+        share[i] = std::abs(std::conj(e.left[i]) * e.right[i]);
+        sum += share[i];
+        lefts += std::norm(e.left[i]);
+    }
+    if (!(sum > 1e-6 * std::sqrt(lefts)) || !std::isfinite(sum)) {
+        sum = 0;
+        for (std::size_t i = 0; i < share.size(); ++i) {
+            share[i] = std::norm(e.right[i]);
+            sum += share[i];
+        }
+    }
+    for (double& part : share) {
+        part /= sum > 0 ? sum : 1;
+    }
+    return share;
+}
+
+}  // namespace
+
 std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::string>& groups) {
     std::vector<Mode> found;
     for (const Eigen1& e : eigen(system.a)) {
@@ -40,22 +67,20 @@ std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::strin
         }
         Mode mode;
         mode.value = e.value;
-        double sum = 0;
-        for (std::size_t i = 0; i < e.right.size(); ++i) {
-            mode.participation.push_back(std::abs(std::conj(e.left[i]) * e.right[i]));
-            sum += mode.participation.back();
-        }
+        mode.participation = participation_of(e);
         std::map<std::string, double> shares;
         std::vector<std::string> order;
         for (std::size_t i = 0; i < mode.participation.size(); ++i) {
-            mode.participation[i] /= sum > 0 ? sum : 1;
             if (!shares.count(groups[i])) {
                 order.push_back(groups[i]);
             }
             shares[groups[i]] += mode.participation[i];
         }
+        const std::string& most = *std::max_element(order.begin(), order.end(), [&](const auto& l, const auto& r) {
+            return shares[l] < shares[r];
+        });
         for (const std::string& group : order) {
-            if (shares[group] > 0.2) {
+            if (shares[group] > 0.2 || group == most) {
                 mode.name += (mode.name.empty() ? "" : "-") + group;
             }
         }
@@ -70,6 +95,16 @@ std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::strin
 
 Controllability controllability(const LinearSystem& system, double tolerance) {
     const std::size_t n = system.a.rows(), m = system.b.columns();
+    Controllability result;
+    if (m == 0) {  // no input moves anything
+        for (const Eigen1& e : eigen(system.a)) {
+            result.uncontrollable.emplace_back();
+            for (const auto& part : e.left) {
+                result.uncontrollable.back().push_back(part.real());
+            }
+        }
+        return result;
+    }
     Dense all(n, n * m), power = system.b;
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t i = 0; i < n; ++i) {
@@ -79,7 +114,6 @@ Controllability controllability(const LinearSystem& system, double tolerance) {
         }
         power = system.a * power;
     }
-    Controllability result;
     const std::vector<double> s = singular_values(all);
     result.weakness = s.front() > 0 ? s.back() / s.front() : 0;
     result.rank = rank(all, tolerance);

@@ -104,6 +104,16 @@ struct Coupling {
     double limit_speed = 1;  ///< m/s
 };
 
+/// How logs of this vehicle are read where they say something else than what acted: found by a discovery, or declared.
+struct RecordReading {
+    double input_factor = 1;     ///< input_force that acted over the logged one: -1 for a sign turned round
+    double input_advance = 0;    ///< s: the logged input comes so long after it acted
+    double velocity_factor = 1;  ///< heave_velocity over the logged one
+    enum class Between { unsaid, held, linear };
+    Between input_between = Between::unsaid;  ///< what the input did between its samples
+    bool operator==(const RecordReading&) const = default;
+};
+
 struct Lineage {
     std::vector<std::string> made_from;  ///< lines for people: files, hashes, what was done
 };
@@ -131,10 +141,11 @@ struct Model {
     Coupling coupling;
     Conditions conditions;  ///< [conditions]: held values where nothing else is said
     std::vector<EffectUse> effects;
+    RecordReading records;  ///< [records]
     Lineage lineage;
     core::Problems remarks;  ///< what the user should know: defaults taken, unusual values
 
-    /// The text it was read from, without its [[effect]] and [lineage] parts.
+    /// The text it was read from, without its [[effect]], [records] and [lineage] parts.
     std::string base_text;
     /// Dotted names of parameters changed since (written as declared_parameter effects).
     std::vector<std::string> changed;

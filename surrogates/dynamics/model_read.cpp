@@ -259,7 +259,34 @@ EffectUse read_effect(const Model& model, const core::TomlTable& table) {
     return use;
 }
 
-/// The text without its [[effect]] and [lineage] parts, which the writer makes anew.
+RecordReading read_records(const core::TomlTable& table) {
+    RecordReading records;
+    const auto factor = [&](const char* key, double& value) {
+        if (table.has(key)) {
+            value = table.quantity(key, "1");
+            if (!(std::abs(value) > 0) || !std::isfinite(value)) {
+                throw core::InputError("range", std::string("records.") + key + " must not be zero", table.place(key));
+            }
+        }
+    };
+    factor("input_force_factor", records.input_factor);
+    factor("heave_velocity_factor", records.velocity_factor);
+    if (table.has("input_force_advance")) {
+        records.input_advance = table.quantity("input_force_advance", "s");
+        if (!(records.input_advance >= 0) || records.input_advance > 30) {
+            throw core::InputError("range", "records.input_force_advance must lie between 0 and 30 s",
+                                   table.place("input_force_advance"),
+                                   "an input that acts later than it was logged is the effect input_delay");
+        }
+    }
+    const std::string between = table.choice("input_force_between", {"held", "linear"}, "");
+    records.input_between = between.empty()      ? RecordReading::Between::unsaid
+                            : between == "held" ? RecordReading::Between::held
+                                                : RecordReading::Between::linear;
+    return records;
+}
+
+/// The text without its [[effect]], [records] and [lineage] parts, which the writer makes anew.
 std::string without_written_parts(std::string_view text) {
     std::string kept;
     bool skipping = false;
@@ -276,7 +303,7 @@ std::string without_written_parts(std::string_view text) {
                 return title.starts_with(word) && title.size() > word.size() &&
                        (title[word.size()] == ']' || title[word.size()] == '.' || title[word.size()] == ' ');
             };
-            skipping = is("effect") || is("lineage");
+            skipping = is("effect") || is("records") || is("lineage");
         }
         if (!skipping) {
             kept += line;
@@ -315,6 +342,7 @@ Model read(const core::TomlTable& root, std::string_view text) {
     for (const core::TomlTable& table : root.tables("effect")) {
         model.effects.push_back(read_effect(model, table));
     }
+    model.records = read_records(root.table_or_empty("records"));
     const core::TomlTable lineage = root.table_or_empty("lineage");
     if (lineage.has("made_from")) {
         model.lineage.made_from = lineage.strings("made_from");

@@ -37,6 +37,24 @@ std::string effect_text(const EffectUse& use, const std::string& parameter_unit)
     return text;
 }
 
+std::string records_text(const RecordReading& records) {
+    if (records == RecordReading{}) {
+        return {};
+    }
+    std::string text = "\n[records]\n";
+    const auto factor = [&](const char* key, double value) {
+        text += value != 1 ? std::string(key) + " = " + core::format_number(value) + "\n" : "";
+    };
+    factor("input_force_factor", records.input_factor);
+    text += records.input_advance != 0 ? "input_force_advance = " + quantity(records.input_advance, "s") + "\n" : "";
+    if (records.input_between != RecordReading::Between::unsaid) {
+        const bool held = records.input_between == RecordReading::Between::held;
+        text += std::string("input_force_between = \"") + (held ? "held" : "linear") + "\"\n";
+    }
+    factor("heave_velocity_factor", records.velocity_factor);
+    return text;
+}
+
 /// Where a table is written: below the new model under its own relative name when that stays inside, else beside it.
 std::string new_name(const std::string& written, std::map<std::string, fs::path>& taken, const fs::path& source) {
     const fs::path relative = fs::path(written).lexically_normal();
@@ -106,6 +124,7 @@ void write_model(const Model& model, const std::filesystem::path& file) {
         }
         text += effect_text(use, use.parameter.empty() ? "1" : units[use.parameter]);
     }
+    text += records_text(model.records);
     if (!model.lineage.made_from.empty()) {
         text += "\n[lineage]\nmade_from = [";
         for (const std::string& line : model.lineage.made_from) {

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/dynamics/contact_gap.h"
+#include "surrogates/dynamics/start_state.h"
 
 namespace underbody::dynamics {
 
@@ -121,13 +125,13 @@ Prediction predict_static(const Model& model, const Measurements& data) {
 /// One measured run against the model, window by window.
 class RunPredictor {
 public:
-    RunPredictor(const Model& model, const MeasuredRun& run, const PredictOptions& options, double gap_noise,
-                 double velocity_noise)
-        : signals_(signals_of(run)),
+    RunPredictor(const Model& model, const RecordReading& records, const MeasuredRun& run,
+                 const PredictOptions& options, double gap_noise, double velocity_noise)
+        : signals_(signals_of(run, records)),
           plant_(plant_for(model, signals_)),
           run_(plant_, signals_, options.max_step),
           gap_(run.values("gap")),
-          velocity_(run.has("heave_velocity") ? run.values("heave_velocity") : std::vector<double>{}),
+          velocity_(as_read(run, "heave_velocity", records)),
           options_(options),
           gap_noise_(gap_noise),
           velocity_noise_(velocity_noise) {}
@@ -142,12 +146,15 @@ public:
         const double past = options_.past > 0 ? options_.past : std::min(options_.horizon, 2.0);
         std::vector<Row> out;
         std::size_t window = 0;
-        for (double begin = t.front() + past; begin < t.back(); begin += options_.horizon) {
+        // Beyond this nothing is known of what acted.
+        const double known = t.back() - signals_.input_advance;
+        for (double begin = t.front() + past; begin < known; begin += options_.horizon) {
             const auto at = [&t](double time) {
                 return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), time - 1e-9) - t.begin());
             };
             const std::size_t from = at(begin - past), start = at(begin);
-            const std::size_t end = std::min(at(begin + options_.horizon + 1e-6), t.size()) - 1;
+            const double until = std::min(begin + options_.horizon, known);
+            const std::size_t end = std::max<std::size_t>(std::min(at(until + 1e-6), t.size()), 1) - 1;
             if (end <= start || start <= from + 2) {
                 continue;
             }
@@ -174,16 +181,19 @@ private:
     /// The state at sample `from` whose motion fits the measurements from..start best (least squares in units of
     /// noise); nothing later than `start` is looked at.
     [[nodiscard]] std::optional<std::pair<double, double>> estimate(std::size_t from, std::size_t start) const {
-        std::pair<double, double> state = line_through(from, start);
-        if (!std::isfinite(state.first)) {
+        const StartState line = start_state(signals_.time, gap_, from, start);
+        if (!line.found()) {
             return {};
         }
+        std::pair<double, double> state{line.gap - plant_.terms.sensor_bias, line.velocity};
+        // A film forgets a velocity within a sample: what the motion does not show is taken from the line, loosely.
+        const double loose = 0.05 + 10 * gap_noise_ * std::sqrt(line.slope_factor), weight = 1 / (loose * loose);
         const std::size_t count = start - from + 1;
         std::vector<double> base, changed;
         for (int iteration = 0; iteration < 6; ++iteration) {
             const double dh = 1e-5, dw = 1e-5;
             base = misfit(from, count, state.first, state.second);
-            double a11 = 1e-12, a12 = 0, a22 = 1e-12, b1 = 0, b2 = 0;
+            double a11 = 1e-12, a12 = 0, a22 = weight, b1 = 0, b2 = weight * (line.velocity - state.second);
             const std::vector<double> up = misfit(from, count, state.first + dh, state.second);
             changed = misfit(from, count, state.first, state.second + dw);
             for (std::size_t i = 0; i < base.size(); ++i) {
@@ -226,28 +236,6 @@ private:
         return out;
     }
 
-    /// Straight line through the first half second of the readings: where the search begins.
-    [[nodiscard]] std::pair<double, double> line_through(std::size_t from, std::size_t start) const {
-        double n = 0, st = 0, sh = 0, stt = 0, sth = 0;
-        const double t0 = signals_.time[from];
-        for (std::size_t i = from; i <= start; ++i) {
-            const double t = signals_.time[i] - t0;
-            if (std::isfinite(gap_[i]) && (t < 0.5 || n < 5)) {
-                n += 1;
-                st += t;
-                sh += gap_[i];
-                stt += t * t;
-                sth += t * gap_[i];
-            }
-        }
-        const double determinant = n * stt - st * st;
-        if (n < 3 || !(determinant > 0)) {
-            return {std::nan(""), 0};
-        }
-        const double slope = (n * sth - st * sh) / determinant;
-        return {(sh - slope * st) / n - plant_.terms.sensor_bias, slope};
-    }
-
     InputSignals signals_;
     HeavePlant plant_;
     HeaveRun run_;
@@ -263,35 +251,128 @@ double channel_noise(const Measurements& data, const MeasuredRun& run, const std
     if (!run.has(channel)) {
         return fallback;
     }
-    const double found = noise_of(run.table.numbers("time"), run.values(channel));
+    const double found = sensor_noise(run.table.numbers("time"), run.values(channel));
     return found > 0 ? found : fallback;
+}
+
+using RunRows = std::vector<std::vector<RunPredictor::Row>>;
+
+/// All runs predicted with the input read in one way.
+struct SeriesPrediction {
+    std::vector<std::unique_ptr<RunPredictor>> predictors;
+    RunRows rows;
+    /// Squares of the gap's errors in units of its noise.
+    [[nodiscard]] double squares(const std::vector<double>& noise) const {
+        double sum = 0;
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            for (const RunPredictor::Row& row : rows[r]) {
+                const double error = (row.gap - predictors[r]->gap()[row.sample]) / noise[r];
+                sum += std::isnan(predictors[r]->gap()[row.sample]) ? 0 : error * error;
+            }
+        }
+        return sum;
+    }
+};
+
+SeriesPrediction predict_runs(const Model& model, const RecordReading& records, const Measurements& data,
+                              const PredictOptions& options, core::Progress& progress) {
+    SeriesPrediction all;
+    all.rows.resize(data.runs.size());
+    for (const MeasuredRun& run : data.runs) {
+        all.predictors.push_back(std::make_unique<RunPredictor>(model, records, run, options,
+                                                                channel_noise(data, run, "gap", 1e-4),
+                                                                channel_noise(data, run, "heave_velocity", 1e-3)));
+    }
+    core::parallel_for(
+        data.runs.size(), [&](std::size_t r) { all.rows[r] = all.predictors[r]->rows(); }, progress);
+    return all;
+}
+
+/// Held or linear between samples: as the model says, else what the measured motion fits; held where that tells nothing.
+SeriesPrediction predict_as_read(const Model& model, const Measurements& data, const PredictOptions& options,
+                                 Prediction& out, core::Progress& progress) {
+    RecordReading records = model.records;
+    using Between = RecordReading::Between;
+    const bool varies = std::any_of(data.runs.begin(), data.runs.end(), [](const MeasuredRun& run) {
+        const InputSignals signals = signals_of(run);
+        return std::any_of(signals.signals.begin(), signals.signals.end(),
+                           [](const auto& signal) { return signal.channel == Channel::input_force; });
+    });
+    out.input_between = !varies ? "" : records.input_between == Between::linear ? "linear" : "held";
+    out.input_between_from = !varies ? "" : records.input_between == Between::unsaid ? "data" : "declared";
+    if (!varies || records.input_between != Between::unsaid) {
+        return predict_runs(model, records, data, options, progress);
+    }
+    std::vector<double> noise;
+    for (const MeasuredRun& run : data.runs) {
+        noise.push_back(channel_noise(data, run, "gap", 1e-4));
+    }
+    SeriesPrediction held = predict_runs(model, records, data, options, progress);
+    records.input_between = Between::linear;
+    SeriesPrediction linear = predict_runs(model, records, data, options, progress);
+    const double by_held = held.squares(noise), by_linear = linear.squares(noise);
+    if (by_linear < 0.98 * by_held && by_held - by_linear > 10) {
+        out.input_between = "linear";
+        return linear;
+    }
+    return held;
+}
+
+/// Counts windows whose gap leaves every bound of tables and measurements a hundredfold. Throws for values that are no
+/// numbers.
+void check_bounds(const SeriesPrediction& all, const Model& model, const Measurements& data, Prediction& out) {
+    const GapRange table = lift_gap_range(model);
+    double reach = table.upper < 1e299 && table.lower > -1e299 ? table.upper - table.lower : 0;
+    for (const auto& predictor : all.predictors) {
+        for (const double gap : predictor->gap()) {
+            reach = std::isfinite(gap) ? std::max(reach, std::abs(gap)) : reach;
+        }
+    }
+    for (std::size_t r = 0; r < all.rows.size(); ++r) {
+        std::size_t last_bad = std::numeric_limits<std::size_t>::max(), windows = 0;
+        for (const RunPredictor::Row& row : all.rows[r]) {
+            windows = row.window + 1;
+            if (!std::isfinite(row.gap) || !std::isfinite(row.velocity)) {
+                throw core::InputError("integration",
+                                  "the predicted motion of run " + data.runs[r].name + " is not finite at " +
+                                      core::format_number(all.predictors[r]->time()[row.sample], 6) +
+                                      " s: no step is small enough for the forces of the model there",
+                                  {model.name, {}, {}, {}}, "look at the effects and tables of the model at that gap");
+            }
+            if (std::abs(row.gap) > 100 * reach && row.window != last_bad) {
+                last_bad = row.window;
+                ++out.diverged;
+            }
+        }
+        out.windows += windows;
+    }
+    if (out.diverged > 0) {
+        out.remarks.push_back({core::Problem::Severity::warning,
+                               std::to_string(out.diverged) + " of " + std::to_string(out.windows) +
+                                   " predicted windows run away to more than a hundred times every measured gap: the "
+                                   "error says that the model is wrong there, not by how much",
+                               {}});
+    }
 }
 
 Prediction predict_series(const Model& model, const Measurements& data, const PredictOptions& options,
                           core::Progress& progress) {
     Prediction out;
     out.time_series = true;
-    std::vector<std::vector<RunPredictor::Row>> rows(data.runs.size());
-    std::vector<std::unique_ptr<RunPredictor>> predictors(data.runs.size());
-    for (std::size_t r = 0; r < data.runs.size(); ++r) {
-        const MeasuredRun& run = data.runs[r];
-        predictors[r] = std::make_unique<RunPredictor>(model, run, options, channel_noise(data, run, "gap", 1e-4),
-                                                       channel_noise(data, run, "heave_velocity", 1e-3));
-    }
-    core::parallel_for(
-        data.runs.size(), [&](std::size_t r) { rows[r] = predictors[r]->rows(); }, progress);
+    const SeriesPrediction all = predict_as_read(model, data, options, out, progress);
+    check_bounds(all, model, data, out);
     std::vector<std::string> names;
     std::vector<double> window, time, gap, gap_predicted, velocity, velocity_predicted;
     Score gap_score, velocity_score;
     bool has_velocity = false;
     for (std::size_t r = 0; r < data.runs.size(); ++r) {
-        const RunPredictor& predictor = *predictors[r];
+        const RunPredictor& predictor = *all.predictors[r];
         gap_score.noises.push_back(channel_noise(data, data.runs[r], "gap", 0));
         has_velocity = has_velocity || !predictor.velocity().empty();
         if (!predictor.velocity().empty()) {
             velocity_score.noises.push_back(channel_noise(data, data.runs[r], "heave_velocity", 0));
         }
-        for (const RunPredictor::Row& row : rows[r]) {
+        for (const RunPredictor::Row& row : all.rows[r]) {
             names.push_back(data.runs[r].name);
             window.push_back(static_cast<double>(row.window));
             time.push_back(predictor.time()[row.sample]);
@@ -302,7 +383,7 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
             velocity_predicted.push_back(row.velocity);
             velocity_score.take(row.velocity - velocity.back());
         }
-        if (rows[r].empty()) {
+        if (all.rows[r].empty()) {
             out.remarks.push_back(
                 {core::Problem::Severity::warning,
                  "run " + data.runs[r].name + " is shorter than the time a prediction needs and was left out",
@@ -312,7 +393,7 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
     if (names.empty()) {
         throw core::InputError(
             "range", "no run is long enough for a prediction over " + core::format_number(options.horizon) + " s", {},
-            "choose a shorter --horizon");
+            "a shorter horizon");
     }
     out.table.add_text("run", names);
     out.table.add_numbers("window", "1", window);
@@ -330,11 +411,24 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
 
 }  // namespace
 
-InputSignals signals_of(const MeasuredRun& run) {
+std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records) {
+    std::vector<double> values = run.has(channel) ? run.values(channel) : std::vector<double>{};
+    const double factor = channel == "input_force"      ? records.input_factor
+                          : channel == "heave_velocity" ? records.velocity_factor
+                                                        : 1;
+    for (double& value : values) {
+        value *= factor;
+    }
+    return values;
+}
+
+InputSignals signals_of(const MeasuredRun& run, const RecordReading& records) {
     InputSignals signals;
     signals.time = run.table.numbers("time");
-    signals.input_between =
-        InputSignals::Between::held;  // a digital controller holds its command from sample to sample
+    // A digital controller holds its command from sample to sample.
+    signals.input_between = records.input_between == RecordReading::Between::linear ? InputSignals::Between::linear
+                                                                                    : InputSignals::Between::held;
+    signals.input_advance = records.input_advance;
     for (const auto& [name, value] : run.conditions) {
         Channel channel{};
         if (find_channel(name, channel)) {
@@ -356,9 +450,9 @@ InputSignals signals_of(const MeasuredRun& run) {
             continue;
         }
         if (high > low) {
-            signals.signals.push_back({channel, column.numbers});
+            signals.signals.push_back({channel, as_read(run, column.name, records)});
         } else {
-            signals.held[channel] = low;
+            signals.held[channel] = low * (channel == Channel::input_force ? records.input_factor : 1);
         }
     }
     return signals;
@@ -379,26 +473,6 @@ Conditions set_point_of(const MeasuredRun& run, std::size_t row) {
         }
     }
     return point;
-}
-
-double noise_of(const std::vector<double>& time, const std::vector<double>& values) {
-    std::vector<double> differences;
-    for (std::size_t i = 3; i < values.size(); ++i) {
-        const double step = time[i] - time[i - 1];
-        const bool even = std::abs(time[i - 1] - time[i - 2] - step) < 0.2 * step &&
-                          std::abs(time[i - 2] - time[i - 3] - step) < 0.2 * step;
-        const double third = values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3];
-        if (even && std::isfinite(third)) {
-            differences.push_back(std::abs(third));
-        }
-    }
-    if (differences.size() < 10) {
-        return 0;
-    }
-    std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2),
-                     differences.end());
-    // The median of |N(0, 1)| is 0.6745; third differences of white noise have 1 + 9 + 9 + 1 = 20 times its variance.
-    return differences[differences.size() / 2] / 0.6745 / std::sqrt(20.0);
 }
 
 Prediction predict(const Model& model, const Measurements& data, const PredictOptions& options,
@@ -463,6 +537,13 @@ void to_json(nlohmann::json& json, const Prediction& prediction) {
             {"in_noise", channel.in_noise}, {"count", channel.count}};
     }
     json["kind"] = prediction.time_series ? "time_series" : "static";
+    if (prediction.time_series) {
+        json["windows"] = prediction.windows;
+        json["diverged_windows"] = prediction.diverged;
+    }
+    if (!prediction.input_between.empty()) {
+        json["input_between"] = {{"value", prediction.input_between}, {"from", prediction.input_between_from}};
+    }
     json["remarks"] = nlohmann::json::array();
     for (const core::Problem& remark : prediction.remarks) {
         json["remarks"].push_back(remark.message);

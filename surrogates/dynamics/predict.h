@@ -11,6 +11,7 @@
 #include "surrogates/dynamics/heave.h"
 #include "surrogates/dynamics/measurements.h"
 #include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/sensor_noise.h"
 
 namespace underbody::dynamics {
 
@@ -36,21 +37,24 @@ struct Prediction {
                         ///< gap_predicted, ...
     std::vector<ChannelError> channels;
     bool time_series = false;
+    std::size_t windows = 0, diverged = 0;  ///< windows in all, and those that leave every bound (time series)
+    std::string input_between;  ///< "held" or "linear": how the input was read between its samples; empty: none varies
+    std::string input_between_from;  ///< "declared" or "data"
     core::Problems remarks;
 };
 
-/// Throws core::InputError when the model lacks what the data need (a static quantity without a force source, ...).
+/// Throws core::InputError when the model lacks what the data need (a static quantity without a force source, ...);
+/// a predicted motion that is not finite (kind "integration").
 Prediction predict(const Model& model, const Measurements& data, const PredictOptions& options = {},
                    core::Progress& progress = core::Progress::none());
 
-/// Known inputs and conditions of a run: columns that vary become signals, constant ones and conditions are held.
-InputSignals signals_of(const MeasuredRun& run);
+/// Known inputs and conditions of a run: columns that vary become signals, constant ones and conditions are held. The
+/// input as `records` says that it is to be read; held between samples where they do not say.
+InputSignals signals_of(const MeasuredRun& run, const RecordReading& records = {});
+/// A measured column as `records` says that it is to be read; empty when there is none.
+std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records);
 /// The set point of row `row` of a static run.
 Conditions set_point_of(const MeasuredRun& run, std::size_t row);
-
-/// One standard deviation of white noise on a smooth signal: from third differences, robust against outliers. 0: too
-/// short.
-double noise_of(const std::vector<double>& time, const std::vector<double>& values);
 
 /// Measured and predicted: against time for the first windows, or one against the other for a static set.
 core::Figure prediction_figure(const Prediction& prediction);

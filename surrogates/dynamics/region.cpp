@@ -38,7 +38,7 @@ HeaveRegionSetup::HeaveRegionSetup(const Model& model, const RegionOptions& opti
     const core::NamedRange* velocity_axis = axis_of(options, "heave_velocity");
     contact_gap = plant.terms.contact_gap;
     double top = plant.terms.table_upper < 1e299 ? plant.terms.table_upper : contact_gap + 1;
-    double highest = gap_axis ? gap_axis->upper : options.held.get(Channel::gap, top);
+    double highest = gap_axis ? gap_axis->upper : start_gaps ? contact_gap : options.held.get(Channel::gap, top);
     if (start_gaps) {
         for (const double gap : *start_gaps) {
             highest = std::max(highest, gap);
@@ -79,7 +79,7 @@ RegionBoundary backward(const HeaveRegionSetup& setup, const RegionOptions& o, b
     const double gap_size = ga.upper - ga.lower, velocity_size = va.upper - va.lower;
     RegionBoundary line;
     line.name = name;
-    const BackwardRate rate{&setup.plant, setup.plant.held().get(Channel::input_force, 0.0)};
+    const BackwardRate rate{&setup.plant, setup.plant.held_input()};
     DormandPrince<2, BackwardRate> ode(rate, 0.0, {gap, velocity}, {1e-9 * gap_size, 1e-9 * velocity_size}, 1e-3);
     const auto add = [&](double h, double w) {
         line.x.push_back(gap_first ? h : w);
@@ -135,8 +135,7 @@ void add_boundaries(const HeaveRegionSetup& setup, const RegionOptions& o, bool 
 
 void add_flow(const HeaveRegionSetup& setup, const RegionOptions& o, bool gap_first, StabilityRegion& region) {
     constexpr int across = 22, up = 14;
-    HeaveMoment moment;
-    moment.input = setup.plant.held().get(Channel::input_force, 0.0);
+    const HeavePlant& plant = setup.plant;
     for (int j = 0; j < up; ++j) {
         for (int i = 0; i < across; ++i) {
             const double x = o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (i + 0.5) / across;
@@ -145,7 +144,10 @@ void add_flow(const HeaveRegionSetup& setup, const RegionOptions& o, bool gap_fi
             if (h < setup.contact_gap) {
                 continue;
             }
-            const double a = setup.plant.acceleration(h, w, moment);
+            HeaveMoment moment = plant.held_moment();
+            // With delay or lag in the loop: as after having stood in this state for long.
+            moment.input = plant.loop_has_states() ? plant.closed_input(h, w, moment.input).force : moment.input;
+            const double a = plant.acceleration(h, w, moment);
             region.flow_x.push_back(x);
             region.flow_y.push_back(y);
             region.flow_dx.push_back(gap_first ? w : a);

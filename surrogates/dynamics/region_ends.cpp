@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/dormand_prince.h"
+#include "surrogates/dynamics/loop_actuator.h"
 #include "surrogates/dynamics/region.h"
 
 namespace underbody::dynamics {
@@ -114,7 +115,6 @@ struct HeaveEnds::Impl {
     int contact_class = 0, escape_class = 0, undecided_class = 0;
     bool energy = false;    ///< the energy argument holds
     bool lossless = false;  ///< and nothing dissipates
-    bool simple = false;    ///< constant mass, linear and quadratic drag only
     Curve force;
     double rest_resistance = 0;
     std::string rule;
@@ -134,9 +134,6 @@ struct HeaveEnds::Impl {
         force = static_curve(plant, contact - margin, escape + margin);
         rest_resistance = plant.resistance(std::max(contact, 1e-3), 0.0);
         judge_dissipation();
-        const HeaveTerms& t = plant.terms;
-        simple = t.growth.empty() && t.added_mass.empty() && !t.mixed && t.friction == 0 && t.film == 0 && energy &&
-                 t.corrections.empty();
         name_classes();
     }
 
@@ -146,7 +143,7 @@ struct HeaveEnds::Impl {
             depends_on_both = depends_on_both && correction.axes.size() == 1 &&
                               (correction.axes[0] == Channel::gap || correction.axes[0] == Channel::heave_velocity);
         }
-        energy = plant.autonomous() && depends_on_both && plant.single_curve();
+        energy = plant.autonomous() && depends_on_both && plant.single_curve() && !plant.loop;
         double most = 0;
         for (double size = 1e-6; size < 1e3 && energy; size *= 1.3) {
             for (const double w : {size, -size}) {
@@ -204,31 +201,25 @@ struct HeaveEnds::Impl {
         for (const Well& well : wells) {
             if (h > well.lower && h < well.upper) {
                 double slope = 0;
-                const double mass = simple ? plant.terms.mass : plant.inertia(h, slope);
+                const double mass = plant.inertia(h, slope);
                 return 0.5 * mass * w * w + potential(h) < well.rim ? well.class_index : -1;
             }
         }
         return -1;
     }
 
-    struct SimpleRate {
-        const Curve* force;
-        double linear, quadratic, current, rest, inverse_mass;
-        void operator()(double, const double* y, double* d) const {
-            const double relative = y[1] - current;
-            d[0] = y[1];
-            d[1] = ((*force)(y[0]) - (linear + quadratic * std::abs(relative)) * relative + rest) * inverse_mass;
-        }
-    };
+    /// The heave equation with all that depends on the gap alone taken from one curve.
     struct StaticRate {
-        const HeavePlant* plant;
+        const HeaveTerms* terms;
         const Curve* force;
         double rest;
         void operator()(double, const double* y, double* d) const {
-            double slope = 0;
-            const double mass = plant->inertia(y[0], slope);
+            HeaveLoad load{(*force)(y[0]) + rest, 0, 0};
+            add_water_drag<false>(*terms, y[1], load);
+            add_guided_resistance<false>(*terms, y[0], y[1], 0, load);
+            HeaveSlopes unused;
             d[0] = y[1];
-            d[1] = ((*force)(y[0]) - plant->resistance(y[0], y[1]) + rest - 0.5 * slope * y[1] * y[1]) / mass;
+            d[1] = heave_acceleration<false>(*terms, y[0], y[1], load, {}, unused);
         }
     };
     struct FullRate {
@@ -258,6 +249,47 @@ struct HeaveEnds::Impl {
         }
     };
 
+    /// The loop with the states of its actuator: gap, velocity, force after the lag, and the memory of the water.
+    template <std::size_t N>
+    struct LoopRate {
+        const HeavePlant* plant;
+        const LoopActuator<2>* actuator;
+        void operator()(double t, const double* y, double* d) const {
+            const double driven = actuator->driven(t, y);
+            HeaveMoment moment;
+            moment.t = t;
+            moment.input = actuator->lagged() ? y[2] : driven;
+            d[0] = y[1];
+            d[1] = plant->acceleration(y[0], y[1], moment, N > 3 ? y + 3 : nullptr);
+            d[2] = actuator->lagged() ? (driven - y[2]) / plant->terms.actuator.lag : 0;
+            if constexpr (N > 3) {
+                const HistoryKernel& kernel = history_kernel();
+                for (std::size_t i = 0; i < history_states; ++i) {
+                    d[3 + i] = -kernel.rate[i] * (y[3 + i] + y[1]);
+                }
+            }
+        }
+    };
+    template <std::size_t N>
+    [[nodiscard]] End through_actuator(double h, double w) const {
+        const double given = plant.held_input();
+        LoopActuator<2> actuator(plant.terms, [this, given](double, const double* y) {
+            return given + plant.loop->command(y[0], y[1]);
+        });
+        std::array<double, N> y{};
+        y.fill(-w);
+        y[0] = h;
+        y[1] = w;
+        const double still[2] = {w, 0};
+        actuator.start(0, y.data(), still);
+        y[2] = actuator.driven(0, y.data());
+        const LoopRate<N> rate{&plant, &actuator};
+        std::array<double, N> begin{};
+        rate(0, y.data(), begin.data());
+        actuator.accept(0, y.data(), begin.data());
+        return go<N>(rate, y, &actuator);
+    }
+
     [[nodiscard]] End of(double h, double w) const {
         if (h <= contact) {
             return {contact_class, 0};
@@ -270,15 +302,13 @@ struct HeaveEnds::Impl {
             if (index >= 0) {
                 return {index, 0};
             }
-            if (simple) {
-                const HeaveTerms& t = plant.terms;
-                return go<2>(SimpleRate{&force, t.linear + t.extra_linear, t.quadratic + t.extra_quadratic, t.current,
-                                        rest_resistance, 1 / t.mass},
-                             {h, w});
-            }
-            return go<2>(StaticRate{&plant, &force, rest_resistance}, {h, w});
+            return go<2>(StaticRate{&plant.terms, &force, rest_resistance}, {h, w});
         }
-        const double input = plant.held().get(Channel::input_force, 0.0);
+        const double input = plant.held_input();
+        if (plant.loop_has_states()) {
+            return plant.terms.history != 0 ? through_actuator<3 + history_states>(h, w)
+                                            : through_actuator<3>(h, w);
+        }
         if (plant.terms.history != 0) {
             std::array<double, 2 + history_states> y{};
             y.fill(-w);
@@ -300,15 +330,23 @@ struct HeaveEnds::Impl {
     };
 
     template <std::size_t N, class Rate>
-    End go(const Rate& rate, const std::array<double, N>& start) const {
+    End go(const Rate& rate, const std::array<double, N>& start, LoopActuator<2>* actuator = nullptr) const {
         std::array<double, N> scale;
         scale.fill(scale_velocity);
         scale[0] = scale_gap;
+        if constexpr (N > 2) {
+            // A force that changes the velocity so much within a second.
+            scale[2] = actuator ? scale_velocity * plant.terms.mass : scale[2];
+        }
+        const double look_back = actuator && actuator->delayed() ? actuator->max_step() : 1e300;
         DormandPrince<N, Rate> ode(rate, 0.0, start, scale, 0.02);
         Extent third, fourth;
         while (ode.t() < duration) {
-            if (!ode.step(duration) || ode.tries() > 200000) {
+            if (!ode.step(std::min(duration, ode.t() + look_back)) || ode.tries() > 200000) {
                 return {undecided_class, ode.t()};
+            }
+            if (actuator) {
+                actuator->accept(ode.t(), ode.y().data(), ode.rate().data());
             }
             const double h = ode.y()[0], w = ode.y()[1];
             const End event = passed(ode);

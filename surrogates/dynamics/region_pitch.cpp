@@ -140,8 +140,7 @@ std::vector<End> pitch_ends_of_starts(const Model& model, const core::Table& sta
                                       std::vector<EndClass>& classes, core::Progress& progress) {
     const char* names[] = {"gap", "heave_velocity", "pitch", "pitch_rate"};
     const std::vector<double>& gap = starts.numbers("gap");
-    RegionOptions each = options;
-    each.axes.clear();
+    const RegionOptions& each = options;
     const PitchSetup setup(model, each, gap.empty() ? -1e300 : *std::max_element(gap.begin(), gap.end()));
     std::vector<PitchState> states(starts.rows(), setup.middle);
     for (std::size_t k = 0; k < 4; ++k) {

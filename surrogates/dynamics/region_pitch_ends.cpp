@@ -21,7 +21,7 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
         worst = std::max(worst, mode.value.real());
     }
     const HeaveTerms& terms = plant_.vertical().terms;
-    if (worst < -1e-4 && terms.waves.empty() && terms.history == 0) {
+    if (worst < -1e-4 && terms.waves.empty() && terms.history == 0 && !plant_.vertical().loop_has_states()) {
         Dense weights(4, 4);
         for (std::size_t i = 0; i < 4; ++i) {
             weights(i, i) = 1 / (sizes_[i] * sizes_[i]);
@@ -121,7 +121,10 @@ End PitchEnds::of(const PitchState& start) const {
     if (start[0] >= escape_) {
         return {escape_class(), 0};
     }
-    return plant_.remembers() ? go<4 + history_states>(start) : go<4>(start);
+    if (plant_.vertical().loop_has_states()) {
+        return plant_.remembers() ? go<true, true>(start) : go<false, true>(start);
+    }
+    return plant_.remembers() ? go<true, false>(start) : go<false, false>(start);
 }
 
 /// The smaller of the gaps of free edges and the forces of bearing ones: below zero the contact changes.
@@ -136,28 +139,46 @@ double PitchEnds::margin(const PitchState& y, ContactState bearing, const Surrou
     return std::min(value[0], value[1]);
 }
 
-template <std::size_t N>
+template <bool Memory, bool Loop>
 End PitchEnds::go(const PitchState& start) const {
+    using Law = Rate<Memory, Loop>;
+    constexpr std::size_t N = Law::size;
     using State = std::array<double, N>;
     const auto motion = [](const State& y) { return PitchState{y[0], y[1], y[2], y[3]}; };
+    LoopActuator<4> actuator(plant_.vertical().terms, [this](double, const double* y) {
+        return plant_.vertical().held_input() + plant_.force_command({y[0], y[1], y[2], y[3]});
+    });
     State y, scale;
-    y.fill(-start[1]);
+    y.fill(-plant_.centre_velocity(start));
     scale.fill(options_.tolerance * 10 * sizes_[1]);
     std::copy(start.begin(), start.end(), y.begin());
     for (std::size_t i = 0; i < 4; ++i) {
         scale[i] = options_.tolerance * 10 * sizes_[i];
     }
+    if constexpr (Loop) {
+        const double still[4] = {};
+        actuator.start(0, y.data(), still);
+        y[N - 1] = actuator.driven(0, y.data());
+        scale[N - 1] *= plant_.mass();  // a force that changes the velocity so much within a second
+        State begin{};
+        Law{&plant_, &actuator, ContactState::free}(0, y.data(), begin.data());
+        actuator.accept(0, y.data(), begin.data());
+    }
+    const double look_back = Loop && actuator.delayed() ? actuator.max_step() : 1e300;
     ContactState bearing = ContactState::free;
     double t = 0;
     Extent third, fourth;
     int changes = 0;
     while (t < options_.duration) {
-        const Rate<N> rate{&plant_, bearing};
-        DormandPrince<N, Rate<N>> ode(rate, t, y, scale, 0.02);
+        const Law rate{&plant_, &actuator, bearing};
+        DormandPrince<N, Law> ode(rate, t, y, scale, 0.02);
         bool changed = false;
         while (!changed && t < options_.duration) {
-            if (!ode.step(options_.duration) || ode.tries() > 400000) {
+            if (!ode.step(std::min(options_.duration, ode.t() + look_back)) || ode.tries() > 400000) {
                 return {undecided_class(), ode.t()};
+            }
+            if constexpr (Loop) {
+                actuator.accept(ode.t(), ode.y().data(), ode.rate().data());
             }
             t = ode.t();
             y = ode.y();
@@ -171,7 +192,7 @@ End PitchEnds::go(const PitchState& start) const {
             };
             const auto value = [&](double part) {
                 const State at = part == 1.0 ? y : between(part);
-                return margin(motion(at), bearing, surroundings<N>(before + part * width, at.data()));
+                return margin(motion(at), bearing, rate.around(before + part * width, at.data()));
             };
             // The earliest event within the step: a gap that closes or a bearing force that vanishes.
             double hit = -1;
@@ -194,7 +215,7 @@ End PitchEnds::go(const PitchState& start) const {
                 y = between(hi);
                 PitchState landed = motion(y);
                 try {
-                    land(plant_, landed, bearing, surroundings<N>(t, y.data()));
+                    land(plant_, landed, bearing, rate.around(t, y.data()));
                 } catch (const core::Error&) {
                     return {undecided_class(), t};
                 }

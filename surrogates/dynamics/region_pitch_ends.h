@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "surrogates/dynamics/heave_pitch.h"
+#include "surrogates/dynamics/loop_actuator.h"
 #include "surrogates/dynamics/region.h"
 
 namespace underbody::dynamics {
@@ -69,31 +70,42 @@ private:
         return -1;
     }
 
-    /// N: the four states, and the memory of the history force where the model has one.
-    template <std::size_t N>
+    /// The four states, the memory of the history force where the model has one, and with `Loop` the force after the
+    /// lag of the closed loop's actuator.
+    template <bool Memory, bool Loop>
     struct Rate {
+        static constexpr std::size_t size = 4 + (Memory ? history_states : 0) + (Loop ? 1 : 0);
         const HeavePitch* plant;
+        const LoopActuator<4>* actuator;
         ContactState bearing;
         void operator()(double t, const double* y, double* d) const {
+            const PitchState state{y[0], y[1], y[2], y[3]};
             PitchState rate;
-            plant->rate({y[0], y[1], y[2], y[3]}, bearing, rate, surroundings<N>(t, y));
+            plant->rate(state, bearing, rate, around(t, y));
             std::copy(rate.begin(), rate.end(), d);
-            if constexpr (N > 4) {
+            if constexpr (Memory) {
                 const HistoryKernel& kernel = history_kernel();
                 for (std::size_t i = 0; i < history_states; ++i) {
-                    d[4 + i] = -kernel.rate[i] * (y[4 + i] + y[1]);
+                    d[4 + i] = -kernel.rate[i] * (y[4 + i] + plant->centre_velocity(state));
                 }
             }
+            if constexpr (Loop) {
+                d[size - 1] = actuator->lagged()
+                                  ? (actuator->driven(t, y) - y[size - 1]) / plant->vertical().terms.actuator.lag
+                                  : 0;
+            }
+        }
+        [[nodiscard]] Surroundings around(double t, const double* y) const {
+            Surroundings now;
+            now.t = t;
+            now.memory = Memory ? y + 4 : nullptr;
+            if constexpr (Loop) {
+                now.input = actuator->lagged() ? y[size - 1] : actuator->driven(t, y);
+            }
+            return now;
         }
     };
-    template <std::size_t N>
-    static Surroundings surroundings(double t, const double* y) {
-        Surroundings around;
-        around.t = t;
-        around.memory = N > 4 ? y + 4 : nullptr;
-        return around;
-    }
-    template <std::size_t N>
+    template <bool Memory, bool Loop>
     [[nodiscard]] End go(const PitchState& start) const;
 
     /// Swing about an attractor in units of the sizes, over a part of the time.

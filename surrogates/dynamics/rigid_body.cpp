@@ -101,15 +101,24 @@ double RigidBody::gap_at_base_centre(const BodyState& y) const {
     return -y[state_z] + base_[0] * std::sin(y[state_theta]) - base_[2] * std::cos(y[state_theta]);
 }
 
+double RigidBody::rise_of_base(const BodyState& y) const {
+    const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
+    return -world_velocity(y)[2] + (base_[2] * st + base_[0] * ct) * y[state_q];
+}
+double RigidBody::down_velocity_for(double heave_velocity, const BodyState& y) const {
+    const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
+    const double rise = heave_velocity - (base_[2] * st + base_[0] * ct) * y[state_q];
+    return (y[state_u] * st - rise) / ct;
+}
+
 std::array<double, 2> RigidBody::edge_gaps(const BodyState& y) const {
     const double h = gap_at_base_centre(y) - contact_gap_, rise = half_length_ * std::sin(y[state_theta]);
     return {h + rise, h - rise};
 }
 
 std::array<double, 2> RigidBody::edge_speeds(const BodyState& y) const {
-    const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
-    const double up = -world_velocity(y)[2] + (base_[2] * st + base_[0] * ct) * y[state_q];
-    const double turn = half_length_ * ct * y[state_q];
+    const double ct = std::cos(y[state_theta]);
+    const double up = rise_of_base(y), turn = half_length_ * ct * y[state_q];
     return {up + turn, up - turn};
 }
 
@@ -120,7 +129,7 @@ Conditions RigidBody::seen(const BodyState& y, const Surroundings& around) const
     }
     conditions[Channel::gap] = gap_at_base_centre(y);
     conditions[Channel::pitch] = y[state_theta];
-    conditions[Channel::heave_velocity] = -world_velocity(y)[2];
+    conditions[Channel::heave_velocity] = rise_of_base(y);
     conditions[Channel::pitch_rate] = y[state_q];
     conditions[Channel::speed] = y[state_u] * std::cos(y[state_theta]) + y[state_w] * std::sin(y[state_theta]);
     return conditions;
@@ -169,9 +178,9 @@ void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, c
     loads.moment[1] += tables.moment;
     loads.moment[2] += yaw_moment_(conditions);
     // Weight less buoyancy and the effects act at the centre of gravity; buoyancy off it turns the body.
-    const double gap = conditions[Channel::gap], rise = conditions[Channel::heave_velocity];
+    const double gap = conditions[Channel::gap], rise = -world_velocity(y)[2];
     const HeaveMoment moment{around.t,
-                             std::isnan(around.input) ? held_.get(Channel::input_force, 0.0) : around.input, nullptr,
+                             std::isnan(around.input) ? vertical_.held_input() : around.input, nullptr,
                              conditions.value.data()};
     loads.add({}, up(vertical_.other_force(gap, rise, moment, around.memory) + vertical_.wave_force(around.t)));
     const Vector3 upright = cross(buoyancy_centre_, up(buoyancy_));
@@ -189,25 +198,29 @@ void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, c
     double slope = 0;
     loads.mass_z = vertical_.inertia(gap, slope) + (around.memory ? vertical_.history_mass() : 0);
     if (slope != 0) {
-        const double opening = rise + (base_[2] * st + base_[0] * ct) * q;
-        loads.force[2] -= slope * opening * w;
+        loads.force[2] -= slope * conditions[Channel::heave_velocity] * w;
         loads.add(base_, up(0.5 * slope * w * w));
     }
 }
 
+/// Slip of an edge along the ground, in the vehicle's heading: forward, to starboard.
+std::array<double, 2> RigidBody::slip(const BodyState& y, std::size_t edge) const {
+    const double u = y[state_u], v = y[state_v], w = y[state_w], q = y[state_q], r = y[state_r], p = roll_rate(y);
+    const Vector3 at = edge_place(edge);
+    const double vx = u + q * at[2] - r * at[1], sy = v + r * at[0] - p * at[2], vz = w + p * at[1] - q * at[0];
+    return {vx * std::cos(y[state_theta]) + vz * std::sin(y[state_theta]), sy};
+}
+
 void RigidBody::add_contact(const BodyState& y, const std::array<double, 2>& normal, double friction,
                             Loads& loads) const {
-    const double u = y[state_u], v = y[state_v], w = y[state_w], q = y[state_q], r = y[state_r], p = roll_rate(y);
     const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
     for (std::size_t edge = 0; edge < 2; ++edge) {
         const double n = normal[edge];
         if (n == 0) {
             continue;
         }
-        const Vector3 at{base_[0] + (edge == 0 ? half_length_ : -half_length_), base_[1], base_[2]};
-        // Slip of the contact point along the ground, in the vehicle's heading.
-        const double vx = u + q * at[2] - r * at[1], sy = v + r * at[0] - p * at[2], vz = w + p * at[1] - q * at[0];
-        const double sx = vx * ct + vz * st;
+        const Vector3 at = edge_place(edge);
+        const auto [sx, sy] = slip(y, edge);
         const double size = std::sqrt(sx * sx + sy * sy + model_.contact.slip_speed * model_.contact.slip_speed);
         const double ft = -friction * n * sx / size, fs = -friction * n * sy / size;
         loads.add(at, {n * st + ft * ct, fs, -n * ct + ft * st});
@@ -322,31 +335,63 @@ ContactState RigidBody::settle(const BodyState& y, std::span<const double> thrus
     return *state;
 }
 
-BodyState RigidBody::impact(const BodyState& y, ContactState touching) const {
-    // Impulses act as forces do, without friction: the speeds of the gaps jump by the same matrix.
+std::optional<BodyState> RigidBody::struck(const BodyState& y, ContactState touching, double friction) const {
+    // Impulses act as forces do: the speeds jump by the same matrix, friction along the slip before the impact.
     BodyState still = y;
     for (const BodyStateIndex i : {state_u, state_v, state_w, state_q, state_r}) {
         still[i] = 0;
     }
     Loads none;
-    double slope = 0;
+    double slope = 0, jump[5];
     none.mass_z = vertical_.inertia(gap_at_base_centre(y), slope) + vertical_.history_mass();
-    ContactProblem p = problem(still, none, 0);
+    ContactProblem p;
     p.rest = edge_speeds(y);
+    for (std::size_t edge = 0; edge < 2; ++edge) {
+        Loads pushed = none;
+        add_contact(y, edge == 0 ? std::array<double, 2>{1, 0} : std::array<double, 2>{0, 1}, friction, pushed);
+        accelerations(still, pushed, jump);
+        const std::array<double, 2> opened = gap_accelerations(still, jump);
+        p.matrix[0][edge] = opened[0];
+        p.matrix[1][edge] = opened[1];
+    }
     const auto impulses = impact_impulses(p, touching, model_.contact.restitution);
     if (!impulses) {
-        throw core::Error("contact", "no impulse fits this impact");
+        return {};
     }
-    double jump[5];
-    add_contact(still, *impulses, 0, none);
+    add_contact(y, *impulses, friction, none);
     accelerations(still, none, jump);
     BodyState after = y;
-    after[state_u] += jump[0];
-    after[state_v] += jump[1];
-    after[state_w] += jump[2];
-    after[state_q] += jump[3];
-    after[state_r] += jump[4];
+    for (const auto& [state, change] : {std::pair{state_u, jump[0]}, std::pair{state_v, jump[1]}, std::pair{state_w, jump[2]},
+                                        std::pair{state_q, jump[3]}, std::pair{state_r, jump[4]}}) {
+        after[state] += change;
+    }
+    for (std::size_t edge = 0; edge < 2; ++edge) {
+        const std::array<double, 2> was = slip(y, edge), is = slip(after, edge);
+        if ((*impulses)[edge] > 0 && friction > 0 && was[0] * is[0] + was[1] * is[1] < 0) {
+            return {};  // friction stops a slip, it does not turn it round
+        }
+    }
     return after;
+}
+
+BodyState RigidBody::impact(const BodyState& y, ContactState touching) const {
+    const double full = model_.contact.friction;
+    if (const auto slides = struck(y, touching, full)) {
+        return *slides;
+    }
+    // An edge sticks: the most friction that stops its slip and does not turn it.
+    std::optional<BodyState> after = struck(y, touching, 0);
+    if (!after) {
+        throw core::Error("contact", "no impulse fits this impact");
+    }
+    double least = 0, most = full;
+    for (int i = 0; i < 60 && most - least > 1e-12 * full; ++i) {
+        const double middle = (least + most) / 2;
+        const auto sticks = struck(y, touching, middle);
+        (sticks ? least : most) = middle;
+        after = sticks ? sticks : after;
+    }
+    return *after;
 }
 
 LinearSystem linearise_body(const RigidBody& body, const BodyState& trim, const std::vector<double>& thrust) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,11 +45,17 @@ public:
     [[nodiscard]] std::array<double, 2> edge_gaps(const BodyState& y) const;
     [[nodiscard]] std::array<double, 2> edge_speeds(const BodyState& y) const;
     [[nodiscard]] double gap_at_base_centre(const BodyState& y) const;
+    /// heave_velocity: how fast that gap grows, m/s.
+    [[nodiscard]] double rise_of_base(const BodyState& y) const;
+    /// The state w that gives this heave velocity with the speed u, pitch and pitch rate of `y`.
+    [[nodiscard]] double down_velocity_for(double heave_velocity, const BodyState& y) const;
+    /// Slip of an edge (0 nose, 1 tail) along the ground, m/s: forward in the heading, to starboard.
+    [[nodiscard]] std::array<double, 2> slip(const BodyState& y, std::size_t edge) const;
     /// Contact state that complementarity demands of edges that touch (gap and its rate zero).
     /// Throws core::Error (kind "contact") when friction leaves none.
     [[nodiscard]] ContactState settle(const BodyState& y, std::span<const double> thrust, ContactState touching,
                                       const Surroundings& around = {}) const;
-    /// After an impact of the touching edges.
+    /// After an impact of the touching edges; they slide with the contact's friction, or stick where that is enough.
     [[nodiscard]] BodyState impact(const BodyState& y, ContactState touching) const;
 
     /// Kinetic energy of body and water, J; p follows from r.
@@ -76,6 +83,11 @@ private:
     [[nodiscard]] Conditions seen(const BodyState& y, const Surroundings& around) const;
     void free_loads(const BodyState& y, std::span<const double> thrust, const Surroundings& around,
                     Loads& loads) const;
+    [[nodiscard]] Vector3 edge_place(std::size_t edge) const {
+        return {base_[0] + (edge == 0 ? half_length_ : -half_length_), base_[1], base_[2]};
+    }
+    /// After an impact with this friction; empty where it contradicts itself or turns a slip round.
+    [[nodiscard]] std::optional<BodyState> struck(const BodyState& y, ContactState touching, double friction) const;
     void add_contact(const BodyState& y, const std::array<double, 2>& normal, double friction, Loads& loads) const;
     void accelerations(const BodyState& y, const Loads& loads, double* out) const;
     [[nodiscard]] ContactProblem problem(const BodyState& y, const Loads& loads, double friction) const;

@@ -52,7 +52,7 @@ SurfaceMotion::Loads SurfaceMotion::loads(const SurfaceState& y, std::span<const
     seen[Channel::gap] = gap_;
     seen[Channel::speed] = std::abs(u);
     const HeaveMoment moment{around.t,
-                             std::isnan(around.input) ? held_.get(Channel::input_force, 0.0) : around.input, nullptr,
+                             std::isnan(around.input) ? vertical_.held_input() : around.input, nullptr,
                              seen.value.data()};
     const Wrench jets = jet_wrench(model_.jets, thrust);
     const Environment& water = model_.environment;

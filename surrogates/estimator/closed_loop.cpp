@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/random.h"
 
@@ -69,7 +70,8 @@ struct Loop::Impl {
     Places at;
     int substeps = 1;
     double gap, velocity;
-    double force = 0;     // of the actuator, after its lag
+    double lagged = 0, force = 0;  // of the actuator, after its lags
+    std::vector<double> commands;  // one a sample
     double acted = 0;     // mean force over the last step, as a thruster model would tell the observer
     double command = 0, disturbance = 0;
     Seen seen;
@@ -104,13 +106,13 @@ struct Loop::Impl {
                 extended->start(h, w);
                 extended->describe(extended->belief(), e);
             } else {
-                extended->predict(options.step, acted);
+                extended->predict(options.step, acted, options.step * static_cast<double>(samples - 1));
                 extended->measure(h, w, e);
             }
             seen = {e.ground_force, e.drag_force, e.total_force, e.gap, e.velocity};
         } else {
             seen.ground = plant.ground_force(gap, slope);
-            seen.drag = plant.drag_force(velocity, slope);
+            seen.drag = plant.drag(gap, velocity);
             seen.total = seen.ground - seen.drag;
         }
         if (options.feedback == Feedback::measured) {
@@ -150,22 +152,45 @@ struct Loop::Impl {
         command = std::clamp(u, -law.limit, law.limit);
     }
 
+    /// Mean over [t, t + dt] of what dead zone and gain leave of the commands, each held over its sample, after the delay.
+    /// Before the first sample nothing is commanded.
+    [[nodiscard]] double arriving(double t, double dt) const {
+        if (plant.actuator.delay == 0) {
+            return plant.actuator.felt(command);
+        }
+        const double begin = t - plant.actuator.delay, end = begin + dt, step = options.step;
+        double sum = 0;
+        for (auto k = static_cast<long>(std::floor(begin / step + 1e-9)); static_cast<double>(k) * step < end - 1e-9 * step; ++k) {
+            const double from = std::max(begin, static_cast<double>(k) * step), to = std::min(end, static_cast<double>(k + 1) * step);
+            if (k >= 0) {
+                sum += (to - from) * plant.actuator.felt(commands[std::min(static_cast<std::size_t>(k), commands.size() - 1)]);
+            }
+        }
+        return sum / dt;
+    }
+
     // Moves the plant over one sample with the command held.
     void move() {
-        const double dt = options.step / substeps, tau = options.actuator_lag;
+        const double dt = options.step / substeps;
         double sum = 0;
+        commands.push_back(command);
         for (int i = 0; i < substeps; ++i) {
-            double mean = command;
-            if (tau > 0) {
-                // Mean of the lagged force over the piece: exact for its impulse, and the plant is slow against it.
-                const double decay = std::exp(-dt / tau);
-                mean = command + (force - command) * tau / dt * (1 - decay);
-                force = command + (force - command) * decay;
-            } else {
-                force = command;
+            const double t = options.step * static_cast<double>(samples) + dt * i;
+            double mean = arriving(t, dt);
+            // One after the other: the lag that the model declares, and that of the loop's own options.
+            for (const auto& [tau, state] : {std::pair{plant.actuator.lag, &lagged}, std::pair{options.actuator_lag, &force}}) {
+                const double driven = mean;
+                if (tau > 0) {
+                    // Mean of the lagged force over the piece: exact for its impulse, and the plant is slow against it.
+                    const double decay = std::exp(-dt / tau);
+                    mean = driven + (*state - driven) * tau / dt * (1 - decay);
+                    *state = driven + (*state - driven) * decay;
+                } else {
+                    *state = driven;
+                }
             }
             sum += mean;
-            plant.advance(gap, velocity, mean + disturbance, dt);
+            plant.advance(gap, velocity, mean + disturbance, dt, t);
         }
         acted = sum / substeps;
         ++samples;
@@ -229,7 +254,7 @@ LoopRun close_loop(const SeparatedPlant& plant, const ControlLaw& law, const Loo
         run.gap.push_back(loop.gap());
         run.velocity.push_back(loop.velocity());
         run.ground_force.push_back(plant.ground_force(loop.gap(), slope));
-        run.drag_force.push_back(plant.drag_force(loop.velocity(), slope));
+        run.drag_force.push_back(plant.drag(loop.gap(), loop.velocity()));
         loop.advance();
         run.command.push_back(parts.command);
         run.force.push_back(parts.acted);

@@ -371,6 +371,17 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
             row.drag_sigma = pick_sigma(at[3], NAN);
             row.total_sigma = pick_sigma(at[4], NAN);
             row.innovation = NAN;
+            if (std::isfinite(row.ground_force) && std::isfinite(row.drag_force)) {
+                // What departs from the declared laws may be the ground's or the drag's, whatever a linear law made of it.
+                FilterEstimate declared;
+                double slope = 0;
+                declared.drag_force = r.plant.drag(row.gap, row.velocity);
+                declared.departure = row.total_force - (r.plant.ground_force(row.gap, slope) - declared.drag_force);
+                declared.departure_sigma = row.total_sigma;
+                const double split = split_sigma(out.noise, declared);
+                row.ground_sigma = std::hypot(row.ground_sigma, split);
+                row.drag_sigma = std::hypot(row.drag_sigma, split);
+            }
             row.outside = row.gap < r.plant.lower || row.gap > r.plant.upper;
             add(columns, summary.name, u.time[k], row);
             columns.note.back() = u.restart[k] && k > 0 ? "started anew" : row.outside ? "outside the table" : "";
@@ -404,7 +415,8 @@ Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& 
         out.separability = separability(frozen_model(p, 0.5 * (std::max(p.lower, p.contact_gap) + p.upper), 0.01));
         estimate_extended(runs, options, out, columns, progress);
         out.explanation = "total_force is seen through the motion; ground_force adds the declared drag law to it, and drag_force is that "
-                          "law: their split is as good as the law";
+                          "law: their split is as good as the law. Their bands count how far the data depart from the declared laws, "
+                          "whichever of the two departs";
     } else {
         estimate_linear(runs, options, out, columns, progress);
         out.explanation = out.separability.explanation;

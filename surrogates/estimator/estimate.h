@@ -8,6 +8,7 @@
 #include "core/figure.h"
 #include "core/progress.h"
 #include "core/table.h"
+#include "surrogates/dynamics/model.h"
 #include "surrogates/estimator/extended_filter.h"
 #include "surrogates/estimator/observer.h"
 
@@ -26,7 +27,8 @@ struct EstimateOptions {
     double gap_sigma = 0;              ///< m; 0: declared by the data, else estimated from it
     double velocity_sigma = 0;         ///< m/s, likewise
     double force_density = 0;          ///< N^2/s; 0: the likeliest
-    double drag_relative = 0.2;        ///< relative deviation of the declared drag law, carried into the separate forces
+    double drag_relative = 0.2;        ///< relative deviation of the declared drag law, carried into the separate forces; what the
+                                       ///< data show to depart from the declared laws is counted beside it
     double gate = 6;
     bool smooth = false;               ///< extended: use the whole run for each moment
 };
@@ -59,8 +61,8 @@ struct Estimation {
 Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& data, const EstimateOptions& options,
                     core::Progress& progress = core::Progress::none());
 
-/// Signals of a measured run: gaps in time stay gaps, missing inputs are interpolated (and said in `remarks`).
-RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks);
+/// Signals of a measured run, read as `records` says: gaps in time stay gaps, missing inputs are interpolated (and said in `remarks`).
+RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks, const dynamics::RecordReading& records = {});
 
 /// A linear filter over a run on its own uniform step: resampled where steps differ, started anew after gaps in time.
 /// Values beyond `gate` robust deviations from their neighbours are outliers and bridged.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "surrogates/dynamics/start_state.h"
 #include "surrogates/estimator/internal/three.h"
 
 namespace underbody::estimator {
@@ -35,25 +36,23 @@ void check_run(const RunSignals& run) {
 }
 
 ExtendedRunner::Belief start_of_run(const ExtendedRunner& runner, const RunSignals& run, const FilterNoise& noise) {
-    double n = 0, st = 0, sh = 0, stt = 0, sth = 0, t0 = run.time.front();
-    for (std::size_t i = 0; i < run.time.size() && (n < 3 || run.time[i] - t0 < 0.3); ++i) {
-        if (std::isfinite(run.gap[i])) {
-            const double t = run.time[i] - t0;
-            n += 1;
-            st += t;
-            sh += run.gap[i];
-            stt += t * t;
-            sth += t * run.gap[i];
-        }
-    }
-    const double determinant = n * stt - st * st;
-    const double velocity = determinant > 0 ? (n * sth - st * sh) / determinant : 0;
+    const dynamics::StartState start = dynamics::start_state(run.time, run.gap, 0, run.time.size() - 1);
     ExtendedRunner::Belief b;
-    b.x = {(sh - velocity * st) / n, velocity, 0};
-    const double sh2 = noise.gap * noise.gap;
-    const double sw2 = determinant > 0 ? n * sh2 / determinant : 1;
+    b.x = {start.gap, start.velocity, 0};
+    const double sh2 = noise.gap * noise.gap, sw2 = start.slope_factor > 0 ? start.slope_factor * sh2 : 1;
     b.p = {4 * sh2, 0, 0, 0, 4 * sw2 + 1e-4, 0, 0, 0, runner.departure_sigma() * runner.departure_sigma()};
     return b;
+}
+
+RunSignals through_actuator(const SeparatedPlant& plant, RunSignals run) {
+    if (!run.input.empty() && !plant.actuator.ideal()) {
+        std::vector<double> mean;
+        plant.actuator.mean_over_steps(run.time, run.input, run.held, run.time, mean);
+        std::copy(mean.begin() + 1, mean.end(), run.input.begin());
+        run.input.back() = mean.back();
+        run.held = true;
+    }
+    return run;
 }
 
 double input_over(const RunSignals& run, std::size_t k) {  // mean over the step that ends at sample k
@@ -104,7 +103,7 @@ FilterResult extended_filter(const SeparatedPlant& plant, const RunSignals& run,
     for (std::size_t k = 0; k < n; ++k) {
         FilterEstimate& e = result.estimates[k];
         if (k > 0) {
-            runner.predict(run.time[k] - run.time[k - 1], input_over(run, k));
+            runner.predict(run.time[k] - run.time[k - 1], input_over(run, k), run.time[k - 1]);
         }
         const double likelihood = runner.measure(run.gap[k], run.velocity.empty() ? NAN : run.velocity[k], e);
         result.outliers += e.outlier ? 1U : 0U;

@@ -1,9 +1,9 @@
 // The extended Kalman filter over the nonlinear heave plant: gap, heave velocity and what the ground force departs from its table.
 //
-//     dh/dt = w,  S dw/dt = F_g(h) + delta - F_d(w) + u + bias,  d delta/dt = -delta/tau + white noise of density q
+//     dh/dt = w,  M dw/dt = F_g(h) + delta - F_d(h, w) + u + bias,  d delta/dt = -delta/tau + white noise of density q
 //
-// total_force is seen through the motion. ground_force = total_force + F_d(w) and drag_force = F_d(w) rest on the declared drag law:
-// "model-dependent". Sensors: gap, and heave_velocity when measured; steps may differ and values may be missing.
+// total_force is seen through the motion. ground_force = total_force + F_d and drag_force = F_d rest on the declared laws:
+// "model-dependent". Their deviations say what the motion cannot tell: along (1, 1) of the two nothing is observed. Sensors: gap, and heave_velocity when measured; steps may differ and values may be missing.
 #pragma once
 
 #include <array>
@@ -20,6 +20,9 @@ struct FilterNoise {
     double force_density = 1e-7;  ///< N^2/s: random walk of the departure
     double force_time = 0;        ///< s: relaxation of the departure; 0: none
     double drag_relative = 0;     ///< relative deviation of the declared drag law, carried into the separate forces
+    /// The motion shows the total force alone: what departs from the declared laws may be the ground's or the drag's. True: the
+    /// one or the other, each as likely, in the deviations of the two; false: all of it is the ground's.
+    bool split_departure = false;
     double gate = 6;              ///< a measurement further off than this many deviations is an outlier; 0: none is
     double departure_sigma = 0;   ///< N: how far the table may be off at the start; 0: as far as its largest force
 };
@@ -50,6 +53,10 @@ struct FilterResult {
     std::size_t outliers = 0, missing = 0, used = 0;
 };
 
+/// One standard deviation of what goes from the ground's force to the drag and back unseen: FilterNoise::drag_relative of the drag, and
+/// the share of the departure (with its own deviation) that is the drag's.
+double split_sigma(const FilterNoise& noise, const FilterEstimate& estimate);
+
 /// `smooth`: fixed-interval smoothing (Rauch, Tung and Striebel 1965) after the filter.
 /// Throws core::InputError: fewer than three gaps, times that do not ascend, an input that is missing.
 FilterResult extended_filter(const SeparatedPlant& plant, const RunSignals& run, const FilterNoise& noise, bool smooth = false);
@@ -76,8 +83,8 @@ public:
     void start(const Belief& belief);
     /// From one sample: at the measured gap, at rest unless the velocity is measured, with a wide belief about the force.
     void start(double gap, double velocity);
-    /// The next sample lies `dt` later; `input` was held since.
-    void predict(double dt, double input);
+    /// The next sample lies `dt` later; `input` was held since `time`.
+    void predict(double dt, double input, double time = 0);
     /// NaN: not measured. Returns the log likelihood of the sample.
     double measure(double gap, double velocity, FilterEstimate& estimate);
     /// What a belief says of gap, velocity and forces.
@@ -99,8 +106,10 @@ private:
     std::size_t rejected_ = 0;
 };
 
-/// Start of a run out of its first gaps: a straight line over 0.3 s.
+/// Start of a run out of its first gaps (surrogates/dynamics/start_state.h).
 ExtendedRunner::Belief start_of_run(const ExtendedRunner& runner, const RunSignals& run, const FilterNoise& noise);
+/// The run with its input as the plant's actuator lets it reach the body: means over the steps, held.
+RunSignals through_actuator(const SeparatedPlant& plant, RunSignals run);
 /// Mean of the input over the step that ends at sample k.
 double input_over(const RunSignals& run, std::size_t k);
 /// Throws core::InputError: lengths that differ, fewer than three gaps, times that do not ascend, an input that is missing.

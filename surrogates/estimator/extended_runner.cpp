@@ -40,30 +40,49 @@ void ExtendedRunner::start(double gap, double velocity) {
     start(b);
 }
 
-void ExtendedRunner::predict(double dt, double input) {
+namespace {
+
+/// exp(A step) and what white noise of density q into the departure adds to the covariance over the step: series over a part
+/// that is short against A, doubled as often as needed (a film at a small gap is fast).
+void over_step(const dynamics::HeaveSlopes& slopes, double relaxation, double q, double step, Square& f, Square& noise) {
+    const double s = 1 / slopes.mass, fastest = std::max({std::abs(slopes.velocity), std::sqrt(std::abs(slopes.gap)), relaxation});
+    int doublings = 0;
+    while (fastest * step > 0.3 && doublings < 40) {
+        step *= 0.5;
+        ++doublings;
+    }
+    const double a10 = slopes.gap, a11 = slopes.velocity, a12 = s, a22 = -relaxation, h = 0.5 * step * step;
+    f = {1 + h * a10, step + h * a11,                           h * a12,
+         step * a10 + h * a11 * a10, 1 + step * a11 + h * (a10 + a11 * a11), step * a12 + h * (a11 * a12 + a12 * a22),
+         0, 0, std::exp(step * a22)};
+    // Integrated through velocity and gap (Van Loan's series).
+    const double t3 = step * step * step;
+    noise = {q * s * s * t3 * step * step / 20, q * s * s * t3 * step / 8, q * s * t3 / 6,
+             q * s * s * t3 * step / 8,         q * s * s * t3 / 3,        q * s * step * step / 2,
+             q * s * t3 / 6,                    q * s * step * step / 2,   q * step};
+    for (; doublings > 0; --doublings) {
+        const Square later = product(product(f, noise), transposed(f));
+        for (std::size_t k = 0; k < 9; ++k) {
+            noise[k] += later[k];
+        }
+        f = product(f, f);
+    }
+}
+
+}  // namespace
+
+void ExtendedRunner::predict(double dt, double input, double time) {
     Belief& b = belief_;
     phi_ = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const int pieces = std::clamp(static_cast<int>(std::ceil(dt / 0.02)), 1, 500);
     const double step = dt / pieces;
     for (int i = 0; i < pieces; ++i) {
-        double ground_slope = 0, drag_slope = 0;
-        plant_->ground_force(b.x[0], ground_slope);
-        plant_->drag_force(b.x[1], drag_slope);
-        const double s = 1 / plant_->virtual_mass;
-        const double a10 = ground_slope * s, a11 = -drag_slope * s, a12 = s;
-        const double a22 = noise_->force_time > 0 ? -1 / noise_->force_time : 0;
-        // exp(A step) to second order: the pieces are short against every time constant of the plant.
-        const double h = 0.5 * step * step;
-        const Square f{1 + h * a10, step + h * a11,                           h * a12,
-                       step * a10 + h * a11 * a10, 1 + step * a11 + h * (a10 + a11 * a11), step * a12 + h * (a11 * a12 + a12 * a22),
-                       0, 0, std::exp(step * a22)};
-        const double q = noise_->force_density;
-        // White noise into the departure, integrated through velocity and gap (Van Loan's series).
-        const double t3 = step * step * step;
-        const Square noise{q * s * s * t3 * step * step / 20, q * s * s * t3 * step / 8, q * s * t3 / 6,
-                           q * s * s * t3 * step / 8,         q * s * s * t3 / 3,        q * s * step * step / 2,
-                           q * s * t3 / 6,                    q * s * step * step / 2,   q * step};
-        plant_->advance(b.x[0], b.x[1], input + b.x[2], step);
+        const double now = time + step * i;
+        dynamics::HeaveSlopes slopes;
+        plant_->acceleration(b.x[0], b.x[1], input + b.x[2], now, slopes);
+        Square f{}, noise{};
+        over_step(slopes, noise_->force_time > 0 ? 1 / noise_->force_time : 0, noise_->force_density, step, f, noise);
+        plant_->advance(b.x[0], b.x[1], input + b.x[2], step, now);
         b.x[2] *= f[8];
         b.p = product(product(f, b.p), transposed(f));
         for (std::size_t k = 0; k < 9; ++k) {
@@ -96,13 +115,20 @@ bool ExtendedRunner::update(std::size_t c, double value, double sigma, double& i
     return true;
 }
 
+double split_sigma(const FilterNoise& noise, const FilterEstimate& e) {
+    // All of it is the one's or the other's, each as likely: half of its square is expected.
+    const double departure = noise.split_departure ? std::hypot(e.departure, e.departure_sigma) / std::numbers::sqrt2 : 0;
+    return std::hypot(noise.drag_relative * e.drag_force, departure);
+}
+
 void ExtendedRunner::describe(const Belief& b, FilterEstimate& e) const {
-    double ground_slope = 0, drag_slope = 0;
+    double ground_slope = 0;
+    DragSlopes drag;
     const double table = plant_->ground_force(b.x[0], ground_slope);
     e.gap = b.x[0];
     e.velocity = b.x[1];
     e.departure = b.x[2];
-    e.drag_force = plant_->drag_force(b.x[1], drag_slope);
+    e.drag_force = plant_->drag_force(b.x[0], b.x[1], drag);
     e.ground_force = table + b.x[2];
     e.total_force = e.ground_force - e.drag_force;
     e.covariance = b.p;
@@ -119,10 +145,10 @@ void ExtendedRunner::describe(const Belief& b, FilterEstimate& e) const {
     e.gap_sigma = sigma_along(1, 0, 0);
     e.velocity_sigma = sigma_along(0, 1, 0);
     e.departure_sigma = sigma_along(0, 0, 1);
-    e.total_sigma = sigma_along(ground_slope, -drag_slope, 1);
-    const double law = noise_->drag_relative * e.drag_force;
-    e.drag_sigma = std::hypot(sigma_along(0, drag_slope, 0), law);
-    e.ground_sigma = std::hypot(sigma_along(ground_slope, 0, 1), law);
+    e.total_sigma = sigma_along(ground_slope - drag.gap, -drag.velocity, 1);
+    const double split = split_sigma(*noise_, e);
+    e.drag_sigma = std::hypot(sigma_along(drag.gap, drag.velocity, 0), split);
+    e.ground_sigma = std::hypot(sigma_along(ground_slope, 0, 1), split);
     e.outside = b.x[0] < plant_->lower || b.x[0] > plant_->upper;
 }
 

@@ -28,12 +28,13 @@ Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double 
     }
     Matrix p = Matrix::diagonal({1e-2, 1e-2, largest * largest, o.drag_prior * o.drag_prior});
     const auto steps = static_cast<std::size_t>(std::round(o.window / dt));
-    double ground_slope = 0, drag_slope = 0, drag = 0;
+    double ground_slope = 0, drag = 0;
+    DragSlopes drag_slopes;
     for (std::size_t k = 0; k <= steps; ++k) {
         const double t = dt * static_cast<double>(k);
         const double h = gap + speed / omega * std::sin(omega * t), w = speed * std::cos(omega * t);
         plant.ground_force(h, ground_slope);
-        drag = plant.drag_force(w, drag_slope);
+        drag = plant.drag_force(h, w, drag_slopes);
         for (int sensor = 0; sensor < (o.noise.velocity > 0 ? 2 : 1); ++sensor) {
             const std::size_t c = sensor == 0 ? 0 : 1;
             const double sigma = sensor == 0 ? o.noise.gap : o.noise.velocity;
@@ -49,7 +50,7 @@ Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double 
             break;
         }
         const Matrix a{{0, 1, 0, 0},
-                       {ground_slope * s, -drag_slope * s, s, -drag * s},
+                       {(ground_slope - drag_slopes.gap) * s, -drag_slopes.velocity * s, s, -drag * s},
                        {0, 0, o.noise.force_time > 0 ? -1 / o.noise.force_time : 0, 0},
                        {0, 0, 0, 0}};
         const Matrix phi = Matrix::identity(4) + dt * a + (0.5 * dt * dt) * (a * a);
@@ -68,7 +69,8 @@ Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double 
         }
         return std::sqrt(std::max(sum, 0.0));
     };
-    return {along({ground_slope, 0, 1, 0}), along({0, drag_slope, 0, drag}), along({ground_slope, -drag_slope, 1, -drag})};
+    return {along({ground_slope, 0, 1, 0}), along({drag_slopes.gap, drag_slopes.velocity, 0, drag}),
+            along({ground_slope - drag_slopes.gap, -drag_slopes.velocity, 1, -drag})};
 }
 
 }  // namespace
@@ -103,7 +105,7 @@ InformationMap information_along_gap(const SeparatedPlant& plant, const Informat
         map.ground_force.push_back(plant.ground_force(h, slope));
     }
     for (const double w : map.speeds) {
-        map.drag_force.push_back(plant.drag_force(w, slope));
+        map.drag_force.push_back(plant.drag(plant.upper, w));
     }
     std::size_t blind = 0;
     for (std::size_t i = 0; i < n * m; ++i) {
@@ -158,11 +160,12 @@ ObservabilityAlongGap observability_along_gap(const SeparatedPlant& plant, const
     ObservabilityAlongGap result;
     result.gaps = gaps;
     for (const double h : gaps) {
-        double slope = 0, drag_slope = 0;
+        double slope = 0;
+        DragSlopes drag_slopes;
         plant.ground_force(h, slope);
-        plant.drag_force(0.01, drag_slope);
+        plant.drag_force(h, 0.01, drag_slopes);
         const double s = 1 / plant.virtual_mass;
-        const Observability o = observability(Matrix{{0, 1, 0}, {slope * s, -drag_slope * s, s}, {0, 0, 0}}, Matrix{{1, 0, 0}}, {0.1, 0.01, 0.01});
+        const Observability o = observability(Matrix{{0, 1, 0}, {(slope - drag_slopes.gap) * s, -drag_slopes.velocity * s, s}, {0, 0, 0}}, Matrix{{1, 0, 0}}, {0.1, 0.01, 0.01});
         result.smallest_singular_value.push_back(o.singular_values.back() / o.singular_values.front());
         const AugmentedModel frozen = frozen_model(plant, h, 0.01);
         result.separate_rank.push_back(observability(frozen.j_zeta(), frozen.a_zeta()).rank);

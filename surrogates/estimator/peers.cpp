@@ -10,6 +10,18 @@
 
 namespace underbody::estimator {
 
+namespace {
+
+/// F_g - F_d in a state, and its rate of change.
+void total_force(const SeparatedPlant& plant, double h, double w, double u, double& force, double& rate) {
+    double ground_slope = 0;
+    DragSlopes drag;
+    force = plant.ground_force(h, ground_slope) - plant.drag_force(h, w, drag);
+    rate = (ground_slope - drag.gap) * w - drag.velocity * plant.acceleration(h, w, u);
+}
+
+}  // namespace
+
 std::vector<TestMotion> test_motions(const SeparatedPlant& plant, const PredictionTest& test) {
     std::vector<TestMotion> motions;
     const auto n = static_cast<std::size_t>(std::round(test.horizon / test.step));
@@ -22,13 +34,13 @@ std::vector<TestMotion> test_motions(const SeparatedPlant& plant, const Predicti
             if (k % 5 == 0) {
                 u = 0.95 * u + std::sqrt(1 - 0.95 * 0.95) * test.input_sigma * random.normal();
             }
-            double ground_slope = 0, drag_slope = 0;
-            const double force = plant.ground_force(h, ground_slope) - plant.drag_force(w, drag_slope);
+            double force = 0, rate = 0;
+            total_force(plant, h, w, u, force, rate);
             m.gap.push_back(h);
             m.velocity.push_back(w);
             m.input.push_back(u);
             m.total_force.push_back(force);
-            m.total_rate.push_back(ground_slope * w - drag_slope * plant.acceleration(h, w, u));
+            m.total_rate.push_back(rate);
             plant.advance(h, w, u, test.step);
         }
         motions.push_back(std::move(m));
@@ -153,16 +165,16 @@ PredictionError judge_plant(const SeparatedPlant& usual, const std::vector<TestM
     Sums sums;
     for (const TestMotion& m : motions) {
         const SeparatedPlant& plant = m.plant ? *m.plant : usual;
-        double h = m.gap[0], w = m.velocity[0], ground_slope = 0, drag_slope = 0;
+        double h = m.gap[0], w = m.velocity[0];
         for (std::size_t k = 0; k < m.gap.size(); ++k) {
             const double own = plant.acceleration(m.gap[k], m.velocity[k], m.input[k]);
             const double acceleration = (m.total_force[k] + m.input[k] + plant.bias) / plant.virtual_mass;
             sums.acceleration += (own - acceleration) * (own - acceleration);
-            plant.ground_force(m.gap[k], ground_slope);
-            plant.drag_force(m.velocity[k], drag_slope);
-            sums.rate += std::pow(ground_slope * m.velocity[k] - drag_slope * own - m.total_rate[k], 2);
-            double unused = 0;
-            judge.add(sums, m, k, h, w, plant.ground_force(h, unused) - plant.drag_force(w, unused));
+            double force = 0, rate = 0;
+            total_force(plant, m.gap[k], m.velocity[k], m.input[k], force, rate);
+            sums.rate += std::pow(rate - m.total_rate[k], 2);
+            total_force(plant, h, w, m.input[k], force, rate);
+            judge.add(sums, m, k, h, w, force);
             const int pieces = std::max(1, static_cast<int>(std::ceil(m.step / 0.02 - 1e-9)));
             for (int i = 0; i < pieces; ++i) {
                 plant.advance(h, w, m.input[k], m.step / pieces);

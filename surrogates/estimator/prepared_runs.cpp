@@ -19,7 +19,7 @@ namespace {
 
 // Plant at a run's conditions; channels that vary within the run are held at their mean.
 SeparatedPlant plant_of(const dynamics::Model& model, const dynamics::MeasuredRun& run, core::Problems& remarks) {
-    const dynamics::InputSignals signals = dynamics::signals_of(run);
+    const dynamics::InputSignals signals = dynamics::signals_of(run, model.records);
     dynamics::Conditions held = signals.held;
     for (const auto& signal : signals.signals) {
         if (signal.channel == dynamics::Channel::input_force) {
@@ -35,8 +35,9 @@ SeparatedPlant plant_of(const dynamics::Model& model, const dynamics::MeasuredRu
                           " varies; the force table is taken at its mean and the departure carries the rest");
     }
     SeparatedPlant plant = separate(model, held);
+    plant.actuator.delay -= model.records.input_advance;
     if (held.has(dynamics::Channel::input_force) && !run.table.find("input_force")) {
-        plant.bias += held[dynamics::Channel::input_force];
+        plant.bias += plant.actuator.felt(held[dynamics::Channel::input_force]);
     }
     return plant;
 }
@@ -53,7 +54,7 @@ double noise_or_estimate(const dynamics::Measurements& data, const std::string& 
     std::vector<double> each;
     for (const auto& run : data.runs) {
         if (run.has(channel)) {
-            const double sigma = dynamics::noise_of(run.table.numbers("time"), run.values(channel));
+            const double sigma = dynamics::sensor_noise(run.table.numbers("time"), run.values(channel));
             if (sigma > 0) {
                 each.push_back(sigma);
             }
@@ -75,7 +76,8 @@ std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Meas
     }
     std::vector<Prepared> all;
     for (const auto& run : data.runs) {
-        all.push_back({&run, plant_of(model, run, remarks), signals_of_run(run, remarks)});
+        all.push_back({&run, plant_of(model, run, remarks), signals_of_run(run, remarks, model.records)});
+        all.back().signals = through_actuator(all.back().plant, std::move(all.back().signals));
         if (!(range_of(all.back().signals.gap) > 0)) {
             note(remarks, "run '" + run.name + "': the gap does not vary; a dead sensor looks like that");
         }
@@ -111,6 +113,7 @@ NoiseChoice noise_for(const dynamics::Measurements& data, const EstimateOptions&
         note(remarks, "the heave velocity shows no noise; 1e-6 m/s is taken for its resolution");
     }
     noise.drag_relative = o.drag_relative;
+    noise.split_departure = true;
     noise.gate = o.gate;
     noise.force_density = o.force_density;
     if (!(noise.force_density > 0)) {
@@ -137,19 +140,19 @@ double internal::range_of(const std::vector<double>& values) {
     return highest - lowest;
 }
 
-RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks) {
+RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks, const dynamics::RecordReading& records) {
     RunSignals s;
     s.time = run.table.numbers("time");
     s.gap = run.values("gap");
-    s.velocity = run.has("heave_velocity") ? run.values("heave_velocity") : std::vector<double>{};
+    s.velocity = dynamics::as_read(run, "heave_velocity", records);
     if (run.table.find("input_force") == nullptr) {
         if (run.conditions.find("input_force") == run.conditions.end()) {
             note(remarks, "run '" + run.name + "': no input_force is recorded; none is taken to act");
         }
         return s;
     }
-    s.input = run.values("input_force");
-    s.held = true;  // as dynamics::predict takes recorded inputs
+    s.input = dynamics::as_read(run, "input_force", records);
+    s.held = records.input_between != dynamics::RecordReading::Between::linear;  // as dynamics::predict takes recorded inputs
     std::size_t bridged = 0, last = s.input.size();
     for (std::size_t i = 0; i < s.input.size(); ++i) {
         if (!std::isfinite(s.input[i])) {
@@ -199,7 +202,7 @@ std::vector<std::size_t> good_samples(const std::vector<double>& time, const std
             ++out.missing;
         }
     }
-    const double noise = dynamics::noise_of(time, values);
+    const double noise = dynamics::sensor_noise(time, values);
     for (std::size_t k = 0; k < finite.size(); ++k) {
         if (k >= 2 && k + 2 < finite.size()) {
             std::array<double, 5> near{};

@@ -43,7 +43,7 @@ std::function<double(double, double&)> reference_ground_force() {
     return [table](double gap, double& slope) { return table.value(&gap, &slope); };
 }
 
-SeparatedPlant reference_plant(std::function<double(double, double&)> drag) {
+SeparatedPlant reference_plant(ResistanceLaw drag) {
     SeparatedPlant plant;
     plant.virtual_mass = thesis_virtual_mass();
     plant.ground_force = reference_ground_force();

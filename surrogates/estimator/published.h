@@ -15,7 +15,7 @@ double thesis_virtual_mass();
 /// Gap shifted as in chapter 7: the stable zero lies at 0, the unstable one at 0.16 m.
 std::function<double(double gap, double& slope)> reference_ground_force();
 /// REF-A with the given drag, S of the thesis, no bias.
-SeparatedPlant reference_plant(std::function<double(double, double&)> drag = quadratic_drag(0, 50.2));
+SeparatedPlant reference_plant(ResistanceLaw drag = quadratic_drag(0, 50.2));
 /// .02 sin(2 pi h) in place of REF-A: a curve with closed-form moments.
 SeparatedPlant sine_plant();
 

@@ -1,5 +1,4 @@
-// Binds the estimator's plant to a declared model.
-#include <cmath>
+// The simulator's heave equation with its forces apart, for filters, observers and control.
 #include <memory>
 
 #include "surrogates/dynamics/heave.h"
@@ -8,63 +7,100 @@
 
 namespace underbody::estimator {
 
+double SeparatedPlant::acceleration(double gap, double velocity, double input, double time,
+                                    dynamics::HeaveSlopes& slopes) const {
+    dynamics::HeaveLoad load;
+    DragSlopes drag_slopes;
+    load.force = ground_force(gap, load.slope_h) - drag_force(gap, velocity, drag_slopes) + input + bias;
+    load.slope_h -= drag_slopes.gap;
+    load.slope_w -= drag_slopes.velocity;
+    if (other_force) {
+        const dynamics::HeaveLoad other = other_force(time, gap, velocity, input);
+        load.force += other.force;
+        load.slope_h += other.slope_h;
+        load.slope_w += other.slope_w;
+    }
+    return dynamics::heave_acceleration(inertia ? inertia(gap) : dynamics::HeaveInertia{virtual_mass, 0, 0}, velocity,
+                                        load, {}, slopes);
+}
+
 namespace {
 
-void note(SeparatedPlant& plant, const std::string& text) {
-    plant.remarks.push_back({core::Problem::Severity::warning, text, {}});
-}
-
-// What of the heave equation does not fit F_g(h) - F_d(w) + bias.
-void name_the_rest(SeparatedPlant& plant, const dynamics::HeaveTerms& terms) {
-    if (terms.film != 0 || terms.history != 0 || terms.friction != 0 || !terms.waves.empty() || !terms.corrections.empty() ||
-        !terms.extras.empty()) {
-        note(plant, "film damping, friction, history, waves and corrections of the model are no function of the gap or the velocity "
-                    "alone: they are left out of the separate forces");
+/// The law over one step with the input held.
+struct HeldLaw {
+    const SeparatedPlant& plant;
+    double input, time, step;
+    double operator()(double part, double h, double w, const double* /*memory*/, dynamics::HeaveSlopes* slopes) const {
+        dynamics::HeaveSlopes unused;
+        return plant.acceleration(h, w, input, time + part * step, slopes ? *slopes : unused);
     }
-    if (!terms.growth.empty() || !terms.added_mass.empty()) {
-        note(plant, "the inertia varies with the gap; the separate forces use its value far from the ground");
-    }
-    if (terms.input_delay != 0 || terms.input_lag != 0 || terms.input_dead_zone != 0 || terms.input_gain != 1) {
-        note(plant, "delay, lag, dead zone and gain of the input are left out: the input is taken as the force on the body");
-    }
-}
+};
 
 }  // namespace
 
+void SeparatedPlant::advance(double& gap, double& velocity, double input, double step, double time) const {
+    dynamics::HeaveState state{gap, velocity, {}};
+    const HeldLaw law{*this, input, time, step};
+    dynamics::HeaveStepper<HeldLaw>(law, 0, contact_gap, restitution)
+        .advance(state, step, [this](const dynamics::HeaveState& s, double a, double dt) {
+            return fastest_rate ? fastest_rate(s, a, dt) : 0.0;
+        });
+    gap = state.h;
+    velocity = state.w;
+}
+
 SeparatedPlant separate(const dynamics::Model& model, const dynamics::Conditions& held) {
-    auto heave = std::make_shared<dynamics::HeavePlant>(model, held);
-    const dynamics::HeaveTerms& t = heave->terms;
+    const auto heave = std::make_shared<const dynamics::HeavePlant>(model, held);
+    const dynamics::HeaveTerms& terms = heave->terms;
     SeparatedPlant plant;
-    plant.virtual_mass = t.added_mass.empty() ? t.mass : t.mass + t.added_mass(t.added_mass.upper());
-    plant.bias = t.constant;
-    name_the_rest(plant, t);
-    const double stiffness = t.stiffness, stiffness_gap = t.stiffness_gap;
-    if (heave->single_curve() && !heave->lift_curve().empty()) {
-        plant.ground_force = [heave, stiffness, stiffness_gap](double h, double& slope) {
-            const double value = heave->lift_curve().value(h, slope);
-            slope -= stiffness;
-            return value - stiffness * (h - stiffness_gap);
-        };
-        plant.lower = heave->lift_curve().lower();
-        plant.upper = heave->lift_curve().upper();
-    } else {
-        plant.ground_force = [heave, stiffness, stiffness_gap](double h, double& slope) {
-            slope = (heave->lift(h + 1e-6) - heave->lift(h - 1e-6)) / 2e-6 - stiffness;
-            return heave->lift(h) - stiffness * (h - stiffness_gap);
-        };
-        plant.lower = t.table_lower;
-        plant.upper = t.table_upper;
-    }
-    const double current = t.current, linear = t.linear, quadratic = t.quadratic;
-    const double extra_linear = t.extra_linear, extra_quadratic = t.extra_quadratic;
-    const bool mixed = t.mixed;
-    const dynamics::MixedDrag law = t.mixed_law;
-    plant.drag_force = [=](double w, double& slope) {
-        const double v = w - current;
-        slope = (mixed ? law.slope(v) : linear + 2 * quadratic * std::abs(v)) + extra_linear + 2 * extra_quadratic * std::abs(w);
-        return (mixed ? law(v) : linear * v + quadratic * v * std::abs(v)) + extra_linear * w + extra_quadratic * w * std::abs(w);
+    plant.virtual_mass = terms.added_mass.empty() ? terms.mass : terms.mass + terms.added_mass(terms.added_mass.upper());
+    plant.bias = terms.constant;
+    plant.actuator = terms.actuator;
+    plant.contact_gap = terms.contact_gap;
+    plant.restitution = terms.restitution;
+    const bool one_curve = heave->single_curve() && !heave->lift_curve().empty();
+    plant.lower = one_curve ? heave->lift_curve().lower() : terms.table_lower;
+    plant.upper = one_curve ? heave->lift_curve().upper() : terms.table_upper;
+    plant.ground_force = [heave](double h, double& slope) {
+        dynamics::HeaveLoad load = heave->table_lift(h, 0);
+        add_springs(heave->terms, h, load);
+        slope = load.slope_h;
+        return load.force;
     };
-    plant.contact_gap = t.contact_gap;
+    plant.drag_force = [heave](double h, double w, DragSlopes& slopes) {
+        dynamics::HeaveLoad load;
+        add_water_drag(heave->terms, w, load);
+        add_guided_resistance(heave->terms, h, w, 0, load);
+        slopes = {-load.slope_h, -load.slope_w};
+        return -load.force;
+    };
+    if (!terms.growth.empty() || !terms.added_mass.empty()) {
+        plant.inertia = [heave](double h) { return heave_inertia(heave->terms, h); };
+    }
+    const bool several = std::any_of(terms.corrections.begin(), terms.corrections.end(),
+                                     [](const auto& correction) { return correction.curve.empty(); });
+    if (!terms.waves.empty() || several || !heave->single_curve()) {
+        plant.other_force = [heave](double t, double h, double w, double u) {
+            // Tables over the velocity too: what they give beside their value at rest.
+            dynamics::HeaveLoad load = heave->table_lift(h, w);
+            const dynamics::HeaveLoad at_rest = heave->table_lift(h, 0);
+            load.force += wave_force(heave->terms, t) - at_rest.force;
+            load.slope_h -= at_rest.slope_h;
+            add_corrections(heave->terms, h, w, {t, u}, heave->held(), load);
+            return load;
+        };
+    }
+    if (terms.film != 0 || terms.friction != 0) {
+        plant.fastest_rate = [heave](const dynamics::HeaveState& state, double a, double step) {
+            return dynamics::fastest_rate(heave->terms, state, a, step);
+        };
+    }
+    if (terms.history != 0) {
+        plant.remarks.push_back({core::Problem::Severity::warning,
+                                 "the memory of the history force is left out of the estimator: what it pulls is in the "
+                                 "departure of the total force",
+                                 {}});
+    }
     return plant;
 }
 

@@ -84,8 +84,10 @@ SurfaceProbability identify_surface(const std::vector<Surface>& surfaces, const 
     }
     SurfaceProbability result;
     std::vector<Member> bank;
+    std::vector<RunSignals> felt;  // per surface: its input behind that model's actuator
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         result.names.push_back(surfaces[s].name);
+        felt.push_back(through_actuator(surfaces[s].plant, run));
         for (const FilterNoise& noise : noises) {
             bank.push_back({ExtendedRunner(surfaces[s].plant, noise)});
             bank.back().runner.start(start_of_run(bank.back().runner, run, noise));
@@ -99,10 +101,11 @@ SurfaceProbability identify_surface(const std::vector<Surface>& surfaces, const 
         if (k > 0 && options.switching > 0) {
             leak(bank, prior, densities.size(), std::exp(-options.switching * dt));
         }
-        for (Member& m : bank) {
+        for (std::size_t i = 0; i < bank.size(); ++i) {
+            Member& m = bank[i];
             FilterEstimate e;
             if (k > 0) {
-                m.runner.predict(dt, input_over(run, k));
+                m.runner.predict(dt, input_over(felt[i / densities.size()], k), run.time[k - 1]);
             }
             m.log_weight += m.runner.measure(run.gap[k], run.velocity.empty() ? NAN : run.velocity[k], e);
             if (k > 10 && std::isfinite(e.innovation) && !e.outlier) {

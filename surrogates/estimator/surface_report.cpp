@@ -32,7 +32,7 @@ SurfaceReport identify_surfaces(const std::vector<std::pair<std::string, dynamic
         std::vector<Surface> bank;
         double largest = 0;
         for (const auto& [name, model] : surfaces) {
-            bank.push_back({name, separate(model, dynamics::signals_of(run).held)});
+            bank.push_back({name, separate(model, dynamics::signals_of(run, model.records).held)});
             largest = std::max(largest, largest_force(bank.back().plant));
         }
         SurfaceOptions options;

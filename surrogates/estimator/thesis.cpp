@@ -18,15 +18,16 @@ Motion motion_of(const SeparatedPlant& plant, double gap, double velocity, doubl
     double h = gap, w = velocity;
     for (std::size_t k = 0; k <= n; ++k) {
         const double u = k < input.size() ? input[k] : 0;
-        double ground_slope = 0, drag_slope = 0;
+        double ground_slope = 0;
+        DragSlopes drag_slopes;
         m.time.push_back(step * static_cast<double>(k));
         m.gap.push_back(h);
         m.velocity.push_back(w);
         m.ground.push_back(plant.ground_force(h, ground_slope));
-        m.drag.push_back(plant.drag_force(w, drag_slope));
+        m.drag.push_back(plant.drag_force(h, w, drag_slopes));
         m.acceleration.push_back(plant.acceleration(h, w, u));
         m.ground_rate.push_back(ground_slope * w);
-        m.drag_rate.push_back(drag_slope * m.acceleration.back());
+        m.drag_rate.push_back(drag_slopes.velocity * m.acceleration.back() + drag_slopes.gap * w);
         m.input.push_back(u);
         plant.advance(h, w, u, step);
     }

@@ -10,23 +10,9 @@
 
 namespace underbody::estimator {
 
-void SeparatedPlant::advance(double& gap, double& velocity, double input, double step) const {
-    const double h = gap, w = velocity;
-    const double k1 = acceleration(h, w, input);
-    const double k2 = acceleration(h + 0.5 * step * w, w + 0.5 * step * k1, input);
-    const double k3 = acceleration(h + 0.5 * step * (w + 0.5 * step * k1), w + 0.5 * step * k2, input);
-    const double k4 = acceleration(h + step * (w + 0.5 * step * k2), w + step * k3, input);
-    gap = h + step * (w + step / 6 * (k1 + k2 + k3));
-    velocity = w + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    if (gap <= contact_gap) {
-        gap = contact_gap;
-        velocity = std::max(velocity, 0.0);
-    }
-}
-
-std::function<double(double, double&)> quadratic_drag(double linear, double quadratic) {
-    return [linear, quadratic](double w, double& slope) {
-        slope = linear + 2 * quadratic * std::abs(w);
+ResistanceLaw quadratic_drag(double linear, double quadratic) {
+    return [linear, quadratic](double /*gap*/, double w, DragSlopes& slopes) {
+        slopes = {0, linear + 2 * quadratic * std::abs(w)};
         return linear * w + quadratic * w * std::abs(w);
     };
 }
@@ -58,9 +44,10 @@ Compiled compile(const SeparatedPlant& plant, const Layout& layout) {
 void fill(const Compiled& c, double u, double w, double h, double* row) {
     const SeparatedPlant& p = *c.plant;
     const std::size_t n = 2 + c.auxiliaries.size();
-    double ground_slope = 0, drag_slope = 0;
-    const double ground = p.ground_force(h, ground_slope), drag = p.drag_force(w, drag_slope);
-    const double dw = (ground - drag + u + p.bias) / p.virtual_mass;
+    double ground_slope = 0;
+    DragSlopes drag_slopes;
+    const double ground = p.ground_force(h, ground_slope), drag = p.drag_force(h, w, drag_slopes);
+    const double dw = p.acceleration(h, w, u), drag_rate = drag_slopes.velocity * dw + drag_slopes.gap * w;
     row[0] = u;
     row[1] = w;
     row[2] = h;
@@ -75,11 +62,11 @@ void fill(const Compiled& c, double u, double w, double h, double* row) {
                 break;
             case Auxiliary::drag_force:
                 value = drag;
-                rate = drag_slope * dw;
+                rate = drag_rate;
                 break;
             case Auxiliary::total_force:
                 value = ground - drag;
-                rate = ground_slope * w - drag_slope * dw;
+                rate = ground_slope * w - drag_rate;
                 break;
             case Auxiliary::ground_slope: {
                 // The curve's second derivative by a central difference of its slope over 20 micrometres.
@@ -91,11 +78,12 @@ void fill(const Compiled& c, double u, double w, double h, double* row) {
                 break;
             }
             case Auxiliary::drag_slope: {
-                double up = 0, down = 0;
-                p.drag_force(w + 1e-6, up);
-                p.drag_force(w - 1e-6, down);
-                value = drag_slope;
-                rate = (up - down) / 2e-6 * dw;
+                // Likewise over 2 micrometres per second.
+                DragSlopes up, down;
+                p.drag_force(h, w + 1e-6, up);
+                p.drag_force(h, w - 1e-6, down);
+                value = drag_slopes.velocity;
+                rate = (up.velocity - down.velocity) / 2e-6 * dw;
                 break;
             }
             case Auxiliary::gap_squared:
@@ -339,10 +327,11 @@ Vector equilibrium_point(const SeparatedPlant& plant, const Layout& layout, doub
 }
 
 AugmentedModel frozen_model(const SeparatedPlant& plant, double gap, double velocity) {
-    double ground_slope = 0, drag_slope = 0;
+    double ground_slope = 0;
+    DragSlopes drag_slopes;
     plant.ground_force(gap, ground_slope);
-    plant.drag_force(velocity, drag_slope);
-    const double s = 1 / plant.virtual_mass, f = drag_slope * s;
+    plant.drag_force(gap, velocity, drag_slopes);
+    const double s = 1 / plant.virtual_mass, f = drag_slopes.velocity * s;
     AugmentedModel model = AugmentedModel::from_matrices(
         Layout::heave(), Matrix{{0, 0, s, -s}, {1, 0, 0, 0}, {ground_slope, 0, 0, 0}, {0, 0, f, -f}}, Matrix{{s}, {0}, {0}, {f}},
         {plant.bias * s, 0, 0, f * plant.bias});
@@ -351,12 +340,10 @@ AugmentedModel frozen_model(const SeparatedPlant& plant, double gap, double velo
 }
 
 PlaneModel tangent_model(const SeparatedPlant& plant, double gap, double velocity) {
-    double ground_slope = 0, drag_slope = 0;
-    plant.ground_force(gap, ground_slope);
-    plant.drag_force(velocity, drag_slope);
-    const double s = 1 / plant.virtual_mass;
-    PlaneModel model{Matrix{{-drag_slope * s, ground_slope * s}, {1, 0}}, {s, 0}, {0, 0}};
-    model.offset[0] = plant.acceleration(gap, velocity, 0) - (model.A * Vector{velocity, gap})[0];
+    dynamics::HeaveSlopes slopes;
+    const double acceleration = plant.acceleration(gap, velocity, 0, 0, slopes);
+    PlaneModel model{Matrix{{slopes.velocity, slopes.gap}, {1, 0}}, {1 / slopes.mass, 0}, {0, 0}};
+    model.offset[0] = acceleration - (model.A * Vector{velocity, gap})[0];
     return model;
 }
 
@@ -367,7 +354,7 @@ double equivalent_drag_factor(MotionShape shape) {
 PlaneModel equivalent_model(const SeparatedPlant& plant, double gap, double velocity_rms, MotionShape shape) {
     PlaneModel model = tangent_model(plant, gap, 0);
     // Damping that removes the same power: E[w F_d] / E[w^2], for the plant's own drag law.
-    double work = 0, square = 0, unused = 0;
+    double work = 0, square = 0;
     constexpr int n = 2000;
     for (int i = 0; i < n; ++i) {
         const double x = (i + 0.5) / n;
@@ -378,7 +365,7 @@ PlaneModel equivalent_model(const SeparatedPlant& plant, double gap, double velo
         } else {
             w = velocity_rms * std::numbers::sqrt2 * std::sin(2 * std::numbers::pi * x);
         }
-        work += weight * w * plant.drag_force(w, unused);
+        work += weight * w * plant.drag(gap, w);
         square += weight * w * w;
     }
     model.A(0, 0) = square > 0 ? -work / square / plant.virtual_mass : model.A(0, 0);

@@ -8,40 +8,60 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "surrogates/dynamics/heave_step.h"
 #include "surrogates/estimator/augmented_model.h"
 
 namespace underbody::dynamics {
 struct Model;
-struct Conditions;
 }  // namespace underbody::dynamics
 
 namespace underbody::estimator {
 
-/// The heave plant with its two forces apart: S dw/dt = F_g(h) - F_d(w) + u + bias, dh/dt = w. SI, gap up, F_d a resistance.
+/// Slopes of a resistance along gap and velocity.
+struct DragSlopes {
+    double gap = 0, velocity = 0;
+};
+using ResistanceLaw = std::function<double(double gap, double velocity, DragSlopes& slopes)>;
+
+/// The heave plant with its forces apart:
+///   M(h) dw/dt + 1/2 M'(h) w^2 = F_g(h) - F_d(h, w) + u + bias + other(t, h, w, u), dh/dt = w.   SI, gap up, F_d a resistance.
 struct SeparatedPlant {
-    double virtual_mass = 1;  ///< S = mass + added mass, kg
+    double virtual_mass = 1;  ///< S = mass + added mass far from the ground, kg
     double bias = 0;          ///< bottom jet less net weight, N
-    /// F_g(h) and its slope dF_g/dh. Called from several threads.
+    /// F_g(h) and its slope dF_g/dh: tables, springs, corrections over the gap. Called from several threads.
     std::function<double(double gap, double& slope)> ground_force;
-    /// F_d(w) with F_d w >= 0, and its slope dF_d/dw.
-    std::function<double(double velocity, double& slope)> drag_force;
+    /// F_d(h, w): drag of the water, film, friction of a guide, corrections over the velocity.
+    ResistanceLaw drag_force;
+    std::function<dynamics::HeaveInertia(double gap)> inertia;  ///< empty: virtual_mass everywhere
+    /// Waves and corrections over several variables, which are neither; empty: none.
+    std::function<dynamics::HeaveLoad(double time, double gap, double velocity, double input)> other_force;
+    /// The largest rate, 1/s, that the law can show over a step, beside its slopes where the step begins; empty: those say all.
+    std::function<double(const dynamics::HeaveState& state, double acceleration, double step)> fastest_rate;
+    dynamics::Actuator actuator;  ///< between the commanded input and u
     double contact_gap = -std::numeric_limits<double>::infinity();  ///< the body cannot go below
+    double restitution = 0;       ///< of the velocity there
     double lower = 0, upper = 1;  ///< gaps that the force table covers
     core::Problems remarks;       ///< what the separation leaves out
 
-    [[nodiscard]] double acceleration(double gap, double velocity, double input) const {
-        double slope = 0;
-        return (ground_force(gap, slope) - drag_force(velocity, slope) + input + bias) / virtual_mass;
+    [[nodiscard]] double acceleration(double gap, double velocity, double input, double time = 0) const {
+        dynamics::HeaveSlopes slopes;
+        return acceleration(gap, velocity, input, time, slopes);
     }
-    /// One Runge-Kutta step of order 4 with the input held; stops at the contact gap (inelastic).
-    void advance(double& gap, double& velocity, double input, double step) const;
+    double acceleration(double gap, double velocity, double input, double time, dynamics::HeaveSlopes& slopes) const;
+    /// F_d(h, w) alone.
+    [[nodiscard]] double drag(double gap, double velocity) const {
+        DragSlopes slopes;
+        return drag_force(gap, velocity, slopes);
+    }
+    /// Over one step with the input held; bounces or stops at the contact gap.
+    void advance(double& gap, double& velocity, double input, double step, double time = 0) const;
 };
 
 /// linear w + quadratic w|w|
-std::function<double(double, double&)> quadratic_drag(double linear, double quadratic);
+ResistanceLaw quadratic_drag(double linear, double quadratic);
 
-/// The heave plant of a declared model at held conditions. What does not fit F_g(h) - F_d(w) + bias (film damping, varying inertia,
-/// friction, time-dependent inputs) is left out and named in `remarks`; so are effects.
+/// The heave plant of a declared model at held conditions: the simulator's own equation with its forces apart. Only the memory of a
+/// history force is left out, and named in `remarks`.
 SeparatedPlant separate(const dynamics::Model& model, const dynamics::Conditions& held);
 
 enum class Excitation { none, white, pink, pulses };

@@ -1,6 +1,7 @@
 // The commands simulate, predict, region and linear as a user runs them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -203,6 +204,59 @@ TEST_F(DynamicsCommands, PredictGivesErrorsInUnitsOfNoise) {
     const core::Table table = core::read_csv(folder_.path() / "pred.csv");
     for (const char* column : {"window", "time", "gap", "gap_predicted"}) {
         EXPECT_NE(table.find(column), nullptr) << column;
+    }
+}
+
+TEST_F(DynamicsCommands, LinearTakesAVehicleWithoutJets) {
+    core::write_file(folder_.path() / "bare.toml",
+                     "[vehicle]\nmass = 2.2\nadded_mass_heave = 1.754\nroll_inertia = 0.005\npitch_inertia = 0.007\nyaw_inertia = 0.007\n"
+                     "base_depth = 0.05\nbase_half_length = 0.07\nnet_weight = 0.05\n[drag.heave]\nlinear = 0.3\n"
+                     "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+    const nlohmann::json found = json({"linear", "bare.toml", "--at", "gap=10mm"});
+    EXPECT_EQ(found["body"]["controllability"]["rank"], 0);
+    for (const auto& mode : found["body"]["modes"]) {
+        EXPECT_FALSE(mode["name"].get<std::string>().empty());
+    }
+}
+
+TEST_F(DynamicsCommands, LinearSaysThatHeaveAloneHoldsThePitch) {
+    const std::string evie = (source_folder() / "cases/evie/model.toml").string();
+    const auto run = run_underbody({"linear", evie}, folder_.path());
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_NE(run.output.find("pitch held at 0"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("free to pitch"), std::string::npos) << run.output;
+    const nlohmann::json found = json({"linear", evie});
+    const bool stable = std::any_of(found["heave_pitch"].begin(), found["heave_pitch"].end(), [](const auto& e) { return e["stable"].template get<bool>(); });
+    EXPECT_EQ(found["stable_in_heave_and_pitch"].get<bool>(), stable);
+    EXPECT_EQ(run.output.find("no balance is stable") != std::string::npos, !stable) << run.output;
+}
+
+TEST_F(DynamicsCommands, GivenStartsEndAsTheCellsOfTheMapDo) {
+    const nlohmann::json map = json({"region", "model.toml", "--axes", "gap=2mm:290mm,heave_velocity=-0.06:0.06", "--grid", "20x15", "--table", "cells.csv"});
+    const core::Table cells = core::read_csv(folder_.path() / "cells.csv");
+    core::Table starts;
+    starts.add_numbers("gap", "m", cells.numbers("gap"));
+    starts.add_numbers("heave_velocity", "m/s", cells.numbers("heave_velocity"));
+    core::write_csv(folder_.path() / "starts.csv", starts);
+    const nlohmann::json ends = json({"region", "model.toml", "--starts", "starts.csv"});
+    int differ = 0;
+    for (std::size_t i = 0; i < cells.rows(); ++i) {
+        differ += ends["starts"][i]["class"] != cells.text("class")[i] ? 1 : 0;
+    }
+    EXPECT_EQ(cells.rows(), 300U);
+    EXPECT_EQ(differ, 0);
+}
+
+TEST_F(DynamicsCommands, TheToleranceActsInEveryMotion) {
+    const std::string evie = (source_folder() / "cases/evie/model.toml").string();
+    for (const std::vector<std::string>& motion : std::vector<std::vector<std::string>>{
+             {"--motion", "surface", "--from", "speed=0.1m/s,sway_velocity=0.02m/s"}, {"--motion", "body", "--from", "gap=20mm,speed=0.2m/s"}}) {
+        const auto rows = [&](const char* tolerance) {
+            std::vector<std::string> arguments{"simulate", evie, "--for", "2", "--tolerance", tolerance};
+            arguments.insert(arguments.end(), motion.begin(), motion.end());
+            return json(arguments)["u"].size();
+        };
+        EXPECT_GT(rows("1e-11"), rows("1e-4") + 5) << motion[1];
     }
 }
 

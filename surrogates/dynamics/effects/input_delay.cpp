@@ -20,7 +20,7 @@ public:
     }
 
     void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
-        terms.input_delay += use.values[0];
+        terms.actuator.delay += use.values[0];
     }
 };
 

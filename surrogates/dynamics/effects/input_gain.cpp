@@ -18,7 +18,7 @@ public:
     }
 
     void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
-        terms.input_gain *= use.values[0];
+        terms.actuator.gain *= use.values[0];
     }
 };
 

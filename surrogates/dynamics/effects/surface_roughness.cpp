@@ -1,6 +1,6 @@
 // lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/heave_equation.h"
 
 namespace underbody::dynamics {
 
@@ -34,8 +34,9 @@ public:
         if (use.quantity.empty() ? quantity != "lift_force" : use.quantity != quantity) {
             return value;
         }
-        const double x = seen.conditions.get(Channel::gap, 0) / use.values[2];
-        return value * (1 + (use.values[0] - use.values[1] * x * x) / (1 + x * x));
+        double slope = 0;
+        return value * roughness_factor(use.values[0], use.values[1], use.values[2],
+                                        seen.conditions.get(Channel::gap, 0), slope);
     }
 };
 

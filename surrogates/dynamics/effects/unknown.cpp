@@ -26,13 +26,13 @@ public:
         if (!use.table || quantity != "lift_force") {
             return;  // a correction of the drag or of a moment is no force in heave
         }
-        HeaveTerms::Correction correction{*use.table, {}};
+        std::vector<Channel> axes;
         for (const tables::TableAxis& axis : use.table->axes()) {
             Channel channel{};
             find_channel(axis.name, channel);
-            correction.axes.push_back(channel);
+            axes.push_back(channel);
         }
-        terms.corrections.push_back(std::move(correction));
+        terms.corrections.emplace_back(*use.table, std::move(axes));
     }
 
     [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& /*seen*/,

@@ -8,6 +8,7 @@
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/heave_experiment.h"
 #include "surrogates/discovery/residual.h"
+#include "surrogates/dynamics/predict.h"
 
 using namespace underbody;
 using namespace underbody::discovery;
@@ -360,6 +361,36 @@ TEST(HeaveInput, AClockThatRunsBehindIsAligned) {
     });
     EXPECT_TRUE(says(found.problems, "clocks")) << found.sentence;
     EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+TEST(HeaveInput, WhatIsWrongWithTheLogsIsWrittenIntoTheModelSoThatFreshOnesArePredicted) {
+    const auto delayed = [](const std::vector<double>& u, std::size_t i) { return u[i >= 10 ? i - 10 : 0]; };
+    for (const char* what : {"sign", "unit", "clock"}) {
+        const auto logged = [&](dynamics::Measurements data) {
+            for (auto& run : data.runs) {
+                const std::vector<double> u = run.table.numbers("input_force");
+                run.table = with_column(run.table, "input_force", [&](std::size_t i, double force) {
+                    return what[0] == 's' ? -force : what[0] == 'u' ? 1000 * force : delayed(u, i);
+                });
+            }
+            return data;
+        };
+        const auto nothing = [](double, double, double) { return 0.0; };
+        core::TemporaryFolder folder("logs");
+        const dynamics::Model model = test::heave_model(folder.path());
+        DiscoverOptions options;
+        options.figures = options.consequence = false;
+        options.placebo_twins = 0;
+        const Discovery found = discover(model, logged(test::heave_runs(nothing, 4, 50, 21)), options);
+        write_model(found.model, folder.path() / "found.toml");
+        const dynamics::Model written = dynamics::read_model(folder.path() / "found.toml");
+        EXPECT_EQ(written.records, found.model.records) << what;
+        const dynamics::Measurements fresh = logged(test::heave_runs(nothing, 3, 50, 88));
+        EXPECT_GT(dynamics::predict(model, fresh).channels[0].in_noise, 3) << what;
+        const double after = dynamics::predict(written, fresh).channels[0].in_noise;
+        ASSERT_FALSE(found.error.empty());
+        EXPECT_LT(after, 1.3 * std::max(1.0, found.error[0].after.rmse / 2e-4)) << what;
+    }
 }
 
 TEST(HeaveInput, OneRunIsUsedAndItsLimitsAreSaid) {

@@ -7,6 +7,7 @@
 #include "surrogates/discovery/flexible.h"
 #include "surrogates/discovery/least_squares.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/sensor_noise.h"
 
 using namespace underbody;
 using namespace underbody::discovery;
@@ -24,7 +25,7 @@ TEST(Statistics, NoiseOfASmoothSignalIsFoundDespiteOutliers) {
     for (int k = 0; k < 4000; ++k) {
         y.push_back(0.1 * std::sin(0.002 * k) + 2e-4 * random.normal() + (k % 500 == 7 ? 0.05 : 0));
     }
-    EXPECT_NEAR(noise_from_second_differences(y), 2e-4, 1e-5);
+    EXPECT_NEAR(dynamics::sensor_noise({}, y), 2e-4, 1e-5);
 }
 
 TEST(Statistics, NoiseOfASensorThatRoundsIsThatOfItsSteps) {
@@ -39,10 +40,10 @@ TEST(Statistics, NoiseOfASensorThatRoundsIsThatOfItsSteps) {
         sum += (y[i] - fine[i]) * (y[i] - fine[i]);
     }
     const double truth = std::sqrt(sum / static_cast<double>(y.size()));
-    EXPECT_NEAR(reading_step(y), 7e-4, 1e-9);
-    EXPECT_NEAR(noise_from_second_differences(y), truth, 0.1 * truth);
-    EXPECT_EQ(reading_step(fine), 0);
-    EXPECT_EQ(reading_step(std::vector<double>(50, 0.1)), 0);
+    EXPECT_NEAR(dynamics::reading_step(y), 7e-4, 1e-9);
+    EXPECT_NEAR(dynamics::sensor_noise({}, y), truth, 0.1 * truth);
+    EXPECT_EQ(dynamics::reading_step(fine), 0);
+    EXPECT_EQ(dynamics::reading_step(std::vector<double>(50, 0.1)), 0);
 }
 
 TEST(Statistics, GroupIntervalsHoldTheTruthAsOftenAsTheySay) {

@@ -297,7 +297,7 @@ TEST(Coupled, ImpactsKeepMomentumAboutTheContactAndNeverAddEnergy) {
         }
         // The impulse passes through the edge: it turns nothing about it.
         const double arm = (-model.vehicle.centre_of_gravity->at(0) + (which == 0 ? .0717 : -.0717)) * std::cos(y[2]) + .03 * std::sin(y[2]);
-        EXPECT_NEAR(plant.inertia() * (after[3] - y[3]), arm * plant.mass() * (after[1] - y[1]), 1e-12);
+        EXPECT_NEAR(plant.inertia() * (after[3] - y[3]), arm * plant.mass() * (plant.centre_velocity(after) - plant.centre_velocity(y)), 1e-12);
     }
 }
 
@@ -348,6 +348,110 @@ TEST(Coupled, StaticEffectsAreNamedWhenAMotionLeavesThemOut) {
         named = named || remark.message.find("gap_offset") != std::string::npos;
     }
     EXPECT_TRUE(named);
+}
+
+TEST(Coupled, HeaveVelocityIsHowFastTheGapGrowsInEveryMotion) {
+    Model model = level_model();
+    model.vehicle.centre_of_gravity = Vector3{.01, 0, 0};
+    model.vehicle.buoyancy_height = 0;
+    const HeavePitch plant(model);
+    TrajectoryOptions options;
+    options.duration = 2;
+    options.output_step = .001;
+    const PitchTrajectory motion = simulate(plant, {.11, .01, .05, .3}, options);
+    double worst = 0;
+    for (std::size_t i = 1; i + 1 < motion.time.size(); ++i) {
+        const double slope = (motion.state[i + 1][0] - motion.state[i - 1][0]) / (motion.time[i + 1] - motion.time[i - 1]);
+        worst = std::max(worst, std::abs(slope - motion.state[i][1]));
+    }
+    EXPECT_LT(worst, 1e-5);  // the difference over 2 ms itself
+    EXPECT_GT(std::abs(plant.centre_velocity({.11, .01, .05, .3}) - .01), 1e-3);  // that of the centre of mass is another
+    const RigidBody body(model);
+    BodyState start{};
+    start[state_u] = .2;
+    start[state_q] = .3;
+    start[state_theta] = .05;
+    start[state_w] = body.down_velocity_for(.01, start);
+    start[state_z] = body.height_for_gap(.11, .05);
+    EXPECT_NEAR(body.rise_of_base(start), .01, 1e-15);
+    BodyState rate{}, later = start;
+    body.rate(start, {}, ContactState::free, rate);
+    for (std::size_t i = 0; i < later.size(); ++i) {
+        later[i] += 1e-6 * rate[i];
+    }
+    EXPECT_NEAR((body.gap_at_base_centre(later) - .11) / 1e-6, .01, 1e-6);
+}
+
+TEST(Coupled, ImpactsSlideWithFrictionOrStickAndNeverAddEnergy) {
+    core::Random random(9);
+    int slid = 0, stuck = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        Model model = level_model();
+        model.vehicle.added_mass_surge = .8;
+        model.vehicle.added_mass_sway = 1.3;
+        model.contact.friction = random.uniform(.05, 2);
+        model.contact.slip_speed = 1e-7;
+        const RigidBody body(model);
+        BodyState y{};
+        y[state_u] = random.uniform(-.4, .4);
+        y[state_v] = random.uniform(-.2, .2);
+        y[state_theta] = random.uniform(-.1, .1);
+        y[state_q] = random.uniform(-.3, .3);
+        y[state_r] = random.uniform(-.3, .3);
+        y[state_w] = body.down_velocity_for(-random.uniform(.01, .1), y);
+        y[state_z] = body.height_for_gap(.0717 * std::abs(std::sin(y[state_theta])), y[state_theta]);
+        const std::size_t edge = y[state_theta] > 0 ? 1 : 0;
+        if (body.edge_speeds(y)[edge] >= 0) {
+            continue;
+        }
+        const ContactState touching = edge == 0 ? ContactState::nose_edge : ContactState::tail_edge;
+        const BodyState after = body.impact(y, touching);
+        EXPECT_NEAR(body.edge_speeds(after)[edge], 0, 1e-9);
+        EXPECT_LE(body.kinetic_energy(after), body.kinetic_energy(y) * (1 + 1e-9));
+        const std::array<double, 2> was = body.slip(y, edge), is = body.slip(after, edge);
+        const double before = std::hypot(was[0], was[1]);
+        // The push of the ground alone may turn a slow slip round; friction never does.
+        Model smooth = model;
+        smooth.contact.friction = 0;
+        const std::array<double, 2> pushed = body.slip(RigidBody(smooth).impact(y, touching), edge);
+        if (was[0] * pushed[0] + was[1] * pushed[1] < 0) {
+            continue;
+        }
+        EXPECT_GE(was[0] * is[0] + was[1] * is[1], -1e-9 * before * before);
+        (was[0] * is[0] + was[1] * is[1] > 1e-6 * before * before ? slid : stuck) += 1;
+    }
+    EXPECT_GT(slid, 20);
+    EXPECT_GT(stuck, 5);
+    // A flat drop in a run: the speed falls by friction times what stops the fall.
+    Model model = level_model();
+    model.contact.friction = .4;
+    model.contact.slip_speed = 1e-7;
+    model.vehicle.base_depth = 1e-6;  // no lever: the drop stays flat
+    const RigidBody body(model);
+    BodyState y{};
+    y[state_u] = .35;
+    y[state_w] = .05;
+    y[state_z] = body.height_for_gap(0, 0);
+    const BodyState after = body.impact(y, ContactState::flat);
+    double slope = 0;
+    const double fall = body.vertical().inertia(0, slope) * .05, mass = model.vehicle.mass + model.vehicle.added_mass_surge;
+    EXPECT_NEAR(after[state_u], .35 - .4 * fall / mass, 1e-6);
+}
+
+TEST(Coupled, EveryModeOfTheWholeBodyHasAName) {
+    const RigidBody body(level_model());
+    BodyState trim{};
+    trim[state_u] = .1;
+    trim[state_z] = body.height_for_gap(.11, 0);
+    const LinearSystem system = linearise_body(body, trim, {});
+    const auto found = modes(system, {"surge", "sway", "heave", "pitch", "yaw", "pitch", "heading", "north", "east", "heave"});
+    EXPECT_GE(found.size(), 6U);
+    for (const Mode& mode : found) {
+        EXPECT_FALSE(mode.name.empty()) << mode.value;
+    }
+    const Controllability none = controllability(system);  // a body without jets
+    EXPECT_EQ(none.rank, 0);
+    EXPECT_EQ(none.uncontrollable.size(), 10U);
 }
 
 }  // namespace

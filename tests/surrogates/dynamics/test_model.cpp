@@ -295,7 +295,31 @@ TEST(Predict, EstimatesWhiteNoise) {
         time.push_back(.02 * i);
         values.push_back(.1 + .02 * std::sin(2 * time.back()) + random.normal(0, 2e-4));
     }
-    EXPECT_NEAR(noise_of(time, values), 2e-4, 1.5e-5);
+    EXPECT_NEAR(sensor_noise(time, values), 2e-4, 1.5e-5);
+    // Coarse steps, unequal times, a fast motion, outliers: one estimate for all that read measurements.
+    for (const double quantum : {1e-4, 5e-4, 1.5e-3}) {
+        std::vector<double> rounded = values;
+        double square = 0;
+        for (std::size_t i = 0; i < rounded.size(); ++i) {
+            const double truth = .1 + .02 * std::sin(2 * time[i]);
+            rounded[i] = quantum * std::round(values[i] / quantum);
+            square += (rounded[i] - truth) * (rounded[i] - truth);
+        }
+        const double really = std::sqrt(square / static_cast<double>(rounded.size()));
+        EXPECT_NEAR(sensor_noise(time, rounded), really, .35 * really) << quantum;
+    }
+    std::vector<double> fast = values, jumping = values, uneven;
+    double t = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        fast[i] += .02 * std::sin(9 * time[i]);
+        jumping[i] += i % 97 == 0 ? .05 : 0;
+        t += i % 5 == 0 ? .06 : .02;
+        uneven.push_back(t);
+    }
+    EXPECT_NEAR(sensor_noise(time, fast), 2e-4, 4e-5);
+    EXPECT_NEAR(sensor_noise(time, jumping), 2e-4, 3e-5);
+    EXPECT_NEAR(sensor_noise(uneven, values), 2e-4, 3e-5);
+    EXPECT_TRUE(std::isnan(sensor_noise(time, std::vector<double>(5, 1.0))));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "surrogates/dynamics/heave.h"
 #include "surrogates/estimator/loop_region.h"
 #include "surrogates/estimator/published.h"
 
@@ -120,6 +121,40 @@ TEST(HoldingAGap, SurvivesSaturationLagAndNoise) {
     for (const double u : run.command) {
         EXPECT_LE(std::abs(u), law.limit);
     }
+}
+
+TEST(HoldingAGap, InACurrentWithDampingEffectsAndAnActuatorItHoldsWhatItIsAskedTo) {
+    dynamics::Model model = dynamics::read_model_text(
+        "[vehicle]\nmass = 4\nnet_weight = 0.02\n[drag.heave]\nlinear = 0.3\nquadratic = 6\n", "loop.toml", ".");
+    for (const auto& use : {dynamics::make_use("ambient_heave_current", {{"velocity", 0.03}}), dynamics::make_use("linear_damping", {{"coefficient", 0.8}}),
+                            dynamics::make_use("quadratic_damping", {{"coefficient", 4.0}}), dynamics::make_use("coulomb_friction", {{"force", 0.001}}),
+                            dynamics::make_use("input_gain", {{"gain", 0.8}}), dynamics::make_use("input_delay", {{"delay", 0.06}}),
+                            dynamics::make_use("actuator_lag", {{"time_constant", 0.1}})}) {
+        model = model.with_effect(use);
+    }
+    SeparatedPlant plant = separate(model, {});
+    EXPECT_TRUE(plant.remarks.empty());
+    plant.lower = 0;
+    plant.upper = 1;
+    const ControlLaw law = hold_at(0.1, plant.virtual_mass, -1, -1);
+    LoopOptions o;
+    o.gap = 0.12;
+    o.velocity_noise = 1e-5;
+    o.gap_noise = 1e-5;
+    for (const char* name : {"extended", "disturbance"}) {
+        const LoopRun run = close_loop(plant, law, design_loop_estimator(name, plant, {}), o);
+        // The gain of the actuator makes the loop softer; what remains of the cancelled forces is a fifth of them.
+        EXPECT_LT(std::abs(run.hold_error), 4e-3) << name;
+        EXPECT_LT(run.total_force_error, 2e-3) << name;
+        EXPECT_NEAR(run.drag_force.back(), dynamics::HeavePlant(model).resistance(run.gap.back(), run.velocity.back()), 1e-12);
+    }
+    LoopOptions slow = o;
+    dynamics::Model late = model.with_effect(dynamics::make_use("input_delay", {{"delay", 3.0}}));
+    SeparatedPlant delayed = separate(late, {});
+    delayed.lower = 0;
+    delayed.upper = 1;
+    const LoopRun swing = close_loop(delayed, law, design_loop_estimator("extended", delayed, {}), slow);
+    EXPECT_GT(swing.hold_sigma, 10 * close_loop(plant, law, design_loop_estimator("extended", plant, {}), o).hold_sigma);
 }
 
 TEST(Separation, HoldsForTheControllerAndTheReducedObserver) {

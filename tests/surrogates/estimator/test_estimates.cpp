@@ -35,7 +35,7 @@ Simulated simulate(const SeparatedPlant& plant, double gap, double duration, dou
         s.gap.push_back(h);
         s.velocity.push_back(w);
         s.ground.push_back(plant.ground_force(h, slope));
-        s.drag.push_back(plant.drag_force(w, slope));
+        s.drag.push_back(plant.drag(h, w));
         s.signals.time.push_back(t);
         s.signals.gap.push_back(h + noise * random.normal());
         const double u = -0.05 * (h - gap) - 0.3 * w - plant.ground_force(gap, slope) - plant.bias + 0.004 * std::sin(0.7 * t);
@@ -110,6 +110,59 @@ TEST(ExtendedFilter, BridgesMissingValuesGapsInTimeAndOutliers) {
     EXPECT_THROW(extended_filter(plant, bad.signals, noise), core::InputError);
     bad.signals.input[9] = nan;
     EXPECT_THROW(extended_filter(plant, bad.signals, noise), core::InputError);
+}
+
+TEST(ExtendedFilter, ItsSeparateBandsHoldTheTruthWhateverOfTheDeclaredLawsIsWrong) {
+    const SeparatedPlant declared = reference_plant(quadratic_drag(.3, 6));
+    struct Wrong {
+        const char* what;
+        double drag, ground;
+    };
+    for (const Wrong& wrong : {Wrong{"nothing", 1, 1}, Wrong{"drag halved", .5, 1}, Wrong{"drag doubled", 2, 1}, Wrong{"drag threefold", 3, 1},
+                               Wrong{"table a third too small", 1, 1.33}}) {
+        SeparatedPlant real = reference_plant(quadratic_drag(.3 * wrong.drag, 6 * wrong.drag));
+        real.ground_force = [f = declared.ground_force, k = wrong.ground](double h, double& slope) {
+            const double force = k * f(h, slope);
+            slope *= k;
+            return force;
+        };
+        double ground = 0, drag = 0, total = 0, n = 0, width = 0;
+        for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+            Simulated s;
+            core::Random random(seed);
+            double h = .2, w = 0, slope = 0;
+            s.signals.held = true;
+            for (double t = 0; t < 40; t += .02) {
+                s.gap.push_back(h);
+                s.ground.push_back(real.ground_force(h, slope));
+                s.drag.push_back(real.drag(h, w));
+                s.signals.time.push_back(t);
+                s.signals.gap.push_back(h + 2e-4 * random.normal());
+                const double u = -.4 * (h - .2) - declared.ground_force(.2, slope) + .02 * std::sin(.5 * t + static_cast<double>(seed));
+                s.signals.input.push_back(u);
+                real.advance(h, w, u, .02);
+            }
+            FilterNoise noise;
+            noise.drag_relative = .2;
+            noise.split_departure = true;
+            noise.force_density = likely_force_density({{&declared, &s.signals}}, noise);
+            const FilterResult r = extended_filter(declared, s.signals, noise);
+            for (std::size_t k = 250; k < s.gap.size(); ++k) {
+                const FilterEstimate& e = r.estimates[k];
+                ground += std::abs(e.ground_force - s.ground[k]) < 2 * e.ground_sigma ? 1 : 0;
+                drag += std::abs(e.drag_force - s.drag[k]) < 2 * e.drag_sigma ? 1 : 0;
+                total += std::abs(e.total_force - s.ground[k] + s.drag[k]) < 2 * e.total_sigma ? 1 : 0;
+                width += e.ground_sigma;
+                n += 1;
+            }
+        }
+        EXPECT_GT(ground / n, .85) << wrong.what;
+        EXPECT_GT(drag / n, .85) << wrong.what;
+        EXPECT_GT(total / n, .8) << wrong.what;
+        if (wrong.drag == 1 && wrong.ground == 1) {
+            EXPECT_LT(width / n, 3e-3) << "bands are no wider than they need be where nothing is wrong";
+        }
+    }
 }
 
 TEST(ExtendedFilter, CoversTheTruthAsOftenAsItSays) {
