@@ -107,7 +107,8 @@ std::string angle_in_degrees(double radians) { return five_digits(core::convert(
 
 void show_windows(Shell& shell, const std::vector<tables::PitchWindow>& windows) {
     for (const auto& w : windows) {
-        shell.print(w.side + ": restores from " + angle_in_degrees(w.lower) + " to " + angle_in_degrees(w.upper) + " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
+        const auto edge = [](double pitch, double sigma) { return angle_in_degrees(pitch) + (sigma > 1e-9 ? " +- " + five_digits(core::convert(sigma, "rad", "deg"), 2) : ""); };
+        shell.print(w.side + ": restores from " + edge(w.lower, w.lower_sigma) + " to " + edge(w.upper, w.upper_sigma) + " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
                     " N m/rad); trim torque there " + five_digits(w.trim_torque, 4) + " N m nose up, " + five_digits(w.trim_lower, 4) + " to " + five_digits(w.trim_upper, 4) +
                     " N m over the window");
     }
@@ -216,10 +217,15 @@ int run_compare(Shell& shell, const CompareCommand& command) {
         shell.show(tables::outside_remarks(table, options.held));
     }
     const auto result = tables::compare_tables(all, options);
+    const bool slope = options.measure == tables::Measure::restoring_slope;
     for (std::size_t i = 0; i < result.names.size(); ++i) {
-        shell.print(result.names[i] + ": " + result.measure + " " + five_digits(result.values[i]) + " +- " + five_digits(result.errors[i], 2) + " " + result.unit);
+        shell.print(result.names[i] + ": " + (slope && !(result.values[i] > 0) ? std::string("restores nowhere, slope at best ") : result.measure + " ") + five_digits(result.values[i]) + " +- " + five_digits(result.errors[i], 2) + " " + result.unit);
     }
-    shell.print(result.winner + " wins by " + result.measure + (result.beyond_error ? ", beyond the errors" : ", but within the errors"));
+    const auto& first = all.front().second;
+    const std::string& axis_unit = first.axes()[tables::axis_index(first, result.axis)].unit;
+    const std::string range = " over " + result.axis + " " + shown(first, result.axis, axis_unit, result.lower) + " to " + shown(first, result.axis, axis_unit, result.upper);
+    shell.print(result.winner.empty() ? "none restores anywhere" + range + ": the force rises with " + result.axis + " throughout, so there is no winner by " + result.measure
+                                      : result.winner + " wins by " + result.measure + (result.beyond_error ? ", beyond the errors," : ", but within the errors,") + range);
     if (!command.picture.empty()) {
         tables::FigureOptions figure;
         figure.held = options.held;

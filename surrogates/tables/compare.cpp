@@ -129,13 +129,17 @@ Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>&
         order[i] = i;
     }
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low_wins ? result.values[a] < result.values[b] : result.values[a] > result.values[b]; });
+    const bool restoring = options.measure == Measure::restoring_slope || options.measure == Measure::restoring_width;
+    if (restoring && !(result.values[order[0]] > 0)) {
+        return result;  // nothing to praise: none restores
+    }
     result.winner = result.names[order[0]];
     result.beyond_error = std::abs(result.values[order[0]] - result.values[order[1]]) > 2 * std::hypot(result.errors[order[0]], result.errors[order[1]]);
     return result;
 }
 
 void to_json(nlohmann::json& json, const Comparison& c) {
-    json = nlohmann::json{{"quantity", c.quantity}, {"axis", c.axis}, {"measure", c.measure}, {"unit", c.unit}, {"range", {c.lower, c.upper}}, {"winner", c.winner}, {"beyond_error", c.beyond_error}};
+    json = nlohmann::json{{"quantity", c.quantity}, {"axis", c.axis}, {"measure", c.measure}, {"unit", c.unit}, {"range", {c.lower, c.upper}}, {"winner", c.winner.empty() ? nlohmann::json() : nlohmann::json(c.winner)}, {"beyond_error", c.beyond_error}};
     for (std::size_t i = 0; i < c.names.size(); ++i) {
         json["variants"].push_back({{"name", c.names[i]}, {"value", c.values[i]}, {"sigma", c.errors[i]}});
     }

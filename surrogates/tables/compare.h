@@ -41,7 +41,7 @@ struct Comparison {
     std::string unit;             ///< of the measure, SI
     std::vector<double> values;   ///< of the measure, one a table
     std::vector<double> errors;   ///< one standard deviation of it, from 40 draws of each table
-    std::string winner;
+    std::string winner;           ///< empty: by a restoring measure none restores anywhere in the range
     bool beyond_error = false;    ///< the winner leads the next by more than twice the joint error
     std::vector<Difference> differences;
 };
