@@ -11,6 +11,8 @@
 
 #include "cases/study_format.h"
 #include "cases/sweep.h"
+#include "core/file.h"
+#include "core/mistyped.h"
 #include "core/name_pattern.h"
 #include "core/text.h"
 #include "core/toml.h"
@@ -71,49 +73,31 @@ std::string Conditions::label() const {
 
 namespace {
 
+/// A number, or a text that is a number with or without a unit.
+bool is_number_like(const TomlTable& table, const std::string& key) {
+    if (!table.is_string(key)) {
+        return table.is_number(key);
+    }
+    try {
+        (void)core::parse_quantity(table.string(key));
+        return true;
+    } catch (const core::InputError&) {
+        return false;
+    }
+}
+
 /// `{ variant = "ellipse", gap = "5 mm" }`: known quantities with units, other words as they are.
 Conditions read_conditions(const TomlTable& table) {
     Conditions conditions;
     for (const auto& key : table.keys()) {
         if (const auto* quantity = core::find_quantity(key)) {
             conditions.numbers.emplace_back(key, table.quantity(key, quantity->unit));
+        } else if (const std::string meant = core::mistyped_quantity(key); !meant.empty() && is_number_like(table, key)) {
+            throw core::InputError("name", "there is no condition '" + table.path_of(key) + "'", table.place(key), "did you mean '" + meant + "'?");
         } else if (table.is_string(key)) {
             conditions.texts.emplace_back(key, table.string(key));
         } else {
             conditions.numbers.emplace_back(key, table.quantity(key, "1"));
-        }
-    }
-    return conditions;
-}
-
-/// The conditions under a key, as a table or as one text: `where = "variant=ellipse, gap=5mm"`, the way of the command line.
-Conditions read_where(const TomlTable& table, const char* key) {
-    if (!table.is_string(key)) {
-        return read_conditions(table.table_or_empty(key));
-    }
-    Conditions conditions;
-    const std::string text = table.string(key);
-    for (const auto part : core::split(text, ',')) {
-        const std::size_t equals = part.find('=');
-        const std::string name(core::trimmed(part.substr(0, equals)));
-        const std::string value(equals == std::string_view::npos ? "" : core::trimmed(part.substr(equals + 1)));
-        if (name.empty() || value.empty()) {
-            throw core::InputError("parse", table.path_of(key) + ": '" + std::string(core::trimmed(part)) + "' is not of the form name=value", table.place(key),
-                                   "such as " + std::string(key) + " = \"variant=A, pitch=0\"");
-        }
-        if (conditions.number(name) || conditions.text(name)) {
-            throw core::InputError("duplicate", table.path_of(key) + ": '" + name + "' is given twice", table.place(key));
-        }
-        if (const auto* quantity = core::find_quantity(name)) {
-            try {
-                conditions.numbers.emplace_back(name, core::parse_in(value, quantity->unit));
-            } catch (const core::Error& error) {
-                throw core::InputError("parse", table.path_of(key) + ": " + error.message(), table.place(key), error.hint());
-            }
-        } else if (const auto number = core::parse_number(value)) {
-            conditions.numbers.emplace_back(name, *number);
-        } else {
-            conditions.texts.emplace_back(name, value);
         }
     }
     return conditions;
@@ -192,7 +176,7 @@ std::vector<core::NamePattern::Found> find_cases(const std::string& pattern, con
 
 void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::string, std::string>& files) {
     const std::string pattern = table.string("files");
-    const Conditions held = read_where(table, "conditions");
+    const Conditions held = read_conditions(table.table_or_empty("conditions"));
     const std::vector<std::string> zones = table.strings("zones");
     for (auto& item : find_cases(pattern, study.folder(), table)) {
         Case entry;
@@ -241,21 +225,10 @@ std::vector<std::string> required_strings(const TomlTable& table, const char* ke
     return list;
 }
 
-/// Names as a list or as one text with commas.
-std::vector<std::string> read_names(const TomlTable& table, const char* key) {
-    std::vector<std::string> names;
-    for (const auto& text : required_strings(table, key)) {
-        for (const auto part : core::split(text, ',')) {
-            names.emplace_back(core::trimmed(part));
-        }
-    }
-    return names;
-}
-
 MeshSpec read_mesh(const TomlTable& table, std::set<std::string>& taken) {
     MeshSpec mesh;
     mesh.name = unique_name(table, taken);
-    mesh.where = read_where(table, "where");
+    mesh.where = read_conditions(table.table_or_empty("where"));
     mesh.column = table.string_or("column", "mesh");
     mesh.quantities = required_strings(table, "quantities");
     const TomlTable cells = table.table("cells");
@@ -278,13 +251,8 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const
         }
     }
     spec.quantity = table.choice("quantity", quantities);
-    spec.axes = read_names(table, "axes");
-    spec.where = read_where(table, "where");
-    spec.fit = table.string_or("fit", spec.fit);
-    if (!tables::fit_kind(spec.fit)) {
-        throw core::InputError("name", table.path_of("fit") + ": '" + spec.fit + "' is not known", table.place("fit"), core::did_you_mean(spec.fit, tables::fit_kinds()));
-    }
-    spec.speed_exponent = table.quantity_or("speed_exponent", "1", spec.speed_exponent);
+    spec.axes = required_strings(table, "axes");
+    spec.where = read_conditions(table.table_or_empty("where"));
     spec.relative_sigma = table.quantity_or("relative_sigma", "1", 0);
     spec.mesh_uncertainty = table.string_or("mesh_uncertainty", "");
     spec.net_weight = table.find_quantity("net_weight", "N");
@@ -414,7 +382,7 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     sweep.gaps = list("gap", "m", std::nullopt);
     sweep.pitches = list("pitch", "rad", 0.0);
     sweep.speeds = list("speed", "m/s", study.reference.number("speed"));
-    sweep.conditions = read_where(table, "conditions");
+    sweep.conditions = read_conditions(table.table_or_empty("conditions"));
     sweep.kinematic_viscosity = table.quantity_or("kinematic_viscosity", "m^2/s", sweep.kinematic_viscosity);
     sweep.cell = table.quantity_or("cell", "1", sweep.cell);
     sweep.surface_level = static_cast<int>(table.integer_or("surface_level", sweep.surface_level));
@@ -468,7 +436,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     for (const auto& table : root.tables("picture")) {
         PictureSpec spec;
         spec.name = unique_name(table, pictures);
-        spec.where = read_where(table, "where");
+        spec.where = read_conditions(table.table_or_empty("where"));
         spec.views = table.strings("views");
         if (table.has("range")) {
             const auto range = table.quantities("range", "Pa");
@@ -519,7 +487,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
         VerifySpec spec;
         spec.name = unique_name(table, verifications);
         spec.table = table.file("table");
-        spec.where = read_where(table, "where");
+        spec.where = read_conditions(table.table_or_empty("where"));
         spec.quantities = required_strings(table, "quantities");
         spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
         study.verifications.push_back(std::move(spec));

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <unordered_set>
 
+#include "core/mistyped.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -32,6 +33,9 @@ Part braced(const std::string& inside, const std::string& pattern) {
         return part;
     }
     part.unit = std::string(trimmed(inside.substr(colon + 1)));
+    if (const std::string meant = mistyped_quantity(part.value); !meant.empty()) {
+        throw UsageError("name", "{" + inside + "} in the pattern: there is no quantity '" + part.value + "'", {}, "did you mean '" + meant + "'?");
+    }
     try {
         const QuantityName* quantity = find_quantity(part.value);
         conversion(part.unit, quantity != nullptr ? quantity->unit : si_unit(part.unit));
@@ -160,6 +164,34 @@ std::vector<fs::path> NamePattern::near_misses(const fs::path& root) const {
     }
     std::sort(missed.begin(), missed.end());
     return missed;
+}
+
+std::string NamePattern::why_not(const fs::path& path, const fs::path& root) const {
+    std::vector<Part> loose = parts_;
+    for (auto& part : loose) {
+        part.kind = part.kind == Part::Kind::number ? Part::Kind::text : part.kind;
+    }
+    const bool absolute = !pattern_.empty() && pattern_.front() == '/';
+    const auto found = match_all(loose, (absolute ? path : path.lexically_relative(root.lexically_normal())).generic_string());
+    std::size_t text = 0;
+    for (std::size_t i = 0; found && i < parts_.size(); ++i) {
+        if (parts_[i].kind != Part::Kind::number && parts_[i].kind != Part::Kind::text) {
+            continue;
+        }
+        const std::string word = found->texts[text++].second;
+        if (parts_[i].kind == Part::Kind::text || parse_number(word)) {
+            continue;
+        }
+        const std::string brace = "{" + parts_[i].value + ":" + parts_[i].unit + "}";
+        if (i + 1 < parts_.size() && parts_[i + 1].kind == Part::Kind::text && parse_number(word + found->texts[text].second)) {
+            return "nothing is left for {" + parts_[i + 1].value + "} behind the number " + word + found->texts[text].second;
+        }
+        if (word.ends_with(parts_[i].unit) && parse_number(word.substr(0, word.size() - parts_[i].unit.size()))) {
+            return "'" + word + "' carries its unit: write " + brace + parts_[i].unit;
+        }
+        return "'" + word + "' is no number for " + brace;
+    }
+    return "it does not fit";
 }
 
 std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& parts, const fs::path& root, bool folders) const {

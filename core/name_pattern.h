@@ -39,6 +39,9 @@ public:
     /// meant to be left out.
     [[nodiscard]] std::vector<std::filesystem::path> near_misses(const std::filesystem::path& root = ".") const;
 
+    /// Why a near miss does not fit: "'5mm' is no number: write {gap:mm}mm where the names carry the unit".
+    [[nodiscard]] std::string why_not(const std::filesystem::path& path, const std::filesystem::path& root = ".") const;
+
     /// True when the text has a brace, `*` or `?`.
     static bool is_pattern(const std::string& text);
 

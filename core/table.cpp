@@ -178,6 +178,27 @@ Heading read_heading(std::string_view cell, const Place& place) {
 
 }  // namespace
 
+namespace {
+
+/// The first field such as "0,25", with its quotes; empty when the line has none.
+std::string quoted_decimal_comma(std::string_view line) {
+    for (std::size_t open = line.find('"'); open != std::string_view::npos;) {
+        const std::size_t close = line.find('"', open + 1);
+        if (close == std::string_view::npos) {
+            break;
+        }
+        std::string number(line.substr(open + 1, close - open - 1));
+        const std::size_t comma = number.find(',');
+        if (comma != std::string::npos && parse_number(number.replace(comma, 1, "."))) {
+            return std::string(line.substr(open, close - open + 1));
+        }
+        open = line.find('"', close + 1);
+    }
+    return {};
+}
+
+}  // namespace
+
 Table read_csv(const std::filesystem::path& path) {
     const MappedFile file(path);
     return read_csv(file.bytes(), path.string());
@@ -222,6 +243,9 @@ Table read_csv(std::string_view bytes, const std::string& source) {
             continue;
         }
         if (cells.size() != headings.size()) {
+            if (const std::string quoted = quoted_decimal_comma(line); !quoted.empty()) {
+                throw InputError("parse", quoted + " is a number with a decimal comma", {source, line_number, {}, {}}, "write it with '.' as decimal point, without quotes");
+            }
             throw InputError("ragged",
                              "this line has " + std::to_string(cells.size()) + " fields, the header " +
                                  std::to_string(headings.size()),

@@ -173,9 +173,25 @@ Conversion conversion(std::string_view from, std::string_view to, const Place& p
         converter.reset(ut_get_converter(const_cast<ut_unit*>(a), const_cast<ut_unit*>(b)));
     }
     if (!converter) {
+        const auto none = [](std::string_view unit) { return unit.empty() || unit == "1"; };
+        if (none(to) || none(from)) {
+            throw InputError("unit",
+                             none(to) ? "'" + std::string(from) + "' is a unit, but a plain number is wanted here"
+                                      : "a plain number, but a unit like '" + std::string(to) + "' is wanted here",
+                             place, none(to) ? "write the number without a unit" : "give the value in " + std::string(to));
+        }
+        // A word that happens to be another unit ("degr") is often meant for one of the right dimension.
+        std::vector<std::string> fitting;
+        for (const std::string& unit : UnitSystem::common()) {
+            const ut_unit* candidate = system.find(unit);
+            if (candidate != nullptr && UnitSystem::same_dimension(candidate, b)) {
+                fitting.push_back(unit);
+            }
+        }
+        const std::string near = nearest_name(std::string(from), fitting);
         throw InputError("unit",
                          "unit '" + std::string(from) + "' has another dimension than '" + std::string(to) + "'",
-                         place, "give the value in " + std::string(to) + " or a unit of the same dimension");
+                         place, near.empty() ? "give the value in " + std::string(to) + " or a unit of the same dimension" : "did you mean '" + near + "'?");
     }
     const double at_zero = cv_convert_double(converter.get(), 0.0);
     const double at_one = cv_convert_double(converter.get(), 1.0);

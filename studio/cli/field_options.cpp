@@ -49,13 +49,13 @@ postproc::ReadOptions FieldOptions::read_options() const {
 
 namespace {
 
-/// Names of files that fit but for a number: the first few.
+/// Names of files that fit but for a number, the first few, each with the reason.
 std::string near_misses(const core::NamePattern& pattern) {
     constexpr std::size_t most = 5;
     const auto paths = pattern.near_misses();
     std::string list;
     for (std::size_t i = 0; i < std::min(most, paths.size()); ++i) {
-        list += (i == 0 ? "" : ", ") + paths[i].string();
+        list += (i == 0 ? "" : ", ") + paths[i].string() + " (" + pattern.why_not(paths[i]) + ")";
     }
     return list + (paths.size() > most ? " and " + std::to_string(paths.size() - most) + " more" : "");
 }
@@ -65,12 +65,12 @@ void add_pattern(const std::string& text, Batch& batch) {
     const auto found = pattern.files();
     const std::string missed = near_misses(pattern);
     if (found.empty()) {
-        throw core::InputError("file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; near it: " + missed), {},
+        throw core::InputError("file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; these come near: " + missed), {},
                                "patterns may hold *, ?, {name} and {name:unit}");
     }
     if (!missed.empty()) {
         batch.problems.push_back(
-            {core::Problem::Severity::warning, "not of the batch, for want of a number where '" + text + "' has one: " + missed, {}});
+            {core::Problem::Severity::warning, "left out, for their names do not fit the pattern '" + text + "': " + missed, {}});
     }
     for (const auto& [path, match] : found) {
         batch.files.push_back({path.string(), match.numbers, match.texts, {}});

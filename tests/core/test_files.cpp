@@ -146,6 +146,20 @@ TEST(NamePattern, TellsWhichFilesLackANumber) {
     EXPECT_TRUE(NamePattern("*.csv").near_misses(folder.path()).empty());
 }
 
+TEST(NamePattern, SaysWhyAFileDoesNotFit) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a-h5mm.csv", "a-hO5.csv", "p-2.csv", "p-2fine.csv"}) {
+        write_file(folder.path() / name, "1");
+    }
+    const NamePattern gap("{v}-h{gap:mm}.csv"), both("p{pitch:deg}{mesh}.csv");
+    EXPECT_EQ(gap.why_not(folder.path() / "a-h5mm.csv", folder.path()), "'5mm' carries its unit: write {gap:mm}mm");
+    EXPECT_EQ(gap.why_not(folder.path() / "a-hO5.csv", folder.path()), "'O5' is no number for {gap:mm}");
+    ASSERT_EQ(both.near_misses(folder.path()).size(), 1U);
+    EXPECT_EQ(both.why_not(folder.path() / "p-2.csv", folder.path()), "nothing is left for {mesh} behind the number -2");
+    EXPECT_THROW(NamePattern("a-{sped:m/s}.csv"), UsageError);
+    EXPECT_NO_THROW(NamePattern("a-{rpm:1/min}.csv"));
+}
+
 TEST(NamePattern, SortsFilesByTheNumbersInTheirNames) {
     const TemporaryFolder folder;
     for (const char* name : {"b-h1.csv", "a-h10.csv", "a-h2.csv", "a-h1.5.csv", "a-h-3.csv"}) {

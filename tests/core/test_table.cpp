@@ -56,6 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadTable{"gap [m, lift_force [N]\n1, 2\n", "parse", 1, 1, "name [unit]"},
                     BadTable{"gap [m], lift_force [N]\n1, 2\n1\n", "ragged", 3, 0, "1 fields"},
                     BadTable{"gap [m], lift_force [N]\n1, 2, 3\n", "ragged", 2, 3, "3 fields"},
+                    BadTable{"gap [m], lift_force [N]\n1, \"0,25\"\n", "parse", 2, 0, "\"0,25\" is a number with a decimal comma"},
                     BadTable{"gap [m], lift_force [N]\n\n# x\n1, two\n", "parse", 4, 2, "'two'"},
                     BadTable{"gap [m], lift_force [N]\n1, nan\n", "range", 2, 2, "not finite"},
                     BadTable{"gap [m], lift_force [N]\ninf, 2\n", "range", 2, 1, "not finite"},

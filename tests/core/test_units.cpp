@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/file.h"
+#include "core/mistyped.h"
 #include "core/random.h"
 #include "core/table.h"
 #include "core/text.h"
@@ -18,6 +19,22 @@ namespace underbody::core {
 namespace {
 
 using testing::HasSubstr;
+
+TEST(Units, SayWhatAUnitOfAnotherDimensionWasProbablyMeantFor) {
+    const auto said = [](const char* text, const char* unit) {
+        try {
+            (void)parse_in(text, unit);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(said("2 degr", "rad").find("did you mean 'deg'?"), std::string::npos) << said("2 degr", "rad");
+    EXPECT_NE(said("-70 mm", "1").find("a plain number is wanted"), std::string::npos) << said("-70 mm", "1");
+    EXPECT_EQ(mistyped_quantity("sped"), "speed");
+    EXPECT_EQ(mistyped_quantity("speed"), "");
+    EXPECT_EQ(mistyped_quantity("rpm"), "");
+}
 
 TEST(Units, ConvertsWhatPeopleWrite) {
     EXPECT_DOUBLE_EQ(convert(5, "mm", "m"), 0.005);

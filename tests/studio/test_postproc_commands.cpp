@@ -88,7 +88,7 @@ TEST_F(PostprocCommands, ABatchSaysOnceWhatItsFilesHaveAlike) {
     EXPECT_EQ(batch.exit_code, 0);
     EXPECT_EQ(count(batch.errors, "is not closed"), 1) << batch.errors;
     EXPECT_THAT(batch.errors, testing::AllOf(testing::HasSubstr("o-h1.csv: the surface is not closed"), testing::HasSubstr("(and alike in 1 other file)"),
-                                             testing::HasSubstr("for want of a number"), testing::HasSubstr("o-hO3.csv")));
+                                             testing::HasSubstr("left out, for their names do not fit the pattern"), testing::HasSubstr("o-hO3.csv ('O3' is no number for {gap:mm})")));
     EXPECT_EQ(count(run({"--verbose", "loads", "o-h{gap:mm}.csv"}).errors, "is not closed"), 2);
     EXPECT_EQ(count(run({"loads", "o-h1.csv"}).errors, "alike"), 0);
 }
