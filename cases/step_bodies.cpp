@@ -4,6 +4,7 @@
 #include "cases/engine.h"
 #include "geometry/body_shape.h"
 #include "geometry/body_surface.h"
+#include "geometry/exact_body.h"
 #include "geometry/mass_properties.h"
 #include "geometry/placement.h"
 #include "postproc/views.h"
@@ -15,11 +16,15 @@ namespace {
 std::string compute_body(Engine& engine, const BodySpec& spec) {
     const auto shape = geometry::read_shape(spec.shape);
     const auto mesh = geometry::make_surface(shape, {}, engine.progress);
-    const auto mass = geometry::mass_properties(mesh);
+    const auto mass = geometry::mass_properties(geometry::ExactBody(shape), mesh);
     nlohmann::json document;
     geometry::to_json(document, mass);
     document["buoyancy"] = mass.buoyancy(engine.study.reference.number("density").value_or(geometry::default_water_density));
     document["watertight"] = geometry::is_watertight(mesh);
+    if (shape.base == geometry::BaseKind::ellipse) {
+        const auto base = shape.base_extent();
+        document["elliptic_base"] = {{"half_length", (base.nose - base.tail) / 2}, {"half_width", base.half_width}};
+    }
     document["patches"] = nlohmann::json::array();
     for (const auto& patch : geometry::patches(mesh)) {
         document["patches"].push_back({{"name", patch.name}, {"area", patch.area}, {"faces", patch.faces}});

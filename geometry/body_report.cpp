@@ -1,5 +1,6 @@
 #include "geometry/body_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -7,6 +8,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/body_surface.h"
+#include "geometry/exact_body.h"
 #include "geometry/mesh_reader.h"
 
 namespace underbody::geometry {
@@ -40,6 +42,31 @@ void add_added_mass(Body& body, const BodyOptions& options, core::Progress& prog
     water.reference = body.trim ? body.trim->centre_of_gravity : body.mass.centroid;
     body.added_mass = body.shape ? added_mass(*body.shape, options.panels, water, true, progress)
                                  : added_mass(body.mesh, options.panels, water, true, progress);
+}
+
+/// Moves the ballast, then lets the body come to rest.
+void add_trim(Body& body, const BodyOptions& options, const std::filesystem::path& path) {
+    if (options.ballast) {
+        if (!body.loading) {
+            throw core::InputError("missing", "the shape has no [mass] whose ballast could be placed",
+                                   {path.string(), {}, {}, {}});
+        }
+        const BallastWish& wish = *options.ballast;
+        body.ballast = ballast_position(body.mass, *body.loading, wish.name, wish.pitch, wish.roll);
+        for (PointMass& point : body.loading->points) {
+            point.position = point.name == wish.name ? *body.ballast : point.position;
+        }
+    }
+    if (!body.loading) {
+        return;
+    }
+    body.trim = trim(body.mass, *body.loading, options.density);
+    constexpr double steep = 20 * degree;
+    if (body.trim->stable && std::max(std::abs(body.trim->pitch), std::abs(body.trim->roll)) > steep) {
+        body.remarks.push_back("At rest the body stands at pitch " + text(body.trim->pitch / degree, 4) + " deg, roll " +
+                               text(body.trim->roll / degree, 4) +
+                               " deg: its base no longer lies along the ground, and force tables seldom reach so far.");
+    }
 }
 
 }  // namespace
@@ -92,10 +119,13 @@ Body read_body(const std::filesystem::path& path, const BodyOptions& options, co
         body.certificate = certify(body.mesh, progress);
     }
     require(body.certificate, "'" + path.string() + "'");
-    body.mass = mass_properties(body.mesh);
-    if (body.loading) {
-        body.trim = trim(body.mass, *body.loading, options.density);
+    if (body.shape) {
+        body.mass = mass_properties(ExactBody(*body.shape), body.mesh);
+    } else {
+        body.mass = mass_properties(body.mesh);
+        body.volume_left_out = volume_left_out(body.mesh);
     }
+    add_trim(body, options, path);
     if (options.placement) {
         body.placement = options.placement;
         require_clearance(body.mesh, *options.placement);
@@ -116,6 +146,15 @@ void to_json(nlohmann::json& json, const Body& body) {
     json["name"] = body.name;
     json["density"] = body.density;
     json["buoyancy"] = body.mass.buoyancy(body.density);
+    const Vec3 size = body.outer_size();
+    json["outer_size"] = {{"length", size.x}, {"width", size.y}, {"height", size.z}};
+    json["mass_from"] = body.shape ? "exact shape" : "facets";
+    if (body.shape) {
+        json["ellipsoid_height"] = body.shape->height;
+    } else {
+        json["facet_volume_error"] = -body.volume_left_out;
+        json["facet_buoyancy_error"] = -body.volume_left_out * standard_gravity * body.density;
+    }
     json["axes"] = "x forward, y to port, z up, origin at the centre of the flat base (mid-length, mid-width)";
     json["origin_from_axis"] = body.origin_from_axis;
     json["patches"] = nlohmann::json::array();
@@ -146,8 +185,11 @@ void to_json(nlohmann::json& json, const Body& body) {
         json["contact_angles"] = *body.contact;
         json["underside_area"] = *body.underside;
     }
-    if (!body.remark.empty()) {
-        json["remark"] = body.remark;
+    if (body.ballast) {
+        json["ballast_position"] = {body.ballast->x, body.ballast->y, body.ballast->z};
+    }
+    if (!body.remarks.empty()) {
+        json["remarks"] = body.remarks;
     }
 }
 

@@ -77,13 +77,13 @@ Comparison compare(const BodyShape& a, const BodyShape& b, std::size_t triangles
     SurfaceOptions options;
     options.triangles = triangles;
     const SurfaceMesh mesh_a = make_surface(a, options, progress), mesh_b = make_surface(b, options, progress);
-    result.mass_a = mass_properties(mesh_a);
-    result.mass_b = mass_properties(mesh_b);
     result.base_area_a = base_area(mesh_a);
     result.base_area_b = base_area(mesh_b);
     const ExactBody exact_a(a), exact_b(b);
-    result.volume_a = exact_a.volume();
-    result.volume_b = exact_b.volume();
+    result.mass_a = mass_properties(exact_a, mesh_a);
+    result.mass_b = mass_properties(exact_b, mesh_b);
+    result.volume_a = result.mass_a.volume;
+    result.volume_b = result.mass_b.volume;
     const Farthest of_a = farthest(mesh_a, exact_a, exact_b), of_b = farthest(mesh_b, exact_b, exact_a);
     result.largest_distance = std::max(of_a.distance, of_b.distance);
     result.where = of_a.distance > of_b.distance ? of_a.where : of_b.where;

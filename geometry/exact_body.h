@@ -56,6 +56,18 @@ private:
 
 enum class Side { front, back, port };
 
+/// Integrals over the volume of a body that is the same to port and to starboard (those that are odd in y vanish),
+/// about the centre of its base: x forward, y to port, z up. m^3 and one or two metres more.
+struct VolumeMoments {
+    double one = 0, x = 0, z = 0, xx = 0, yy = 0, zz = 0, zx = 0;
+    friend VolumeMoments operator+(const VolumeMoments& a, const VolumeMoments& b) {
+        return {a.one + b.one, a.x + b.x, a.z + b.z, a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.zx + b.zx};
+    }
+    friend VolumeMoments operator*(const VolumeMoments& a, double s) {
+        return {a.one * s, a.x * s, a.z * s, a.xx * s, a.yy * s, a.zz * s, a.zx * s};
+    }
+};
+
 class ExactBody {
 public:
     /// The shape must have passed `check`.
@@ -100,8 +112,9 @@ public:
     /// Depth of the profile at a distance from its axis.
     [[nodiscard]] double profile_depth(double distance) const;
 
-    /// m^3, of everything (protrusion and bore included), by quadrature to about 1e-9 of itself.
-    [[nodiscard]] double volume() const;
+    /// Volume of everything (protrusion and bore included) and its moments, by quadrature to about 1e-9 of themselves.
+    [[nodiscard]] VolumeMoments moments() const;
+    [[nodiscard]] double volume() const { return moments().one; }
 
     /// Signed distances of a bent point to pieces, positive outside, to first order near the surface.
     [[nodiscard]] double distance_to_ellipsoid(const Vec3& p) const;

@@ -1,4 +1,4 @@
-// The volume of the exact body, section by section.
+// The volume of the exact body and its moments, section by section.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,36 +28,75 @@ auto integral(const F& f, double low, double high) {
     return sum;
 }
 
-// Integrals of 1, x, x^2 over a section.
-struct Moments {
-    double one = 0, x = 0, xx = 0;
-    friend Moments operator+(const Moments& a, const Moments& b) { return {a.one + b.one, a.x + b.x, a.xx + b.xx}; }
-    friend Moments operator*(const Moments& a, double s) { return {a.one * s, a.x * s, a.xx * s}; }
+// Integrals of x^k and x^k y^2, k = 0 ... 4, over a section; x from the centre of the base.
+struct Section {
+    std::array<double, 5> x{}, xyy{};
+    friend Section operator+(Section a, const Section& b) {
+        for (std::size_t k = 0; k < 5; ++k) {
+            a.x[k] += b.x[k];
+            a.xyy[k] += b.xyy[k];
+        }
+        return a;
+    }
+    friend Section operator*(Section a, double s) {
+        for (std::size_t k = 0; k < 5; ++k) {
+            a.x[k] *= s;
+            a.xyy[k] *= s;
+        }
+        return a;
+    }
+    /// The integrals over the line x = const from y = 0 to y = half.
+    static Section line(double x, double half) {
+        Section s;
+        double power = 1;
+        for (std::size_t k = 0; k < 5; ++k, power *= x) {
+            s.x[k] = power * half;
+            s.xyy[k] = power * half * half * half / 3;
+        }
+        return s;
+    }
 };
 
-// The volume element of the bend at (x, height) against the unbent one.
+// What the bend (y by 1 + taper x g, height by slope x g) makes of the moments of a thin section at a height.
 class Bend {
 public:
-    explicit Bend(const ExactBody& body) : depth_(body.depth()), centre_(body.base_centre()) {
+    explicit Bend(const ExactBody& body) : depth_(body.depth()) {
         const BodyShape& shape = body.shape();
         const BodyShape::BaseExtent extent = shape.base_extent();
         taper_ = shape.taper / (extent.nose - extent.tail);
         slope_ = std::tan(shape.base_pitch);
     }
-    [[nodiscard]] double of(const Moments& m, double height) const {
-        if (height >= depth_) {
-            return m.one;
-        }
-        const double v = std::min(1.0, (depth_ - height) / depth_), widening = taper_ * v * v;
-        const double lifting = height < 0 ? 0 : -2 * slope_ * v / depth_;
-        // about the centre of the base
-        const double x = m.x - centre_ * m.one, xx = m.xx - centre_ * (2 * m.x - centre_ * m.one);
-        return m.one + (widening + lifting) * x + widening * lifting * xx;
+    [[nodiscard]] VolumeMoments of(const Section& s, double height) const {
+        const double v = std::clamp((depth_ - height) / depth_, 0.0, 1.0);
+        const double widening = taper_ * v * v, lift = slope_ * v * v;
+        const double lifting = height < 0 ? 0 : -2 * slope_ * v / depth_;  // d lift/d height
+        // Integral of x^n (1 + widening x)^m (1 + lifting x): the volume element is m = 1, y^2 of the bent body m = 3.
+        const auto with = [&](const std::array<double, 5>& of, std::size_t n, int m) {
+            std::array<double, 5> factor{1, lifting, 0, 0, 0};
+            for (int i = 0; i < m; ++i) {
+                for (std::size_t k = 4; k > 0; --k) {
+                    factor[k] += widening * factor[k - 1];
+                }
+            }
+            double sum = 0;
+            for (std::size_t k = 0; k + n < 5; ++k) {
+                sum += factor[k] * of[k + n];
+            }
+            return sum;
+        };
+        VolumeMoments m;
+        m.one = with(s.x, 0, 1);
+        m.x = with(s.x, 1, 1);
+        m.xx = with(s.x, 2, 1);
+        m.yy = with(s.xyy, 0, 3);
+        m.z = height * m.one + lift * m.x;
+        m.zz = height * height * m.one + 2 * height * lift * m.x + lift * lift * m.xx;
+        m.zx = height * m.x + lift * m.xx;
+        return m;
     }
-    [[nodiscard]] double at(double x, double height) const { return of({1, x, x * x}, height); }
 
 private:
-    double depth_, centre_, taper_, slope_;
+    double depth_, taper_, slope_;
 };
 
 double root(const ExactBody& body, double height, double low, double high, bool of_x, double value) {
@@ -73,7 +112,7 @@ double root(const ExactBody& body, double height, double low, double high, bool 
     return 0.5 * (low + high);
 }
 
-Moments section(const ExactBody& body, double height) {
+Section section(const ExactBody& body, double height) {
     double front = 0, back = pi;                   // parameters where the ellipsoid's outline begins and ends
     double port_fore = pi / 2, port_aft = pi / 2;  // and where the port side cuts it
     double port = 0;
@@ -91,14 +130,15 @@ Moments section(const ExactBody& body, double height) {
         port_fore = root(body, height, 0, pi / 2, false, port);
         port_aft = pi - port_fore;
     }
+    const double centre = body.base_centre();
     const auto along = [&](double t) {
         constexpr double step = 2e-5;
         const Vec3 p = body.ellipsoid_point(height, t);
         const double dx =
             (body.ellipsoid_point(height, t + step).x - body.ellipsoid_point(height, t - step).x) / (2 * step);
-        return Moments{1, p.x, p.x * p.x} * (-dx * p.y);
+        return Section::line(p.x - centre, p.y) * -dx;
     };
-    Moments sum;
+    Section sum;
     if (front < port_fore) {
         sum = sum + integral(along, front, port_fore);
     }
@@ -106,64 +146,84 @@ Moments section(const ExactBody& body, double height) {
         sum = sum + integral(along, port_aft, back);
     }
     if (port > 0) {
-        const double fore = body.ellipsoid_point(height, std::max(front, port_fore)).x;
-        const double aft = body.ellipsoid_point(height, std::min(back, port_aft)).x;
-        sum =
-            sum + Moments{fore - aft, (fore * fore - aft * aft) / 2, (fore * fore * fore - aft * aft * aft) / 3} * port;
+        const double fore = body.ellipsoid_point(height, std::max(front, port_fore)).x - centre;
+        const double aft = body.ellipsoid_point(height, std::min(back, port_aft)).x - centre;
+        sum = sum + integral([&](double x) { return Section::line(x, port); }, aft, fore);
     }
     return sum * 2;
 }
 
-double protrusion_volume(const ExactBody& body, const Bend& bend) {
+// What stands below the base: columns of water displaced, each down to the depth of the profile.
+VolumeMoments protrusion_moments(const ExactBody& body, const Bend& bend) {
     const ExactBody::Foot foot = body.protrusion_foot();
-    const auto column = [&](double x, double depth) {
-        return depth > 0 ? integral([&](double u) { return bend.at(x, u); }, -depth, 0) : 0.0;
+    const double centre = body.base_centre();
+    const auto columns = [&](const Section& over, double depth) {
+        return integral([&](double u) { return bend.of(over, u); }, -depth, 0);
     };
-    double sum = 0;
+    VolumeMoments sum;
     for (const auto& [low, high] : {std::pair{0.0, foot.crest}, std::pair{foot.crest, foot.radius}}) {
         if (!(high > low)) {
             continue;
         }
-        sum += integral(
-            [&](double d) {
-                const double depth = body.profile_depth(d);
-                const double straight = 2 * foot.half_axis * (column(foot.x + d, depth) + column(foot.x - d, depth));
-                const double ends =
-                    2 * d * integral([&](double angle) { return column(foot.x + d * std::cos(angle), depth); }, 0, pi);
-                return straight + ends;
-            },
-            low, high);
+        sum = sum + integral(
+                        [&](double d) {
+                            Section over = (Section::line(foot.x - centre + d, foot.half_axis) +
+                                            Section::line(foot.x - centre - d, foot.half_axis)) *
+                                           2;
+                            over = over + integral(
+                                              [&](double angle) {
+                                                  const double y = foot.half_axis + d * std::sin(angle);
+                                                  Section ring = Section::line(foot.x - centre + d * std::cos(angle), 1);
+                                                  for (std::size_t k = 0; k < 5; ++k) {
+                                                      ring.xyy[k] = ring.x[k] * y * y;
+                                                  }
+                                                  return ring * (2 * d);
+                                              },
+                                              0, pi);
+                            return columns(over, body.profile_depth(d));
+                        },
+                        low, high);
     }
     return sum;
 }
 
+// The integrals over a disc of radius r about (x, 0).
+Section disc(double x, double r) {
+    return integral(
+               [&](double angle) {
+                   const double half = r * std::sin(angle);
+                   return Section::line(x + r * std::cos(angle), half) * half;  // dx = -r sin(angle) d angle
+               },
+               0, pi) *
+           2;
+}
+
 }  // namespace
 
-double ExactBody::volume() const {
+VolumeMoments ExactBody::moments() const {
     const Bend bend(*this);
-    double sum = 0;
+    VolumeMoments sum;
     // Cosine spacing in each part: sections change fast near the base and end with a vertical tangent at the top.
     for (const auto& [low, high, parts] : {std::tuple{0.0, depth_, 48}, std::tuple{depth_, top(), 6}}) {
         const auto height = [&, low = low, high = high](double w) {
             return low + (high - low) * (0.5 - 0.5 * std::cos(pi * w));
         };
         for (int i = 0; i < parts; ++i) {
-            sum += integral(
-                [&, low = low, high = high](double w) {
-                    const double u = height(w);
-                    return bend.of(section(*this, u), u) * (high - low) * 0.5 * pi * std::sin(pi * w);
-                },
-                static_cast<double>(i) / parts, static_cast<double>(i + 1) / parts);
+            sum = sum + integral(
+                            [&, low = low, high = high](double w) {
+                                const double u = height(w);
+                                return bend.of(section(*this, u), u) *
+                                       ((high - low) * 0.5 * pi * std::sin(pi * w));
+                            },
+                            static_cast<double>(i) / parts, static_cast<double>(i + 1) / parts);
         }
     }
     if (shape_.protrusion) {
-        sum += protrusion_volume(*this, bend);
+        sum = sum + protrusion_moments(*this, bend);
     }
     if (shape_.nozzle && shape_.nozzle->depth > 0) {
-        const double x = shape_.base_x(shape_.nozzle->position), r = shape_.nozzle->diameter / 2;
-        // x and x^2 over a disc
-        const Moments disc{pi * r * r, pi * r * r * x, pi * r * r * (x * x + r * r / 4)};
-        sum -= integral([&](double u) { return bend.of(disc, u); }, 0, shape_.nozzle->depth);
+        const Section bore = disc(shape_.base_x(shape_.nozzle->position) - base_centre_, shape_.nozzle->diameter / 2);
+        sum = sum + integral([&](double u) { return bend.of(bore, u); }, 0, shape_.nozzle->depth) * -1;
     }
     return sum;
 }

@@ -1,20 +1,24 @@
 #include "geometry/mass_properties.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "geometry/exact_body.h"
 
 namespace underbody::geometry {
 
 namespace {
 
 // Integrals of 1, x, y, z, x^2, y^2, z^2, xy, yz, zx over the volume, by Eberly's sub-expressions for each triangle.
-struct VolumeMoments {
+struct TriangleMoments {
     double one = 0;
     std::array<double, 3> first{}, square{}, product{};
 };
 
-void add_triangle(VolumeMoments& m, const Vec3& p, const Vec3& q, const Vec3& r) {
+constexpr double smooth_turn = 0.94;  // cosine of 20 degrees: more is a sharp edge
+
+void add_triangle(TriangleMoments& m, const Vec3& p, const Vec3& q, const Vec3& r) {
     const Vec3 d = cross(q - p, r - p);
     const std::array<double, 3> normal{d.x, d.y, d.z};
     const std::array<std::array<double, 3>, 3> w{{{p.x, q.x, r.x}, {p.y, q.y, r.y}, {p.z, q.z, r.z}}};
@@ -48,7 +52,7 @@ MassProperties mass_properties(const SurfaceMesh& mesh) {
     MassProperties mass;
     mass.bounding_box = bounding_box(mesh);
     const Vec3 middle = 0.5 * (mass.bounding_box.lower + mass.bounding_box.upper);
-    VolumeMoments m;
+    TriangleMoments m;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         add_triangle(m, mesh.corner(i, 0) - middle, mesh.corner(i, 1) - middle, mesh.corner(i, 2) - middle);
     }
@@ -65,6 +69,57 @@ MassProperties mass_properties(const SurfaceMesh& mesh) {
                  zx = m.product[2] - m.one * z * x;
     mass.inertia = {{{yy + zz, -xy, -zx}, {-xy, zz + xx, -yz}, {-zx, -yz, xx + yy}}};
     return mass;
+}
+
+MassProperties mass_properties(const ExactBody& body, const SurfaceMesh& mesh) {
+    const VolumeMoments m = body.moments();
+    MassProperties mass;
+    mass.volume = m.one;
+    mass.area = area(mesh);
+    const double x = m.x / m.one, z = m.z / m.one;
+    mass.centroid = {x, 0, z};
+    const double xx = m.xx - m.one * x * x, yy = m.yy, zz = m.zz - m.one * z * z, zx = m.zx - m.one * z * x;
+    mass.inertia = {{{yy + zz, 0, -zx}, {0, zz + xx, 0}, {-zx, 0, xx + yy}}};
+    // The whole ellipsoid stands above its midplane; below it a bend may reach further.
+    mass.bounding_box = bounding_box(mesh);
+    Vec3 &low = mass.bounding_box.lower, &high = mass.bounding_box.upper;
+    low.x = std::min(low.x, -body.semi_x() - body.base_centre());
+    high.x = std::max(high.x, body.semi_x() - body.base_centre());
+    high.y = std::max(high.y, body.semi_y());
+    low.y = -high.y;
+    high.z = std::max(high.z, body.top());
+    return mass;
+}
+
+double volume_left_out(const SurfaceMesh& mesh) {
+    std::vector<std::vector<std::size_t>> around(mesh.points.size());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (const auto point : mesh.triangles[i]) {
+            around[static_cast<std::size_t>(point)].push_back(i);
+        }
+    }
+    // The normal at a corner, of the triangles around it that do not lie beyond a sharp edge.
+    const auto normal = [&](std::size_t triangle, std::int32_t corner) {
+        const Vec3 own = mesh.area_vector(triangle);
+        Vec3 sum;
+        for (const std::size_t other : around[static_cast<std::size_t>(corner)]) {
+            const Vec3 vector = mesh.area_vector(other);
+            sum += dot(own, vector) > smooth_turn * norm(own) * norm(vector) ? vector : Vec3{};
+        }
+        return norm(sum) > 0 ? unit(sum) : Vec3{};
+    };
+    // A quadratic that vanishes at the corners and stands m above the middles of the edges holds area/3 times the sum of
+    // m; an edge e of a curve with the normals a and b at its ends has m = e . (b - a)/8.
+    double sum = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const Triangle& t = mesh.triangles[i];
+        const std::array<Vec3, 3> n{normal(i, t[0]), normal(i, t[1]), normal(i, t[2])};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
+            sum += norm(mesh.area_vector(i)) / 24 * dot(mesh.corner(i, next) - mesh.corner(i, k), n[next] - n[k]);
+        }
+    }
+    return sum;
 }
 
 void to_json(nlohmann::json& json, const MassProperties& mass) {

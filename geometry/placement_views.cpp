@@ -163,7 +163,8 @@ core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
                              y = box.lower.y + (static_cast<double>(j) + 0.5) * dy;
                 const double u = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / twice;
                 const double v = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / twice;
-                if (u >= 0 && v >= 0 && u + v <= 1) {
+                constexpr double edge = 1e-9;  // a middle of a cell on the edge of two triangles belongs to both
+                if (u >= -edge && v >= -edge && u + v <= 1 + edge) {
                     double& value = map.values[j * map.columns + i];
                     const double gap = 1e3 * (a.z + u * (b.z - a.z) + v * (c.z - a.z));
                     value = std::isnan(value) ? gap : std::min(value, gap);

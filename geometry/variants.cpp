@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body_surface.h"
+#include "geometry/exact_body.h"
 #include "geometry/loading.h"
 #include "geometry/shape_format.h"
 
@@ -175,7 +176,7 @@ std::vector<MadeVariant> make_variants(VariantSet& set, std::size_t triangles, c
                 made[i].mesh = make_surface(variant.shape, options, progress);
                 made[i].certificate = certify(made[i].mesh, variant.shape, progress);
                 require(made[i].certificate, variant.name);
-                made[i].mass = mass_properties(made[i].mesh);
+                made[i].mass = mass_properties(ExactBody(variant.shape), made[i].mesh);
             } catch (const core::InputError& error) {
                 variant.refused = error.message();
                 made[i].mesh = {};

@@ -80,7 +80,7 @@ struct Comparison {
     };
     std::vector<Difference> differences;
     MassProperties mass_a, mass_b;
-    double volume_a = 0, volume_b = 0;  ///< m^3, of the exact shapes (the meshes' own are in mass_a, mass_b)
+    double volume_a = 0, volume_b = 0;  ///< m^3, of the exact shapes, as in mass_a, mass_b
     double base_area_a = 0, base_area_b = 0;
     /// m, of the points of each mesh from the other's exact surface, to first order, the ellipsoids laid on each other.
     double largest_distance = 0;

@@ -58,8 +58,25 @@ std::optional<geometry::Placement> BodyInput::placement() const {
     if (gap.empty()) {
         throw core::UsageError("missing", "--pitch and --roll need --gap", {}, "add --gap 5mm");
     }
-    const auto angle = [](const std::string& text) { return text.empty() ? 0.0 : core::parse_in(text, "rad"); };
-    return geometry::Placement{core::parse_in(gap, "m"), angle(pitch), angle(roll)};
+    const auto angle = [](const char* option, const std::string& text) {
+        const double value = text.empty() ? 0.0 : core::parse_in(text, "rad");
+        if (core::parse_number(text) && std::abs(value) > 1) {
+            throw core::UsageError("range", std::string(option) + " " + text + " is " + degrees(value) + " deg", {},
+                                   "a bare number is in radians: write " + text + "deg");
+        }
+        return value;
+    };
+    return geometry::Placement{core::parse_in(gap, "m"), angle("--pitch", pitch), angle("--roll", roll)};
+}
+
+std::string BodyInput::doubt(const geometry::SurfaceMesh& body) const {
+    const geometry::Box box = geometry::bounding_box(body);
+    const double length = box.upper.x - box.lower.x, height = core::parse_in(gap, "m");
+    if (!core::parse_number(gap) || height < 2 * length) {
+        return {};
+    }
+    return "--gap " + gap + " is " + mm(height) + " mm, " + rounded(height / length, 3) +
+           " lengths of the body: a bare number is in metres; for millimetres write --gap " + gap + "mm";
 }
 
 geometry::BodyOptions BodyInput::options() const {
@@ -122,13 +139,28 @@ std::string picture_of(const geometry::Body& body, const geometry::SurfaceMesh& 
     return postproc::draw_png(scene);
 }
 
+// The facets of a surface file hold less than the smooth surface that they stand for.
+std::string facet_error(const geometry::Body& body) {
+    const double share = body.volume_left_out / body.mass.volume;
+    if (std::abs(share) < 1e-6) {
+        return {};
+    }
+    return ", of its facets; a smooth surface through their corners holds about " + rounded(100 * share, 2) + " % (" +
+           rounded(geometry::standard_gravity * body.density * body.volume_left_out, 2) + " N) more";
+}
+
 void print_body(const geometry::Body& body, Shell& shell) {
     const geometry::MassProperties& mass = body.mass;
     const geometry::Certificate& quality = body.certificate;
     shell.print(body.name + ": " + std::to_string(body.mesh.triangles.size()) +
                 " triangles, closed, free of self-intersection");
+    const geometry::Vec3 size = body.outer_size();
+    shell.print("size        length " + mm(size.x) + ", width " + mm(size.y) + ", height " + mm(size.z) + " mm over all" +
+                (body.shape ? " (body.height, " + mm(body.shape->height) +
+                                  " mm, is that of the whole ellipsoid before its base is cut)"
+                            : ""));
     shell.print("volume      " + rounded(mass.volume * 1e6) + " cm^3, buoyancy " + rounded(mass.buoyancy(body.density)) +
-                " N");
+                " N" + (body.shape ? ", of the exact shape" : facet_error(body)));
     shell.print("area        " + rounded(mass.area * 1e4) + " cm^2");
     shell.print("centroid    " + mm(mass.centroid.x) + ", " + mm(mass.centroid.y) + ", " + mm(mass.centroid.z) +
                 " mm from the centre of the base (x forward, y to port, z up)");
@@ -144,6 +176,10 @@ void print_body(const geometry::Body& body, Shell& shell) {
                 rounded(100 * quality.exact->volume_error, 3) + " %";
     }
     shell.print(line);
+    if (body.ballast) {
+        shell.print("ballast     moved to " + mm(body.ballast->x) + ", " + mm(body.ballast->y) + ", " +
+                    mm(body.ballast->z) + " mm; the trim below is with it there");
+    }
     if (body.trim) {
         const geometry::Trim& t = *body.trim;
         shell.print("trim        mass " + rounded(t.mass, 5) + " kg, net weight " + rounded(t.net_weight, 4) + " N, " +
@@ -168,6 +204,9 @@ void print_body(const geometry::Body& body, Shell& shell) {
         }
         shell.print(line);
     }
+    for (const std::string& remark : body.remarks) {
+        shell.print("remark      " + remark);
+    }
     if (body.clearance) {
         shell.print("clearance   " + rounded(1e3 * body.clearance->smallest, 4) +
                     " mm at x = " + rounded(1e3 * body.clearance->where.x, 4) +
@@ -184,6 +223,9 @@ int make_body(const MakeOptions& o, Shell& shell) {
     if (!o.out.empty()) {
         geometry::mesh_format_of(o.out);  // a wrong ending is told before the work
     }
+    for (const std::string& file : {o.out, o.picture, o.section, o.underside, o.gap_picture, o.area_curve}) {
+        Shell::will_write(file);
+    }
     geometry::BodyOptions options = o.input.options();
     for (const auto& [option, value] : {std::pair{"--gap-picture", &o.gap_picture}, {"--area-curve", &o.area_curve}}) {
         if (!value->empty() && !options.placement) {
@@ -194,25 +236,20 @@ int make_body(const MakeOptions& o, Shell& shell) {
     if (!o.area_up_to.empty()) {
         options.underside_up_to = positive(o.area_up_to, "m", "--area-up-to");
     }
+    if (!o.ballast.empty()) {
+        options.ballast = geometry::BallastWish{o.ballast, core::parse_in(o.trim_pitch, "rad"),
+                                                core::parse_in(o.trim_roll, "rad")};
+    }
     geometry::Body body = geometry::read_body(o.input.shape, options, shell.progress());
+    if (const std::string doubt = options.placement ? o.input.doubt(body.mesh) : std::string(); !doubt.empty()) {
+        body.remarks.push_back(doubt);
+    }
     shell.progress().report(1, "done");
     const geometry::SurfaceMesh& made = body.mesh;
     const geometry::SurfaceMesh placed =
         body.placement ? geometry::placed(made, *body.placement) : geometry::SurfaceMesh{};
     const geometry::SurfaceMesh& shown = body.placement ? placed : made;
     nlohmann::json document = body;
-    if (!o.ballast.empty()) {
-        if (!body.loading) {
-            throw core::InputError("missing", "the shape has no [mass] whose ballast could be placed",
-                                   {o.input.shape, {}, {}, {}});
-        }
-        const geometry::Vec3 at =
-            geometry::ballast_position(body.mass, *body.loading, o.ballast, core::parse_in(o.trim_pitch, "rad"),
-                                       core::parse_in(o.trim_roll, "rad"));
-        document["ballast_position"] = {at.x, at.y, at.z};
-        shell.print("ballast     '" + o.ballast + "' at " + rounded(1e3 * at.x, 5) + ", " + rounded(1e3 * at.y, 5) +
-                    ", " + rounded(1e3 * at.z, 5) + " mm");
-    }
     if (!o.out.empty()) {
         const geometry::MeshFormat format = geometry::mesh_format_of(o.out);
         const bool ascii = o.ascii && format == geometry::MeshFormat::stl_binary;
@@ -239,9 +276,6 @@ int make_body(const MakeOptions& o, Shell& shell) {
             write_picture(geometry::figure(*body.underside), o.area_curve);
         }
     }
-    if (!body.remark.empty()) {
-        shell.warn(body.remark);
-    }
     if (shell.json) {
         shell.print_json(document);
     } else {
@@ -266,9 +300,11 @@ void add_make(CLI::App* command, Shell& shell, const std::shared_ptr<BodyActions
     command->add_option("--area-curve", o->area_curve,
                         "PNG, PDF or CSV: how much of the under side lies lower than a height (with --gap)");
     command->add_option("--area-up-to", o->area_up_to, "height where that curve ends (default: a quarter of the body)");
-    command->add_option("--ballast", o->ballast, "name of the point mass to be placed for the wanted trim");
-    command->add_option("--trim-pitch", o->trim_pitch, "wanted pitch at rest")->capture_default_str();
-    command->add_option("--trim-roll", o->trim_roll, "wanted roll at rest")->capture_default_str();
+    auto* ballast = command->add_option(
+        "--ballast", o->ballast,
+        "name of the point mass that is moved for the wanted trim; mass, trim and added mass are then with it there");
+    command->add_option("--trim-pitch", o->trim_pitch, "wanted pitch at rest")->capture_default_str()->needs(ballast);
+    command->add_option("--trim-roll", o->trim_roll, "wanted roll at rest")->capture_default_str()->needs(ballast);
     shell.on(command, [o, actions, command, &shell] {
         const auto chosen = command->get_subcommands();
         return chosen.empty() ? make_body(*o, shell) : actions->at(chosen.front())();

@@ -28,6 +28,8 @@ struct BodyInput {
     void add_placement(CLI::App* command);
     /// Empty without --gap; core::UsageError when --pitch or --roll stand alone.
     [[nodiscard]] std::optional<geometry::Placement> placement() const;
+    /// What to know of a --gap without a unit that is metres and far beyond the body; empty when all is well.
+    [[nodiscard]] std::string doubt(const geometry::SurfaceMesh& body) const;
     [[nodiscard]] geometry::BodyOptions options() const;
 };
 

@@ -114,6 +114,9 @@ int write_domain(DomainCommand& o, Shell& shell) {
     const geometry::FlowDomain domain = geometry::flow_domain(body.mesh, o.flow);
     const auto files = o.solver == "openfoam" ? geometry::write_openfoam_case(body.mesh, o.flow, o.out)
                                               : geometry::write_ansys_case(body.mesh, o.flow, o.out);
+    if (const std::string doubt = o.input.doubt(body.mesh); !doubt.empty()) {
+        shell.warn(doubt);
+    }
     if (domain.cells_in_gap < 3 && o.solver == "openfoam") {
         shell.warn("only " + rounded(domain.cells_in_gap, 2) +
                    " cells across the smallest clearance: choose a smaller --cell");
