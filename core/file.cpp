@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/inputs.h"
+#include "core/own_files.h"
 
 namespace underbody::core {
 
@@ -144,6 +145,7 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)), temporar
     if (target_.filename().empty()) {
         throw SystemError("write", "is not a file name", {target_.string(), {}, {}, {}});
     }
+    refuse_other_file(target_);
     make_parent(target_);
 }
 
@@ -159,6 +161,7 @@ void PendingFile::commit() {
     if (file.get() < 0 || ::fsync(file.get()) != 0) {
         throw SystemError("write", "cannot be written: " + reason(errno), {target_.string(), {}, {}, {}});
     }
+    mark_as_own(file.get());
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
         throw SystemError("write", "cannot be renamed into place: " + reason(errno), {target_.string(), {}, {}, {}});
     }

@@ -109,6 +109,9 @@ nlohmann::json draw_region(const ControlArguments& a, const SeparatedPlant& plan
 }
 
 int run_control(const ControlArguments& a, Shell& shell) {
+    for (const std::string& file : {a.out, a.plot, a.region}) {
+        Shell::will_write(file);
+    }
     const dynamics::Model model = dynamics::read_model(a.model);
     dynamics::Conditions held;
     for (const auto& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/own_files.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
@@ -80,7 +81,9 @@ std::string format_of(const ExportCommand& command) {
 
 int run_export(Shell& shell, const ExportCommand& command) {
     const std::string format = format_of(command);
-    const auto options = options_of(command);
+    auto options = options_of(command);
+    options.overwrite = options.overwrite || shell.force;
+    const core::ReplacingAllowed by_the_export_itself;  // it knows its own files by what is in them
     const auto table = command.table.fit(shell);
     const auto result = tables::export_table(table, format, command.out, options, shell.progress());
     shell.show(result.remarks);

@@ -9,7 +9,7 @@ namespace {
 void mention_common_options(CLI::App& app) {
     for (auto* command : app.get_subcommands([](CLI::App*) { return true; })) {
         const std::string footer = command->get_footer();
-        command->footer(footer + (footer.empty() ? "" : "\n") + "With every command: --json, --quiet, --verbose, --threads N (underbody --help)");
+        command->footer(footer + (footer.empty() ? "" : "\n") + "With every command: --json, --quiet, --verbose, --threads N, --force (underbody --help)");
         mention_common_options(*command);
     }
 }
@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
     app.add_flag("--json", shell.json, "results as one JSON document on stdout");
     app.add_flag("--quiet", shell.quiet, "no progress and no remarks");
     app.add_flag("--verbose", shell.verbose, "say more of what is done");
+    app.add_flag("--force", shell.force, "replace files that underbody did not write, or that were changed since");
     app.add_option("--threads", shell.threads, "threads to use (default: all cores)")->check(CLI::NonNegativeNumber);
 #define UNDERBODY_ADD(name) add_##name##_command(app, shell);
     UNDERBODY_COMMANDS(UNDERBODY_ADD)

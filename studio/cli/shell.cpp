@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/own_files.h"
 #include "core/parallel.h"
 #include "postproc/import_error.h"
 #include "studio/cli/usage.h"
@@ -98,10 +99,32 @@ void Shell::detail(const std::string& text) {
     }
 }
 
+namespace {
+std::string text_of(const core::Problem& problem) {
+    const std::string where = problem.place.text();
+    return where.empty() ? problem.message : where + ": " + problem.message;
+}
+}  // namespace
+
+void Shell::will_write(const std::string& path) {
+    if (!path.empty()) {
+        core::refuse_other_file(path);
+    }
+}
+
+void Shell::remark(const core::Problems& problems) {
+    if (json) {
+        show(problems);
+        return;
+    }
+    for (const auto& problem : problems) {
+        problem.severity == core::Problem::Severity::note ? detail(text_of(problem)) : print("warning: " + text_of(problem));
+    }
+}
+
 void Shell::show(const core::Problems& problems) {
     for (const auto& problem : problems) {
-        const std::string where = problem.place.text();
-        const std::string text = where.empty() ? problem.message : where + ": " + problem.message;
+        const std::string text = text_of(problem);
         if (problem.severity == core::Problem::Severity::note) {
             detail(text);
         } else {
@@ -138,6 +161,7 @@ void Shell::report(const core::Error& error, const char* what) {
 int Shell::run_action() {
     try {
         core::set_threads(threads);
+        core::protect_other_files(!force);
         return action_ ? action_() : done;
     } catch (const core::Cancelled& error) {
         report(error, "stopped");
@@ -147,6 +171,10 @@ int Shell::run_action() {
         return wrong_usage;
     } catch (const core::InputError& error) {
         // A value with a unit that stands in no file stood on the command line.
+        if (error.kind() == "exists") {
+            report(core::InputError(error.kind(), error.message(), error.place(), error.hint() + ", or say --force to replace it"), "error");
+            return wrong_input;
+        }
         const bool option = error.place().file.empty() && (error.kind() == "unit" || error.kind() == "parse");
         report(error, option ? "wrong use" : "error");
         return option ? wrong_usage : wrong_input;

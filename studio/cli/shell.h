@@ -24,6 +24,7 @@ public:
     bool quiet = false;
     bool verbose = false;
     int threads = 0;
+    bool force = false;  ///< files of others are replaced
 
     /// Runs `action` when the sub-command was chosen; its result is the exit code.
     void on(CLI::App* command, std::function<int()> action);
@@ -38,6 +39,11 @@ public:
     void detail(const std::string& text);
     /// Problems of a reader, as warnings.
     void show(const core::Problems& problems);
+    /// Refuses, before the work is done, to write over a file that is somebody else's (core/own_files.h). Empty: nothing.
+    static void will_write(const std::string& path);
+    /// Problems that change what the numbers mean: in the text on stdout, above the numbers (with --json, whose document
+    /// must hold them itself, on stderr).
+    void remark(const core::Problems& problems);
 
     /// Draws a bar on stderr when it is a terminal and nobody asked for quiet; Ctrl-C cancels it.
     core::Progress& progress() { return progress_; }

@@ -9,6 +9,7 @@
 #include "cases/openfoam_run.h"
 #include "cases/sweep.h"
 #include "core/file.h"
+#include "core/own_files.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "postproc/importers/openfoam_forces.h"
@@ -175,7 +176,10 @@ void add_solve_command(CLI::App& app, Shell& shell) {
         "  underbody solve case\n"
         "  underbody solve case --json\n"
         "Needs OpenFOAM (Debian: openfoam). Ctrl-C ends the solver too; the logs stay in the folder.");
-    shell.on(command, [&shell, o] { return solve(shell, o->folder, o->again); });
+    shell.on(command, [&shell, o] {
+        const core::ReplacingAllowed the_case;
+        return solve(shell, o->folder, o->again);
+    });
 }
 
 void add_sweep_command(CLI::App& app, Shell& shell) {
@@ -200,7 +204,10 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
         "  speed = \"0.5 m/s\"\n"
         "  # folder, conditions, kinematic_viscosity, cell, surface_level, layers, iterations\n"
         "Solved cases belong to the study without a [[case]]. A sweep that was stopped goes on where it was.");
-    shell.on(command, [&shell, o] { return sweep(shell, *o); });
+    shell.on(command, [&shell, o] {
+        const core::ReplacingAllowed the_cases;
+        return sweep(shell, *o);
+    });
 }
 
 }  // namespace underbody::studio

@@ -6,6 +6,7 @@
 #include "cases/why.h"
 #include "core/file.h"
 #include "core/name_pattern.h"
+#include "core/own_files.h"
 #include "core/text.h"
 #include "core/toml.h"
 #include "core/units.h"
@@ -120,6 +121,8 @@ cases::StudyResults results_of_run(Shell& shell, const cases::Study& study, cons
 }
 
 int run_and_report(Shell& shell, const StudyArguments& arguments) {
+    Shell::will_write(arguments.report);
+    const core::ReplacingAllowed report_and_exports;  // of the study's own folder, by whichever version
     const auto study = cases::Study::open(arguments.folder);
     const auto results = results_of_run(shell, study, run_options(arguments));
     const int code = tell(shell, results);
@@ -189,6 +192,7 @@ int compare(Shell& shell, const StudyArguments& arguments) {
     const auto results = results_of_run(shell, study, options);
     nlohmann::json json = nlohmann::json::object();
     std::vector<std::vector<std::string>> rows = {{"comparison", "table", "winner of", "value"}};
+    std::string remarks;
     for (const auto& spec : study.comparisons) {
         const auto* document = results.document("compare/" + spec.name);
         if (document == nullptr) {
@@ -198,11 +202,14 @@ int compare(Shell& shell, const StudyArguments& arguments) {
         for (const auto& row : json[spec.name].at("rows")) {
             rows.push_back({spec.name, row.at("table"), row.at("measure"), row.at("text")});
         }
+        for (const auto& remark : json[spec.name].at("remarks")) {
+            remarks += "\n" + spec.name + ": " + remark.get<std::string>();
+        }
     }
     if (shell.json) {
         shell.print_json(json);
     }
-    shell.print(aligned(rows));
+    shell.print(aligned(rows) + (remarks.empty() ? "" : "\n" + remarks));
     return results.failed == 0 ? done : wrong_input;
 }
 
@@ -237,6 +244,25 @@ int verify(Shell& shell, const StudyArguments& arguments) {
         shell.print_json(json);
     }
     return failed == 0 && results.failed == 0 ? done : check_failed;
+}
+
+/// Files that the pattern passes over though they look as if they were meant, each with the reason.
+nlohmann::json left_out(const StudyArguments& arguments, Shell& shell) {
+    constexpr std::size_t most = 8;
+    const core::NamePattern pattern(arguments.files);
+    const auto missed = pattern.near_misses(arguments.folder);
+    nlohmann::json list = nlohmann::json::array();
+    std::string text = missed.empty() ? "" : std::to_string(missed.size()) + (missed.size() == 1 ? " file is" : " files are") + " left out:";
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+        const std::string why = pattern.why_not(missed[i], arguments.folder);
+        list.push_back({{"file", missed[i].string()}, {"why", why}});
+        text += i < most ? "\n  " + missed[i].string() + ": " + why : "";
+    }
+    text += missed.size() > most ? "\n  and " + std::to_string(missed.size() - most) + " more" : "";
+    if (!missed.empty()) {
+        shell.print(text);
+    }
+    return list;
 }
 
 std::string lines_of(const char* title, const std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -313,6 +339,25 @@ std::string case_text(const StudyArguments& arguments) {
     return text;
 }
 
+/// What is wrong stands in the lines to be added, which nobody has seen yet: says it without their place.
+void say_of_new_lines(const core::InputError& error, const StudyArguments& arguments, const std::filesystem::path& file, std::ptrdiff_t old_lines) {
+    if (error.place().file != file.string() || error.place().line.value_or(0) <= old_lines) {
+        return;
+    }
+    std::string hint = error.hint();
+    if (error.kind() == "missing") {
+        const core::NamePattern pattern(arguments.files);
+        if (const auto missed = pattern.near_misses(arguments.folder); !missed.empty()) {
+            hint = std::to_string(missed.size()) + " come near, such as " + missed.front().string() + ": " + pattern.why_not(missed.front(), arguments.folder);
+        }
+    }
+    const std::string message = error.message() + "; nothing was added to " + file.string();
+    if (error.kind() == "missing" || error.kind() == "duplicate") {
+        throw core::InputError(error.kind(), message, {}, hint);
+    }
+    throw core::UsageError(error.kind(), message, {}, hint);
+}
+
 /// Appends a [[case]] to study.toml (or starts one), checked before anything is written.
 int add(Shell& shell, const StudyArguments& arguments) {
     const std::filesystem::path folder = arguments.folder;
@@ -323,20 +368,21 @@ int add(Shell& shell, const StudyArguments& arguments) {
         text = core::read_file(file);
         before = cases::Study::from_text(text, file);
     }
+    const auto old_lines = std::count(text.begin(), text.end(), '\n');
     text = with_symmetry(std::move(text), arguments.symmetry, before ? &*before : nullptr) + case_text(arguments);
-    const std::size_t count = cases::Study::from_text(text, file).cases.size() - (before ? before->cases.size() : 0);
+    std::size_t count = 0;
+    try {
+        count = cases::Study::from_text(text, file).cases.size() - (before ? before->cases.size() : 0);
+    } catch (const core::InputError& error) {
+        say_of_new_lines(error, arguments, file, old_lines);
+        throw;
+    }
+    const core::ReplacingAllowed of_the_user;  // who asked for it
     core::write_file(file, text);
-    std::string missed;
-    std::size_t misses = 0;
-    for (const auto& path : core::NamePattern(arguments.files).near_misses(folder)) {
-        missed += ++misses > 5 ? "" : (missed.empty() ? "" : ", ") + path.string();
-    }
-    if (misses > 0) {
-        shell.warn(std::to_string(misses) + " files that nearly fit the pattern have no number where it has one, and are not added: " + missed);
-    }
+    const nlohmann::json passed_over = left_out(arguments, shell);
     shell.print(std::to_string(count) + " cases added to " + file.string());
     if (shell.json) {
-        shell.print_json({{"added", count}, {"study", file.string()}});
+        shell.print_json({{"added", count}, {"study", file.string()}, {"left_out", passed_over}});
     }
     return done;
 }

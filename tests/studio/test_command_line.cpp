@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -128,6 +129,9 @@ TEST(CommandLine, AValueWithAWrongUnitIsAWrongCommandLine) {
 
 // ---- files that cannot be used ----
 
+/// Commands that read no file.
+const std::set<std::string> without_files = {"theory", "new", "list"};
+
 /// How each command is given a file.
 const std::vector<std::vector<std::string>> with_file = {{"body", "FILE", "--out", "out.stl"},
                                                          {"info", "FILE"},
@@ -168,9 +172,44 @@ TEST(CommandLine, OfEveryCommandSaysWhatIsWrongWithItsFileAndWritesNothing) {
         }
     }
     for (const auto& command : all_commands()) {
-        EXPECT_TRUE(tried.contains(command)) << command << " is not tried here";
+        EXPECT_TRUE(tried.contains(command) || without_files.contains(command)) << command << " is not tried here";
     }
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(CommandLine, LeavesFilesOfOthersAloneUnlessForced) {
+    const core::TemporaryFolder folder;
+    const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder.path() / name) << text; };
+    const auto read = [&](const char* name) { return core::read_file(folder.path() / name); };
+    write("lift.csv", "gap [mm], lift_force [N]\n1, 0.1\n2, 0.02\n5, -0.03\n10, -0.04\n20, -0.01\n50, 0.04\n");
+    write("model.toml", "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\n[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+    const std::vector<std::vector<std::string>> writers = {
+        {"region", "model.toml", "--grid", "5x5", "--for", "1", "--out"},
+        {"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--plot"},
+        {"table", "fit", "lift.csv", "--picture"},
+    };
+    for (auto words : writers) {
+        words.emplace_back("notes.png");
+        write("notes.png", "what I wrote down");
+        const auto refused = run_underbody(words, folder.path());
+        EXPECT_EQ(refused.exit_code, 3) << words[0];
+        EXPECT_THAT(refused.errors, testing::HasSubstr("--force"));
+        EXPECT_EQ(read("notes.png"), "what I wrote down");
+        words.emplace_back("--force");
+        EXPECT_EQ(run_underbody(words, folder.path()).exit_code, 0);
+        EXPECT_TRUE(read("notes.png").starts_with("\x89PNG"));
+        words.pop_back();
+        EXPECT_EQ(run_underbody(words, folder.path()).exit_code, 0) << "its own file is replaced as ever";
+    }
+    // The input itself, a file of the program's own that was changed since, and a fresh empty file.
+    const std::string before = read("lift.csv");
+    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "lift.csv"}, folder.path()).exit_code, 3);
+    EXPECT_EQ(read("lift.csv"), before);
+    ASSERT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "run.csv"}, folder.path()).exit_code, 0);
+    std::ofstream(folder.path() / "run.csv", std::ios::app) << "# my remark\n";
+    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "run.csv"}, folder.path()).exit_code, 3);
+    write("empty.csv", "");
+    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "empty.csv"}, folder.path()).exit_code, 0);
 }
 
 TEST(CommandLine, EndsWithThreeWhenTheResultCannotBeWritten) {
@@ -324,6 +363,11 @@ TEST(Examples, OfEveryHelpTextAreCommandLinesThatTheProgramUnderstands) {
         auto arguments = words_of(example);
         arguments.erase(arguments.begin());
         const auto run = run_underbody(arguments, empty.path());
+        if (without_files.contains(arguments[0])) {
+            // A template is never written over a file that an earlier example made.
+            EXPECT_TRUE(run.exit_code == 0 || (arguments[0] == "new" && run.exit_code == 3)) << example << "\n" << run.errors;
+            continue;
+        }
         // There is no file here, so that they cannot succeed; but it must be the file that is missing.
         EXPECT_TRUE(run.exit_code == 3 || run.errors.find("does not exist") != std::string::npos) << example << "\n" << run.exit_code << ": " << run.errors;
         EXPECT_THAT(run.errors, testing::Not(HasSubstr("has no option"))) << example;

@@ -65,6 +65,46 @@ TEST_F(StudyCommand, TurnsFieldsIntoLoadsTableEquilibriaMapExportAndReport) {
     EXPECT_TRUE(fs::exists(study / "report" / "models" / "map" / "model.toml"));
 }
 
+TEST_F(StudyCommand, ReportShowsFilmTheoryBesideTheCfdAndLoadsSortedWithTheirConditions) {
+    core::write_file(study / "shape.toml", "[body]\nlength='203.2 mm'\nwidth='152 mm'\nheight='145 mm'\nbase_cut=0.75\n");
+    core::write_file(study / "fields" / "cube-h10.csv", cube_field(0.010, 290));
+    core::write_file(study / "study.toml", core::read_file(study / "study.toml") + "[[body]]\nname = \"cube\"\nshape = \"shape.toml\"\n");
+    ASSERT_EQ(run().exit_code, 0);
+    const std::string report = core::read_file(study / "report" / "index.html");
+    EXPECT_THAT(report, HasSubstr("squeeze damping (N s/m)"));
+    // 12 mu G/h^3 of the elliptic base (half axes 67.2 and 50.3 mm) at the 3.5 mm where the lift holds the weight.
+    const double a = 0.1016 * std::sqrt(1 - 0.75 * 0.75), b = 0.076 * std::sqrt(1 - 0.75 * 0.75), pi = 3.14159265358979;
+    const auto film = run_underbody({"theory", "squeeze", "half_length=" + core::format_number(a, 12) + ",half_width=" + core::format_number(b, 12) + ",gap=3.5mm", "--json"});
+    const double damping = json::parse(film.output).at("values").at("damping").get<double>();
+    EXPECT_NEAR(damping, 12e-3 * pi * std::pow(a * b, 3) / (4 * (a * a + b * b)) / std::pow(3.5e-3, 3), 1e-9);
+    EXPECT_THAT(report, HasSubstr(core::format_number(damping, 3)));
+    const std::size_t loads = report.find("Loads of all cases");
+    ASSERT_NE(loads, std::string::npos);
+    const std::string rows = report.substr(loads);
+    EXPECT_THAT(rows, HasSubstr("variant"));
+    EXPECT_LT(rows.find("cube-h6"), rows.find("cube-h10")) << "by the number, not by its digits";
+    EXPECT_THAT(rows, testing::Not(HasSubstr("e-1"))) << "rounding is no opening";
+}
+
+TEST_F(StudyCommand, AddRefusesAMistypedConditionAndSaysWhatItLeavesOut) {
+    const std::string before = core::read_file(study / "study.toml");
+    fs::create_directories(study / "more");
+    for (const char* name : {"box-h1.csv", "box-h2mm.csv"}) {
+        core::write_file(study / "more" / name, cube_field(0.001, 300));
+    }
+    const auto typo = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "sped=0.5"});
+    EXPECT_EQ(typo.exit_code, 2) << typo.errors;
+    EXPECT_THAT(typo.errors, HasSubstr("did you mean 'speed'?"));
+    EXPECT_THAT(typo.errors, testing::Not(HasSubstr("underbody-"))) << "no name of a temporary file";
+    EXPECT_EQ(core::read_file(study / "study.toml"), before);
+    const auto none = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-hh{gap:mm}.csv"});
+    EXPECT_EQ(none.exit_code, 3);
+    EXPECT_THAT(none.errors, testing::AllOf(HasSubstr("no file fits"), HasSubstr("nothing was added"), testing::Not(HasSubstr("study.toml:"))));
+    const auto added = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5"});
+    ASSERT_EQ(added.exit_code, 0) << added.errors;
+    EXPECT_THAT(added.output, testing::AllOf(HasSubstr("1 cases added"), HasSubstr("1 file is left out"), HasSubstr("box-h2mm.csv: '2mm' carries its unit: write {gap:mm}mm")));
+}
+
 TEST_F(StudyCommand, RecomputesNothingWhenNothingChangedAndOnlyWhatChangedOtherwise) {
     ASSERT_EQ(run().exit_code, 0);
     const auto report_time = fs::last_write_time(study / "report" / "index.html");
