@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/tables/compare.h"
 #include "surrogates/tables/equilibria.h"
 #include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/figures.h"
@@ -19,7 +20,7 @@ namespace {
 Key table_key(const std::string& kind, const TableSpec& spec, const core::Table& points) {
     Key key(kind, {"surrogates/tables"});
     key.add("quantity", spec.quantity).add("points", digest_of(points));
-    key.add("net_weight", spec.net_weight.value_or(std::nan(""))).add("virtual_mass", spec.virtual_mass).add("fit", spec.fit);
+    key.add("net_weight", spec.net_weight.value_or(std::nan(""))).add("virtual_mass", spec.virtual_mass);
     for (const auto& axis : spec.axes) {
         key.add("axis", axis);
     }
@@ -33,7 +34,9 @@ Key table_key(const std::string& kind, const TableSpec& spec, const core::Table&
 }
 
 tables::ForceTable fitted(const TableSpec& spec, const core::Table& points) {
-    return tables::ForceTable::fit(points, spec.quantity, fit_options(spec));
+    tables::FitOptions options;
+    options.axes = spec.axes;
+    return tables::ForceTable::fit(points, spec.quantity, options);
 }
 
 tables::EquilibriumOptions equilibrium_options(const TableSpec& spec) {
@@ -135,63 +138,68 @@ void run_table(Engine& engine, const TableSpec& spec) {
 }
 
 /// What a designer asks of underbodies that are laid over each other.
-struct Measure {
-    std::string name;
-    std::string unit;
-    double value;
-};
-
-std::vector<Measure> measures(const tables::ForceTable& table) {
-    const auto& axis = table.axes().front();
-    double steepest = 0;
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    constexpr int samples = 400;
-    for (int i = 0; i <= samples; ++i) {
-        const double h = axis.lower + (axis.upper - axis.lower) * i / samples;
-        double slope = 0;
-        const double value = table.value(&h, &slope);
-        steepest = std::max(steepest, -slope);
-        lowest = std::min(lowest, value);
-        highest = std::max(highest, value);
+std::vector<tables::Measure> measures_of(const tables::ForceTable& table) {
+    using tables::Measure;
+    if (tables::restores_along(table.quantity(), table.axes().front().name)) {
+        return {Measure::restoring_slope, Measure::restoring_width, Measure::largest, Measure::smallest};
     }
-    return {{"steepest restoring slope", "N/m", steepest}, {"strongest lift", "N", highest}, {"deepest dip of lift", "N", -lowest}};
+    return {Measure::smallest, Measure::largest, Measure::lowest};
 }
 
-std::string compute_comparison(const CompareSpec& spec,
-                               const std::vector<std::pair<std::string, tables::ForceTable>>& compared) {
-    nlohmann::json rows = nlohmann::json::array();
-    const auto first = measures(compared.front().second);
-    for (std::size_t m = 0; m < first.size(); ++m) {
-        std::size_t best = 0;
-        for (std::size_t i = 1; i < compared.size(); ++i) {
-            best = measures(compared[i].second)[m].value > measures(compared[best].second)[m].value ? i : best;
-        }
-        Measure measure = measures(compared[best].second)[m];
-        measure.value = measure.name == "deepest dip of lift" ? -measure.value : measure.value;
-        rows.push_back({{"measure", measure.name}, {"table", spec.tables[best]}, {"value", measure.value},
-                        {"text", core::format_number(measure.value, 3) + " " + measure.unit}});
+std::string shown_at(const tables::ForceTable& table, double value) {
+    const auto& axis = table.axes().front();
+    const std::string unit = tables::shown_unit(table, axis.name);
+    return core::format_number(core::convert(value, axis.unit, unit), 4) + " " + unit;
+}
+
+/// "'B' less 'A': at most 0.12 +- 0.01 N, at 5 mm; beyond twice the joint error at 3 mm to 8 mm."
+std::string difference_text(const tables::ForceTable& table, const tables::Difference& d) {
+    std::string where;
+    for (const auto& [from, to] : d.beyond_error) {
+        where += (where.empty() ? "" : ", ") + shown_at(table, from) + (to > from ? " to " + shown_at(table, to) : "");
     }
-    // Beyond their errors, over the range that both have.
-    nlohmann::json remarks = nlohmann::json::array();
-    for (std::size_t i = 1; i < compared.size(); ++i) {
-        const auto& a = compared.front().second;
-        const auto& b = compared[i].second;
-        const double lower = std::max(a.axes()[0].lower, b.axes()[0].lower);
-        const double upper = std::min(a.axes()[0].upper, b.axes()[0].upper);
-        int beyond = 0;
-        constexpr int samples = 200;
-        for (int k = 0; k <= samples && upper > lower; ++k) {
-            const std::array<double, 1> h = {lower + (upper - lower) * k / samples};
-            const auto va = a.at(h);
-            const auto vb = b.at(h);
-            beyond += std::abs(va.value - vb.value) > 2 * std::hypot(va.sigma, vb.sigma) ? 1 : 0;
+    return "'" + d.second + "' less '" + d.first + "': at most " + core::format_number(d.largest, 3) + " ± " +
+           core::format_number(d.sigma, 2) + " " + table.unit() + ", at " + shown_at(table, d.at) +
+           (where.empty() ? "; nowhere more than twice the joint error of the two." : "; more than twice the joint error of the two at " + where + ".");
+}
+
+std::string compute_comparison(const std::vector<std::pair<std::string, tables::ForceTable>>& compared) {
+    const tables::ForceTable& first = compared.front().second;
+    const std::string& axis = first.axes().front().name;
+    const std::string noun = tables::noun_of(first.quantity());
+    nlohmann::json document = {{"quantity", first.quantity()}, {"axis", axis}, {"rows", nlohmann::json::array()}, {"remarks", nlohmann::json::array()}};
+    for (const auto measure : measures_of(first)) {
+        tables::ComparisonOptions options;
+        options.measure = measure;
+        const auto result = tables::compare_tables(compared, options);
+        const auto best = result.winner.empty() ? result.names.begin() : std::find(result.names.begin(), result.names.end(), result.winner);
+        const auto i = static_cast<std::size_t>(best - result.names.begin());
+        const bool slope = measure == tables::Measure::restoring_slope, width = measure == tables::Measure::restoring_width;
+        const bool restores = !(slope || width) || result.values[i] > 0;
+        const std::string value = width ? shown_at(first, result.values[i]) : core::format_number(result.values[i], 3) + " " + result.unit;
+        nlohmann::json row = {{"measure", slope || width ? result.measure : result.measure + " of the " + noun},
+                              {"table", restores ? nlohmann::json(*best) : nlohmann::json("none")},
+                              {"value", restores ? nlohmann::json(result.values[i]) : nlohmann::json()},
+                              {"sigma", result.errors[i]},
+                              {"unit", result.unit},
+                              {"beyond_error", result.beyond_error},
+                              {"text", !restores               ? "none restores"
+                                       : compared.size() == 1 ? value
+                                       : value + (result.beyond_error ? "" : ", within the errors")}};
+        for (std::size_t k = 0; k < result.names.size(); ++k) {
+            row["values"].push_back({{"table", result.names[k]}, {"value", result.values[k]}, {"sigma", result.errors[k]}});
         }
-        remarks.push_back("'" + spec.tables.front() + "' and '" + spec.tables[i] + "' differ by more than twice their errors over " +
-                          std::to_string(100 * beyond / (samples + 1)) + " % of the gaps from " +
-                          core::format_number(1e3 * lower, 3) + " to " + core::format_number(1e3 * upper, 3) + " mm.");
+        document["rows"].push_back(row);
+        if (document["rows"].size() == 1) {
+            document["range"] = {result.lower, result.upper};
+            document["remarks"].push_back("Compared over the " + axis + " that all of them have, " + shown_at(first, result.lower) + " to " +
+                                          shown_at(first, result.upper) + ".");
+            for (const auto& difference : result.differences) {
+                document["remarks"].push_back(difference_text(first, difference));
+            }
+        }
     }
-    return nlohmann::json({{"rows", rows}, {"remarks", remarks}}).dump();
+    return document.dump();
 }
 
 using Compared = std::vector<std::pair<std::string, tables::ForceTable>>;
@@ -224,7 +232,7 @@ void run_comparison(Engine& engine, const CompareSpec& spec) {
         return;
     }
     Shared<Compared> compared(engine.states(), [&] { return fitted_tables(engine, spec); });
-    const auto made = engine.make("compare", spec.name, key, [&] { return compute_comparison(spec, compared.get()); });
+    const auto made = engine.make("compare", spec.name, key, [&] { return compute_comparison(compared.get()); });
     if (made) {
         engine.add_document("compare/" + spec.name, engine.value(*made));
         key.from(*made);

@@ -107,8 +107,7 @@ std::string angle_in_degrees(double radians) { return five_digits(core::convert(
 
 void show_windows(Shell& shell, const std::vector<tables::PitchWindow>& windows) {
     for (const auto& w : windows) {
-        const auto edge = [](double pitch, double sigma) { return angle_in_degrees(pitch) + (sigma > 1e-9 ? " +- " + five_digits(core::convert(sigma, "rad", "deg"), 2) : ""); };
-        shell.print(w.side + ": restores from " + edge(w.lower, w.lower_sigma) + " to " + edge(w.upper, w.upper_sigma) + " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
+        shell.print(w.side + ": restores from " + angle_in_degrees(w.lower) + " to " + angle_in_degrees(w.upper) + " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
                     " N m/rad); trim torque there " + five_digits(w.trim_torque, 4) + " N m nose up, " + five_digits(w.trim_lower, 4) + " to " + five_digits(w.trim_upper, 4) +
                     " N m over the window");
     }
@@ -185,8 +184,28 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
 
 struct CompareCommand {
     TableOptions table;
-    std::string by = "variant", measure = "restoring_slope", held, picture;
+    std::string by = "variant", measure, held, picture;
 };
+
+void show_comparison(Shell& shell, const tables::ForceTable& table, const tables::Comparison& c) {
+    const bool restoring = c.measure.find("restoring") != std::string::npos;
+    for (std::size_t i = 0; i < c.names.size(); ++i) {
+        shell.print(c.names[i] + ": " + (restoring && !(c.values[i] > 0)
+                                             ? "restores nowhere"
+                                             : c.measure + " of the " + tables::noun_of(c.quantity) + " " + five_digits(c.values[i]) + " +- " + five_digits(c.errors[i], 2) + " " + c.unit));
+    }
+    const std::string unit = table.axes()[tables::axis_index(table, c.axis)].unit;
+    const std::string range = "compared over the " + c.axis + " that all have, " + shown(table, c.axis, unit, c.lower, 4) + " to " + shown(table, c.axis, unit, c.upper, 4);
+    shell.print((c.winner.empty() ? "none of them restores" : c.winner + " wins by " + c.measure + (c.beyond_error ? ", beyond the errors" : ", but within the errors")) + "; " + range);
+    for (const auto& d : c.differences) {
+        std::string where;
+        for (const auto& [from, to] : d.beyond_error) {
+            where += (where.empty() ? "" : ", ") + shown(table, c.axis, unit, from, 4) + (to > from ? " to " + shown(table, c.axis, unit, to, 4) : "");
+        }
+        shell.print(d.second + " less " + d.first + ": at most " + five_digits(d.largest, 3) + " +- " + five_digits(d.sigma, 2) + " " + table.unit() + ", at " + shown(table, c.axis, unit, d.at, 4) +
+                    (where.empty() ? "; nowhere beyond twice the joint error" : "; beyond twice the joint error at " + where));
+    }
+}
 
 int run_compare(Shell& shell, const CompareCommand& command) {
     const auto points = command.table.points(shell);
@@ -207,25 +226,22 @@ int run_compare(Shell& shell, const CompareCommand& command) {
     }
     tables::ComparisonOptions options;
     options.held = read_assignments(command.held);
-    const std::vector<std::string> measures = {"lowest", "highest", "restoring_slope", "restoring_width"};
-    const auto at = std::find(measures.begin(), measures.end(), command.measure);
-    if (at == measures.end()) {
-        throw core::UsageError("measure", "there is no measure '" + command.measure + "'", {}, core::did_you_mean(command.measure, measures));
+    if (!command.measure.empty()) {
+        const auto& measures = tables::measure_names();
+        const auto at = std::find(measures.begin(), measures.end(), command.measure);
+        if (at == measures.end()) {
+            throw core::UsageError("measure", "there is no measure '" + command.measure + "'", {}, core::did_you_mean(command.measure, measures));
+        }
+        options.measure = static_cast<tables::Measure>(at - measures.begin());
     }
-    options.measure = static_cast<tables::Measure>(at - measures.begin());
+    if (all.size() < 2) {
+        throw core::UsageError("few", "a comparison needs at least two tables");
+    }
     for (const auto& [name, table] : all) {
         shell.show(tables::outside_remarks(table, options.held));
     }
     const auto result = tables::compare_tables(all, options);
-    const bool slope = options.measure == tables::Measure::restoring_slope;
-    for (std::size_t i = 0; i < result.names.size(); ++i) {
-        shell.print(result.names[i] + ": " + (slope && !(result.values[i] > 0) ? std::string("restores nowhere, slope at best ") : result.measure + " ") + five_digits(result.values[i]) + " +- " + five_digits(result.errors[i], 2) + " " + result.unit);
-    }
-    const auto& first = all.front().second;
-    const std::string& axis_unit = first.axes()[tables::axis_index(first, result.axis)].unit;
-    const std::string range = " over " + result.axis + " " + shown(first, result.axis, axis_unit, result.lower) + " to " + shown(first, result.axis, axis_unit, result.upper);
-    shell.print(result.winner.empty() ? "none restores anywhere" + range + ": the force rises with " + result.axis + " throughout, so there is no winner by " + result.measure
-                                      : result.winner + " wins by " + result.measure + (result.beyond_error ? ", beyond the errors," : ", but within the errors,") + range);
+    show_comparison(shell, all.front().second, result);
     if (!command.picture.empty()) {
         tables::FigureOptions figure;
         figure.held = options.held;
@@ -311,7 +327,9 @@ void add_table_analysis(CLI::App& table, Shell& shell) {
     sub = table.add_subcommand("compare", "variants of a table side by side, and which wins");
     compare->table.add_to(*sub);
     sub->add_option("--by", compare->by, "text column that names the variants")->capture_default_str();
-    sub->add_option("--measure", compare->measure, "lowest | highest | restoring_slope | restoring_width")->capture_default_str();
+    sub->add_option("--measure", compare->measure,
+                    "lowest | highest (of the mean) | smallest | largest | restoring_slope | restoring_width (default: restoring_slope of a lift along the gap and a moment along its "
+                    "angle, lowest of a drag, else highest)");
     sub->add_option("--held", compare->held, "values of the other axes");
     sub->add_option("--picture", compare->picture, "writes the curves (.png, .pdf)");
     sub->footer("Examples:\n  underbody table compare forces.csv --where \"mesh=medium, pitch=0, speed=0.5\" --quantity drag_force --measure lowest");

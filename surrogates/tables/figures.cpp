@@ -315,6 +315,41 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
     return figure;
 }
 
+namespace {
+
+/// A wide band of one table would flatten the curves of all: the axis shows them, and of the bands as much again.
+void keep_curves_in_view(core::Figure& figure) {
+    double low = INFINITY, high = -INFINITY, band_low = INFINITY, band_high = -INFINITY;
+    for (const auto& curve : figure.curves) {
+        for (const double y : curve.y) {
+            low = std::min(low, y);
+            high = std::max(high, y);
+        }
+    }
+    for (const auto& band : figure.bands) {
+        for (const double y : band.lower) {
+            band_low = std::min(band_low, y);
+        }
+        for (const double y : band.upper) {
+            band_high = std::max(band_high, y);
+        }
+    }
+    for (const auto& points : figure.points) {
+        for (const double y : points.y) {
+            low = std::min(low, y);
+            high = std::max(high, y);
+        }
+    }
+    const double size = high - low;
+    if (size > 0 && std::isfinite(size) && (band_low < low - size / 2 || band_high > high + size / 2)) {
+        figure.y.lower = std::max(band_low, low - size / 2);
+        figure.y.upper = std::min(band_high, high + size / 2);
+        figure.caption += " Bands that are wider than the picture are cut.";
+    }
+}
+
+}  // namespace
+
 core::Figure comparison_figure(const std::vector<std::pair<std::string, ForceTable>>& tables, const FigureOptions& options) {
     core::Figure figure;
     std::size_t colour = 0;
@@ -338,6 +373,7 @@ core::Figure comparison_figure(const std::vector<std::pair<std::string, ForceTab
             figure.points.push_back(std::move(points));
         }
     }
+    keep_curves_in_view(figure);
     return figure;
 }
 

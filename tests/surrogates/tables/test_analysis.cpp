@@ -11,6 +11,7 @@
 #include "surrogates/tables/collapse.h"
 #include "surrogates/tables/compare.h"
 #include "surrogates/tables/continuation.h"
+#include "surrogates/tables/figures.h"
 #include "surrogates/tables/pitch.h"
 #include "surrogates/tables/select.h"
 #include "tests/support/support.h"
@@ -166,7 +167,7 @@ TEST(Pitch, KnowsHowSureABalanceWithHeaveIs) {
     core::Table data = coupled_points();
     const auto sure = coupled_equilibria(spline(data, "lift_force"), spline(data, "pitch_moment"), {1, 0, 0, 0, {}});
     ASSERT_EQ(sure.size(), 1u);
-    EXPECT_NEAR(sure[0].gap_sigma, 0, 1e-5);  // what the spline leaves open between its points
+    EXPECT_NEAR(sure[0].gap_sigma, 0, 1e-9);
     data.add_numbers("lift_force_sigma", "N", std::vector<double>(data.rows(), 0.01));
     data.add_numbers("pitch_moment_sigma", "N m", std::vector<double>(data.rows(), 0.002));
     const auto lift = spline(data, "lift_force"), moment = spline(data, "pitch_moment");
@@ -216,6 +217,48 @@ TEST(Comparison, NamesTheWinnerAndWhereVariantsDifferBeyondTheirErrors) {
     EXPECT_NEAR(result.differences[0].largest, 1, 1e-9);
     EXPECT_NEAR(result.differences[0].beyond_error.at(0).first, 0, 1e-9);
     EXPECT_LT(result.differences[0].beyond_error.back().second, 0.999);
+}
+
+TEST(Comparison, NamesNoWinnerWhereNothingRestores) {
+    const auto a = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, 1.5, .01\n1, 2, .01\n"));
+    const auto b = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, 1.7, .01\n2, 3, .01\n"));
+    const auto slopes = compare_tables({{"a", a}, {"b", b}}, {});
+    EXPECT_EQ(slopes.winner, "") << "both lifts rise with the gap";
+    EXPECT_FALSE(slopes.beyond_error);
+    EXPECT_EQ(slopes.lower, 0);
+    EXPECT_EQ(slopes.upper, 1) << "over the gaps that both have";
+    ComparisonOptions width;
+    width.measure = Measure::restoring_width;
+    EXPECT_EQ(compare_tables({{"a", a}, {"b", b}}, width).winner, "");
+    ComparisonOptions largest;
+    largest.measure = Measure::largest;
+    const auto strongest = compare_tables({{"a", a}, {"b", b}}, largest);
+    EXPECT_EQ(strongest.winner, "b");
+    EXPECT_NEAR(strongest.values[0], 2, 1e-9);
+}
+
+TEST(Comparison, AsksADragForNoRestoringSlope) {
+    const auto a = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 1, .01\n0.5, .7, .01\n1, .5, .01\n"));
+    const auto b = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 2, .01\n0.5, 1.7, .01\n1, 1, .01\n"));
+    const auto result = compare_tables({{"a", a}, {"b", b}}, {});
+    EXPECT_EQ(result.measure, "lowest mean");
+    EXPECT_EQ(result.winner, "a");
+    ComparisonOptions slope;
+    slope.measure = Measure::restoring_slope;
+    EXPECT_THROW(compare_tables({{"a", a}, {"b", b}}, slope), core::UsageError);
+    EXPECT_TRUE(restores_along("pitch_moment", "pitch"));
+    EXPECT_FALSE(restores_along("pitch_moment", "gap"));
+}
+
+TEST(Comparison, ShowsTheCurvesBesideABandThatIsManyTimesWider) {
+    const auto narrow = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, .8, .01\n1, .5, .01\n"));
+    const auto wide = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1.1, 5\n0.5, .9, 5\n1, .6, 5\n"));
+    const auto figure = comparison_figure({{"narrow", narrow}, {"wide", wide}});
+    EXPECT_GT(figure.y.lower, 0);
+    EXPECT_LT(figure.y.upper, 1.5);
+    EXPECT_THAT(figure.caption, testing::HasSubstr("are cut"));
+    const auto plain = comparison_figure({{"a", narrow}, {"b", narrow}});
+    EXPECT_EQ(plain.y.lower, plain.y.upper) << "fit to the data";
 }
 
 TEST(Collapse, HoldsForTheSquareLawAndSaysTheExponentWhereItDoesNot) {
