@@ -156,6 +156,9 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         if (arguments->model.empty() || arguments->data.empty()) {
             throw core::UsageError("missing", "discover needs the declared model and --data FOLDER", {}, "underbody discover model.toml --data runs --out found");
         }
+        for (const char* file : {"model.toml", "report.html", "discovery.json", "next-experiment.csv"}) {
+            Shell::will_write((std::filesystem::path(arguments->out) / file).string());
+        }
         const dynamics::Model model = dynamics::read_model(arguments->model);
         const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
         discovery::DiscoverOptions options;
@@ -167,7 +170,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
             (void)dynamics::effect(name);   // says the nearest name where there is none
         }
         const discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
-        shell.show(found.problems);
+        shell.remark(found.problems);
         discovery::write_discovery(found, model, data, arguments->out, renderer);
         if (shell.json) {
             shell.print_json(discovery::to_json(found));

@@ -103,9 +103,12 @@ nlohmann::json along_gap(const EstimateArguments& a, const dynamics::Model& mode
 }
 
 int run_estimate(const EstimateArguments& a, Shell& shell) {
+    for (const std::string& file : {a.out, a.plot, a.surface_plot, a.blind, a.consistency, a.export_c}) {
+        Shell::will_write(file);
+    }
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
-    shell.show(data.problems);
+    shell.remark(data.problems);
     estimator::EstimateOptions options = a.options;
     if (!a.poles.empty()) {
         options.poles = parse_poles(a.poles);

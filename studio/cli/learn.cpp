@@ -246,7 +246,7 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
     RunSplit split;
     if (!a.data.empty()) {
         split = split_runs(dynamics::read_measurements(a.data), a.compare);
-        shell.show(split.train.problems);
+        shell.remark(split.train.problems);
         if (a.conditions.empty()) {
             held = dynamics::signals_of(split.train.runs.front()).held;
         }
@@ -347,6 +347,9 @@ std::string text_of(const Learned& l) {
 }
 
 int run_learn(const LearnArguments& a, Shell& shell) {
+    for (const std::string& file : {a.out, a.plot, a.samples_out}) {
+        Shell::will_write(file);
+    }
     const dynamics::Model declared = dynamics::read_model(a.model);
     LearnOptions options;
     options.order = a.order;

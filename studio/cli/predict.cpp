@@ -25,13 +25,15 @@ struct PredictArguments {
 };
 
 int run_predict(const PredictArguments& a, Shell& shell) {
+    for (const std::string& file : {a.out, a.plot}) {
+        Shell::will_write(file);
+    }
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
-    shell.show(data.problems);
     dynamics::PredictOptions options;
     options.horizon = core::parse_in(a.horizon, "s");
     const dynamics::Prediction prediction = dynamics::predict(model, data, options, shell.progress());
-    shell.show(prediction.remarks);
+    shell.remark(prediction.remarks);
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), prediction.table);
     }

@@ -11,7 +11,6 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
-#include "studio/cli/force_notes.h"
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
@@ -149,10 +148,9 @@ int run_probability(const RegionArguments& a, const dynamics::Model& model, cons
     if (!a.out.empty()) {
         write_picture(dynamics::probability_figure(map), a.out);
     }
-    nlohmann::json json;
-    dynamics::to_json(json, map);
-    show_forces(shell, model, options.held, json);
     if (shell.json) {
+        nlohmann::json json;
+        dynamics::to_json(json, map);
         shell.print_json(json);
     }
     shell.print("safe area " + percent(map.area_mean) + " +- " + percent(map.area_sigma) + " over " +
@@ -173,7 +171,6 @@ int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dyna
     const bool angle = std::string(dynamics::channel_unit(channel)).starts_with("rad");
     std::vector<std::string> names;
     nlohmann::json json = {{"sweep", sweep.name}, {"regions", nlohmann::json::array()}};
-    show_forces(shell, model, options.held, json);
     for (std::size_t i = 0; i < sweep.value.size(); ++i) {
         const std::string unit = angle ? "deg" : dynamics::channel_unit(channel);
         names.push_back(sweep.name + " " +
@@ -223,7 +220,34 @@ int run_variants(const RegionArguments& a, const dynamics::Model& model, const d
     return ExitCode::done;
 }
 
+/// Each map is of one kind; what that kind would pass over in silence is refused.
+void check_kind(const RegionArguments& a) {
+    std::vector<std::string> kinds;
+    for (const auto& [option, given] : {std::pair{"--starts", !a.starts.empty()}, {"--draws", a.draws > 0}, {"--sweep", !a.sweep.empty()}, {"--with", !a.variants.empty()}}) {
+        if (given) {
+            kinds.emplace_back(option);
+        }
+    }
+    if (kinds.size() > 1) {
+        throw core::UsageError("conflict", kinds[0] + " and " + kinds[1] + " ask for two different maps", {}, "run region once for each of them");
+    }
+    const std::string kind = kinds.empty() ? "" : kinds.front();
+    const auto refuse = [&](const char* option, bool given, bool used) {
+        if (given && !used) {
+            throw core::UsageError("conflict", std::string(option) + " has nothing to do " + (kind.empty() ? "without --sweep" : "with " + kind), {}, "leave it out");
+        }
+    };
+    refuse("--out", !a.out.empty(), kind != "--starts");
+    refuse("--table", !a.table.empty(), kind.empty() || kind == "--starts");
+    refuse("--safe", a.safe, kind.empty());
+    refuse("--shares", !a.shares.empty(), kind == "--sweep");
+}
+
 int run_region(const RegionArguments& a, Shell& shell) {
+    check_kind(a);
+    for (const std::string& file : {a.out, a.table, a.shares}) {
+        Shell::will_write(file);
+    }
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::RegionOptions options = options_of(a, model);
     if (!a.starts.empty()) {
@@ -248,7 +272,6 @@ int run_region(const RegionArguments& a, Shell& shell) {
     }
     nlohmann::json json;
     dynamics::to_json(json, region);
-    show_forces(shell, model, options.held, json);
     print_classes(shell, region.classes);
     if (a.safe) {
         json["safe_sets"] = nlohmann::json::array();

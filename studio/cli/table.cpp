@@ -31,7 +31,7 @@ struct FitCommand {
 };
 
 int run_fit(Shell& shell, const FitCommand& command) {
-    const auto all = command.table.fit_all(shell);
+    const auto all = command.table.fit_all(shell, shell.json);  // as text they stand beside each table
     nlohmann::json document;
     document["tables"] = nlohmann::json::array();
     for (const auto& table : all) {

@@ -20,7 +20,7 @@ struct TableOptions {
     std::string quantity;
     std::string where;
     std::string axes;
-    std::string kind = "automatic";
+    std::string kind = "auto";
     std::string range;
 
     /// Adds TABLE.csv, --quantity, --where, --axes, --kind, --range.
@@ -31,7 +31,8 @@ struct TableOptions {
     /// Fits one quantity: the one asked for, or the first force of the table. Remarks go to the shell.
     [[nodiscard]] tables::ForceTable fit(Shell& shell) const;
     /// All quantities asked for ("a,b"), or all forces of the table.
-    [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell) const;
+    /// `remarks`: false for who prints them beside each table.
+    [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true) const;
 };
 
 /// A value in the unit that the user's file has for the quantity.

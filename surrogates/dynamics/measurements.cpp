@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/mistyped.h"
 #include "core/text.h"
 #include "core/toml.h"
 #include "core/units.h"
@@ -90,6 +91,46 @@ void check_static(const MeasuredRun& run) {
                            "columns such as lift_force [N], drag_force [N], pitch_moment [N m]");
 }
 
+/// Columns under names that nobody reads: what they were probably meant for. An input that vanishes leaves the run with
+/// zero input, which is refused.
+void check_names(const MeasuredRun& run, bool time_series, core::Problems& problems) {
+    for (const core::Column& column : run.table.columns()) {
+        const std::string base = column.name.ends_with("_sigma") ? column.name.substr(0, column.name.size() - 6) : column.name;
+        const std::string meant = core::meant_quantity(column);
+        const bool lacking = !meant.empty() && run.table.find(meant) == nullptr && run.conditions.count(meant) == 0;
+        if (core::find_quantity(base) != nullptr || (column.is_text() && !lacking)) {
+            continue;
+        }
+        const core::Place place = run.table.place(0, column.name);
+        if (time_series && lacking && meant == "input_force") {
+            throw core::InputError("name", "the column '" + column.name + "' looks like input_force, which the run lacks: its input would be taken as zero",
+                                   place, "name it " + core::heading_for(column, meant) + "; if it is no input, give it a name that is less like one");
+        }
+        problems.push_back({core::Problem::Severity::warning,
+                            "the column '" + column.name + "' is not used" + (lacking ? ": if it is " + meant + ", name it " + core::heading_for(column, meant) : ", for no quantity has that name"),
+                            place});
+    }
+}
+
+/// The same problem in many runs is one line.
+void gather(core::Problems& problems) {
+    core::Problems once;
+    std::vector<std::size_t> counts;
+    for (const core::Problem& problem : problems) {
+        const auto same = std::find_if(once.begin(), once.end(), [&](const core::Problem& other) { return other.message == problem.message; });
+        if (same == once.end()) {
+            once.push_back(problem);
+            counts.push_back(0);
+        } else {
+            ++counts[static_cast<std::size_t>(same - once.begin())];
+        }
+    }
+    for (std::size_t i = 0; i < once.size(); ++i) {
+        once[i].message += counts[i] > 0 ? " (alike in " + std::to_string(counts[i]) + (counts[i] == 1 ? " other run)" : " other runs)") : "";
+    }
+    problems = std::move(once);
+}
+
 }  // namespace
 
 std::vector<double> MeasuredRun::values(const std::string& quantity) const {
@@ -165,8 +206,10 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         run.use = use == "train" ? RunUse::train : use == "test" ? RunUse::test : RunUse::automatic;
         run.table = core::read_csv(run.file);
         data.kind == MeasurementKind::steady ? check_static(run) : check_time_series(run);
+        check_names(run, data.kind == MeasurementKind::time_series, data.problems);
         data.runs.push_back(std::move(run));
     }
+    gather(data.problems);
     root.finish();
     if (data.runs.empty()) {
         throw core::InputError("missing", "a data set without a run", core::Place{file.string(), {}, {}, {}},

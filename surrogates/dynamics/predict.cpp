@@ -480,8 +480,19 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
     if (!(options.horizon > 0)) {
         throw core::UsageError("range", "the horizon must be positive");
     }
-    return data.kind == MeasurementKind::steady ? predict_static(model, data)
-                                                : predict_series(model, data, options, progress);
+    Prediction prediction = data.kind == MeasurementKind::steady ? predict_static(model, data)
+                                                                 : predict_series(model, data, options, progress);
+    prediction.remarks.insert(prediction.remarks.begin(), data.problems.begin(), data.problems.end());
+    const bool pushed = std::any_of(data.runs.begin(), data.runs.end(),
+                                    [](const MeasuredRun& run) { return run.has("input_force"); });
+    for (const EffectUse& use : model.effects) {
+        if (prediction.time_series && !pushed && (use.name.starts_with("input_") || use.name == "actuator_lag")) {
+            prediction.remarks.push_back({core::Problem::Severity::warning,
+                                          "the model's " + use.name + " acts on input_force, which no run has: it does nothing here",
+                                          {}});
+        }
+    }
+    return prediction;
 }
 
 core::Figure prediction_figure(const Prediction& prediction) {

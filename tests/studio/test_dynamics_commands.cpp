@@ -195,6 +195,30 @@ TEST_F(DynamicsCommands, WrongModelsAreRefusedWithWhatToDo) {
     EXPECT_NE(free.output.find("cycle"), std::string::npos) << free.output;
 }
 
+TEST_F(DynamicsCommands, PredictSaysBesideTheErrorWhichColumnsItDidNotUse) {
+    std::string run = "time [s], gap [m], vz [m/s]\n";
+    for (int i = 0; i < 400; ++i) {
+        run += std::to_string(0.02 * i) + ", " + std::to_string(0.002 + 1e-5 * (i * 7 % 11)) + ", 0\n";
+    }
+    core::write_file(folder_.path() / "runs/a.csv", run);
+    core::write_file(folder_.path() / "runs/dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n");
+    const auto text = run_underbody({"predict", "model.toml", "--data", "runs"}, folder_.path());
+    ASSERT_EQ(text.exit_code, 0) << text.errors;
+    const std::string said = "the column 'vz' is not used: if it is heave_velocity, name it 'heave_velocity [m/s]'";
+    EXPECT_NE(text.output.find(said), std::string::npos) << text.output;
+    EXPECT_EQ(json({"predict", "model.toml", "--data", "runs"})["remarks"].at(0), said);
+}
+
+TEST_F(DynamicsCommands, RegionRefusesWhatItWouldPassOver) {
+    core::write_file(folder_.path() / "other.toml", core::read_file(folder_.path() / "model.toml"));
+    const auto both = run_underbody({"region", "model.toml", "--draws", "5", "--with", "other.toml", "--out", "both.png"}, folder_.path());
+    EXPECT_EQ(both.exit_code, 2);
+    EXPECT_NE(both.errors.find("--draws and --with ask for two different maps"), std::string::npos) << both.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "both.png"));
+    EXPECT_EQ(run_underbody({"region", "model.toml", "--with", "other.toml", "--safe"}, folder_.path()).exit_code, 2);
+    EXPECT_EQ(run_underbody({"region", "model.toml", "--shares", "s.png"}, folder_.path()).exit_code, 2);
+}
+
 TEST_F(DynamicsCommands, PredictGivesErrorsInUnitsOfNoise) {
     UNDERBODY_NEEDS_SHARED("examples/loop/example-02/model.toml");
     const std::string example = (shared_folder() / "examples/loop/example-02").string();

@@ -81,6 +81,18 @@ TEST(TableCommand, SaysWhatIsWrong) {
     EXPECT_EQ(run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.2 kg:0.6"}, folder.path()).exit_code, 2);
 }
 
+TEST(TableCommand, RefusesAnAxisUnderAnotherName) {
+    core::TemporaryFolder folder;
+    for (const auto& [heading, name] : {std::pair{"Gap (mm)", "'gap [mm]'"}, {"Gap [mm]", "'gap [mm]'"}, {"trim angle [deg]", "'pitch [deg]'"}}) {
+        core::write_file(folder.path() / "f.csv", std::string("speed [m/s], ") + heading + ", lift_force [N]\n0.4,1,1\n0.4,2,2\n0.5,1,3\n0.5,2,4\n0.6,1,4\n0.6,2,5\n");
+        const auto run = run_underbody({"table", "fit", "f.csv"}, folder.path());
+        EXPECT_EQ(run.exit_code, 3);
+        EXPECT_THAT(run.errors, testing::AllOf(HasSubstr("which the table lacks"), HasSubstr(std::string("name it ") + name)));
+    }
+    // It may be something else: then the axes are named.
+    EXPECT_THAT(run_underbody({"table", "fit", "f.csv", "--axes", "speed"}, folder.path()).errors, testing::Not(HasSubstr("which the table lacks")));
+}
+
 TEST(TableCommand, TakesARangePolicyForEachAxis) {
     core::TemporaryFolder folder;
     core::write_file(folder.path() / "lift.csv",

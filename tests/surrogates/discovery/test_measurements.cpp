@@ -44,6 +44,27 @@ TEST_F(MeasurementFiles, AreReadWithUnitsNoiseAndConditionsOfEachRun) {
     EXPECT_FALSE(data.all_have("input_force"));
 }
 
+TEST_F(MeasurementFiles, TellColumnsThatNobodyReadsAndRefuseARunWhoseInputWouldVanish) {
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n");
+    for (const char* name : {"force_in [mN]", "inputforce [N]", "Input Force (N) [N]"}) {
+        write("a.csv", std::string("time [s], gap [mm], ") + name + "\n0, 10, 1\n0.02, 11, 2\n0.04, 12, 3\n");
+        const core::InputError error = failure();
+        EXPECT_NE(error.message().find("looks like input_force, which the run lacks: its input would be taken as zero"), std::string::npos) << error.what();
+        EXPECT_NE(error.hint().find("name it 'input_force ["), std::string::npos) << error.what();
+        EXPECT_EQ(error.place().column, 3);
+    }
+    write("a.csv", "time [s], gap [mm], vz [mm/s], battery [V]\n0, 10, 1, 9\n0.02, 11, 2, 9\n0.04, 12, 3, 9\n");
+    write("b.csv", "time [s], gap [mm], vz [mm/s], note\n0, 10, 1, x\n0.02, 11, 2, y\n0.04, 12, 3, z\n");
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"b.csv\"\n");
+    const Measurements data = read_measurements(folder_.path());
+    ASSERT_EQ(data.problems.size(), 2U);
+    EXPECT_EQ(data.problems[0].message, "the column 'vz' is not used: if it is heave_velocity, name it 'heave_velocity [mm/s]' (alike in 1 other run)");
+    EXPECT_EQ(data.problems[1].message, "the column 'battery' is not used, for no quantity has that name");
+    // With its right name beside it, the other column is just another.
+    write("a.csv", "time [s], gap [mm], input_force [N], force_in [mN]\n0, 10, 1, 1\n0.02, 11, 2, 1\n0.04, 12, 3, 1\n");
+    EXPECT_EQ(read_measurements(folder_.path()).problems.size(), 2U);
+}
+
 TEST_F(MeasurementFiles, SayWhereTimeRunsBackwards) {
     write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n");
     write("a.csv", "time [s], gap [m]\n0, 1\n0.02, 1\n0.01, 1\n");
