@@ -7,6 +7,7 @@
 
 #include "cases/code_version.h"
 #include "cases/engine.h"
+#include "cases/report_tables.h"
 #include "core/html.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -172,7 +173,8 @@ private:
             for (const auto& [key, png] : engine_.results.pictures) {
                 if (key.starts_with("picture/" + spec.name + "/")) {
                     const auto head = document(key);
-                    pictures.push_back({png, head ? text_in(*head, "caption") : "", spec.name});
+                    const std::string rest = key.substr(("picture/" + spec.name + "/").size()), name = rest.substr(0, rest.find('/'));
+                    pictures.push_back({png, name + ": " + (head ? text_in(*head, "caption") : ""), spec.name + ", " + name});
                 }
             }
         }
@@ -193,7 +195,7 @@ private:
                             stable ? shown(number_in(point, "kick_velocity"), "m/s", "mm/s") : "-"});
         }
         if (rows.empty()) {
-            page_.paragraph("At a net weight of " + shown(net_weight, "N", "N") + " N the lift balances it nowhere in the range.");
+            page_.paragraph("No equilibrium in the table at a net weight of " + shown(net_weight, "N", "N") + " N.");
             return;
         }
         page_.table({"gap (mm)", "± (mm)", "", "stiffness (N/m)", "frequency (Hz)", "largest kick survived (mm/s)"}, rows,
@@ -215,6 +217,10 @@ private:
             show_figure("table/" + spec.name);
             if (spec.net_weight) {
                 equilibria(*table, *spec.net_weight);
+                const ReportTable films = films_at_equilibria(engine_.study, engine_.results, spec);
+                if (!films.rows.empty()) {
+                    page_.table(films.header, films.rows, films.caption);
+                }
             }
             std::vector<std::string> remarks;
             for (const auto& remark : table->value("remarks", json::array())) {
@@ -400,27 +406,11 @@ private:
             return;
         }
         page_.section("Loads of all cases");
-        const auto column = [&](const char* name, std::size_t row, const char* from, const char* to) {
-            const auto* found = table.find(name);
-            return found == nullptr || found->is_text() ? std::string("-") : shown(found->numbers[row], from, to, 4);
-        };
-        std::unordered_set<std::string> warned;
-        for (const auto& one : engine_.results.case_loads) {
-            if (!one.warnings.empty()) {
-                warned.insert(one.name);
-            }
-        }
-        std::vector<std::vector<std::string>> rows;
-        for (std::size_t row = 0; row < table.rows(); ++row) {
-            rows.push_back({table.text("case")[row], column("gap", row, "m", "mm"), column("pitch", row, "rad", "deg"),
-                            column("speed", row, "m/s", "m/s"), column("lift_force", row, "N", "N"),
-                            column("drag_force", row, "N", "N"), column("pitch_moment", row, "N m", "mN m"),
-                            column("closure", row, "1", "1"), warned.contains(table.text("case")[row]) ? "see the warnings" : ""});
-        }
-        page_.folded_table(std::to_string(rows.size()) + " cases",
-                           {"case", "gap (mm)", "pitch (deg)", "speed (m/s)", "lift (N)", "drag (N)", "pitch moment (mN m)", "closure", ""}, rows);
+        const ReportTable shown_loads = loads_of_all_cases(engine_.study, engine_.results);
+        page_.folded_table(std::to_string(shown_loads.rows.size()) + " cases", shown_loads.header, shown_loads.rows);
         page_.paragraph("Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
-                        "Closure is the size of the summed area vector over the area: 0 for a closed surface.");
+                        "Errors are those that the force tables take for the case (mesh study and stated error); closure is the "
+                        "size of the summed area vector over the area, 0 for a closed surface.");
     }
 
     void provenance() {
@@ -431,7 +421,7 @@ private:
         }
         page_.paragraph("By Underbody from study.toml. Every result is kept with the content of all files that were read for it, the options "
                         "and the versions of the code that made it; one of them another, and it is computed again.");
-        page_.folded_table("Versions of the code, by room", {"room", "sources"}, rows);
+        page_.folded_table("Source versions by module", {"module", "version"}, rows);
         std::vector<std::vector<std::string>> files;
         for (const auto& one : engine_.results.case_loads) {
             files.push_back({one.file, engine_.study.cases[one.entry].conditions.label(), one.origin.substr(0, 12)});

@@ -30,7 +30,8 @@ class Shell;
     X(control)                \
     X(linear)                 \
     X(new)                    \
-    X(list)
+    X(list)                   \
+    X(theory)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

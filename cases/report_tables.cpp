@@ -1,0 +1,183 @@
+#include "cases/report_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <unordered_set>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/dynamics/theory.h"
+
+namespace underbody::cases {
+
+namespace {
+
+using nlohmann::json;
+
+/// "variant" -> "variant"; numbers with the units that people read.
+struct Shown {
+    std::string name, from, to, title;
+};
+
+std::string number(double value, int digits = 4) { return std::isfinite(value) ? core::format_number(value, digits) : "-"; }
+
+std::optional<json> document(const StudyResults& results, const std::string& key) {
+    const std::string* text = results.document(key);
+    return text != nullptr ? std::optional<json>(json::parse(*text)) : std::nullopt;
+}
+
+/// For each case the error that some force table of the study takes for the quantity.
+std::map<std::string, double> errors_of(const Study& study, const StudyResults& results, const std::string& quantity) {
+    std::map<std::string, double> errors;
+    for (const auto& spec : study.tables) {
+        const auto found = spec.quantity == quantity ? document(results, "table/" + spec.name) : std::nullopt;
+        if (!found || !found->contains("points")) {
+            continue;
+        }
+        const core::Table points = core::read_csv(found->at("points").get<std::string>(), spec.name);
+        const core::Column* sigma = points.find(quantity + "_sigma");
+        const core::Column* names = points.find("case");
+        for (std::size_t row = 0; sigma != nullptr && names != nullptr && row < points.rows(); ++row) {
+            errors[names->text[row]] = sigma->numbers[row];
+        }
+    }
+    return errors;
+}
+
+std::vector<Shown> condition_columns(const core::Table& loads) {
+    std::vector<Shown> columns;
+    for (const auto& column : loads.columns()) {
+        const bool measured = column.name.ends_with("_force") || column.name.ends_with("_moment");
+        if (column.is_text() && column.name != "case") {
+            columns.push_back({column.name, "", "", column.name});
+        } else if (!column.is_text() && core::find_quantity(column.name) != nullptr && !measured) {
+            const std::string to = column.name == "gap" ? "mm" : column.name == "pitch" ? "deg" : column.unit;
+            columns.push_back({column.name, column.unit, to, column.name + (to == "1" ? "" : " (" + to + ")")});
+        }
+    }
+    return columns;
+}
+
+/// By words, then by numbers, then by name.
+std::vector<std::size_t> ordered_rows(const core::Table& loads, const std::vector<Shown>& columns) {
+    std::vector<std::size_t> rows(loads.rows());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+        for (const bool words : {true, false}) {
+            for (const auto& column : columns) {
+                const core::Column& c = *loads.find(column.name);
+                if (c.is_text() == words && (words ? c.text[a] != c.text[b] : c.numbers[a] != c.numbers[b])) {
+                    return words ? c.text[a] < c.text[b] : c.numbers[a] < c.numbers[b];
+                }
+            }
+        }
+        return loads.text("case")[a] < loads.text("case")[b];
+    });
+    return rows;
+}
+
+}  // namespace
+
+ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) {
+    const core::Table& loads = results.loads;
+    const std::vector<Shown> conditions = condition_columns(loads);
+    const std::vector<Shown> forces = {{"lift_force", "N", "N", "lift (N)"}, {"drag_force", "N", "N", "drag (N)"}, {"pitch_moment", "N m", "mN m", "pitch moment (mN m)"}};
+    std::vector<std::map<std::string, double>> errors;
+    ReportTable table;
+    table.header = {"case"};
+    for (const auto& column : conditions) {
+        table.header.push_back(column.title);
+    }
+    for (const auto& force : forces) {
+        errors.push_back(errors_of(study, results, force.name));
+        table.header.push_back(force.title);
+        if (!errors.back().empty()) {
+            table.header.push_back("± (" + force.to + ")");
+        }
+    }
+    table.header.emplace_back("closure");
+    std::unordered_set<std::string> warned;
+    for (const auto& one : results.case_loads) {
+        if (!one.warnings.empty()) {
+            warned.insert(one.name);
+        }
+    }
+    if (!warned.empty()) {
+        table.header.emplace_back("");
+    }
+    for (const std::size_t row : ordered_rows(loads, conditions)) {
+        const std::string& name = loads.text("case")[row];
+        std::vector<std::string> cells{name};
+        for (const auto& column : conditions) {
+            const core::Column& c = *loads.find(column.name);
+            cells.push_back(c.is_text() ? c.text[row] : number(core::convert(c.numbers[row], column.from, column.to)));
+        }
+        double size = 0;  // beside it rounding is nothing
+        for (const auto& force : forces) {
+            const core::Column* c = loads.find(force.name);
+            size = std::max(size, c == nullptr || !std::isfinite(c->numbers[row]) ? 0.0 : std::abs(c->numbers[row]));
+        }
+        for (std::size_t i = 0; i < forces.size(); ++i) {
+            const core::Column* c = loads.find(forces[i].name);
+            const double value = c == nullptr ? std::nan("") : c->numbers[row];
+            cells.push_back(std::abs(value) < 1e-9 * size ? "0" : number(core::convert(value, forces[i].from, forces[i].to)));
+            if (!errors[i].empty()) {
+                const auto known = errors[i].find(name);
+                cells.push_back(known == errors[i].end() ? "-" : number(core::convert(known->second, forces[i].from, forces[i].to), 2));
+            }
+        }
+        const core::Column* closure = loads.find("closure");
+        // Rounding is no opening.
+        cells.push_back(closure == nullptr ? "-" : std::abs(closure->numbers[row]) < 1e-9 ? "0" : number(closure->numbers[row], 3));
+        if (!warned.empty()) {
+            cells.emplace_back(warned.contains(name) ? "see the warnings" : "");
+        }
+        table.rows.push_back(std::move(cells));
+    }
+    return table;
+}
+
+ReportTable films_at_equilibria(const Study& study, const StudyResults& results, const TableSpec& table) {
+    ReportTable films;
+    if (table.quantity != "lift_force") {
+        return films;
+    }
+    const auto variant = table.where.text("variant");
+    std::optional<json> base;
+    std::string body;
+    for (const auto& spec : study.bodies) {
+        const auto found = !variant || *variant == spec.name ? document(results, "body/" + spec.name) : std::nullopt;
+        if (found && found->contains("elliptic_base") && (!base || variant)) {
+            base = found->at("elliptic_base");
+            body = spec.name;
+        }
+    }
+    const auto found = document(results, "table/" + table.name);
+    if (!base || !found) {
+        return films;
+    }
+    const std::vector<core::ClosedForm> forms = dynamics::film_forms();
+    const core::ClosedForm& squeeze = core::find_closed_form(forms, "squeeze");
+    for (const auto& point : found->value("equilibria", json::array())) {
+        const auto text = [](double value) { return core::format_number(value, 17); };
+        std::vector<std::string> inputs = {"half_length=" + text(base->at("half_length")), "half_width=" + text(base->at("half_width")), "gap=" + text(point.at("gap"))};
+        if (const auto density = study.reference.number("density")) {
+            inputs.push_back("density=" + text(*density));
+        }
+        const auto values = core::closed_form_values(squeeze, inputs);
+        const auto result = squeeze.evaluate(values);
+        if (result.valid()) {
+            films.rows.push_back({number(1e3 * point.at("gap").get<double>(), 3), point.value("stable", false) ? "stable" : "unstable", number(result["damping"], 3), number(result["added_mass"], 3),
+                                  number(point.at("stiffness").get<double>(), 3)});
+        }
+    }
+    films.header = {"gap (mm)", "", "squeeze damping (N s/m)", "added mass of the film (kg)", "stiffness out of CFD (N/m)"};
+    films.caption = "Thin-film theory for the base of '" + body + "' beside the CFD: " + squeeze.formula +
+                    ". Steady CFD has neither; both hold where the gap is below a tenth of the half width, other gaps are left out.";
+    return films;
+}
+
+}  // namespace underbody::cases
