@@ -156,7 +156,7 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
     }
     if (importer == nullptr) {
         const std::string known = what_it_is(path);
-        throw core::InputError("format", "no importer knows this content", place,
+        throw core::InputError("format", "unrecognised file format: no importer knows this content", place,
                                known.empty() ? "known formats: " + known_formats() : "it looks like " + known);
     }
     progress.report(0, "reading " + path.filename().string());

@@ -223,7 +223,7 @@ void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {
     auto range = given(kind.name);  // its own counts over its array's
     range = range == options_.ranges.rend() ? given(kind.array) : range;
     if (range != options_.ranges.rend() && scene.range != range->second) {
-        composed.of_range = " Colours over the range given.";
+        composed.of_range = " Colours on the scale given for all pictures.";
         scene.range = range->second;
     }
     if (scene.range) {

@@ -242,6 +242,7 @@ private:
             graph->setData(x, y, true);
             graph->setPen(pen);
             graph->setLineStyle(curve.steps ? QCPGraph::lsStepLeft : QCPGraph::lsLine);
+            graph->setAdaptiveSampling(count > 20000);  // it draws several points of one pixel as a step
         } else {
             auto* path = new QCPCurve(plot_.xAxis, plot_.yAxis);
             path->setData(x, y);

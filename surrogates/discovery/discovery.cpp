@@ -40,8 +40,8 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
     if (result.verdict == "none") {
         result.depends_on.clear();   // noise depends on nothing
     }
-    result.model.lineage.made_from.push_back("made by underbody discover from " + model.name + " and the measurements '" + data.title +
-                                             "'");
+    result.model.lineage.made_from.push_back("made by underbody discover from " + model.name + " and the measurements '" +
+                                             (data.title.empty() ? std::filesystem::weakly_canonical(data.folder).filename().string() : data.title) + "'");
     if (!model.file.empty() && std::filesystem::exists(model.file)) {
         result.model.lineage.made_from.push_back("declared model: " + model.file.filename().string() + ", content " +
                                                  core::content_hash_of_file(model.file));

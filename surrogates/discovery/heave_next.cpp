@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/discovery/wording.h"
 
 namespace underbody::discovery {
 
@@ -137,6 +138,8 @@ void next_heave_experiment(const HeaveExperiment& experiment, const std::vector<
         p.front() += 3 * (std::isfinite(best.fit.sigma.front()) ? best.fit.sigma.front() : 0.0);
         a = best.hypothesis.with(p);
         purpose = "to see " + best.hypothesis.label() + " below today's limit";
+    } else if (result.verdict == "unknown") {
+        purpose = "to see the law behind what depends on " + list_of(result.depends_on);
     } else {
         purpose = "to confirm " + best.hypothesis.label();
     }

@@ -20,7 +20,11 @@ std::string percent(double share) {
 std::string in_noise(const ErrorEstimate& estimate, double noise) { return core::format_number(estimate.rmse / std::max(noise, 1e-300), 3); }
 
 std::string with_interval(const ErrorEstimate& e) {
-    return core::format_number(e.rmse, 3) + " (" + core::format_number(e.low, 3) + " to " + core::format_number(e.high, 3) + ")";
+    int digits = 3;  // more where the ends would read alike
+    while (digits < 7 && e.low < e.high && core::format_number(e.low, digits) == core::format_number(e.high, digits)) {
+        ++digits;
+    }
+    return core::format_number(e.rmse, digits) + " (" + core::format_number(e.low, digits) + " to " + core::format_number(e.high, digits) + ")";
 }
 
 std::string headline(const Discovery& d) {
@@ -146,12 +150,15 @@ void add_noise_and_limits(core::HtmlPage& page, const Discovery& d) {
     std::vector<std::string> seen;
     for (const DetectionLimit& limit : d.limits) {
         const std::string key = limit.name + limit.parameter;
-        if (std::isfinite(limit.value) && std::find(seen.begin(), seen.end(), key) == seen.end()) {
+        // Of what was found the finding speaks; its limit beside it would read as a contradiction.
+        const bool found = std::any_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) { return effect.name == limit.name; });
+        if (!found && std::isfinite(limit.value) && std::find(seen.begin(), seen.end(), key) == seen.end()) {
             seen.push_back(key);
             limits.push_back({limit.name, limit.parameter, core::format_number(limit.value, 3) + (limit.unit == "1" ? "" : " " + limit.unit)});
         }
     }
-    const std::string title = "Smallest effects that these data would have shown (nine times in ten)";
+    const std::string title = "Smallest effects that these data would have shown" + std::string(d.effects.empty() ? "" : " beside what was found") +
+                              " (nine times in ten)";
     if (d.verdict == "none") {
         page.table({"effect", "number", "limit"}, limits, title);
     } else {

@@ -135,11 +135,11 @@ core::Figure probability_figure(const Discovery& result) {
         bars.values.push_back(value);
     };
     if (!result.effects.empty()) {
-        std::vector<std::string> names;
+        std::string names;  // one a line: side by side several are wider than their bar, and no label would be drawn
         for (const FoundEffect& effect : result.effects) {
-            names.push_back(effect.name);
+            names += (names.empty() ? "" : "\n+ ") + effect.name;
         }
-        add(list_of(names), result.effects.front().probability);
+        add(names, result.effects.front().probability);
     }
     for (const FoundEffect& rival : result.alternatives) {
         if (bars.labels.size() < 6) {

@@ -151,7 +151,7 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
     result.next_power = power_of(std::sqrt(square));
     result.next_experiment = purpose + ": " + std::to_string(taken.size()) + " set points, " + core::format_number(repeats, 2) +
                              " readings each in mixed order, first at " + where(experiment, list.front()) +
-                             "; odds of 20 to 1 or better with probability " + core::format_number(result.next_power, 2) +
+                             "; " + settling_text(result.next_power) +
                              " (next-experiment.csv)";
     std::vector<Candidate> order;
     for (int repeat = 0; repeat < static_cast<int>(repeats); ++repeat) {

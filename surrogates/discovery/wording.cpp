@@ -29,7 +29,12 @@ std::string value_text(const FoundParameter& parameter) {
         scale = micro ? 1e6 : 1e3;
         unit = (micro ? "u" : "m") + unit;
     }
-    const std::string text = core::format_number(scale * parameter.value, 3);
+    // As many digits as the error lets stand: 1.0006 +- 0.0004, not 1 +- 0.0004.
+    int digits = 3;
+    if (parameter.sigma > 0 && std::isfinite(parameter.sigma) && std::abs(parameter.value) > parameter.sigma) {
+        digits = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(parameter.value))) - std::floor(std::log10(parameter.sigma))) + 1, 3, 9);
+    }
+    const std::string text = core::format_number(scale * parameter.value, digits);
     return (parameter.sigma > 0 ? text + " \u00b1 " + core::format_number(scale * parameter.sigma, 2) : text) + (unit.empty() ? "" : " " + unit);
 }
 
@@ -61,6 +66,29 @@ std::string verdict_names(const Discovery& discovery) {
     return text;
 }
 
+std::string settling_text(double chance) {
+    const std::string percent = chance > 0.995 ? "above 99 %" : chance < 0.005 ? "below 1 %" : core::format_number(100 * chance, 2) + " %";
+    return chance < 0.5 ? "even this would settle it (odds of 20 to 1) with a chance of only " + percent
+                        : "this settles it (odds of 20 to 1) with a chance of " + percent;
+}
+
+namespace {
+
+/// A declared value that is off is called by its own name: "another value of the declared vehicle.mass: 2.31 +- 0.02 kg".
+std::string named(const FoundEffect& effect) {
+    if (effect.name == "declared_parameter" && effect.uses.size() == 1 && effect.parameters.size() == 1) {
+        const FoundParameter& value = effect.parameters.front();
+        return "another value of the declared " + effect.uses.front().parameter + ": " + value_text(value);
+    }
+    std::string text = effect.name;
+    for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
+        text += (k == 0 ? " (" : ", ") + effect.parameters[k].name + " " + value_text(effect.parameters[k]) + (k + 1 == effect.parameters.size() ? ")" : "");
+    }
+    return text;
+}
+
+}  // namespace
+
 std::string verdict_sentence(const Discovery& discovery) {
     const std::string error =
         discovery.error.empty() || discovery.verdict == "none"
@@ -80,12 +108,7 @@ std::string verdict_sentence(const Discovery& discovery) {
     }
     std::string text = "The model lacks ";
     for (std::size_t i = 0; i < discovery.effects.size(); ++i) {
-        const FoundEffect& effect = discovery.effects[i];
-        text += (i == 0 ? "" : " and ") + effect.name;
-        for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
-            text += (k == 0 ? " (" : ", ") + effect.parameters[k].name + " " + value_text(effect.parameters[k]) +
-                    (k + 1 == effect.parameters.size() ? ")" : "");
-        }
+        text += (i == 0 ? "" : " and ") + named(discovery.effects[i]);
     }
     text += ", probability " + probability_text(discovery.effects.front().probability) + ".";
     for (const FoundEffect& rival : discovery.alternatives) {

@@ -24,4 +24,7 @@ std::string value_text(const FoundParameter& parameter);
 /// "0.87"; "above 0.99" and "below 0.01" where more digits would promise more than anybody knows.
 std::string probability_text(double probability);
 
+/// What a next experiment promises, of the chance that it reaches odds of 20 to 1: "this settles it (odds of 20 to 1) with a chance of 97 %".
+std::string settling_text(double chance);
+
 }  // namespace underbody::discovery

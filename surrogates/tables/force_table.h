@@ -36,7 +36,7 @@ struct Evaluation {
 
 struct FitOptions {
     enum class Kind {
-        automatic,         ///< full grids interpolated, unless points with errors scatter and a process meets left-out ones better; said in remarks()
+        automatic,         ///< the better of the two below by leave-one-out score, said in remarks()
         interpolation,     ///< monotone: exact at the points, C1, never leaves the range of the points around it; full grids only
         gaussian_process,  ///< scattered or gridded points with errors
         spline,            ///< not-a-knot cubic spline: exact, C2, may overshoot; full grids only
@@ -44,13 +44,6 @@ struct FitOptions {
     RangePolicies range;            ///< a name that is no axis of the table: core::UsageError
     std::vector<std::string> axes;  ///< columns to use as axes; empty: every known set-point column that varies
 };
-
-/// How a table is fitted, by its word: "automatic" ("auto"), "interpolation", "gaussian_process" ("gp"), "spline"; the words in brackets are older ones.
-/// The way back gives nothing for any other word.
-std::string to_string(FitOptions::Kind kind);
-std::optional<FitOptions::Kind> fit_kind(const std::string& word);
-/// The words without the older ones.
-const std::vector<std::string>& fit_kinds();
 
 /// A fitted surrogate of one quantity. Immutable, cheap to copy, safe to use from many threads.
 class ForceTable {

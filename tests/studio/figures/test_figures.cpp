@@ -227,6 +227,28 @@ TEST(Figures, ValueMapsUseTheirColourScales) {
     EXPECT_GT(share(residual, diverging(0.9), 20), 0.003);
 }
 
+TEST(Figures, AFineLineHasNoSteps) {
+    const auto line = [](std::size_t points) {
+        Figure figure;
+        core::FigureCurve curve;
+        curve.x = steps(0, 1, points);
+        for (const double x : curve.x) {
+            curve.y.push_back(1 - 0.9 * x);
+        }
+        figure.curves.push_back(curve);
+        return figure;
+    };
+    // A falling line of a few points a pixel looks like the same line between its ends.
+    const QImage two = picture("line-2", line(2)), many = picture("line-6000", line(6000));
+    qint64 different = 0;
+    for (int y = 0; y < two.height(); ++y) {
+        for (int x = 0; x < two.width(); ++x) {
+            different += std::abs(qGray(two.pixel(x, y)) - qGray(many.pixel(x, y))) > 90 ? 1 : 0;
+        }
+    }
+    EXPECT_LT(different, 100);
+}
+
 TEST(Figures, EqualScalesMakeCirclesRound) {
     Figure figure;
     figure.equal_scales = true;
