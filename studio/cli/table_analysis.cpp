@@ -107,7 +107,8 @@ std::string angle_in_degrees(double radians) { return five_digits(core::convert(
 
 void show_windows(Shell& shell, const std::vector<tables::PitchWindow>& windows) {
     for (const auto& w : windows) {
-        shell.print(w.side + ": restores from " + angle_in_degrees(w.lower) + " to " + angle_in_degrees(w.upper) + " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
+        const auto edge = [](double pitch, double sigma) { return angle_in_degrees(pitch) + (sigma > 1e-9 ? " +- " + five_digits(core::convert(sigma, "rad", "deg"), 2) : ""); };
+        shell.print(w.side + ": restores from " + edge(w.lower, w.lower_sigma) + " to " + edge(w.upper, w.upper_sigma) + " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
                     " N m/rad); trim torque there " + five_digits(w.trim_torque, 4) + " N m nose up, " + five_digits(w.trim_lower, 4) + " to " + five_digits(w.trim_upper, 4) +
                     " N m over the window");
     }

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "surrogates/tables/force_table_impl.h"
 #include "surrogates/tables/process_mixture.h"
+#include "surrogates/tables/suspects.h"
 
 namespace underbody::tables {
 
@@ -33,20 +34,23 @@ constexpr const char* none_inside = "interpolated: no point lies inside the grid
 
 constexpr std::size_t many = 2500;  ///< more points than are worth the time of leaving each one out
 
+void add_remark(ForceTable::Impl& table, const std::string& text, core::Problem::Severity severity = core::Problem::Severity::note) {
+    table.remarks.push_back({severity, text, {table.source, {}, {}, {}}});
+}
+
 /// Many points of a full grid with errors. Interpolation that misses points left out by no more than their errors stays; else a process of their
 /// averages is tried at the points themselves, each of which is one of many that made it.
 std::shared_ptr<const ForceTable::Impl> of_many(const SetPoints& points, const std::shared_ptr<ForceTable::Impl>& interpolated) {
     const auto known = interpolation_misses(points, 5000);
     const double of_interpolation = root_mean_square(known, known);
     const double stated = root_mean_square(points.sigma, known);
-    const auto say = [&](ForceTable::Impl& table, const std::string& text) { table.remarks.push_back({core::Problem::Severity::note, text, {points.table.source, {}, {}, {}}}); };
     const auto in_words = [&](double v) { return core::format_number(v, 3) + " " + points.unit; };
     if (std::isnan(of_interpolation)) {
-        say(*interpolated, none_inside);
+        add_remark(*interpolated, none_inside);
         return interpolated;
     }
     if (!(of_interpolation > 1.05 * stated)) {  // independent errors alone would make it 1.1 to 1.3 times as much
-        say(*interpolated, "interpolated: left-out points are met within " + in_words(of_interpolation) + ", no worse than their stated errors");
+        add_remark(*interpolated, "interpolated: left-out points are met within " + in_words(of_interpolation) + ", no worse than their stated errors");
         return interpolated;
     }
     auto process = fit_gaussian_process(points, nullptr);
@@ -57,52 +61,90 @@ std::shared_ptr<const ForceTable::Impl> of_many(const SetPoints& points, const s
     const double of_process = root_mean_square(misses, known);
     const std::string scores = "points are missed by " + in_words(of_process) + " by a Gaussian process of their averages, left-out ones by " + in_words(of_interpolation) + " by interpolation";
     if (of_process < of_interpolation) {
-        say(*process, "Gaussian process chosen: " + scores);
+        add_remark(*process, "Gaussian process chosen: " + scores);
         return process;
     }
-    say(*interpolated, "interpolated: " + scores);
+    add_remark(*interpolated, "interpolated: " + scores);
     return interpolated;
 }
 
 }  // namespace
 
-std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options) {
-    using Kind = FitOptions::Kind;
-    if (options.kind == Kind::gaussian_process) {
-        return fit_gaussian_process(points, nullptr);
-    }
-    const bool automatic = options.kind == Kind::automatic;
-    if (!points.full_grid) {
-        if (!automatic) {
-            throw InputError("grid", "the points do not fill a grid, which interpolation needs" + (points.missing.empty() ? "" : ": " + points.missing),
-                             {points.table.source, {}, {}, {}}, "fit a Gaussian process, or add the missing set points");
+namespace {
+
+/// Points that the others contradict, and the ways to fit the rest.
+class Fits {
+public:
+    Fits(SetPoints points, const FitOptions& options) : options_(options), suspects_(find_suspects(points)), smoothed_(points), followed_(std::move(points)) {
+        doubt(smoothed_, suspects_, false);
+        doubt(followed_, suspects_, true);
+        for (SetPoints* p : {&smoothed_, &followed_}) {
+            for (auto& kink : kinks(*p)) {
+                p->remarks.push_back(std::move(kink));
+            }
         }
-        return fit_gaussian_process(points, nullptr);
     }
-    auto interpolated = fit_interpolation(points, options);
-    const auto say = [&](const std::string& text) { interpolated->remarks.push_back({core::Problem::Severity::note, text, {points.table.source, {}, {}, {}}}); };
-    if (!automatic) {
-        return interpolated;
+    [[nodiscard]] std::shared_ptr<ForceTable::Impl> process(std::vector<double>* misses = nullptr) const { return fit_gaussian_process(smoothed_, misses); }
+    /// Through all points; of points without errors the scatter about a smooth curve is their error.
+    [[nodiscard]] std::shared_ptr<ForceTable::Impl> interpolation() const {
+        SetPoints points = followed_;
+        const std::size_t n = points.x.size();
+        if (!points.has_sigma() && n >= 8 && n >= points.axes.size() + 6 && n <= 60) {
+            const auto process = fit_gaussian_process(smoothed_, nullptr);
+            const ProcessMixture& mixture = *process->processes;
+            const Form& form = mixture.parts.front().form;
+            double mean = 0;
+            for (std::size_t i = 0; i < n && mixture.noise > 0; ++i) {
+                points.scatter.push_back(mixture.noise * form.size * form.factor(points.x[i]));
+                mean += points.scatter.back() / static_cast<double>(n);
+            }
+            if (mixture.noise_is_plain) {
+                points.remarks.push_back({core::Problem::Severity::warning,
+                                          "the points state no errors but scatter by about " + core::format_number(mean, 2) + " " + points.unit +
+                                              " about a smooth curve: that is taken as their error, and the table still goes through them; state it in a column " + points.quantity +
+                                              "_sigma, or fit a Gaussian process",
+                                          {points.table.source, {}, {}, {}}});
+            }
+        }
+        return fit_interpolation(points, options_);
     }
+    /// Leave-one-out misses of interpolation; NaN where none is known, and at suspect points.
+    [[nodiscard]] std::vector<double> misses() const {
+        auto known = interpolation_misses(followed_);
+        for (const Suspect& s : suspects_) {
+            known[s.point] = std::nan("");
+        }
+        return known;
+    }
+
+private:
+    const FitOptions& options_;
+    std::vector<Suspect> suspects_;
+    SetPoints smoothed_, followed_;
+};
+
+/// The better of the two by leaving each point out.
+std::shared_ptr<const ForceTable::Impl> better_of(const SetPoints& points, const Fits& fits) {
+    auto interpolated = fits.interpolation();
     if (!points.has_sigma()) {
-        say("interpolated: the points fill a grid and state no errors, so they are taken as exact");
+        add_remark(*interpolated, "interpolated: the points fill a grid and state no errors, so they are taken as exact");
         return interpolated;
     }
     if (points.x.size() < points.axes.size() + 3) {
-        say("interpolated: too few points to judge by leaving one out");
+        add_remark(*interpolated, "interpolated: too few points to judge by leaving one out");
         return interpolated;
     }
     if (points.x.size() > many) {
         return of_many(points, interpolated);
     }
-    const auto known = interpolation_misses(points);
+    const auto known = fits.misses();
     const double of_interpolation = root_mean_square(known, known);
     if (std::isnan(of_interpolation)) {
-        say(none_inside);
+        add_remark(*interpolated, none_inside);
         return interpolated;
     }
     std::vector<double> misses;
-    auto process = fit_gaussian_process(points, &misses);
+    auto process = fits.process(&misses);
     if (misses.size() != known.size()) {
         return interpolated;
     }
@@ -110,11 +152,27 @@ std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, cons
     const std::string scores = "leave-one-out error " + core::format_number(of_process, 3) + " " + points.unit + " by Gaussian process, " +
                                core::format_number(of_interpolation, 3) + " " + points.unit + " by interpolation";
     if (of_process < of_interpolation) {
-        process->remarks.push_back({core::Problem::Severity::note, "Gaussian process chosen: " + scores, {points.table.source, {}, {}, {}}});
+        add_remark(*process, "Gaussian process chosen: " + scores);
         return process;
     }
-    say("interpolated: " + scores);
+    add_remark(*interpolated, "interpolated: " + scores);
     return interpolated;
+}
+
+}  // namespace
+
+std::shared_ptr<const ForceTable::Impl> fit_points(const SetPoints& points, const FitOptions& options) {
+    using Kind = FitOptions::Kind;
+    const bool automatic = options.kind == Kind::automatic;
+    if (!points.full_grid && !automatic && options.kind != Kind::gaussian_process) {
+        throw InputError("grid", "the points do not fill a grid, which interpolation needs" + (points.missing.empty() ? "" : ": " + points.missing),
+                         {points.table.source, {}, {}, {}}, "fit a Gaussian process, or add the missing set points");
+    }
+    const Fits fits(points, options);
+    if (options.kind == Kind::gaussian_process || !points.full_grid) {
+        return fits.process();
+    }
+    return automatic ? better_of(points, fits) : fits.interpolation();
 }
 
 namespace {

@@ -19,6 +19,19 @@ namespace underbody::tables {
 
 using core::InputError;
 
+const std::vector<std::string>& fit_kinds() {
+    static const std::vector<std::string> words = {"automatic", "interpolation", "gaussian_process", "spline"};  // in the order of FitOptions::Kind
+    return words;
+}
+
+std::string to_string(FitOptions::Kind kind) { return fit_kinds()[static_cast<std::size_t>(kind)]; }
+
+std::optional<FitOptions::Kind> fit_kind(const std::string& word) {
+    const std::string known = word == "auto" ? "automatic" : word == "gp" ? "gaussian_process" : word;
+    const auto at = std::find(fit_kinds().begin(), fit_kinds().end(), known);
+    return at == fit_kinds().end() ? std::nullopt : std::optional(static_cast<FitOptions::Kind>(at - fit_kinds().begin()));
+}
+
 ForceTable::ForceTable(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 const std::string& ForceTable::quantity() const { return impl_->quantity; }
@@ -64,11 +77,7 @@ ForceTable ForceTable::fit(const core::Table& table, const std::string& quantity
             return *as_it_was;
         }
     }
-    SetPoints points = set_points(table, quantity, options);
-    for (auto& kink : kinks(points)) {
-        points.remarks.push_back(std::move(kink));
-    }
-    return ForceTable(fit_points(points, options));
+    return ForceTable(fit_points(set_points(table, quantity, options), options));
 }
 
 double ForceTable::value(const double* point, double* slope) const noexcept { return impl_->surface.value(point, slope); }

@@ -45,6 +45,13 @@ struct FitOptions {
     std::vector<std::string> axes;  ///< columns to use as axes; empty: every known set-point column that varies
 };
 
+/// How a table is fitted, by its word: "automatic" ("auto"), "interpolation", "gaussian_process" ("gp"), "spline"; the words in brackets are older ones.
+/// The way back gives nothing for any other word.
+std::string to_string(FitOptions::Kind kind);
+std::optional<FitOptions::Kind> fit_kind(const std::string& word);
+/// The words without the older ones.
+const std::vector<std::string>& fit_kinds();
+
 /// A fitted surrogate of one quantity. Immutable, cheap to copy, safe to use from many threads.
 class ForceTable {
 public:

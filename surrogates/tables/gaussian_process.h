@@ -80,6 +80,10 @@ public:
     /// Points and weights (sum 1) that stand for the posterior of lengths and scale around its maximum `best`, which comes first; the scatter stays.
     static std::vector<GpWeighted> posterior_design(const GpData& data, const GpOptions& options, const GpParameters& best);
 
+    /// Standard deviation of the logarithm of the scatter about its most likely value `best`, from the curvature of the posterior there: about 2 (that of its
+    /// prior) where the data do not tell it.
+    static double scatter_uncertainty(const GpData& data, const GpOptions& options, const GpParameters& best);
+
     /// Mean of the force at a point with the trend functions and the amplitude there.
     [[nodiscard]] double mean(std::span<const double> x, std::span<const double> trend, double amplitude = 1) const;
     /// Variance of the force itself (scatter and noise not included).

@@ -42,6 +42,18 @@ MatrixXd curvature(const GpData& data, const GpOptions& options, const GpParamet
 
 }  // namespace
 
+double GaussianProcess::scatter_uncertainty(const GpData& data, const GpOptions& options, const GpParameters& best) {
+    constexpr double step = 0.1;
+    std::vector<double> up, down;
+    GpParameters p = best;
+    p.scatter = best.scatter * std::exp(step);
+    log_posterior(data, options, p, &up);
+    p.scatter = best.scatter * std::exp(-step);
+    log_posterior(data, options, p, &down);
+    const double curvature = (down.back() - up.back()) / (2 * step);
+    return 1 / std::sqrt(std::max(curvature, 0.05));
+}
+
 /// The rule of degree three with a centre: exact for the mean and the covariance of a normal distribution (Arasaratnam and Haykin 2009), then weighted by what
 /// the posterior is there and the normal one is not (Rue, Martino and Chopin 2009).
 std::vector<GpWeighted> GaussianProcess::posterior_design(const GpData& data, const GpOptions& options, const GpParameters& best) {

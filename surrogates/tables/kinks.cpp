@@ -25,6 +25,9 @@ core::Problems kinks(const SetPoints& points) {
             }
             const auto at = [&](std::size_t n) { return points.order[n]; };
             const std::size_t here = at(node), before = at(node - stride), after = at(node + stride);
+            if (points.is_doubted(here) || points.is_doubted(before) || points.is_doubted(after)) {
+                continue;  // that point is named already, and makes its neighbours turn
+            }
             const double left = points.value[here] - points.value[before];
             const double right = points.value[after] - points.value[here];
             if (left * right >= 0) {

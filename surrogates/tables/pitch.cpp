@@ -9,57 +9,142 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/tables/grid.h"
 #include "surrogates/tables/figures.h"
 #include "surrogates/tables/zero_lines.h"
 
 namespace underbody::tables {
 
-std::vector<PitchWindow> pitch_windows(const ForceTable& moment, const Held& held) {
-    const std::size_t axis = axis_index(moment, "pitch");
-    std::vector<double> point = held_point(moment, axis, held);
-    const auto at = [&](double pitch, double& slope) {
-        std::array<double, max_axes> s{};
-        point[axis] = pitch;
-        const double m = moment.value_by_policy(point.data(), s.data(), 1U << axis);
-        slope = s[axis];
-        return m;
+namespace {
+
+/// Does the table go through set points by slopes of its own, which turn at points only?
+bool turns_at_points(const ForceTable& table, std::size_t axis) { return table.knots(axis) == table.axes()[axis].points && table.knots(axis).size() >= 4; }
+
+/// The moment along pitch, smooth where it turns.
+Line smooth_line(const ForceTable& table, std::size_t axis, const std::vector<double>& point, bool through_points) {
+    if (!through_points) {
+        return {table, axis, point};
+    }
+    const std::vector<double>& x = table.axes()[axis].points;
+    std::vector<double> at = point, value, slope(x.size());
+    for (const double pitch : x) {
+        at[axis] = pitch;
+        value.push_back(table.value_by_policy(at.data(), nullptr, 1U << axis));
+    }
+    line_slopes(SlopeRule::not_a_knot, x, value, slope);
+    return {x, std::move(value), std::move(slope)};
+}
+
+struct Range {
+    double lower = 0, upper = 0;
+};
+
+/// Where the line falls.
+std::vector<Range> falling(const Line& line) {
+    const double from = line.lower(), to = line.upper();
+    const auto falls = [&](double x) {
+        double slope = 0;
+        static_cast<void>(line.value(x, &slope));
+        return slope < 0;
     };
-    std::vector<PitchWindow> windows;
-    const auto& a = moment.axes()[axis];
-    const int samples = 2000;
-    double last_slope = 0;
-    double last = a.lower;
-    at(a.lower, last_slope);
     const auto edge = [&](double low, double high) {  // where the slope vanishes between a place that restores and one that does not
-        double s = 0;
-        at(high, s);
-        const bool restores_above = s < 0;
+        const bool above = falls(high);
         for (int i = 0; i < 80 && high - low > 1e-15 * (std::abs(low) + std::abs(high)); ++i) {
             const double middle = 0.5 * (low + high);
-            at(middle, s);
-            ((s < 0) == restores_above ? high : low) = middle;
+            (falls(middle) == above ? high : low) = middle;
         }
         return 0.5 * (low + high);
     };
-    bool open = last_slope < 0;
-    PitchWindow window;
-    window.lower = a.lower;
+    std::vector<Range> found;
+    const int samples = 2000;
+    double last = from;
+    bool open = falls(from);
+    Range range{from, from};
     for (int i = 1; i <= samples; ++i) {
-        const double pitch = i == samples ? a.upper : a.lower + (a.upper - a.lower) * i / samples;
-        double slope = 0;
-        at(pitch, slope);
-        const bool restoring = slope < 0;
-        if (restoring && !open) {
-            window = {};
-            window.lower = edge(last, pitch);
+        const double x = i == samples ? to : from + (to - from) * i / samples;
+        const bool now = falls(x);
+        if (now && !open) {
+            range.lower = edge(last, x);
         }
-        if (open && (!restoring || i == samples)) {
-            window.upper = restoring ? a.upper : edge(last, pitch);
-            windows.push_back(window);
+        if (open && (!now || i == samples)) {
+            range.upper = now ? to : edge(last, x);
+            found.push_back(range);
         }
-        open = restoring;
-        last = pitch;
+        open = now;
+        last = x;
     }
+    return found;
+}
+
+/// Where the parabola through the highest or lowest of the points around an extremum and its neighbours turns; the extremum itself where there is none.
+double turn_of_parabola(const Line& line, double extremum) {
+    const auto& x = line.points();
+    const auto nearest = std::min_element(x.begin() + 1, x.end() - 1, [&](double a, double b) { return std::abs(a - extremum) < std::abs(b - extremum); });
+    const double h0 = *nearest - *(nearest - 1), h1 = *(nearest + 1) - *nearest;
+    const double middle = line.value(*nearest);
+    const double d0 = (middle - line.value(*(nearest - 1))) / h0, d1 = (line.value(*(nearest + 1)) - middle) / h1;
+    return d0 * d1 < 0 ? *nearest - (d0 * h1 + d1 * h0) / (h0 + h1) * (h0 + h1) / (2 * (d1 - d0)) : extremum;
+}
+
+/// Standard deviations of the edges.
+void set_edge_errors(std::vector<PitchWindow>& windows, const ForceTable& moment, std::size_t axis, const std::vector<double>& point, bool through_points, const Line& line) {
+    constexpr int draws = 40;
+    std::vector<std::vector<Range>> drawn;
+    for (int draw = 0; draw < draws; ++draw) {
+        const ForceTable other = moment.drawn(static_cast<std::uint64_t>(draw));
+        if (!through_points) {
+            drawn.push_back(falling(Line(other, axis, point)));
+            continue;
+        }
+        const std::vector<double>& x = moment.axes()[axis].points;
+        std::vector<double> at = point, value, slope(x.size());
+        for (const double pitch : x) {
+            at[axis] = pitch;
+            value.push_back(other.value(at.data()));
+        }
+        line_slopes(SlopeRule::not_a_knot, x, value, slope);
+        drawn.push_back(falling(Line(x, std::move(value), std::move(slope))));
+    }
+    const auto error = [&](double edge, double Range::*side) {
+        if (edge == line.lower() || edge == line.upper()) {
+            return 0.0;
+        }
+        double square = 0, count = 0;
+        for (const auto& ranges : drawn) {
+            double nearest = INFINITY;
+            for (const Range& r : ranges) {
+                nearest = std::min(nearest, std::abs(r.*side - edge));
+            }
+            if (std::isfinite(nearest)) {
+                square += nearest * nearest;
+                ++count;
+            }
+        }
+        const double of_points = count > 0 ? std::sqrt(square / count) : 0;
+        return std::hypot(of_points, through_points ? turn_of_parabola(line, edge) - edge : 0);
+    };
+    for (PitchWindow& w : windows) {
+        w.lower_sigma = error(w.lower, &Range::lower);
+        w.upper_sigma = error(w.upper, &Range::upper);
+    }
+}
+
+}  // namespace
+
+std::vector<PitchWindow> pitch_windows(const ForceTable& moment, const Held& held) {
+    const std::size_t axis = axis_index(moment, "pitch");
+    std::vector<double> point = held_point(moment, axis, held);
+    const bool through_points = turns_at_points(moment, axis);
+    const Line line = smooth_line(moment, axis, point, through_points);
+    const auto at = [&](double pitch, double& slope) { return line.value(pitch, &slope); };
+    std::vector<PitchWindow> windows;
+    for (const Range& range : falling(line)) {
+        PitchWindow window;
+        window.lower = range.lower;
+        window.upper = range.upper;
+        windows.push_back(window);
+    }
+    set_edge_errors(windows, moment, axis, point, through_points, line);
     for (auto& w : windows) {
         w.side = w.lower > 0 ? "nose up" : w.upper < 0 ? "nose down" : "level";
         w.stiffness = -1;
@@ -103,7 +188,7 @@ core::Figure pitch_figure(const ForceTable& moment, const Held& held) {
 }
 
 void to_json(nlohmann::json& json, const PitchWindow& w) {
-    json = nlohmann::json{{"lower", w.lower},         {"upper", w.upper},           {"side", w.side},           {"best_pitch", w.best_pitch},
+    json = nlohmann::json{{"lower", w.lower},         {"upper", w.upper},           {"lower_sigma", w.lower_sigma}, {"upper_sigma", w.upper_sigma}, {"side", w.side},           {"best_pitch", w.best_pitch},
                           {"stiffness", w.stiffness}, {"trim_torque", w.trim_torque}, {"trim_lower", w.trim_lower}, {"trim_upper", w.trim_upper}};
 }
 

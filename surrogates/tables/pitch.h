@@ -18,13 +18,17 @@ namespace underbody::tables {
 /// A range of pitch in which the pitch moment restores (d moment / d pitch < 0, both nose up). Thesis figures 4-18, 4-19 have the opposite sign.
 struct PitchWindow {
     double lower = 0, upper = 0;  ///< rad
+    /// One standard deviation of each edge, rad: from the errors of the points (40 draws of the table) and from how differently a spline and a parabola turn
+    /// there. 0 at an end of the table, which is no extremum.
+    double lower_sigma = 0, upper_sigma = 0;
     std::string side;             ///< "nose up", "nose down" or "level" (holds zero)
     double best_pitch = 0;        ///< rad, where it is stiffest
     double stiffness = 0;         ///< N m/rad there, -dM/dpitch
     double trim_torque = 0;       ///< N m, nose up, that holds it there: -M
     double trim_lower = 0, trim_upper = 0;  ///< N m over the window
 };
-/// `moment`: a table of pitch_moment with an axis pitch; `held`: its other axes.
+/// The edges are extrema of the moment. A table that is interpolated without overshoot has them at its points by construction; there they are those of the
+/// spline through the points. `moment`: a table of pitch_moment with an axis pitch; `held`: its other axes.
 std::vector<PitchWindow> pitch_windows(const ForceTable& moment, const Held& held);
 core::Figure pitch_figure(const ForceTable& moment, const Held& held);
 void to_json(nlohmann::json& json, const PitchWindow& window);

@@ -48,7 +48,7 @@ GpData data_of(const SetPoints& points, const std::vector<std::size_t>& rows, Fo
         }
         data.trend.insert(data.trend.end(), h, h + data.trends);
         data.y.push_back((z[i] - form.offset) / form.size);
-        const double s = points.has_sigma() ? points.sigma[rows[i]] / form.factor(x) / form.size : 0;
+        const double s = points.noise(rows[i]) / form.factor(x) / form.size;
         data.noise.push_back(s * s);
     }
     return data;

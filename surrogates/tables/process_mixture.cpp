@@ -179,8 +179,9 @@ Grid thinned(const Grid& grid, std::size_t skip) {
 }
 
 /// Adds the weighted variance of a part at the nodes of a grid, in units of the force: its own, and widened (by the square of `local`, a node) with the scatter.
-void add_variance(const ProcessPart& part, const Grid& grid, double near, double far, const std::vector<double>& local, std::vector<double>& plain,
+void add_variance(const ProcessPart& part, const ProcessMixture& mixture, const Grid& grid, const std::vector<double>& local, std::vector<double>& plain,
                   std::vector<double>& variance) {
+    const double near = mixture.widened_near, far = mixture.widened_far;
     const std::size_t n = grid.size();
     const Form& form = part.form;
     std::vector<double> t(variance.size() * n), h(variance.size() * form.trends()), factor(variance.size()), amplitude(variance.size());
@@ -196,11 +197,12 @@ void add_variance(const ProcessPart& part, const Grid& grid, double near, double
     }
     const auto own = part.process.variances(t, h, amplitude);
     const auto& p = part.process.parameters();
+    const double scatter = mixture.scatter_is_noise ? 0 : p.scatter;
     for (std::size_t node = 0; node < variance.size(); ++node) {
         const double share = std::min(1.0, own[node] / std::pow(p.scale * amplitude[node], 2));
         const double widened = local[node] * (near * near * (1 - share) + far * far * share);
         plain[node] += part.weight * factor[node] * factor[node] * own[node];
-        variance[node] += part.weight * factor[node] * factor[node] * (widened * own[node] + p.scatter * p.scatter);
+        variance[node] += part.weight * factor[node] * factor[node] * (widened * own[node] + scatter * scatter);
     }
 }
 
@@ -215,7 +217,7 @@ double ProcessMixture::local_widening(const double* coordinates, std::size_t but
         for (std::size_t k = 0; k < d.axes; ++k) {
             w *= kernel_value(process.kernel(), (coordinates[k] - d.x[i * d.axes + k]) / process.parameters().length[k]).value;
         }
-        sum += w * w * misfit[i];
+        sum += w * w * std::min(misfit[i], largest_square);
         weight += w * w;
     }
     return std::max(0.9, sum / weight);
@@ -272,7 +274,7 @@ std::vector<double> ProcessMixture::tabulate() {
         local[node] = local_widening(t.data());
     }
     for (const auto& part : parts) {
-        add_variance(part, coarse, widened_near, widened_far, local, plain, within);
+        add_variance(part, *this, coarse, local, plain, within);
     }
     const auto spread_out = [&](std::vector<double>& variance) {
         for (double& v : variance) {

@@ -24,9 +24,17 @@ struct ProcessMixture {
     /// How much wider than its parts say the error is, where the points say nothing (share 1 of the prior variance is left) and where they
     /// say all (share 0).
     double widened_far = 1, widened_near = 1;
+    bool scatter_is_noise = false;  ///< no errors were stated: what the process leaves unexplained is noise of the points, not an error of the force
+    /// Noise of up to 60 points that state no errors, where they tell it (units of the process of the first part); 0 where they do
+    /// not.
+    double noise = 0;
+    bool noise_is_plain = false;     ///< it is well told, and more than a hundredth of the spread of the forces
     std::vector<double> misfit;      ///< a point: square of its leave-one-out miss over the (widened) variance stated for it
-    std::vector<double> sigma;       ///< a node: standard deviation of the mixture, widened, with the scatter
+    std::vector<double> sigma;       ///< a node: standard deviation of the mixture, widened, with the scatter where it is no noise
     std::vector<double> own_sigma;   ///< a node: before both
+
+    /// No single miss counts for more than this, as a square: one point must not set the error of all.
+    static constexpr double largest_square = 6;
 
     /// How much larger than usual the leave-one-out misses around a point are (coordinates of the first part): by squared correlation,
     /// against three points' worth of 1. Point `but` does not count.

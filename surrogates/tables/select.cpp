@@ -49,10 +49,24 @@ std::string values_of(const core::Column& column) {
     return list;
 }
 
+/// A text without the quotes around it.
+std::string_view unquoted(std::string_view text) {
+    text = core::trimmed(text);
+    const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
+    return quoted ? core::trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
+/// Without the braces of a table in TOML.
+std::string_view unbraced(std::string_view text) {
+    text = core::trimmed(text);
+    return text.starts_with('{') && text.ends_with('}') ? core::trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
 }  // namespace
 
-core::Table selected_rows(const core::Table& table, const std::string& conditions) {
-    if (core::trimmed(conditions).empty()) {
+core::Table selected_rows(const core::Table& table, const std::string& given) {
+    const std::string conditions(unbraced(given));
+    if (conditions.empty()) {
         return table;
     }
     std::vector<Condition> wanted;
@@ -73,7 +87,8 @@ core::Table selected_rows(const core::Table& table, const std::string& condition
             }
             throw core::UsageError("missing", "there is no column '" + name + "' to select by", {table.source, {}, {}, {}}, core::did_you_mean(name, names));
         }
-        for (const auto value : core::split(part.substr(equals + 1), '|')) {
+        for (const auto one : core::split(unquoted(part.substr(equals + 1)), '|')) {
+            const std::string_view value = unquoted(one);
             if (condition.column->is_text()) {
                 condition.texts.emplace_back(core::trimmed(value));
             } else {

@@ -13,7 +13,7 @@ namespace underbody::tables {
 core::Table read_points(const std::filesystem::path& path);
 
 /// Rows where every condition holds: "variant=ellipse, mesh=medium, pitch=0deg". Text columns compare as written, numbers within
-/// 1e-9; a bare number is SI. "NAME=a|b" takes either. Empty: all rows. Throws core::UsageError for an unknown column or a selection that leaves nothing
+/// 1e-9; a bare number is SI. "NAME=a|b" takes either. The way a study writes it is read too: {variant = "ellipse", pitch = "0 deg"}. Empty: all rows. Throws core::UsageError for an unknown column or a selection that leaves nothing
 /// (naming the values there are).
 core::Table selected_rows(const core::Table& table, const std::string& conditions);
 

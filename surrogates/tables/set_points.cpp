@@ -10,6 +10,7 @@
 #include "core/mistyped.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/tables/columns.h"
 
 namespace underbody::tables {
 
@@ -160,7 +161,8 @@ std::vector<std::string> found_axes(const core::Table& table, const std::string&
             all += (all.empty() ? "" : ", ") + column.name;
         }
         throw InputError("axis", "the table has no axis: no set-point column varies", {table.source, {}, {}, {}},
-                         known.empty() ? "it needs a column such as gap [mm], pitch [deg] or speed [m/s], and has " + all
+                         !misnamed_columns(table, quantity).empty() ? misnamed_columns(table, quantity)
+                         : known.empty() ? "it needs a column such as gap [mm], pitch [deg] or speed [m/s], and has " + all
                                        : "these have one value throughout: " + known);
     }
     if (axes.size() > max_axes) {
@@ -270,7 +272,8 @@ void merge_repeats(SetPoints& points) {
                         (points.table.line_of_row(a) > 0 ? " (line " + std::to_string(points.table.line_of_row(a)) + ")" : "") + " and " +
                         in_written_unit(points.table, points.quantity, points.value[b]),
                     points.table.place(b, points.quantity),
-                    errors ? "they differ by more than four times their errors: is a column missing that tells them apart? Select rows"
+                    !misnamed_columns(points.table, points.quantity).empty() ? misnamed_columns(points.table, points.quantity)
+                    : errors ? "they differ by more than four times their errors: is a column missing that tells them apart? Select rows"
                            : "select rows by a column that tells them apart, or state the error in '" + points.quantity + "_sigma'");
             }
             if (repeats++ == 0) {
@@ -349,6 +352,8 @@ void find_constants(SetPoints& points) {
 
 }  // namespace
 
+std::string described(const SetPoints& points, std::size_t point) { return describe(points.table, points.axes, points.x[point]); }
+
 const std::vector<std::string>& axis_names() {
     static const std::vector<std::string> names = {"gap",         "pitch",       "speed", "jet_voltage",        "jet_flow",   "heave_velocity",
                                                    "input_force", "temperature", "depth", "approach_direction", "pitch_rate", "time"};
@@ -380,6 +385,11 @@ SetPoints set_points(const core::Table& table, const std::string& quantity, cons
         throw InputError("axis", "a table has at most " + std::to_string(max_axes) + " axes", {points.table.source, {}, {}, {}});
     }
     check_policies(options.range, names, points.table.source);
+    for (auto& unused : unused_columns(points.table, quantity)) {
+        if (std::none_of(names.begin(), names.end(), [&](const auto& name) { return unused.message.find("'" + name + "'") != std::string::npos; })) {
+            points.remarks.push_back(std::move(unused));
+        }
+    }
     points.x.assign(points.table.rows(), std::vector<double>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {
         const auto& values = points.table.numbers(names[k]);

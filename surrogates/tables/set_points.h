@@ -2,6 +2,7 @@
 // what repeats, and whether the points fill a grid.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ struct SetPoints {
     std::vector<std::vector<double>> x;  ///< [row][axis]
     std::vector<double> value;           ///< [row]
     std::vector<double> sigma;           ///< [row]; empty when the table states no errors
+    std::vector<double> doubted;         ///< [row] what a suspect point misses the others by, a standard deviation beside its own; empty: none is suspect
+    std::vector<double> scatter;         ///< [row] noise found in points that state no errors; empty: none
     std::vector<std::size_t> row;        ///< row of the table that each came from (the first of those merged)
     bool full_grid = false;              ///< every combination of the axes' points occurs exactly once
     std::string missing;                 ///< not a grid, but nearly one: which set points lack
@@ -30,11 +33,20 @@ struct SetPoints {
     core::Problems remarks;
 
     [[nodiscard]] bool has_sigma() const { return !sigma.empty(); }
+    /// Known standard deviation of a point: what it states, or its scatter, and what it is doubted by.
+    [[nodiscard]] double noise(std::size_t i) const {
+        const auto of = [i](const std::vector<double>& v) { return v.empty() ? 0 : v[i]; };
+        return std::hypot(of(sigma), of(scatter), of(doubted));
+    }
+    [[nodiscard]] bool is_doubted(std::size_t i) const { return !doubted.empty() && doubted[i] > 0; }
 };
 
 /// Throws core::InputError with file, line and column: unknown quantity, one point, an axis without spread, set points
 /// that repeat and disagree, sigma zero or negative or missing, missing set points, no axis at all, more than max_axes.
 SetPoints set_points(const core::Table& table, const std::string& quantity, const FitOptions& options);
+
+/// A point by its coordinates in the units of its file: "gap 5 mm, pitch 2 deg".
+std::string described(const SetPoints& points, std::size_t point);
 
 /// Names that can be axes of a table: set points and states, not forces.
 const std::vector<std::string>& axis_names();

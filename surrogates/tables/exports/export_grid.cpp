@@ -214,7 +214,7 @@ void add_thinning(ErrorModel& error, const CubicGrid& full, const Resampled& thi
     for (std::size_t k = 0; k < n && sum > 0; ++k) {
         std::vector<double> cells = error.cell_error(k).empty() ? std::vector<double>(thin.grid.axis(k).size() - 1, 0.0) : error.cell_error(k);
         for (double& c : cells) {
-            c += along[k] * std::max(1.0, thin.difference / sum);
+            c += 1.2 * along[k] * std::max(1.0, thin.difference / sum);  // differences of cubics lean to one side of the parabola
         }
         error.set_cell_error(k, std::move(cells));
     }

@@ -323,8 +323,8 @@ TEST(GaussianProcessTable, FindsTheFreeStreamValueThatTheForceDecaysTo) {
     EXPECT_NEAR(table.value(far), 0.251, 0.01);
 }
 
-/// Each set point left out in turn: how often the rest predicts it within twice the stated error.
-double share_within_two_sigma(const core::Table& points, const std::string& quantity, const std::vector<std::string>& axes, FitOptions::Kind kind, bool say = false) {
+/// Each set point left out in turn: how often the rest predicts it within so many stated errors.
+double share_within(double sigmas, const core::Table& points, const std::string& quantity, const std::vector<std::string>& axes, FitOptions::Kind kind, bool say = false) {
     int inside = 0, all = 0;
     FitOptions options;
     options.axes = axes;
@@ -344,7 +344,7 @@ double share_within_two_sigma(const core::Table& points, const std::string& quan
         const auto e = table.at(at);
         const double truth = points.numbers(quantity)[out];
         if (!e.outside) {  // beyond the last point nothing can be promised: it is flagged
-            inside += std::abs(e.value - truth) <= 2 * e.sigma ? 1 : 0;
+            inside += std::abs(e.value - truth) <= sigmas * e.sigma ? 1 : 0;
             ++all;
         }
         if (say) {
@@ -361,25 +361,32 @@ TEST(GaussianProcessTable, PredictsHeldOutGapsOfTheSharedCfd) {
     const auto front = tables::selected_rows(all, "variant=ellipse_front, mesh=medium, pitch=0, speed=0.5");
     const auto pitched = tables::selected_rows(all, "variant=ellipse, mesh=medium, speed=0.5");
     const bool say = std::getenv("UNDERBODY_SAY") != nullptr;
-    const auto share = [&](const std::vector<core::Table>& sets, const std::vector<std::string>& axes, FitOptions::Kind kind) {
+    const auto share = [&](double sigmas, const std::vector<core::Table>& sets, const std::vector<std::string>& axes, FitOptions::Kind kind) {
         double sum = 0, count = 0;
         for (const auto& points : sets) {
             for (const char* quantity : {"lift_force", "drag_force", "pitch_moment"}) {
-                sum += share_within_two_sigma(points, quantity, axes, kind, say);
+                sum += share_within(sigmas, points, quantity, axes, kind, say);
                 ++count;
             }
         }
         return sum / count;
     };
-    const double gaps = share({level, front}, {"gap"}, FitOptions::Kind::automatic);
-    const double gaps_by_process = share({level, front}, {"gap"}, FitOptions::Kind::gaussian_process);
+    // Meant are 68 %; eleven left-out points a quantity leave their own chance.
+    const double gaps = share(1, {level, front}, {"gap"}, FitOptions::Kind::automatic);
+    const double gaps_by_process = share(1, {level, front}, {"gap"}, FitOptions::Kind::gaussian_process);
+    const double gaps_within_two = share(2, {level, front}, {"gap"}, FitOptions::Kind::gaussian_process);
     // Scattered gaps and pitches: what is left to miss is a cliff that one point alone shows (3 mm, 2 degrees nose down: 0.41 N where
     // the rest says -0.2 N).
-    const double pitches = share({pitched}, {"gap", "pitch"}, FitOptions::Kind::automatic);
-    std::cout << "held-out gaps within twice the stated error: " << gaps << ", by Gaussian process " << gaps_by_process << ", over gap and pitch " << pitches << "\n";
-    EXPECT_GE(gaps, 0.95);
-    EXPECT_GE(gaps_by_process, 0.95);
-    EXPECT_GE(pitches, 0.93);
+    const double pitches = share(1, {pitched}, {"gap", "pitch"}, FitOptions::Kind::automatic);
+    std::cout << "held-out gaps within the stated error: " << gaps << ", by Gaussian process " << gaps_by_process << " (within twice " << gaps_within_two << "), over gap and pitch "
+              << pitches << "\n";
+    EXPECT_GE(gaps, 0.58);
+    EXPECT_LE(gaps, 0.78);
+    EXPECT_GE(gaps_by_process, 0.60);
+    EXPECT_LE(gaps_by_process, 0.80);
+    EXPECT_GE(gaps_within_two, 0.90);
+    EXPECT_GE(pitches, 0.58);
+    EXPECT_LE(pitches, 0.78);
 }
 
 TEST(GaussianProcessTable, RefusesPointsThatCannotTellTheAxesApart) {
