@@ -1,6 +1,10 @@
 // The model behind a stability map of a study.
 #include "cases/region_model.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "core/file.h"
 #include "core/text.h"
 #include "core/toml.h"
@@ -12,6 +16,29 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// The speed that the points of a table hold and its axes do not have, m/s.
+std::optional<double> made_at(const TableSpec& table) {
+    const bool axis = std::find(table.axes.begin(), table.axes.end(), "speed") != table.axes.end();
+    const auto speed = table.where.number("speed");
+    return speed && *speed > 0 && !axis ? speed : std::nullopt;
+}
+
+/// Where the model's speed is not the one of a table, its force in the map is not the one of the report.
+void remark_on_speeds(dynamics::Model& model, const Study& study, const RegionSpec& spec) {
+    for (const auto& name : spec.forces) {
+        const TableSpec& table = *study.find_table(name);
+        const auto speed = made_at(table);
+        const double held = model.conditions.get(dynamics::Channel::speed, speed.value_or(0));
+        if (speed && std::abs(held - *speed) > 1e-9 * *speed) {
+            model.remarks.push_back({core::Problem::Severity::warning,
+                                     "the table '" + name + "' was made at " + core::format_number(*speed, 6) + " m/s, the model holds " + core::format_number(held, 6) +
+                                         " m/s: the map takes the table's force times (" + core::format_number(held, 6) + "/" + core::format_number(*speed, 6) + ")^" +
+                                         core::format_number(table.speed_exponent, 4) + ", the table's own equilibria do not",
+                                     {model.name, {}, {}, {}}});
+        }
+    }
+}
+
 /// The model's text with one [[force]] for each table of the study, whose files are named by `place`.
 std::string composed_text(const Study& study, const RegionSpec& spec, const std::string& place) {
     std::string text = core::read_file(spec.model);
@@ -20,8 +47,13 @@ std::string composed_text(const Study& study, const RegionSpec& spec, const std:
         text += "\n[[force]]                        # the study's table '" + spec.forces[i] + "'\nquantity = " +
                 core::toml_string(table.quantity) + "\ntable = " +
                 core::toml_string(place + table.quantity + "-" + std::to_string(i + 1) + ".csv") + "\n";
-        if (const auto speed = table.where.number("speed"); speed && *speed > 0) {
-            text += "scale.speed = { reference = \"" + core::format_number(*speed) + " m/s\", exponent = 2 }\n";
+        text += "axes = [";
+        for (const auto& axis : table.axes) {
+            text += (&axis == &table.axes.front() ? "" : ", ") + core::toml_string(axis);
+        }
+        text += "]\nfit = " + core::toml_string(table.fit) + "\n";
+        if (const auto speed = made_at(table); speed && table.speed_exponent != 0) {
+            text += "scale.speed = { reference = \"" + core::format_number(*speed) + " m/s\", exponent = " + core::format_number(table.speed_exponent) + " }\n";
         }
     }
     return text;
@@ -35,8 +67,10 @@ dynamics::Model composed_model(const Study& study, const RegionSpec& spec, const
         points.comments.push_back("table '" + table.name + "' of the study '" + study.title + "'; " + study.origin);
         core::write_csv(scratch / (table.quantity + "-" + std::to_string(i + 1) + ".csv"), points);
     }
-    return dynamics::read_model_text(composed_text(study, spec, scratch.string() + "/"), spec.model.string(),
-                                     spec.model.has_parent_path() ? spec.model.parent_path() : fs::path("."));
+    dynamics::Model model = dynamics::read_model_text(composed_text(study, spec, scratch.string() + "/"), spec.model.string(),
+                                                      spec.model.has_parent_path() ? spec.model.parent_path() : fs::path("."));
+    remark_on_speeds(model, study, spec);
+    return model;
 }
 
 }  // namespace

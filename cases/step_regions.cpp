@@ -42,7 +42,10 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
     Key key(kind, {"surrogates/tables", "surrogates/dynamics"});
     for (const auto& name : spec.forces) {
         const TableSpec& table = *engine.study.find_table(name);
-        key.add("force", table.quantity).add("speed", table.where.number("speed").value_or(0)).through("table", name);
+        key.add("force", table.quantity).add("speed", table.where.number("speed").value_or(0)).add("fit", table.fit).add("speed_exponent", table.speed_exponent).through("table", name);
+        for (const auto& axis : table.axes) {
+            key.add("axis", axis);
+        }
         key.add("points of '" + name + "'", digest_of(table_points(table, engine.results)));
     }
     return key;

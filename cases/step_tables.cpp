@@ -20,7 +20,7 @@ namespace {
 Key table_key(const std::string& kind, const TableSpec& spec, const core::Table& points) {
     Key key(kind, {"surrogates/tables"});
     key.add("quantity", spec.quantity).add("points", digest_of(points));
-    key.add("net_weight", spec.net_weight.value_or(std::nan(""))).add("virtual_mass", spec.virtual_mass);
+    key.add("net_weight", spec.net_weight.value_or(std::nan(""))).add("virtual_mass", spec.virtual_mass).add("fit", spec.fit);
     for (const auto& axis : spec.axes) {
         key.add("axis", axis);
     }
@@ -34,9 +34,7 @@ Key table_key(const std::string& kind, const TableSpec& spec, const core::Table&
 }
 
 tables::ForceTable fitted(const TableSpec& spec, const core::Table& points) {
-    tables::FitOptions options;
-    options.axes = spec.axes;
-    return tables::ForceTable::fit(points, spec.quantity, options);
+    return tables::ForceTable::fit(points, spec.quantity, fit_options(spec));
 }
 
 tables::EquilibriumOptions equilibrium_options(const TableSpec& spec) {

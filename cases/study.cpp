@@ -103,6 +103,39 @@ Conditions read_conditions(const TomlTable& table) {
     return conditions;
 }
 
+/// The conditions under a key, as a table or as one text: `where = "variant=ellipse, gap=5mm"`, the way of the command line.
+Conditions read_where(const TomlTable& table, const char* key) {
+    if (!table.is_string(key)) {
+        return read_conditions(table.table_or_empty(key));
+    }
+    Conditions conditions;
+    const std::string text = table.string(key);
+    for (const auto part : core::split(text, ',')) {
+        const std::size_t equals = part.find('=');
+        const std::string name(core::trimmed(part.substr(0, equals)));
+        const std::string value(equals == std::string_view::npos ? "" : core::trimmed(part.substr(equals + 1)));
+        if (name.empty() || value.empty()) {
+            throw core::InputError("parse", table.path_of(key) + ": '" + std::string(core::trimmed(part)) + "' is not of the form name=value", table.place(key),
+                                   "such as " + std::string(key) + " = \"variant=A, pitch=0\"");
+        }
+        if (conditions.number(name) || conditions.text(name)) {
+            throw core::InputError("duplicate", table.path_of(key) + ": '" + name + "' is given twice", table.place(key));
+        }
+        if (const auto* quantity = core::find_quantity(name)) {
+            try {
+                conditions.numbers.emplace_back(name, core::parse_in(value, quantity->unit));
+            } catch (const core::Error& error) {
+                throw core::InputError("parse", table.path_of(key) + ": " + error.message(), table.place(key), error.hint());
+            }
+        } else if (const auto number = core::parse_number(value)) {
+            conditions.numbers.emplace_back(name, *number);
+        } else {
+            conditions.texts.emplace_back(name, value);
+        }
+    }
+    return conditions;
+}
+
 std::string stem_of(const fs::path& file) {
     std::string name = file.filename().string();
     for (const char* ending : {".gz", ".h5"}) {
@@ -176,7 +209,7 @@ std::vector<core::NamePattern::Found> find_cases(const std::string& pattern, con
 
 void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::string, std::string>& files) {
     const std::string pattern = table.string("files");
-    const Conditions held = read_conditions(table.table_or_empty("conditions"));
+    const Conditions held = read_where(table, "conditions");
     const std::vector<std::string> zones = table.strings("zones");
     for (auto& item : find_cases(pattern, study.folder(), table)) {
         Case entry;
@@ -225,10 +258,21 @@ std::vector<std::string> required_strings(const TomlTable& table, const char* ke
     return list;
 }
 
+/// Names as a list or as one text with commas.
+std::vector<std::string> read_names(const TomlTable& table, const char* key) {
+    std::vector<std::string> names;
+    for (const auto& text : required_strings(table, key)) {
+        for (const auto part : core::split(text, ',')) {
+            names.emplace_back(core::trimmed(part));
+        }
+    }
+    return names;
+}
+
 MeshSpec read_mesh(const TomlTable& table, std::set<std::string>& taken) {
     MeshSpec mesh;
     mesh.name = unique_name(table, taken);
-    mesh.where = read_conditions(table.table_or_empty("where"));
+    mesh.where = read_where(table, "where");
     mesh.column = table.string_or("column", "mesh");
     mesh.quantities = required_strings(table, "quantities");
     const TomlTable cells = table.table("cells");
@@ -251,8 +295,13 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const
         }
     }
     spec.quantity = table.choice("quantity", quantities);
-    spec.axes = required_strings(table, "axes");
-    spec.where = read_conditions(table.table_or_empty("where"));
+    spec.axes = read_names(table, "axes");
+    spec.where = read_where(table, "where");
+    spec.fit = table.string_or("fit", spec.fit);
+    if (!tables::fit_kind(spec.fit)) {
+        throw core::InputError("name", table.path_of("fit") + ": '" + spec.fit + "' is not known", table.place("fit"), core::did_you_mean(spec.fit, tables::fit_kinds()));
+    }
+    spec.speed_exponent = table.quantity_or("speed_exponent", "1", spec.speed_exponent);
     spec.relative_sigma = table.quantity_or("relative_sigma", "1", 0);
     spec.mesh_uncertainty = table.string_or("mesh_uncertainty", "");
     spec.net_weight = table.find_quantity("net_weight", "N");
@@ -382,7 +431,7 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     sweep.gaps = list("gap", "m", std::nullopt);
     sweep.pitches = list("pitch", "rad", 0.0);
     sweep.speeds = list("speed", "m/s", study.reference.number("speed"));
-    sweep.conditions = read_conditions(table.table_or_empty("conditions"));
+    sweep.conditions = read_where(table, "conditions");
     sweep.kinematic_viscosity = table.quantity_or("kinematic_viscosity", "m^2/s", sweep.kinematic_viscosity);
     sweep.cell = table.quantity_or("cell", "1", sweep.cell);
     sweep.surface_level = static_cast<int>(table.integer_or("surface_level", sweep.surface_level));
@@ -436,7 +485,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     for (const auto& table : root.tables("picture")) {
         PictureSpec spec;
         spec.name = unique_name(table, pictures);
-        spec.where = read_conditions(table.table_or_empty("where"));
+        spec.where = read_where(table, "where");
         spec.views = table.strings("views");
         if (table.has("range")) {
             const auto range = table.quantities("range", "Pa");
@@ -487,7 +536,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
         VerifySpec spec;
         spec.name = unique_name(table, verifications);
         spec.table = table.file("table");
-        spec.where = read_conditions(table.table_or_empty("where"));
+        spec.where = read_where(table, "where");
         spec.quantities = required_strings(table, "quantities");
         spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
         study.verifications.push_back(std::move(spec));

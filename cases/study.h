@@ -15,6 +15,7 @@
 #include "core/figure.h"
 #include "core/progress.h"
 #include "core/table.h"
+#include "surrogates/tables/force_table.h"
 
 namespace underbody::core {
 class TomlTable;
@@ -74,6 +75,8 @@ struct TableSpec {
     std::string quantity;            ///< lift_force, ...
     std::vector<std::string> axes;   ///< gap, pitch, ...
     Conditions where;
+    std::string fit = "automatic";   ///< how the table is fitted (tables::fit_kind), here, in its exports and in the maps of [[region]]
+    double speed_exponent = 2;       ///< of the force in a [[region]], when `where` holds the speed: (speed / that speed)^exponent
     double relative_sigma = 0;       ///< of the value, added in squares
     std::string mesh_uncertainty;    ///< name of the [[mesh_uncertainty]] whose standard uncertainty the points carry
     std::optional<double> net_weight;  ///< N: equilibria are found for it
@@ -85,7 +88,7 @@ struct TableSpec {
 struct RegionSpec {
     std::string name;
     std::filesystem::path model;
-    std::vector<std::string> forces;  ///< names of [[table]]: added to the model as force sources, scaled with speed squared
+    std::vector<std::string> forces;  ///< names of [[table]]: added to the model as force sources with their axes, fit and speed_exponent
     std::string axes;       ///< as on the command line: "gap=1mm:100mm,heave_velocity=-0.1:0.1"
     double duration = 60;   ///< s
     int columns = 400;
@@ -254,6 +257,9 @@ StudyResults run_study(const Study& study, const RunOptions& options, core::Prog
 StudyResults stored_results(const Study& study, const RunOptions& options);
 /// The same of the loads alone.
 StudyResults stored_loads(const Study& study, const RunOptions& options);
+
+/// How a [[table]] is fitted, wherever it is.
+tables::FitOptions fit_options(const TableSpec& spec);
 
 /// The points of a [[table]]: its axes and its quantity with `QUANTITY_sigma`, one row a case that fits, from
 /// `results.loads`. The sigma is the standard uncertainty of the mesh study the table names and the relative error

@@ -45,6 +45,13 @@ bool row_fits(const core::Table& loads, std::size_t row, const Conditions& where
 
 }  // namespace
 
+tables::FitOptions fit_options(const TableSpec& spec) {
+    tables::FitOptions options;
+    options.axes = spec.axes;
+    options.kind = tables::fit_kind(spec.fit).value_or(tables::FitOptions::Kind::automatic);
+    return options;
+}
+
 core::Table table_points(const TableSpec& spec, const StudyResults& results) {
     const core::Table& loads = results.loads;
     if (loads.rows() == 0) {

@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/feedback.h"
@@ -414,6 +415,7 @@ int run_linear(const LinearArguments& a, Shell& shell) {
     if (at && whole_body(model)) {
         body(model, held, *at, json, text);
     }
+    show_forces(shell, model, held, json);
     if (shell.json) {
         shell.print_json(json);
     }

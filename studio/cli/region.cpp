@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
@@ -148,9 +149,10 @@ int run_probability(const RegionArguments& a, const dynamics::Model& model, cons
     if (!a.out.empty()) {
         write_picture(dynamics::probability_figure(map), a.out);
     }
+    nlohmann::json json;
+    dynamics::to_json(json, map);
+    show_forces(shell, model, options.held, json);
     if (shell.json) {
-        nlohmann::json json;
-        dynamics::to_json(json, map);
         shell.print_json(json);
     }
     shell.print("safe area " + percent(map.area_mean) + " +- " + percent(map.area_sigma) + " over " +
@@ -171,6 +173,7 @@ int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dyna
     const bool angle = std::string(dynamics::channel_unit(channel)).starts_with("rad");
     std::vector<std::string> names;
     nlohmann::json json = {{"sweep", sweep.name}, {"regions", nlohmann::json::array()}};
+    show_forces(shell, model, options.held, json);
     for (std::size_t i = 0; i < sweep.value.size(); ++i) {
         const std::string unit = angle ? "deg" : dynamics::channel_unit(channel);
         names.push_back(sweep.name + " " +
@@ -272,6 +275,7 @@ int run_region(const RegionArguments& a, Shell& shell) {
     }
     nlohmann::json json;
     dynamics::to_json(json, region);
+    show_forces(shell, model, options.held, json);
     print_classes(shell, region.classes);
     if (a.safe) {
         json["safe_sets"] = nlohmann::json::array();

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
@@ -237,17 +238,20 @@ double needed_gap(const Start& start) {
 }
 
 template <class Motion>
-void write_motion(const Motion& motion, const core::Figure& figure, const SimulateArguments& a, Shell& shell) {
+void write_motion(const Motion& motion, const core::Figure& figure, const SimulateArguments& a, const Job& job, Shell& shell) {
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), motion.table());
     }
     if (!a.plot.empty()) {
         write_picture(figure, a.plot);
     }
+    nlohmann::json json;
+    show_forces(shell, job.model, job.inputs.signals.held, json);
     if (shell.json) {
-        nlohmann::json json;
-        dynamics::to_json(json, motion);
-        shell.print_json(json);
+        nlohmann::json document;
+        dynamics::to_json(document, motion);
+        document.update(json);
+        shell.print_json(document);
     }
 }
 
@@ -269,7 +273,7 @@ void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
                            job.options, shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
     shell.show(motion.remarks);
     const dynamics::HeavePlant plant = dynamics::plant_for(job.model, job.inputs.signals);
-    write_motion(motion, dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a, shell);
+    write_motion(motion, dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a, job, shell);
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
                 millimetres(motion.gap.back()) + ", heave velocity " +
                 core::format_number(1e3 * motion.heave_velocity.back(), 4) + " mm/s\n" + event_text(motion.events));
@@ -286,7 +290,7 @@ void run_heave_pitch(const SimulateArguments& a, Job& job, Shell& shell) {
         dynamics::simulate(plant, start, job.options, shell.progress(), job.inputs.signals);
     add_remarks(motion.remarks, job.model);
     shell.show(motion.remarks);
-    write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
+    write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
     const dynamics::PitchState& last = motion.state.back();
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
                 millimetres(last[0]) + ", pitch " + angle_in_degrees(last[2]) + " nose up, contact " +
@@ -309,7 +313,7 @@ void run_surface(const SimulateArguments& a, Job& job, Shell& shell) {
     core::Problems remarks;
     add_remarks(remarks, job.model);
     shell.show(remarks);
-    write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
+    write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
     const dynamics::SurfaceState& last = motion.state.back();
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, speed " +
                 core::format_number(last[0], 5) + " m/s, heading " + angle_in_degrees(last[3]) + ", normal force " +
@@ -336,7 +340,7 @@ void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
                                                               shell.progress(), job.inputs.signals);
     add_remarks(motion.remarks, job.model);
     shell.show(motion.remarks);
-    write_motion(motion, dynamics::trajectory_figure(motion), a, shell);
+    write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
     const dynamics::BodyState& last = motion.state.back();
     std::string text = "ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
                        millimetres(motion.gap.back()) + ", pitch " + angle_in_degrees(last[dynamics::state_theta]) +

@@ -18,24 +18,17 @@ void TableOptions::add_to(CLI::App& command) {
     command.add_option("--quantity", quantity, "column to use (default: lift_force, or the first force of the table)");
     command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either; of a model: what is held, such as speed=0.5m/s");
     command.add_option("--axes", axes, "columns that are axes, such as gap,pitch (default: all known ones that vary)");
-    command.add_option("--kind", kind, "auto | interpolation | gp | spline")->capture_default_str();
+    command.add_option("--kind", kind, "automatic | interpolation | gaussian_process | spline (auto, gp for short)")->capture_default_str();
     command.add_option("--range", range, "outside the points: clamp | refuse | extrapolate, for all axes or one by one: gap=refuse,pitch=clamp (default clamp, or what an exported table says)");
 }
 
 tables::FitOptions TableOptions::fit_options() const {
     tables::FitOptions options;
-    const std::vector<std::string> kinds = {"auto", "interpolation", "gp", "spline"};
-    if (kind == "auto") {
-        options.kind = tables::FitOptions::Kind::automatic;
-    } else if (kind == "interpolation") {
-        options.kind = tables::FitOptions::Kind::interpolation;
-    } else if (kind == "gp") {
-        options.kind = tables::FitOptions::Kind::gaussian_process;
-    } else if (kind == "spline") {
-        options.kind = tables::FitOptions::Kind::spline;
-    } else {
-        throw core::UsageError("kind", "there is no kind of table '" + kind + "'", {}, core::did_you_mean(kind, kinds));
+    const auto known = tables::fit_kind(kind);
+    if (!known) {
+        throw core::UsageError("kind", "there is no kind of table '" + kind + "'", {}, core::did_you_mean(kind, tables::fit_kinds()));
     }
+    options.kind = *known;
     options.range = tables::parse_range_policies(range);
     for (const auto name : core::split(axes, ',')) {
         if (!core::trimmed(name).empty()) {

@@ -20,7 +20,7 @@ struct TableOptions {
     std::string quantity;
     std::string where;
     std::string axes;
-    std::string kind = "auto";
+    std::string kind = "automatic";
     std::string range;
 
     /// Adds TABLE.csv, --quantity, --where, --axes, --kind, --range.

@@ -11,6 +11,7 @@
 #include "surrogates/dynamics/ode.h"
 #include "surrogates/dynamics/surroundings.h"
 #include "surrogates/dynamics/trajectory_parts.h"
+#include "surrogates/dynamics/table_notes.h"
 
 namespace underbody::dynamics {
 
@@ -334,6 +335,9 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
     Trajectory out;
     out.remarks = model.remarks;
     for (core::Problem& remark : effects_without_motion(model)) {
+        out.remarks.push_back(std::move(remark));
+    }
+    for (core::Problem& remark : held_outside(model, inputs.held.over(model.conditions))) {
         out.remarks.push_back(std::move(remark));
     }
     const double t0 = inputs.time.empty() ? 0.0 : inputs.time.front();

@@ -132,29 +132,20 @@ ForceSource read_force(const core::TomlTable& table, core::Problems& remarks) {
     if (table.has("axes")) {
         options.axes = table.strings("axes");
     }
-    const std::string fit =
-        table.choice("fit", {"automatic", "interpolation", "spline", "gaussian_process"}, "automatic");
-    using Kind = tables::FitOptions::Kind;
-    options.kind = fit == "spline"             ? Kind::spline
-                   : fit == "gaussian_process" ? Kind::gaussian_process
-                                               : Kind::interpolation;
-    // Full grids are interpolated without overshoot; points that form none get the surrogate that suits scattered
-    // points.
+    const std::string fit = table.string_or("fit", "automatic");
+    const auto kind = tables::fit_kind(fit);
+    if (!kind) {
+        throw core::InputError("name", table.path_of("fit") + ": '" + fit + "' is not known", table.place("fit"), core::did_you_mean(fit, tables::fit_kinds()));
+    }
+    options.kind = *kind;
+    // The same rule as everywhere: what is fitted here is what the commands on tables and a study's report show.
     const auto fitted = [&] {
-        if (fit == "automatic") {
+        if (*kind == tables::FitOptions::Kind::automatic) {
             if (auto table_as_it_was = exported_table(points, quantity, options, table.place("table"), remarks)) {
                 return *table_as_it_was;
             }
         }
-        try {
-            return tables::ForceTable::fit(points, quantity, options);
-        } catch (const core::InputError&) {
-            if (fit != "automatic") {
-                throw;
-            }
-            options.kind = Kind::automatic;
-            return tables::ForceTable::fit(points, quantity, options);
-        }
+        return tables::ForceTable::fit(points, quantity, options);
     };
     ForceSource source{quantity,
                        table.string("table"),
@@ -163,6 +154,11 @@ ForceSource read_force(const core::TomlTable& table, core::Problems& remarks) {
                        {},
                        {},
                        table.find_quantity("factor", "1").value_or(1.0)};
+    for (const core::Problem& remark : source.table.remarks()) {
+        if (remark.severity != core::Problem::Severity::note) {
+            remarks.push_back(remark);
+        }
+    }
     for (const tables::TableAxis& axis : source.table.axes()) {
         Channel channel{};
         if (!find_channel(axis.name, channel)) {

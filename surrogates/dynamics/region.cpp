@@ -11,6 +11,7 @@
 #include "surrogates/dynamics/feedback.h"
 #include "surrogates/dynamics/region_parts.h"
 #include "surrogates/dynamics/surroundings.h"
+#include "surrogates/dynamics/table_notes.h"
 
 namespace underbody::dynamics {
 
@@ -170,9 +171,12 @@ std::string rule_text(const std::string& rule) {
            "or shrinks, to a cycle when it stays as large";
 }
 
-void add_remarks(StabilityRegion& region, const Model& model) {
+void add_remarks(StabilityRegion& region, const Model& model, const Conditions& held) {
     region.remarks = model.remarks;
     for (core::Problem& remark : effects_without_motion(model)) {
+        region.remarks.push_back(std::move(remark));
+    }
+    for (core::Problem& remark : held_outside(model, held.over(model.conditions))) {
         region.remarks.push_back(std::move(remark));
     }
     add_outside_remark(region);
@@ -226,7 +230,7 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
         add_boundaries(setup, options, gap_first, region);
     }
     add_flow(setup, options, gap_first, region);
-    add_remarks(region, model);
+    add_remarks(region, model, options.held);
     return region;
 }
 

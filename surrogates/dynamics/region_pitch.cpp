@@ -7,6 +7,7 @@
 #include "surrogates/dynamics/feedback.h"
 #include "surrogates/dynamics/region_parts.h"
 #include "surrogates/dynamics/region_pitch_ends.h"
+#include "surrogates/dynamics/table_notes.h"
 
 namespace underbody::dynamics {
 
@@ -130,6 +131,9 @@ StabilityRegion pitch_region(const Model& model, const RegionOptions& options, c
     add_flow(plant, options, setup.middle, region);
     region.remarks = model.remarks;
     for (core::Problem& remark : effects_without_motion(model)) {
+        region.remarks.push_back(std::move(remark));
+    }
+    for (core::Problem& remark : held_outside(model, options.held.over(model.conditions))) {
         region.remarks.push_back(std::move(remark));
     }
     add_outside_remark(region);
