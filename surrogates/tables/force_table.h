@@ -36,7 +36,7 @@ struct Evaluation {
 
 struct FitOptions {
     enum class Kind {
-        automatic,         ///< the better of the two below by leave-one-out score, said in remarks()
+        automatic,         ///< full grids interpolated, unless points with errors scatter and a process meets left-out ones better; said in remarks()
         interpolation,     ///< monotone: exact at the points, C1, never leaves the range of the points around it; full grids only
         gaussian_process,  ///< scattered or gridded points with errors
         spline,            ///< not-a-knot cubic spline: exact, C2, may overshoot; full grids only

@@ -161,11 +161,12 @@ std::vector<Suspect> find_suspects(const SetPoints& points) {
 void doubt(SetPoints& points, const std::vector<Suspect>& suspects, bool followed) {
     for (const Suspect& s : suspects) {
         const double miss = points.value[s.point] - s.expected;
-        if (points.has_sigma()) {
+        const bool may_be_true = !points.has_sigma() || points.axes.size() > 1;
+        if (!may_be_true) {
             points.doubted.resize(points.x.size(), 0.0);
             points.doubted[s.point] = std::abs(miss);
         }
-        const std::string done = !points.has_sigma() ? "it is kept as it is, because the points state no errors and the force may turn sharply there"
+        const std::string done = may_be_true ? "it is kept as it is, because the force may turn sharply there"
                                  : followed          ? "the table goes through it and states that difference as its error there"
                                                      : "that difference is taken as its error, so that it hardly counts";
         const std::string force = points.quantity + " " + core::format_number(points.value[s.point], 5) + " " + points.unit;

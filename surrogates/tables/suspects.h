@@ -20,7 +20,8 @@ struct Suspect {
 /// the outermost of scattered points are never suspect: nothing lies around them. 8 to 150 points; none of others.
 std::vector<Suspect> find_suspects(const SetPoints& points);
 
-/// Says so in the remarks, and marks points that state errors (`doubted` by what each misses the others by); those without are kept as they are. `followed`: the table goes through them all the same.
+/// Says so in the remarks, and marks points of one axis that state errors (`doubted` by what each misses the others by). Without errors, or with a cliff
+/// that one point of several axes alone shows (a body near contact), nobody can tell: such points are kept as they are. `followed`: the table goes through them all the same.
 void doubt(SetPoints& points, const std::vector<Suspect>& suspects, bool followed);
 
 }  // namespace underbody::tables
