@@ -1,4 +1,4 @@
-// Closed forms of thin films and jets (physics notes, sections 4 and 5), with what they leave out.
+// Closed forms of thin films and jets (docs/physics.md sections 4 and 5), with what they leave out.
 #include <cmath>
 
 #include "core/text.h"

@@ -1,4 +1,4 @@
-// Closed forms of the vehicle (physics notes, sections 2 to 4 and 6): coefficients, springs, scaling, drag, jets, the run
+// Closed forms of the vehicle (docs/physics.md sections 2, 3, 4 and 6): coefficients, springs, scaling, drag, jets, the run
 // on the ground.
 #include <cmath>
 

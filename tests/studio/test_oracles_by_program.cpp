@@ -1,4 +1,4 @@
-// Every oracle of the physics notes (physics-oracles.csv) asked of the program itself, as a user would: a formula that no
+// Every oracle of docs/physics.md (docs/physics-oracles.csv) asked of the program itself, as a user would: a formula that no
 // command reaches is of no use to anybody. An oracle of the file that is neither asked nor listed as out of reach fails.
 #include <gmock/gmock.h>
 
@@ -40,7 +40,7 @@ struct Oracle {
 
 std::map<std::string, Oracle> oracles() {
     std::map<std::string, Oracle> all;
-    const std::string text = core::read_file(shared_folder() / "physics-oracles.csv");
+    const std::string text = core::read_file(source_folder() / "docs" / "physics-oracles.csv");
     for (const auto line : core::split(text, '\n')) {
         const auto fields = quoted_fields(std::string(line));
         if (fields.size() < 5 || !fields[0].starts_with("O")) {
@@ -344,7 +344,6 @@ const std::map<std::string, std::string>& out_of_reach() {
 }
 
 TEST_F(ByProgram, EveryOracleOfThePhysicsNotesIsReached) {
-    UNDERBODY_NEEDS_SHARED("physics-oracles.csv");
     write_reference_curve();
     Questions questions;
     for (auto& part : {questions_of_films(), questions_of_the_vehicle(), questions_of_the_table(), questions_of_learning()}) {
