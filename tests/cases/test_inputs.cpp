@@ -160,8 +160,8 @@ INSTANTIATE_TEST_SUITE_P(Formats, Importers,
                          testing::Values("cfd_post_csv", "cgns", "ensight", "fluent_ascii", "fluent_hdf5", "fluent_legacy", "vtk_files",
                                          "openfoam/ascii", "openfoam/binary", "openfoam/packed", "openfoam/decomposed", "samples/cfx_csv",
                                          "samples/cgns", "samples/ensight/CylinderCrossflow", "samples/fluent_cff", "samples/tecplot"),
-                         [](const auto& info) {
-                             std::string name = info.param;
+                         [](const auto& one) {
+                             std::string name = one.param;
                              std::replace_if(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
                              return name;
                          });
