@@ -178,11 +178,20 @@ json results_of(const ProgramRun& run) {
     return all.at("results");
 }
 
+/// A report without its pictures: how a plot is smoothed depends on which were drawn before it in the same process.
+std::string report_text(const fs::path& file) {
+    std::string text = core::read_file(file);
+    for (auto at = text.find("base64,"); at != std::string::npos; at = text.find("base64,", at + 1)) {
+        text.erase(at + 7, text.find('"', at) - at - 7);
+    }
+    return text;
+}
+
 TEST_F(StudyCommand, AKilledRunLosesNothingAndTheNextOneFinishes) {
     const fs::path other = scratch.path() / "undisturbed";
     write_small_study(other);
     const json truth = results_of(run_underbody({"study", "run", other.string(), "--no-pictures", "--json"}));
-    const std::string report = core::read_file(other / "report" / "index.html");
+    const std::string report = report_text(other / "report" / "index.html");
     // Some kills in every run of the tests; a long campaign on demand (UNDERBODY_KILLS=200).
     const char* asked = std::getenv("UNDERBODY_KILLS");
     const int kills = asked != nullptr ? std::stoi(asked) : 8;
@@ -197,13 +206,13 @@ TEST_F(StudyCommand, AKilledRunLosesNothingAndTheNextOneFinishes) {
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
         if (fs::exists(study / "report" / "index.html")) {
-            EXPECT_EQ(core::read_file(study / "report" / "index.html"), report);
+            EXPECT_EQ(report_text(study / "report" / "index.html"), report);
         }
         if (i % 8 == 7 || i + 1 == kills) {
             const ProgramRun result = run();
             ASSERT_EQ(result.exit_code, 0) << result.errors;
             EXPECT_EQ(results_of(result), truth) << "after kill " << i;
-            EXPECT_EQ(core::read_file(study / "report" / "index.html"), report);
+            EXPECT_EQ(report_text(study / "report" / "index.html"), report);
         }
     }
 }
