@@ -1,13 +1,17 @@
 #include "cases/child_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <thread>
 
 #include "core/error.h"
@@ -34,10 +38,111 @@ namespace {
 
 int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
+// What follows up to the constructor runs between fork and exec: calls that are safe there, and no allocation.
+
+struct Prepared {
+    const char* program;
+    const char* folder;
+    char* const* argv;
+    char* const* envp;
+    int nowhere;  ///< /dev/null
+    int log;
+    std::array<int, 2> keep;
+};
+
+[[noreturn]] void become_child(const Prepared& what) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // the guard itself may be killed
+    if (::getppid() == 1) {
+        ::_exit(127);
+    }
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGCHLD}) {
+        std::signal(number, SIG_DFL);
+    }
+    sigset_t none;
+    ::sigemptyset(&none);
+    ::sigprocmask(SIG_SETMASK, &none, nullptr);
+    ::dup2(what.nowhere, 0);
+    ::dup2(what.log, 1);
+    ::dup2(what.log, 2);
+    for (const int kept : what.keep) {
+        if (kept >= 0) {
+            ::fcntl(kept, F_SETFD, 0);
+        }
+    }
+    if (::chdir(what.folder) == 0) {
+        ::execve(what.program, what.argv, what.envp);
+    }
+    ::_exit(127);
+}
+
+void sleep_milliseconds(long count) {
+    const timespec time = {count / 1000, count % 1000 * 1000000};
+    ::nanosleep(&time, nullptr);
+}
+
+constexpr int polite_wait = 2000;  ///< ms between the request to end and the end by force
+
+/// Nobody is left to fetch the results: ends the group, this process with it.
+[[noreturn]] void end_group() {
+    ::kill(0, SIGTERM);
+    for (int waited = 0; waited < polite_wait; waited += 20) {
+        while (::waitpid(-1, nullptr, WNOHANG) > 0) {
+        }
+        if (::waitpid(-1, nullptr, WNOHANG) < 0) {
+            break;  // none left of its own; what those started may be there still
+        }
+        sleep_milliseconds(20);
+    }
+    ::kill(0, SIGKILL);
+    ::_exit(137);
+}
+
+/// Closes everything but these descriptors: pipes of other children, whose ends we must not hold, above all.
+void close_others(const std::array<int, 5>& wanted) {
+    const int most = *std::max_element(wanted.begin(), wanted.end());
+    for (int number = 0; number <= most; ++number) {
+        if (std::find(wanted.begin(), wanted.end(), number) == wanted.end()) {
+            ::close(number);
+        }
+    }
+    ::close_range(static_cast<unsigned>(most + 1), ~0U, 0);
+}
+
+/// Leads the group: starts the child, waits for its end or for ours.
+[[noreturn]] void guard(const Prepared& what, int pipe_end) {
+    ::setpgid(0, 0);  // a Ctrl-C at the terminal is for us, who then end the whole group
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+        std::signal(number, SIG_IGN);
+    }
+    std::signal(SIGCHLD, SIG_DFL);
+    close_others({what.nowhere, what.log, what.keep[0], what.keep[1], pipe_end});
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::close(pipe_end);
+        become_child(what);
+    }
+    if (child < 0) {
+        ::_exit(127);
+    }
+    ::close(what.log);
+    while (true) {
+        int status = 0;
+        if (::waitpid(child, &status, WNOHANG) == child) {
+            ::_exit(code_of(status));
+        }
+        pollfd watched = {pipe_end, POLLIN, 0};
+        if (::poll(&watched, 1, 20) > 0) {
+            end_group();
+        }
+    }
+}
+
 }  // namespace
 
-ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& log,
-                           const std::vector<std::pair<std::string, std::string>>& environment) {
+ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
+                           const fs::path& folder, const fs::path& log,
+                           const std::vector<std::pair<std::string, std::string>>& environment,
+                           std::array<int, 2> keep) {
     // Everything that allocates is done before the fork: other threads may hold locks.
     std::vector<std::string> variables;
     for (char** entry = environ; *entry != nullptr; ++entry) {
@@ -63,41 +168,56 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
     if (out < 0) {
         throw core::SystemError("write", std::string("cannot write: ") + std::strerror(errno), {log.string(), {}, {}, {}});
     }
-    const pid_t child = ::fork();
+    const int nowhere = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    int ends[2] = {-1, -1};
+    const bool piped = ::pipe2(ends, O_CLOEXEC) == 0;
+    const pid_t child = piped ? ::fork() : -1;
     if (child == 0) {
-        ::setpgid(0, 0);  // a Ctrl-C at the terminal is for us, who then end the whole group
-        const int nowhere = ::open("/dev/null", O_RDONLY);
-        ::dup2(nowhere, 0);
-        ::dup2(out, 1);
-        ::dup2(out, 2);
-        if (::chdir(folder.c_str()) == 0) {
-            ::execve(program.c_str(), argv.data(), envp.data());
-        }
-        ::_exit(127);
+        guard({program.c_str(), folder.c_str(), argv.data(), envp.data(), nowhere, out, keep}, ends[0]);
     }
-    ::close(out);
+    const int error = errno;
+    for (const int number : {out, nowhere, ends[0]}) {
+        if (number >= 0) {
+            ::close(number);
+        }
+    }
     if (child < 0) {
-        throw core::SystemError("process", std::string("cannot start '") + program + "': " + std::strerror(errno));
+        if (piped) {
+            ::close(ends[1]);
+        }
+        throw core::SystemError("process", std::string("cannot start '") + program + "': " + std::strerror(error));
     }
     ::setpgid(child, child);  // also here: whoever comes first
     process_ = child;
+    pipe_ = ends[1];
 }
 
-ChildProcess::ChildProcess(ChildProcess&& other) noexcept : process_(std::exchange(other.process_, -1)), code_(other.code_) {}
+ChildProcess::ChildProcess(ChildProcess&& other) noexcept
+    : process_(std::exchange(other.process_, -1)), pipe_(std::exchange(other.pipe_, -1)), code_(other.code_) {}
 
 ChildProcess::~ChildProcess() {
     if (process_ > 0 && !code_) {
         stop();
     }
+    if (pipe_ >= 0) {
+        ::close(pipe_);
+    }
 }
 
 std::optional<int> ChildProcess::ended() {
-    if (!code_ && process_ > 0) {
-        int status = 0;
-        if (::waitpid(process_, &status, WNOHANG) == process_) {
-            code_ = code_of(status);
-        }
+    if (code_ || process_ <= 0) {
+        return code_;
     }
+    siginfo_t seen = {};
+    if (::waitid(P_PID, static_cast<id_t>(process_), &seen, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+        seen.si_pid != process_) {
+        return {};
+    }
+    ::kill(-process_,
+           SIGKILL);  // what the child left behind; the number is the group's as long as we have not fetched it
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    code_ = code_of(status);
     return code_;
 }
 
@@ -106,11 +226,11 @@ void ChildProcess::stop() {
         return;
     }
     ::kill(-process_, SIGTERM);
-    for (int i = 0; i < 200 && !ended(); ++i) {
+    for (int waited = 0; waited < polite_wait && !ended(); waited += 10) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    ::kill(-process_, SIGKILL);  // what is left of the group
     if (!code_) {
+        ::kill(-process_, SIGKILL);
         int status = 0;
         ::waitpid(process_, &status, 0);
         code_ = code_of(status);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "cases/openfoam_result.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -15,22 +16,6 @@ namespace underbody::cases {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// The number behind a word at the beginning of a line of a dictionary: "endTime 400;".
-std::optional<double> entry_of(const fs::path& dictionary, const std::string& word) {
-    std::ifstream in(dictionary);
-    std::string text((std::istreambuf_iterator<char>(in)), {});
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
-        const bool begins = at == 0 || text[at - 1] == '\n' || text[at - 1] == ' ' || text[at - 1] == ';';
-        const std::size_t end = text.find(';', at);
-        if (begins && end != std::string::npos) {
-            if (const auto value = core::parse_number(std::string_view(text).substr(at + word.size(), end - at - word.size()))) {
-                return value;
-            }
-        }
-    }
-    return std::nullopt;
-}
 
 constexpr const char* script_log = "log.Allrun";
 
@@ -47,17 +32,6 @@ fs::path newest_log(const fs::path& folder) {
         }
     }
     return newest;
-}
-
-/// The end of a file.
-std::string tail_of(const fs::path& file, std::streamoff bytes) {
-    std::ifstream in(file, std::ios::binary | std::ios::ate);
-    if (!in) {
-        return {};
-    }
-    const std::streamoff size = in.tellg();
-    in.seekg(std::max<std::streamoff>(0, size - bytes));
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// What OpenFOAM said when it failed: the lines of its fatal error, else the last ones.
@@ -95,8 +69,8 @@ double RunState::fraction() const {
 RunState run_state(const fs::path& folder) {
     RunState state;
     const fs::path control = folder / "system" / "controlDict";
-    const auto end = entry_of(control, "endTime");
-    const auto step = entry_of(control, "deltaT");
+    const auto end = dictionary_number(control, "endTime");
+    const auto step = dictionary_number(control, "deltaT");
     if (end && step && *step > 0) {
         state.iterations = static_cast<int>(std::lround(*end / *step));
     }
@@ -116,25 +90,6 @@ RunState run_state(const fs::path& folder) {
     return state;
 }
 
-bool is_solved(const fs::path& folder) {
-    std::error_code ignored;
-    if (!fs::is_directory(folder / "constant" / "polyMesh", ignored)) {
-        return false;
-    }
-    double last = 0;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const auto time = core::parse_number(entry.path().filename().string());
-        if (time && entry.is_directory(ignored) && fs::exists(entry.path() / "U")) {
-            last = std::max(last, *time);
-        }
-    }
-    const auto wanted = entry_of(folder / "system" / "controlDict", "endTime");
-    if (last > 0 && wanted && last >= *wanted * (1 - 1e-9)) {
-        return true;
-    }
-    return last > 0 && tail_of(folder / "log.simpleFoam", 1 << 14).find("solution converged") != std::string::npos;
-}
-
 void need_openfoam() {
     for (const char* program : {"blockMesh", "simpleFoam"}) {
         if (!find_program(program)) {
@@ -143,7 +98,7 @@ void need_openfoam() {
     }
 }
 
-OpenFoamRun::OpenFoamRun(fs::path folder) : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
+OpenFoamRun::OpenFoamRun(fs::path folder, int lock) : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
     const fs::path script = folder_ / "Allrun";
     if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
         throw core::InputError("missing", fs::exists(folder_) ? "there is no Allrun in this folder" : "there is no such folder", {folder_.string(), {}, {}, {}},
@@ -153,13 +108,29 @@ OpenFoamRun::OpenFoamRun(fs::path folder) : folder_(std::move(folder)), start_(s
         throw core::InputError("missing", "the case has no system/controlDict", {folder_.string(), {}, {}, {}});
     }
     need_openfoam();
+    lock_ = CaseLock::take(folder_ / ".underbody.lock", "solve");
+    if (!lock_) {
+        throw core::InputError(
+            "busy",
+            "the case is being solved by " + CaseLock::holder(folder_ / ".underbody.lock").value_or("another process"),
+            {folder_.string(), {}, {}, {}}, "wait for it, or end it first");
+    }
+    from_ = ready_to_go_on(folder_);
+    if (!from_ && solves_anew(folder_)) {
+        set_results_aside(folder_);
+    }
     // Debian's OpenFOAM needs this one variable and nothing sourced.
     std::vector<std::pair<std::string, std::string>> environment;
     if (std::getenv("WM_PROJECT_DIR") == nullptr) {
         environment.emplace_back("WM_PROJECT_DIR", "/usr/share/openfoam");
     }
     const fs::path at = fs::absolute(folder_);
-    child_.emplace("/bin/sh", std::vector<std::string>{"./Allrun"}, at, at / script_log, environment);
+    std::vector<std::string> words = {"./Allrun"};
+    if (from_) {
+        words.emplace_back("solve");
+    }
+    child_.emplace("/bin/sh", words, at, at / script_log, environment,
+                   std::array<int, 2>{lock_->descriptor(), lock});
 }
 
 bool OpenFoamRun::finished() {
@@ -177,6 +148,9 @@ bool OpenFoamRun::finished() {
         const auto begin = text.rfind('\n', failed) + 1;
         const fs::path named = folder_ / ("log." + text.substr(begin, failed - begin));
         log = fs::is_regular_file(named) ? named : log;
+    }
+    if (*code > 128) {
+        throw core::InputError("killed", "the solver was ended by signal " + std::to_string(*code - 128), {log.string(), {}, {}, {}}, "the next solve goes on from its last checkpoint");
     }
     throw core::InputError("solver", "the solver ended with code " + std::to_string(*code) + ": " + last_words(log), {log.string(), {}, {}, {}});
 }

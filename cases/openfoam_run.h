@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "cases/case_lock.h"
 #include "cases/child_process.h"
 
 namespace underbody::cases {
@@ -22,25 +23,31 @@ struct RunState {
 };
 RunState run_state(const std::filesystem::path& folder);
 
-/// True when the solver has written its last time, the one that system/controlDict wants or that it called converged.
-bool is_solved(const std::filesystem::path& folder);
-
-/// A case on its way: `Allrun` of the folder, as `underbody body domain` writes it.
+/// A case on its way: `Allrun` of the folder, as `underbody body domain` writes it. A solve of such a case that was cut
+/// goes on from its last whole time; what is there of another mesh, or diverged, is set aside first (see
+/// openfoam_result.h).
 class OpenFoamRun {
 public:
-    /// Throws core::InputError when the folder is no case with an Allrun, and as need_openfoam().
-    explicit OpenFoamRun(std::filesystem::path folder);
+    /// Throws core::InputError when the folder is no case with an Allrun, when another process solves it (kind "busy"),
+    /// and as need_openfoam().
+    /// `lock`: the descriptor of a lock of the caller's that is to last as long as the solver runs; -1: none.
+    explicit OpenFoamRun(std::filesystem::path folder, int lock = -1);
 
-    /// True when it has ended well. Throws core::InputError with the solver's own last words when it failed.
+    /// True when its script has ended well. Throws core::InputError with the solver's own last words when it failed
+    /// (kind "solver"), or was ended by a signal (kind "killed").
     bool finished();
     /// Ends it; what it wrote stays.
     void stop() { child_->stop(); }
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     [[nodiscard]] double seconds() const;
+    /// The time it goes on from, 0 with the mesh that was there; nothing when it began anew.
+    [[nodiscard]] std::optional<double> went_on_from() const { return from_; }
 
 private:
     std::filesystem::path folder_;
     std::chrono::steady_clock::time_point start_;
+    std::optional<CaseLock> lock_;
+    std::optional<double> from_;
     std::optional<ChildProcess> child_;
 };
 

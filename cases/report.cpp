@@ -137,6 +137,19 @@ private:
                 page_.warning("Not done: " + step.kind + " '" + step.name + "': " + step.error);
             }
         }
+        for (const auto& note : engine_.study.notes) {
+            if (note.severity != core::Problem::Severity::note) {
+                page_.warning(note.message);
+            }
+        }
+        if (const auto names = not_settled(engine_.results.loads); !names.empty()) {
+            std::string list;
+            for (const auto& name : names) {
+                list += (list.empty() ? "" : ", ") + name;
+            }
+            page_.warning(std::to_string(names.size()) + " of " + std::to_string(engine_.results.loads.rows()) +
+                          " solutions have not settled: " + list);
+        }
     }
 
     /// What makes the loads less than they seem, before anybody reads a number.
@@ -410,7 +423,8 @@ private:
         page_.folded_table(std::to_string(shown_loads.rows.size()) + " cases", shown_loads.header, shown_loads.rows);
         page_.paragraph("Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
                         "Errors are those that the force tables take for the case (mesh study and stated error); closure is the "
-                        "size of the summed area vector over the area, 0 for a closed surface.");
+                        "size of the summed area vector over the area, 0 for a closed surface. A solution is settled when the "
+                        "solver's own histories beside the file neither drift nor scatter by more than a twentieth of the force; unknown where there are none.");
     }
 
     void provenance() {

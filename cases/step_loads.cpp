@@ -11,6 +11,7 @@
 #include "postproc/field.h"
 #include "postproc/loads.h"
 #include "postproc/problems_json.h"
+#include "postproc/settled.h"
 
 namespace underbody::cases {
 
@@ -62,12 +63,13 @@ std::string one_line(std::string text) {
 }
 
 /// What a list of cases shows, quick to read for ten thousand of them: a line for each value (name, unit, number) and for each
-/// warning ("!", file, message), parted by tabs.
-std::string brief(const postproc::LoadsResult& result, const core::Problems& problems) {
+/// warning ("!", file, message), and one for the verdict on the solution ("?", verdict, why), parted by tabs.
+std::string brief(const std::vector<postproc::LoadsColumn>& columns, const postproc::Settled& settled, const core::Problems& problems) {
     std::string text;
-    for (const auto& column : postproc::table_row(result)) {
+    for (const auto& column : columns) {
         text += column.name + "\t" + column.unit + "\t" + core::format_number(column.value) + "\n";
     }
+    text += "?\t" + to_string(settled.verdict) + "\t" + one_line(settled.why) + "\n";
     for (const auto& problem : problems) {
         if (problem.severity != core::Problem::Severity::note) {
             text += "!\t" + one_line(problem.place.file) + "\t" + one_line(problem.message) + "\n";
@@ -89,6 +91,9 @@ void take_brief(std::string_view text, CaseLoads& loads) {
         const std::string_view rest = word('\n');
         if (name == "!") {
             loads.warnings.push_back({core::Problem::Severity::warning, std::string(rest), {std::string(unit), {}, {}, {}}});
+        } else if (name == "?") {
+            loads.settled = std::string(unit);
+            loads.settled_why = std::string(rest);
         } else {
             loads.values.push_back({std::string(name), std::string(unit), core::parse_number(rest).value_or(std::nan(""))});
         }
@@ -100,13 +105,26 @@ Value compute_loads(Engine& engine, const Case& entry) {
     reading.surfaces_only = true;
     const postproc::Field field = postproc::read_field(entry.file, reading, engine.progress);
     const postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);
-    const core::Problems problems = findings(engine, field, result);
+    core::Problems problems = findings(engine, field, result);
+    core::Problems notes;
+    const postproc::Settled settled = postproc::settled_by(result, postproc::stated_beside(entry.file, result), entry.file, notes);
+    if (settled.verdict == postproc::SettledVerdict::not_settled) {
+        problems.push_back({core::Problem::Severity::warning, "the solution has not settled: " + settled.why, {engine.path_in_study(entry.file), {}, {}, {}}});
+    }
+    // What the loads scatter by from iteration to iteration is an error of theirs.
+    auto columns = postproc::table_row(result);
+    for (const auto& load : settled.loads) {
+        if (load.sigma > 0) {
+            columns.push_back({load.quantity + "_sigma", core::find_quantity(load.quantity)->unit, load.sigma});
+        }
+    }
     json document;
     postproc::to_json(document, result);
     document["file"] = engine.path_in_study(entry.file);
     document["problems"] = postproc::json_of(problems);
     document["columns"] = json::array();
-    for (const auto& column : postproc::table_row(result)) {
+    document["settled"] = settled;
+    for (const auto& column : columns) {
         document["columns"].push_back({{"name", column.name}, {"unit", column.unit}, {"value", column.value}});
     }
     document["format"] = field.format;
@@ -116,7 +134,7 @@ Value compute_loads(Engine& engine, const Case& entry) {
                                     {"lift_viscous", result.named_viscous.lift_force},
                                     {"drag_pressure", result.named_pressure.drag_force},
                                     {"drag_viscous", result.named_viscous.drag_force}};
-    return {document.dump(-1, ' ', false, json::error_handler_t::replace), brief(result, problems)};
+    return {document.dump(-1, ' ', false, json::error_handler_t::replace), brief(columns, settled, problems)};
 }
 
 }  // namespace
@@ -167,7 +185,15 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
     if (done.empty()) {
         return table;
     }
-    for (const auto& column : done.front()->values) {
+    std::vector<LoadValue> columns;  // of all cases: some have errors that others do not
+    for (const auto* one : done) {
+        for (const auto& value : one->values) {
+            if (std::none_of(columns.begin(), columns.end(), [&](const LoadValue& known) { return known.name == value.name; })) {
+                columns.push_back(value);
+            }
+        }
+    }
+    for (const auto& column : columns) {
         std::vector<double> values;
         for (const auto* one : done) {
             values.push_back(one->value(column.name));
@@ -175,6 +201,13 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
         if (table.find(column.name) == nullptr) {
             table.add_numbers(column.name, column.unit, std::move(values));
         }
+    }
+    if (table.find("settled") == nullptr) {
+        std::vector<std::string> verdicts;
+        for (const auto* one : done) {
+            verdicts.push_back(one->settled);
+        }
+        table.add_text("settled", std::move(verdicts));
     }
     return table;
 }

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "cases/study_format.h"
+#include "cases/design_points.h"
 #include "cases/sweep.h"
 #include "core/file.h"
 #include "core/mistyped.h"
@@ -211,6 +212,7 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
     const std::string pattern = table.string("files");
     const Conditions held = read_where(table, "conditions");
     const std::vector<std::string> zones = table.strings("zones");
+    DesignPointCases design(table);
     for (auto& item : find_cases(pattern, study.folder(), table)) {
         Case entry;
         entry.file = item.path;
@@ -226,6 +228,9 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
             std::erase_if(entry.conditions.texts, [&](const auto& old) { return old.first == text.first; });
             entry.conditions.texts.push_back(text);
         }
+        if (!design.take(entry)) {
+            continue;
+        }
         const auto [same, fresh] = files.emplace(entry.file.string(), pattern);
         if (!fresh) {
             throw core::InputError("duplicate",
@@ -235,6 +240,7 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
         }
         study.cases.push_back(std::move(entry));
     }
+    design.finish(study.notes);
 }
 
 /// Names must be unique and fit for file names, because documents and exports carry them.
@@ -295,6 +301,12 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const
         }
     }
     spec.quantity = table.choice("quantity", quantities);
+    if (!study.symmetry.empty() &&
+        (spec.quantity == "side_force" || spec.quantity == "roll_moment" || spec.quantity == "yaw_moment")) {
+        throw core::InputError(
+            "symmetry", "the halves of a half model cancel its " + spec.quantity + ": a table of it would be nothing",
+            table.place("quantity"), "whole models have it: [frame] without symmetry");
+    }
     spec.axes = read_names(table, "axes");
     spec.where = read_where(table, "where");
     spec.fit = table.string_or("fit", spec.fit);
@@ -404,6 +416,38 @@ void sort_by_file(std::vector<Case>& cases) {
     cases = std::move(sorted);
 }
 
+SlurmSpec read_slurm(const TomlTable& table) {
+    SlurmSpec slurm;
+    for (const auto& [key, text] : {std::pair{"partition", &slurm.partition},
+                                    {"time", &slurm.time},
+                                    {"memory", &slurm.memory},
+                                    {"account", &slurm.account}}) {
+        *text = table.string_or(key, "");
+        if (text->find_first_of(" \t\n") != std::string::npos) {
+            throw core::InputError("parse", table.path_of(key) + " is '" + *text + "': Slurm takes no blanks there",
+                                   table.place(key), "time = \"02:00:00\", memory = \"4G\"");
+        }
+    }
+    for (const auto& [key, number] : {std::pair{"throttle", &slurm.throttle}, {"max_array", &slurm.max_array}}) {
+        const auto value = table.integer_or(key, 0);
+        if (value < 0 || value > 4000000) {
+            throw core::InputError("range",
+                                   table.path_of(key) + " is " + std::to_string(value) +
+                                       ": it cannot be negative, nor above Slurm's own 4000000",
+                                   table.place(key));
+        }
+        *number = static_cast<int>(value);
+    }
+    slurm.options = table.has("options") ? table.strings("options") : std::vector<std::string>{};
+    for (const auto& option : slurm.options) {
+        if (!option.starts_with("-") || option.find('\n') != std::string::npos) {
+            throw core::InputError("parse", table.path_of("options") + ": '" + option + "' is no option of sbatch",
+                                   table.place("options"), "options = [\"--nice=100\"]");
+        }
+    }
+    return slurm;
+}
+
 std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     if (!root.has("sweep")) {
         return std::nullopt;
@@ -437,6 +481,7 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     sweep.surface_level = static_cast<int>(table.integer_or("surface_level", sweep.surface_level));
     sweep.layers = static_cast<int>(table.integer_or("layers", sweep.layers));
     sweep.iterations = static_cast<int>(table.integer_or("iterations", sweep.iterations));
+    sweep.slurm = read_slurm(table.table_or_empty("slurm"));
     if (sweep.bodies.empty() || sweep.gaps.empty() || sweep.pitches.empty() || sweep.speeds.empty()) {
         throw core::InputError("missing", "a sweep needs a [[body]], a gap and a speed", table.place(), "bodies = [\"ellipse\"], gap = [\"2 mm\", \"5 mm\"], speed = \"0.5 m/s\"");
     }
@@ -474,7 +519,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
         study.bodies.push_back({unique_name(table, bodies), table.file("shape")});
     }
     study.sweep = read_sweep(study, root);
-    for (auto& solved : solved_cases(study)) {
+    for (auto& solved : solved_cases(study, study.notes)) {
         if (files.emplace(solved.file.lexically_normal().string(), "[sweep]").second) {  // a [[case]] may name them itself
             study.cases.push_back(std::move(solved));
         }

@@ -118,6 +118,17 @@ struct VerifySpec {
     double tolerance = 0.01;  ///< of the force's size; a column QUANTITY_scatter of the report widens it by twice itself
 };
 
+/// [sweep.slurm]: how the site wants its jobs. Texts are Slurm's own, empty ones leave it to the site.
+struct SlurmSpec {
+    std::string partition;
+    std::string time;    ///< "02:00:00", "1-12"
+    std::string memory;  ///< "4G"
+    std::string account;
+    int throttle = 0;                  ///< tasks at a time; 0: as many as there is room for
+    int max_array = 0;                 ///< tasks in one array; 0: ask scontrol
+    std::vector<std::string> options;  ///< further ones, "--nice=100"
+};
+
 /// [sweep]: cases to be made by CFD, every body at every gap, pitch and speed.
 struct SweepSpec {
     std::string folder;               ///< of the cases, relative to the study
@@ -131,6 +142,7 @@ struct SweepSpec {
     int surface_level = 3;            ///< halvings of the cell at the body
     int layers = 3;
     int iterations = 400;
+    SlurmSpec slurm;
 };
 
 /// What `study.toml` says, checked. Immutable.
@@ -162,6 +174,7 @@ public:
     bool thesis_dynamics = false;     ///< check its statements on springs, sizes, voltages, releases and heading
     std::vector<CompareSpec> comparisons;
     std::optional<SweepSpec> sweep;
+    core::Problems notes;  ///< what was left out on opening: cases of the sweep that are stale
 
     [[nodiscard]] std::vector<const Case*> select(const Conditions& where) const;
     [[nodiscard]] const TableSpec* find_table(const std::string& name) const;
@@ -215,6 +228,8 @@ struct CaseLoads {
     StepState state = StepState::missing;
     std::string error;            ///< of a failed one
     std::vector<LoadValue> values;  ///< empty unless computed or unchanged
+    std::string settled = "unknown";  ///< "settled", "not settled", "unknown": postproc::Settled
+    std::string settled_why;
     core::Problems warnings;      ///< what makes the numbers less than they seem: an open surface, no wall shear, ...
     std::int64_t id = 0;          ///< in the store
     std::string origin;           ///< digest over all that it was made from
@@ -263,8 +278,13 @@ tables::FitOptions fit_options(const TableSpec& spec);
 
 /// The points of a [[table]]: its axes and its quantity with `QUANTITY_sigma`, one row a case that fits, from
 /// `results.loads`. The sigma is the standard uncertainty of the mesh study the table names and the relative error
-/// it states, added in squares. Throws core::InputError when no loads are there.
+/// it states, and what the case scatters by from iteration to iteration (postproc::Settled), added in squares. Throws
+/// core::InputError when no loads are there.
 core::Table table_points(const TableSpec& spec, const StudyResults& results);
+
+/// Names of the rows whose text column `settled` says "not settled": cases of StudyResults::loads, or points of a
+/// table.
+std::vector<std::string> not_settled(const core::Table& loads);
 
 void to_json(nlohmann::json& json, const StudyResults& results);
 

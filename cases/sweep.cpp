@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cases/case_lock.h"
+#include "cases/openfoam_result.h"
 #include "cases/openfoam_run.h"
+#include "cases/sweep_parts.h"
+#include "cases/sweep_slurm.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "core/units.h"
-#include "geometry/body_shape.h"
-#include "geometry/body_surface.h"
-#include "geometry/flow_domain.h"
 
 namespace underbody::cases {
 
@@ -20,127 +20,51 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const SweepSpec& spec_of(const Study& study) {
-    if (!study.sweep) {
-        throw core::InputError("missing", "the study has no [sweep]", {(study.folder() / "study.toml").string(), {}, {}, {}},
-                               "for instance [sweep] with bodies = [\"ellipse\"], gap = [\"2 mm\", \"5 mm\"], pitch = [\"0 deg\"], speed = \"0.5 m/s\"");
-    }
-    const bool mirrored = study.symmetry.empty() || study.symmetry == "y";
-    if (study.forward != "+x" || study.up != "+z" || !mirrored) {
-        throw core::InputError("range", "the cases of a sweep have x forward, z up and their symmetry plane at y = 0; the study's [frame] says otherwise",
-                               {(study.folder() / "study.toml").string(), {}, {}, {}}, "a study of its own for the sweep");
-    }
-    return *study.sweep;
-}
-
-/// "ellipse-h5-p0-u0.5"; blanks become underscores, so that the name can be a folder and a pattern finds its parts.
-std::string name_for(const std::string& body, double gap, double pitch, double speed) {
-    std::string name = body + "-h" + core::format_number(1000 * gap, 6) + "-p" + core::format_number(core::convert(pitch, "rad", "deg"), 6) + "-u" + core::format_number(speed, 6);
-    std::replace(name.begin(), name.end(), ' ', '_');
-    return name;
-}
-
-nlohmann::json marker_of(const fs::path& folder) {
-    std::error_code ignored;
-    const fs::path file = folder / solved_marker;
-    if (!fs::is_regular_file(file, ignored)) {
-        return nullptr;
-    }
-    const auto json = nlohmann::json::parse(core::read_file(file), nullptr, false);
-    return json.is_object() && json.contains("walls") ? json : nlohmann::json(nullptr);
-}
-
-geometry::FlowOptions flow_of(const Study& study, const SweepCase& one) {
-    const SweepSpec& spec = spec_of(study);
-    geometry::FlowOptions flow;
-    flow.placement.gap = one.conditions.number("gap").value_or(0);
-    flow.placement.pitch = one.conditions.number("pitch").value_or(0);
-    flow.speed = one.conditions.number("speed").value_or(flow.speed);
-    flow.density = study.reference.number("density").value_or(flow.density);
-    flow.kinematic_viscosity = spec.kinematic_viscosity;
-    flow.half = !study.symmetry.empty();
-    flow.cell = spec.cell;
-    flow.surface_level = spec.surface_level;
-    flow.layers = spec.layers;
-    flow.iterations = spec.iterations;
-    return flow;
-}
-
-}  // namespace
-
-std::vector<SweepCase> sweep_cases(const Study& study) {
-    const SweepSpec& spec = spec_of(study);
-    std::vector<SweepCase> cases;
-    for (const auto& body : spec.bodies) {
-        for (const double speed : spec.speeds) {
-            for (const double pitch : spec.pitches) {
-                for (const double gap : spec.gaps) {
-                    SweepCase one;
-                    one.name = name_for(body.name, gap, pitch, speed);
-                    one.shape = body.shape;
-                    one.conditions = spec.conditions;
-                    one.conditions.texts.insert(one.conditions.texts.begin(), {"variant", body.name});
-                    for (const auto& [name, value] : {std::pair{"gap", gap}, {"pitch", pitch}, {"speed", speed}}) {
-                        one.conditions.numbers.emplace_back(name, value);
-                    }
-                    one.folder = study.folder() / spec.folder / one.name;
-                    one.present = !marker_of(one.folder).is_null() || !study.select(one.conditions).empty();
-                    cases.push_back(std::move(one));
-                }
-            }
-        }
-    }
-    return cases;
-}
-
-std::vector<Case> solved_cases(const Study& study) {
-    std::vector<Case> cases;
-    if (!study.sweep) {
-        return cases;
-    }
-    for (const auto& wanted : sweep_cases(study)) {
-        const auto marker = marker_of(wanted.folder);
-        if (!marker.is_null()) {
-            cases.push_back({wanted.name, wanted.folder / solved_marker, wanted.conditions, marker["walls"].get<std::vector<std::string>>()});
-        }
-    }
-    return cases;
-}
-
-namespace {
-
-/// The cases to make: those that are missing, or the one that was named.
-std::vector<SweepCase> wanted_cases(const Study& study, const std::optional<std::string>& only) {
-    std::vector<SweepCase> wanted;
-    std::vector<std::string> names;
-    for (auto& one : sweep_cases(study)) {
-        names.push_back(one.name);
-        if (!one.present && (!only || *only == one.name)) {
-            wanted.push_back(std::move(one));
-        }
-    }
-    if (only && std::find(names.begin(), names.end(), *only) == names.end()) {
-        throw core::InputError("name", "the sweep has no case '" + *only + "'", {(study.folder() / "study.toml").string(), {}, {}, {}}, core::did_you_mean(*only, names));
-    }
-    return wanted;
-}
-
 /// One case in the making.
 struct Job {
     SweepCase wanted;
-    std::vector<std::string> walls;
+    std::optional<CaseLock> lock;
+    CaseRecord record;
     std::unique_ptr<OpenFoamRun> run;
     SweepOutcome outcome;
     bool started = false;
     bool over = false;
 };
 
-fs::path beside(const fs::path& folder, const char* ending) { return folder.parent_path() / (folder.filename().string() + ending); }
+/// A folder beside the cases for what is not to be lost: set_aside/NAME, set_aside/NAME-2, ...
+void set_aside(const fs::path& folder, const std::string& name) {
+    const fs::path shelf = folder.parent_path() / "set_aside";
+    fs::create_directories(shelf);
+    fs::path to = shelf / name;
+    for (int i = 2; fs::exists(fs::symlink_status(to)); ++i) {
+        to = shelf / (name + "-" + std::to_string(i));
+    }
+    fs::rename(folder, to);
+}
+
+/// Bytes of every file of a solved case's last time and of its forces, by name: what must still be there later.
+nlohmann::json sizes_of_result(const fs::path& folder) {
+    nlohmann::json sizes = nlohmann::json::object();
+    std::vector<fs::path> roots = {folder / "postProcessing", folder / "constant" / "polyMesh"};
+    if (const auto times = times_of(folder); !times.empty()) {
+        roots.push_back(times.back().folder);
+    }
+    for (const auto& root : roots) {
+        std::error_code error;
+        for (auto entry = fs::recursive_directory_iterator(root, error);
+             !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+            if (entry->is_regular_file(error)) {
+                sizes[entry->path().lexically_relative(folder).generic_string()] = entry->file_size();
+            }
+        }
+    }
+    return sizes;
+}
 
 class Sweep {
 public:
     Sweep(const Study& study, const SweepOptions& options, core::Progress& progress) : study_(study), options_(options), progress_(progress) {
-        for (auto& wanted : wanted_cases(study, options.only)) {
+        for (auto& wanted : wanted_cases(study, options, progress)) {
             Job job;
             job.outcome.name = wanted.name;
             job.wanted = std::move(wanted);
@@ -174,43 +98,91 @@ public:
     }
 
 private:
+    void skip(Job& job, const std::string& why) {
+        job.outcome.skipped = why;
+        job.over = true;
+        job.lock.reset();
+    }
+
     void start(Job& job) {
         job.started = true;
-        const fs::path folder = beside(job.wanted.folder, ".unfinished");
-        fs::remove_all(folder);  // of a sweep that was killed
-        const auto mesh = geometry::make_surface(geometry::read_shape(job.wanted.shape), {}, progress_);
-        const auto flow = flow_of(study_, job.wanted);
+        job.lock = CaseLock::take(beside(job.wanted.folder, ".lock"), "sweep");
+        if (!job.lock) {
+            skip(job,
+                 "being made by " + CaseLock::holder(beside(job.wanted.folder, ".lock")).value_or("another process"));
+            return;
+        }
+        examine_again(study_, job.wanted, options_.submission, progress_);  // somebody else may have made it meanwhile
+        if (job.wanted.present) {
+            skip(job, "made by another process meanwhile");
+            return;
+        }
+        if (job.wanted.state == SweepState::waiting || job.wanted.state == SweepState::running) {
+            skip(job, job.wanted.reason);
+            return;
+        }
         try {
-            job.walls = geometry::flow_domain(mesh, flow).walls;
-            geometry::write_openfoam_case(mesh, flow, folder);
+            prepare(job);
+            job.run = std::make_unique<OpenFoamRun>(beside(job.wanted.folder, ".unfinished"), job.lock->descriptor());
         } catch (const core::InputError& error) {  // this body cannot be placed so; others can
             fail(job, error.what());
             return;
         }
-        job.run = std::make_unique<OpenFoamRun>(folder);
+        const auto from = job.run->went_on_from();
+        const std::string where = !from       ? ""
+                                  : *from > 0 ? "goes on from iteration " + core::format_number(*from)
+                                              : "goes on with the mesh that is there";
+        const std::string why = job.wanted.state == SweepState::stale ? job.wanted.reason : "";
+        job.outcome.note = why + (why.empty() || where.empty() ? "" : "; ") + where;
+    }
+
+    /// The case in NAME.unfinished: as it was left when it is made of the same, else written anew.
+    void prepare(Job& job) {
+        const fs::path folder = beside(job.wanted.folder, ".unfinished");
+        const auto flow = flow_of(study_, job.wanted.conditions);
+        job.record = record_of(bodies_.shape(job.wanted.shape), flow);
+        const auto there = read_record(folder);
+        if (there && there->code == job.record.code && differences(*there, job.record).empty()) {
+            job.record = *there;
+            return;
+        }
+        std::error_code ignored;
+        if (!times_of(folder).empty()) {
+            set_aside(folder, job.wanted.name + "-unfinished");
+        }
+        fs::remove_all(folder, ignored);  // of a sweep that was killed before it had solved anything
+        const auto& mesh = bodies_.surface(job.wanted.shape, progress_);
+        job.record.walls = geometry::flow_domain(mesh, flow).walls;
+        geometry::write_openfoam_case(mesh, flow, folder);
+        job.record.files = case_files(folder);
+        write_record(folder, job.record);
     }
 
     void watch() {
         double done = 0;
         std::string what;
+        const bool touch = std::chrono::steady_clock::now() - touched_ > std::chrono::seconds(60);
+        if (touch) {
+            touched_ = std::chrono::steady_clock::now();
+        }
         for (auto& job : jobs_) {
             if (job.over || !job.started) {
                 done += job.over ? 1 : 0;
                 continue;
+            }
+            if (touch) {
+                job.lock->touch();
             }
             try {
                 if (job.run->finished()) {
                     finish(job);
                 }
             } catch (const core::InputError& error) {
-                const fs::path failed = beside(job.wanted.folder, ".failed");
-                fs::remove_all(failed);
-                fs::rename(job.run->folder(), failed);
-                std::string text = error.what();
-                if (const auto at = text.find(job.run->folder().string()); at != std::string::npos) {
-                    text.replace(at, job.run->folder().string().size(), failed.string());
+                if (error.kind() == "killed" || error.kind() == "cut") {
+                    fail(job, error.what());  // what is there stays: the next sweep goes on from it
+                } else {
+                    keep_logs(job, error.what());
                 }
-                fail(job, text);
             }
             if (!job.over) {
                 const RunState state = run_state(job.run->folder());
@@ -223,19 +195,47 @@ private:
         progress_.report(done / static_cast<double>(jobs_.size()), what);
     }
 
+    /// A solve that failed: its folder becomes NAME.failed.
+    void keep_logs(Job& job, std::string text) {
+        const fs::path failed = beside(job.wanted.folder, ".failed");
+        const fs::path folder = job.run->folder();
+        job.run.reset();
+        fs::remove_all(failed);
+        fs::rename(folder, failed);
+        if (const auto at = text.find(folder.string()); at != std::string::npos) {
+            text.replace(at, folder.string().size(), failed.string());
+        }
+        core::write_file(failed / failure_file, text + "\n");
+        fail(job, text);
+    }
+
     void fail(Job& job, const std::string& error) {
         job.outcome.error = error;
+        end(job);
+    }
+
+    void end(Job& job) {
+        std::error_code ignored;
+        fs::remove(claim_file(job.wanted.folder), ignored);
         job.over = true;
         job.run.reset();
+        job.lock.reset();
     }
 
     void finish(Job& job) {
         const fs::path folder = job.run->folder();
         job.outcome.seconds = job.run->seconds();
-        if (!is_solved(folder)) {
-            throw core::InputError("solver", "the script ended without a solution", {(folder / "log.Allrun").string(), {}, {}, {}});
+        const SolveEnd ended = solve_end(folder);
+        if (!ended.solved) {
+            throw core::InputError(ended.diverged ? "solver" : "cut", "the script ended without a whole solution: " + ended.why,
+                                   {(folder / "log.Allrun").string(), {}, {}, {}});
         }
-        nlohmann::json marker = {{"walls", job.walls}, {"seconds", job.outcome.seconds}, {"iterations", run_state(folder).iteration}, {"conditions", nlohmann::json::object()}};
+        nlohmann::json marker = {{"walls", job.record.walls},
+                                 {"seconds", job.outcome.seconds},
+                                 {"iterations", run_state(folder).iteration},
+                                 {"converged", ended.converged},
+                                 {"result", sizes_of_result(folder)},
+                                 {"conditions", nlohmann::json::object()}};
         for (const auto& [name, value] : job.wanted.conditions.texts) {
             marker["conditions"][name] = value;
         }
@@ -244,45 +244,29 @@ private:
         }
         core::write_file(folder / solved_marker, marker.dump(2) + "\n");
         job.run.reset();
+        if (fs::exists(job.wanted.folder)) {
+            if (options_.stale == StaleCases::replace) {
+                fs::remove_all(job.wanted.folder);
+            } else {
+                set_aside(job.wanted.folder, job.wanted.name);
+            }
+        }
         fs::rename(folder, job.wanted.folder);
         std::error_code ignored;
         fs::remove_all(beside(job.wanted.folder, ".failed"), ignored);  // an earlier attempt
-        job.over = true;
+        end(job);
     }
 
     const Study& study_;
     const SweepOptions& options_;
     core::Progress& progress_;
+    Bodies bodies_;
     std::vector<Job> jobs_;
+    std::chrono::steady_clock::time_point touched_ = std::chrono::steady_clock::now();
 };
-
-/// A word for the shell.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) {
-        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
-    return result + "'";
-}
 
 }  // namespace
 
 std::vector<SweepOutcome> sweep_locally(const Study& study, const SweepOptions& options, core::Progress& progress) { return Sweep(study, options, progress).run(); }
-
-std::string slurm_script(const Study& study, const std::string& program) {
-    const auto missing = wanted_cases(study, std::nullopt);
-    if (missing.empty()) {
-        return {};
-    }
-    std::string title = study.title;
-    std::replace(title.begin(), title.end(), '\n', ' ');
-    const std::string folder = fs::absolute(study.folder()).lexically_normal().string();
-    std::string script = "#!/bin/sh\n# One task for each case that the study '" + title + "' misses.\n#SBATCH --job-name=underbody-sweep\n#SBATCH --array=1-" +
-                         std::to_string(missing.size()) + "\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\ncase \"$SLURM_ARRAY_TASK_ID\" in\n";
-    for (std::size_t i = 0; i < missing.size(); ++i) {
-        script += std::to_string(i + 1) + ") name=" + quoted(missing[i].name) + " ;;\n";
-    }
-    return script + "*) echo 'run this as a Slurm job array' >&2; exit 2 ;;\nesac\nexec " + quoted(program) + " sweep " + quoted(folder) + " --engine local --only \"$name\"\n";
-}
 
 }  // namespace underbody::cases

@@ -1,4 +1,5 @@
 // The points of a force table out of the loads of the cases.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,16 @@ double mesh_sigma(const TableSpec& spec, const StudyResults& results) {
                                {}, "add it to its list of quantities");
     }
     return quantities.at(spec.quantity).at("standard_uncertainty").get<double>();
+}
+
+/// What each case's quantity scatters by from iteration to iteration; 0 where its solver left no history.
+std::vector<double> scatter_of(const TableSpec& spec, const core::Table& loads) {
+    const auto* column = loads.find(spec.quantity + "_sigma");
+    std::vector<double> scatter(loads.rows(), 0);
+    for (std::size_t i = 0; column != nullptr && i < scatter.size(); ++i) {
+        scatter[i] = std::isfinite(column->numbers[i]) ? column->numbers[i] : 0;
+    }
+    return scatter;
 }
 
 bool row_fits(const core::Table& loads, std::size_t row, const Conditions& where) {
@@ -79,15 +90,31 @@ core::Table table_points(const TableSpec& spec, const StudyResults& results) {
     const auto& values = chosen.numbers(spec.quantity);
     points.add_numbers(spec.quantity, unit, values);
     const double mesh = mesh_sigma(spec, results);
-    if (mesh > 0 || spec.relative_sigma > 0) {
+    const std::vector<double> scatter = scatter_of(spec, chosen);
+    const bool scatters = std::any_of(scatter.begin(), scatter.end(), [](double s) { return s > 0; });
+    if (mesh > 0 || spec.relative_sigma > 0 || scatters) {
         std::vector<double> sigma;
-        for (const double value : values) {
-            sigma.push_back(std::hypot(mesh, spec.relative_sigma * value));
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            sigma.push_back(std::hypot(mesh, spec.relative_sigma * values[i], scatter[i]));
         }
         points.add_numbers(spec.quantity + "_sigma", unit, std::move(sigma));
     }
     points.add_text("case", chosen.text("case"));
+    if (chosen.find("settled") != nullptr) {
+        points.add_text("settled", chosen.text("settled"));
+    }
     return points;
+}
+
+std::vector<std::string> not_settled(const core::Table& loads) {
+    std::vector<std::string> names;
+    const auto* settled = loads.find("settled");
+    for (std::size_t row = 0; settled != nullptr && settled->is_text() && row < loads.rows(); ++row) {
+        if (settled->text[row] == "not settled") {
+            names.push_back(loads.text("case")[row]);
+        }
+    }
+    return names;
 }
 
 }  // namespace underbody::cases

@@ -18,6 +18,18 @@ std::string header(const std::string& kind, const std::string& object) {
            ";\n}\n\n";
 }
 
+/// Iterations between two writes, so that a solve that was cut can go on: about an eighth of them. OpenFOAM writes its
+/// last iteration only where the interval divides it; a number without a divisor in between gets no checkpoints.
+int checkpoint_interval(int iterations) {
+    int best = iterations;
+    for (int interval = std::max(1, iterations / 40); interval <= iterations / 3; ++interval) {
+        const bool closer =
+            std::abs(std::log(8.0 * interval / iterations)) < std::abs(std::log(8.0 * best / iterations));
+        best = iterations % interval == 0 && closer ? interval : best;
+    }
+    return best;
+}
+
 std::string point(double x, double y, double z) { return "(" + digits(x) + " " + digits(y) + " " + digits(z) + ")"; }
 
 class Case {
@@ -144,7 +156,7 @@ private:
         return header("dictionary", "controlDict") +
                "application simpleFoam;\nstartFrom latestTime;\nstartTime 0;\nstopAt endTime;\nendTime " +
                std::to_string(o_.iterations) + ";\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval " +
-               std::to_string(o_.iterations) +
+               std::to_string(checkpoint_interval(o_.iterations)) +
                ";\npurgeWrite 2;\nwriteFormat ascii;\nwritePrecision 9;\nwriteCompression off;\ntimeFormat "
                "general;\ntimePrecision 6;\nrunTimeModifiable true;\n\n"
                "functions\n{\n    // Forces in N on " +
@@ -234,12 +246,23 @@ private:
         return "#!/bin/sh\n"
                "# Makes the mesh and runs the case. Needs OpenFOAM 1912 (Debian: apt install openfoam) and nothing "
                "sourced.\n"
+               "# ./Allrun mesh: the mesh alone. ./Allrun solve: goes on from the last time, on the mesh that is "
+               "there.\n"
                "cd \"$(dirname \"$0\")\" || exit 1\n"
                ": \"${WM_PROJECT_DIR:=/usr/share/openfoam}\"\nexport WM_PROJECT_DIR\n"
-               "step() {\n    echo \"$*\"\n    \"$@\" > \"log.$1\" 2>&1 || { echo \"$1 failed: see $(pwd)/log.$1\" "
-               ">&2; tail -n 5 \"log.$1\" >&2; exit 1; }\n}\n"
-               "step blockMesh\nstep surfaceFeatureExtract\nstep snappyHexMesh -overwrite\nstep checkMesh\n[ \"$1\" = "
-               "mesh ] || step simpleFoam\n";
+               "failed() {\n    echo \"$1 failed: see $(pwd)/log.$1\" >&2; tail -n 5 \"log.$1\" >&2; exit \"$2\"\n}\n"
+               "step() {\n    echo \"$*\"\n    \"$@\" > \"log.$1\" 2>&1 || failed \"$1\" $?\n}\n"
+               "if [ \"$1\" != solve ]; then\n"
+               "    for time in [1-9]*; do\n"
+               "        [ ! -e \"$time/U\" ] || { echo \"there are results here: remove $time, or go on from it with "
+               "./Allrun solve\" "
+               ">&2; exit 1; }\n"
+               "    done\n"
+               "    step blockMesh\n    step surfaceFeatureExtract\n    step snappyHexMesh -overwrite\n    step "
+               "checkMesh\n"
+               "    rm -f log.simpleFoam\nfi\n"
+               "[ \"$1\" != mesh ] || exit 0\n"
+               "echo simpleFoam\nsimpleFoam >> log.simpleFoam 2>&1 || failed simpleFoam $?\n";
     }
 
     const SurfaceMesh& body_;

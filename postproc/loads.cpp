@@ -52,6 +52,7 @@ public:
             part.sums = integrate_faces(*part.surface, part.values, half_reference_, progress_);
             refuse_missing_values(part, field_, result_.file);
         }
+        refuse_no_solution(parts_, field_, result_, options_.accept_problems);
         settle();
         add_up();
         audit();

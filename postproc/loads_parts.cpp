@@ -483,6 +483,36 @@ void refuse_missing_values(const SummedZone& part, const Field& field, const std
     throw InputError("range", "zone '" + part.zone->name + "' has points that are no numbers", {file, {}, {}, {}});
 }
 
+void refuse_no_solution(const std::vector<SummedZone>& parts, const Field& field, LoadsResult& result, bool accept) {
+    constexpr double beyond = 1e11;  // Pa: the pressure in the middle of the Earth is four times that
+    double lowest = HUGE_VAL;
+    double highest = -HUGE_VAL;
+    double largest = 0;
+    for (const auto& part : parts) {
+        for (const double p : part.values.pressure) {
+            lowest = std::min(lowest, p);
+            highest = std::max(highest, p);
+        }
+        for (const double t : part.values.shear) {
+            largest = std::max(largest, std::abs(t));
+        }
+    }
+    largest = std::max({largest, std::abs(lowest), std::abs(highest)});
+    std::string what;
+    if (std::isfinite(largest) && largest > beyond) {
+        what = "values reach " + core::format_number(largest, 3) + " Pa on the body: the solution has diverged";
+    } else if (field.format == "OpenFOAM" && result.time && *result.time == 0 && lowest == highest) {
+        what = "the case has no time but 0, with one pressure everywhere: these are initial values, not a solution";
+    }
+    if (what.empty()) {
+        return;
+    }
+    if (!accept) {
+        throw InputError("solution", what, {result.file, {}, {}, {}});
+    }
+    result.problems.push_back({core::Problem::Severity::warning, what, {}});
+}
+
 std::string quoted(const std::vector<std::string>& names) {
     std::string text;
     for (const auto& name : names) {

@@ -41,6 +41,10 @@ std::vector<SummedZone> zones_to_sum(const Field& field, const LoadsOptions& opt
 /// Throws InputError that names the first value that is missing, if the zone's sums are not finite.
 void refuse_missing_values(const SummedZone& part, const Field& field, const std::string& file);
 
+/// Throws InputError when the fields are those of no solution: the initial ones of an OpenFOAM case whose last time is
+/// 0 (one pressure everywhere), values beyond anything physical, as a diverged run writes. With `accept` a warning.
+void refuse_no_solution(const std::vector<SummedZone>& parts, const Field& field, LoadsResult& result, bool accept);
+
 /// "'base', 'hull'"
 std::string quoted(const std::vector<std::string>& names);
 

@@ -76,7 +76,8 @@ bool is_result(std::string name) {
         }
     }
     const auto row = table_row({});
-    return name == "values_from" || std::any_of(row.begin(), row.end(), [&](const LoadsColumn& c) { return c.name == name; }) ||
+    return name == "values_from" || name == "settled" ||
+           std::any_of(row.begin(), row.end(), [&](const LoadsColumn& c) { return c.name == name; }) ||
            std::any_of(coefficients.begin(), coefficients.end(), [&](const auto& c) { return c.first == name; });
 }
 
@@ -316,9 +317,12 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
     const std::vector<LoadsColumn> loads = cases.empty() ? std::vector<LoadsColumn>() : table_row(cases.front().loads);
     const auto free_name = [&](std::string name) {
         const auto taken = [&] {
-            return table.find(name) != nullptr || name == "file" || name == "values_from" || name == "depth" || name == "reference_x" || name == "reference_y" ||
-                   name == "reference_z" || std::any_of(coefficients.begin(), coefficients.end(), [&](const auto& c) { return c.first == name; }) ||
-                   std::any_of(loads.begin(), loads.end(), [&](const LoadsColumn& c) { return c.name == name || c.name + "_sigma" == name; });
+            return table.find(name) != nullptr || name == "file" || name == "values_from" || name == "settled" ||
+                   name == "depth" || name == "reference_x" || name == "reference_y" || name == "reference_z" ||
+                   std::any_of(coefficients.begin(), coefficients.end(),
+                               [&](const auto& c) { return c.first == name; }) ||
+                   std::any_of(loads.begin(), loads.end(),
+                               [&](const LoadsColumn& c) { return c.name == name || c.name + "_sigma" == name; });
         };
         while (taken()) {
             name += "_stated";
@@ -381,6 +385,13 @@ core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<s
         table.add_text("depth", std::vector<std::string>(cases.size(), cases.front().loads.depth));
     }
     table.add_text("values_from", std::move(origins));
+    if (!cases.empty()) {
+        std::vector<std::string> verdicts;
+        for (const auto& one : cases) {
+            verdicts.push_back(to_string(one.settled.verdict));
+        }
+        table.add_text("settled", std::move(verdicts));
+    }
     table.add_text("file", std::move(files));
     core::BatchProblems warnings;  // what makes numbers less than they seem goes with them
     for (const auto& one : cases) {
@@ -414,6 +425,7 @@ nlohmann::json loads_table_json(const std::vector<LoadsCase>& cases) {
         for (const auto& [name, study] : one.meshes) {
             entry["mesh_uncertainty"][name] = study;
         }
+        entry["settled"] = one.settled;
         if (!one.comparisons.empty()) {
             entry["comparison"] = one.comparisons;
         }

@@ -8,6 +8,7 @@
 
 #include "core/table.h"
 #include "postproc/loads.h"
+#include "postproc/settled.h"
 #include "postproc/stated_loads.h"
 #include "postproc/uncertainty.h"
 
@@ -23,13 +24,14 @@ struct LoadsCase {
     std::vector<std::pair<std::string, MeshUncertainty>> meshes;    ///< lift_force -> what the mesh study says
     std::vector<std::pair<std::string, double>> scatters{};         ///< lift_force -> standard uncertainty by iteration (iteration_sigmas)
     std::vector<Comparison> comparisons{};                          ///< with the solver's own report
+    Settled settled{};                                              ///< has the solution settled?
 };
 
 /// Texts, numbers, loads (table_row) with their NAME_sigma, coefficients where some case has them, the reference point,
-/// values_from, file: one row a case. A condition or coefficient that a case does not have is missing there.
-/// `written_units`: condition -> the unit to write it in. A condition called like a column of what was found (the table of
-/// an earlier run as the manifest) is kept as NAME_stated. Of plane cases `depth` says what the forces are per; throws
-/// core::InputError for plane cases among others.
+/// values_from, settled, file: one row a case. A condition or coefficient that a case does not have is missing there.
+/// `written_units`: condition -> the unit to write it in. A condition called like a column of what was found (the table
+/// of an earlier run as the manifest) is kept as NAME_stated. Of plane cases `depth` says what the forces are per;
+/// throws core::InputError for plane cases among others.
 core::Table loads_table(const std::vector<LoadsCase>& cases, const std::vector<std::pair<std::string, std::string>>& written_units = {});
 
 /// Throws core::InputError at `place` when a load's NAME_scatter is negative.

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <mutex>
 
 #include "core/file.h"
-#include "core/inputs.h"
 #include "core/text.h"
+#include "postproc/beside.h"
 #include "postproc/importers/cfx_output.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/openfoam_forces.h"
@@ -188,47 +186,16 @@ bool is_text_ending(const std::string& ending) {
     return ending == ".txt" || ending == ".out" || ending == ".frp" || ending == ".report" || ending == ".log" || ending == ".trn";
 }
 
-/// "case" and "case-coarse" of "case-coarse.txt", not "cas".
-bool named_after(const std::string& name, const std::string& stem) {
-    return name.size() > stem.size() && name.starts_with(stem) && std::string_view("._-").find(name[stem.size()]) != std::string_view::npos;
-}
-
-/// Names in a folder, in their order. Of ten thousand cases in one folder each asks for its own: it is listed again only when it
-/// changed, or has changed just now.
-std::shared_ptr<const std::vector<std::string>> names_in_folder_of(const fs::path& folder) {
-    constexpr std::int64_t settled = 3'000'000'000;  // ns
-    static std::mutex mutex;
-    static fs::path known_folder;
-    static core::FileStamp known_stamp;
-    static std::shared_ptr<const std::vector<std::string>> known;
-    const core::FileStamp stamp = core::stamp_of(folder);
-    const std::lock_guard lock(mutex);
-    if (known != nullptr && folder == known_folder && stamp == known_stamp && core::now_in_nanoseconds() - stamp.changed > settled) {
-        return known;
-    }
-    known = std::make_shared<const std::vector<std::string>>(core::names_in_folder(folder, "*"));
-    known_folder = folder;
-    known_stamp = stamp;
-    return known;
-}
-
 /// Reports are those of the CFD file with the longest stem that fits: "case-coarse.txt" is of case-coarse.csv, not of case.csv.
 std::vector<fs::path> reports_beside(const fs::path& file) {
     const std::string stem = case_stem(file);
     std::vector<fs::path> reports;
     std::vector<fs::path> others;  // CFD files with a longer stem
-    std::error_code ignored;
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    const auto names = names_in_folder_of(folder);
-    for (auto name = std::lower_bound(names->begin(), names->end(), stem); name != names->end() && name->starts_with(stem); ++name) {
-        const fs::path path = folder / *name;
-        if (!named_after(*name, stem) || !fs::is_regular_file(path, ignored)) {
-            continue;
-        }
+    for (const auto& path : files_named_after(file)) {
         const std::string other = case_stem(path);
         if (is_text_ending(path.extension().string())) {
-            reports.push_back(file.has_parent_path() ? path : path.filename());
-        } else if (other != *name && named_after(other, stem)) {
+            reports.push_back(path);
+        } else if (other != path.filename().string() && named_after(other, stem)) {
             others.push_back(path);
         }
     }
@@ -243,20 +210,6 @@ std::vector<fs::path> reports_beside(const fs::path& file) {
 }
 
 }  // namespace
-
-std::string case_stem(const fs::path& file) {
-    std::string stem = (file.has_filename() ? file : file.parent_path()).filename().string();
-    for (bool cut = true; cut;) {
-        cut = false;
-        for (const std::string_view ending : {".gz", ".csv", ".cas", ".dat", ".msh", ".h5", ".case", ".encas", ".cgns", ".vtp", ".vtu", ".vtm", ".foam"}) {
-            if (stem.size() > ending.size() && stem.ends_with(ending)) {
-                stem.resize(stem.size() - ending.size());
-                cut = true;
-            }
-        }
-    }
-    return stem;
-}
 
 std::vector<StatedLoad> stated_by_openfoam(const fs::path& case_folder, const LoadsResult& result) {
     std::vector<StatedLoad> loads;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "postproc/beside.h"
 #include "postproc/loads.h"
 #include "postproc/uncertainty.h"
 
@@ -59,9 +60,6 @@ StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& res
 /// from OpenFOAM's centre to the reference point of `result`, one instant at a time.
 std::vector<StatedLoad> stated_by_openfoam(const std::filesystem::path& case_folder, const LoadsResult& result);
 
-/// The name of a CFD file without its folder and endings: "case.cas.h5" -> "case".
-std::string case_stem(const std::filesystem::path& file);
-
 /// What lies beside a CFD file and states forces: OpenFOAM's postProcessing, and texts that begin with the file's
 /// stem (STEM.txt, STEM-forces.out ...), with that of no other CFD file of the folder that is longer, and hold a force
 /// report. Empty when there is nothing.
@@ -89,9 +87,6 @@ void to_json(nlohmann::json& json, const Comparison& comparison);
 /// were not integrated, how many reports of one quantity there are, where the field's time is not among those of a history,
 /// and where nobody says which zones the forces are of.
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& notes);
-
-/// Which histories still drift at their end, in words; not those that are nothing but rounding beside the force.
-core::Problems unsettled(const LoadsResult& result, const std::vector<StatedLoad>& stated);
 
 /// Named load -> standard uncertainty by iteration, of the whole body: from the histories among `stated`.
 std::vector<std::pair<std::string, double>> iteration_sigmas(const LoadsResult& result, const std::vector<StatedLoad>& stated);

@@ -199,21 +199,6 @@ void to_json(nlohmann::json& json, const Comparison& c) {
     }
 }
 
-core::Problems unsettled(const LoadsResult& result, const std::vector<StatedLoad>& stated) {
-    core::Problems problems;
-    for (const auto& load : stated) {
-        if (!load.history || load.part != LoadPart::total || load.history->settled) {
-            continue;
-        }
-        const Covered body = covered_by(result, load.zones);
-        const double force = std::max(norm(body.total.force), largest_stated_force(stated, load)) * (load.moment ? std::sqrt(body.area) : 1);
-        if (std::abs(load.history->mean) + load.history->deviation + std::abs(load.history->drift) > rounding * force) {
-            problems.push_back({core::Problem::Severity::warning, load.quantity + " has not settled: " + load.history->text, {load.file, {}, {}, {}}});
-        }
-    }
-    return problems;
-}
-
 std::vector<std::pair<std::string, double>> iteration_sigmas(const LoadsResult& result, const std::vector<StatedLoad>& stated) {
     std::vector<std::pair<std::string, double>> sigmas;
     for (const auto& load : stated) {

@@ -392,16 +392,6 @@ double straight_line_change(std::span<const double> tail) {
     return top / bottom * (n - 1);
 }
 
-double error_by_batches(std::span<const double> tail) {
-    const std::size_t batches = std::clamp<std::size_t>(tail.size() / 8, 2, 16);
-    const std::size_t length = tail.size() / batches;
-    std::vector<double> means;
-    for (std::size_t b = 0; b < batches; ++b) {
-        means.push_back(moments_of(tail.subspan(b * length, length)).mean);
-    }
-    return moments_of(means).deviation / std::sqrt(static_cast<double>(batches));
-}
-
 /// Lag of the first clear maximum of the autocorrelation behind its first zero.
 double cycle_of(std::span<const double> tail, const Moments& m) {
     if (!(m.deviation > 0)) {
@@ -433,6 +423,52 @@ double cycle_of(std::span<const double> tail, const Moments& m) {
 
 }  // namespace
 
+double correlation_time(std::span<const double> values) {
+    const Moments m = moments_of(values);
+    const std::size_t count = values.size();
+    double squares = 0;
+    for (const double v : values) {
+        squares += (v - m.mean) * (v - m.mean);
+    }
+    if (!(squares > 0)) {
+        return 1;
+    }
+    const auto at = [&](std::size_t lag) {
+        double sum = 0;
+        for (std::size_t i = 0; i + lag < count; ++i) {
+            sum += (values[i] - m.mean) * (values[i + lag] - m.mean);
+        }
+        return sum / squares;
+    };
+    double time = -1;
+    double before = 2;  // the sums of pairs of a stationary series fall: what rises again is noise
+    constexpr std::size_t most = 4000;
+    for (std::size_t lag = 0; lag + 1 < std::min(count, most); lag += 2) {
+        const double pair = std::min(before, at(lag) + at(lag + 1));
+        if (pair <= 0) {
+            break;
+        }
+        time += 2 * pair;
+        before = pair;
+    }
+    return std::clamp(time, 1.0, static_cast<double>(count));
+}
+
+MeanInTime mean_in_time(std::span<const double> values) {
+    if (values.size() < 2) {
+        throw core::InputError("range",
+                               "the mean of " + std::to_string(values.size()) + " value has no error: two are needed");
+    }
+    if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); })) {
+        throw core::InputError("range", "a history has values that are not finite: the solution diverged");
+    }
+    const Moments m = moments_of(values);
+    MeanInTime result{m.mean, m.deviation, 0, correlation_time(values), 0};
+    result.effective = static_cast<double>(values.size()) / result.correlation_time;
+    result.error = m.deviation / std::sqrt(result.effective);
+    return result;
+}
+
 IterationScatter iteration_scatter(std::span<const double> history) {
     if (history.size() < shortest_history) {
         throw core::InputError("range", "a monitor of " + std::to_string(history.size()) + " values is too short to judge: " +
@@ -448,7 +484,8 @@ IterationScatter iteration_scatter(std::span<const double> history) {
     result.count = tail.size();
     result.mean = m.mean;
     result.deviation = m.deviation;
-    result.error_of_mean = error_by_batches(tail);
+    result.correlation_time = correlation_time(tail);
+    result.error_of_mean = m.deviation * std::sqrt(result.correlation_time / static_cast<double>(tail.size()));
     result.drift = straight_line_change(tail);
     result.period = cycle_of(tail, m);
     const bool small = std::abs(result.drift) + m.deviation < 1e-3 * std::abs(m.mean);
@@ -488,8 +525,17 @@ void to_json(nlohmann::json& json, const MeshUncertainty& r) {
 }
 
 void to_json(nlohmann::json& json, const IterationScatter& r) {
-    json = {{"first", r.first},   {"count", r.count},   {"mean", r.mean},       {"deviation", r.deviation}, {"error_of_mean", r.error_of_mean},
-            {"drift", r.drift},   {"period", r.period}, {"settled", r.settled}, {"standard_uncertainty", r.standard_uncertainty}, {"text", r.text}};
+    json = {{"first", r.first},
+            {"count", r.count},
+            {"mean", r.mean},
+            {"deviation", r.deviation},
+            {"error_of_mean", r.error_of_mean},
+            {"correlation_time", r.correlation_time},
+            {"drift", r.drift},
+            {"period", r.period},
+            {"settled", r.settled},
+            {"standard_uncertainty", r.standard_uncertainty},
+            {"text", r.text}};
 }
 
 }  // namespace underbody::postproc

@@ -61,13 +61,30 @@ struct IterationScatter {
     std::size_t count = 0;             ///< its length
     double mean = 0;
     double deviation = 0;              ///< one standard deviation of the values: of the last one as the result
-    double error_of_mean = 0;          ///< one standard deviation of the mean, by batches (the values are correlated)
+    double error_of_mean = 0;          ///< one standard deviation of the mean, of as many values as are independent
+    double correlation_time = 1;       ///< values that count as one independent value (see correlation_time)
     double drift = 0;                  ///< change over the tail by its straight line
     double period = 0;                 ///< iterations of the strongest cycle; 0 when there is none
     bool settled = true;               ///< the drift is lost in the scatter, or both are below 1e-3 of the mean
     double standard_uncertainty = 0;   ///< deviation and drift together
     std::string text;
 };
+
+/// How many values of a history count as one independent value: 1 + 2 sum of its autocorrelation, over pairs of lags as
+/// long as these are positive (Geyer 1992, initial positive sequence), at least 1 and at most all of them. `values`:
+/// two or more.
+double correlation_time(std::span<const double> values);
+
+/// The mean of what fluctuates, and how well it is known.
+struct MeanInTime {
+    double mean = 0;
+    double deviation = 0;         ///< one standard deviation of the values
+    double error = 0;             ///< one of the mean: deviation / sqrt(effective)
+    double correlation_time = 1;  ///< in values
+    double effective = 0;         ///< independent values: their number over the correlation time
+};
+/// Throws core::InputError: fewer than two values, or not finite.
+MeanInTime mean_in_time(std::span<const double> values);
 
 constexpr std::size_t shortest_history = 8;  ///< values that iteration_scatter needs
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/file.h"
+#include "core/inputs.h"
 #include "core/text.h"
 
 namespace underbody::postproc {
@@ -241,8 +242,10 @@ std::vector<ForceHistory> read_openfoam_forces(const fs::path& case_folder) {
         return histories;
     }
     std::vector<fs::path> objects;
+    core::note_names(root, "*");
     for (const auto& entry : fs::directory_iterator(root)) {
         if (entry.is_directory()) {
+            core::note_names(entry.path(), "*");
             objects.push_back(entry.path());
         }
     }

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/cfx_output.h"
+#include "postproc/importers/openfoam_log.h"
 #include "postproc/importers/report_words.h"
 #include "postproc/importers/residual_history.h"
 
@@ -364,6 +365,9 @@ Monitor read_monitor(const std::filesystem::path& path) {
     if (has_cfx_iterations(bytes)) {
         return read_cfx_iterations(file.name(), bytes);
     }
+    if (has_openfoam_residuals(bytes)) {
+        return read_openfoam_log(file.name(), bytes);
+    }
     // A transcript has the header of its residuals on a line of its own, further down.
     std::size_t lines = 0;
     for (const auto line : core::split(bytes.substr(0, std::size_t{4} << 20), '\n')) {
@@ -473,7 +477,7 @@ ReportKinds report_kinds(const std::filesystem::path& path) {
     }
     kinds.plot = text.find("((xy/key/label") != std::string_view::npos;
     kinds.forces = has_cfx_forces(text);
-    kinds.monitor = has_cfx_iterations(text);
+    kinds.monitor = has_cfx_iterations(text) || has_openfoam_residuals(text);
     for (const auto raw : core::split(text, '\n')) {
         const auto line = core::trimmed(raw);
         kinds.forces = kinds.forces || report_begun_by(line).has_value();

@@ -16,6 +16,7 @@
 #include "postproc/loads_table.h"
 #include "postproc/stated_loads.h"
 #include "core/batch_problems.h"
+#include "postproc/transient.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/option_value.h"
@@ -33,7 +34,7 @@ struct LoadsArguments {
     std::string mesh_study, check;
     std::vector<std::string> reports, monitors;
     int stations = 0;
-    bool accept_problems = false, axisymmetric = false, keep_going = false;
+    bool accept_problems = false, axisymmetric = false, keep_going = false, mean = false;
     FieldOptions field;
 };
 
@@ -189,6 +190,9 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     shell.print("from values on " + result.values_from + "; closure " + core::format_number(result.closure, 3) + "; 1 kPa of reference pressure would add " +
                 vector(postproc::plus({}, result.force_per_reference_pascal, 1000)) + " N");
     shell.print("sides: " + result.orientation);
+    const std::string verdict = to_string(one.settled.verdict);
+    shell.print((one.settled.verdict == postproc::SettledVerdict::unknown ? "settled: unknown: " : verdict + ": ") +
+                one.settled.why);
     if (!result.stations.empty()) {
         shell.print("what the part behind each place carries (along forward from the reference point):\n"
                     "     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
@@ -317,9 +321,19 @@ void take_stated(Shell& shell, const LoadsArguments& given, postproc::LoadsCase&
             shell.detail(load.file + ": " + load.quantity + " " + load.history->text);
         }
     }
-    core::Problems notes = postproc::unsettled(one.loads, stated);
+    core::Problems notes;
+    one.settled = postproc::settled_by(one.loads, stated, one.file, notes);
+    if (one.settled.verdict == postproc::SettledVerdict::not_settled) {
+        notes.push_back({core::Problem::Severity::warning,
+                         "the solution has not settled: " + one.settled.why,
+                         {one.file, {}, {}, {}}});
+    }
     one.comparisons = postproc::compare_with_solver(one.loads, stated, notes);
-    one.scatters = postproc::iteration_sigmas(one.loads, stated);
+    for (const auto& load : one.settled.loads) {
+        if (load.sigma > 0) {
+            one.scatters.emplace_back(load.quantity, load.sigma);
+        }
+    }
     problems.insert(problems.end(), notes.begin(), notes.end());
 }
 
@@ -427,6 +441,9 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
     int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
     core::Problems notes;
+    if (given.mean) {
+        cases = postproc::means_in_time(cases, notes);
+    }
     cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study, notes);
     shell.show(notes);
     show_studies(shell, cases);
@@ -482,6 +499,9 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("--mesh-study", o->mesh_study,
                         "condition with the number of cells, or faces: cases that differ in it alone become one, with NAME_sigma")
         ->type_name("COLUMN");
+    command->add_flag("--mean", o->mean,
+                      "files of one run at several times become one: means in time, NAME_sigma by their correlation "
+                      "(the time is the field's own, or {time:s} of the name)");
     command->add_option("--report", o->reports,
                         "the solver's force report (Fluent's text, CFX's .out), or the OpenFOAM case, to compare with ({stem}: the file's name "
                         "without ending, beside that file); found by itself when it lies beside the file");
@@ -496,8 +516,10 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_flag("--keep-going", o->keep_going, "of several files, give the table of those that can be used; exit code 3 all the same");
     o->field.add_to(*command);
     command->footer(
-        "Without --zones the walls of the body are summed. A wall that cannot be part of it (a ground, a tunnel) is left out, and said to be,\n"
-        "if the others close without it; if they do not, the zones have to be named. --zones '*' sums over every wall.\n\n"
+        "Without --zones the walls of the body are summed. A wall that cannot be part of it (a ground, a tunnel) is "
+        "left out, and said to be,\n"
+        "if the others close without it; if they do not, the zones have to be named. --zones '*' sums over every "
+        "wall.\n\n"
         "Examples:\n"
         "  underbody loads body.csv --symmetry y\n"
         "  underbody loads body.csv --zones 'hull*,base' --reference \"0,0,5 mm\" --json\n"
@@ -505,7 +527,9 @@ void add_loads_command(CLI::App& app, Shell& shell) {
         "  underbody loads body.csv --symmetry y --stations 20\n"
         "  underbody loads 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --symmetry y --out loads.csv\n"
         "  underbody loads case.cas.gz --report forces.txt --check \"0.1 %\"\n"
-        "  underbody loads case.dat.h5 --monitor lift_force=lift-rfile.out --monitor \"drag_force [N]=report.out:drag\"\n"
+        "  underbody loads case.dat.h5 --monitor lift_force=lift-rfile.out --monitor \"drag_force "
+        "[N]=report.out:drag\"\n"
+        "  underbody loads 'wake-{time:s}.csv' --mean\n"
         "  underbody loads --manifest forces.csv --symmetry y --reference \"0,0,gap\" --check 0.01\n"
         "  underbody loads --manifest forces.csv --symmetry y --mesh-study cells --out loads.csv");
     shell.on(command, [&shell, o] { return run_loads(shell, *o); });

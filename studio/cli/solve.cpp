@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cases/openfoam_result.h"
 #include "cases/openfoam_run.h"
 #include "cases/sweep.h"
+#include "cases/sweep_slurm.h"
 #include "core/file.h"
 #include "core/own_files.h"
 #include "core/parallel.h"
@@ -39,10 +41,19 @@ nlohmann::json forces_of(const fs::path& folder) {
 }
 
 int solve(Shell& shell, const std::string& folder, bool again) {
-    const bool before = !again && cases::is_solved(folder);
+    const bool before = !again && cases::solve_end(folder).solved;
     double needed = 0;
+    std::optional<double> from;
     if (!before) {
+        if (again && cases::solves_anew(folder)) {
+            cases::set_results_aside(folder);
+        }
         cases::OpenFoamRun run(folder);
+        from = run.went_on_from();
+        if (from) {
+            shell.info(*from > 0 ? "goes on from iteration " + core::format_number(*from)
+                                 : "goes on with the mesh that is there");
+        }
         while (!run.finished()) {
             shell.progress().check();
             const auto state = cases::run_state(folder);
@@ -50,14 +61,21 @@ int solve(Shell& shell, const std::string& folder, bool again) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         }
         needed = run.seconds();
-        if (!cases::is_solved(folder)) {
-            throw core::InputError("solver", "the script ended without a solution", {(fs::path(folder) / "log.Allrun").string(), {}, {}, {}});
+        const cases::SolveEnd end = cases::solve_end(folder);
+        if (!end.solved) {
+            throw core::InputError("solver", "the script ended without a whole solution: " + end.why,
+                                   {(fs::path(folder) / "log.Allrun").string(), {}, {}, {}});
         }
     }
     const auto state = cases::run_state(folder);
     const auto forces = forces_of(folder);
     if (shell.json) {
-        shell.print_json({{"case", folder}, {"solved_before", before}, {"iterations", state.iteration}, {"seconds", needed}, {"forces", forces}});
+        shell.print_json({{"case", folder},
+                          {"solved_before", before},
+                          {"went_on_from", from ? nlohmann::json(*from) : nlohmann::json(nullptr)},
+                          {"iterations", state.iteration},
+                          {"seconds", needed},
+                          {"forces", forces}});
         return done;
     }
     shell.print(folder + (before ? ": solved before, nothing was run (--again runs it)" : ": solved in " + seconds(needed) + ", " + std::to_string(state.iteration) + " iterations"));
@@ -74,16 +92,36 @@ int solve(Shell& shell, const std::string& folder, bool again) {
 // ---- sweep ----
 
 struct SweepArguments {
-    std::string study, engine = "local", only, script;
+    std::string study, engine = "local", only, script, stale = "redo", submission;
+    std::string partition, time, memory, account;
+    std::optional<int> throttle, max_array;
     int jobs = 0;
     bool list = false;
 };
 
+nlohmann::json conditions_of(const cases::Conditions& conditions) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const auto& [name, value] : conditions.numbers) {
+        json[name] = value;
+    }
+    for (const auto& [name, value] : conditions.texts) {
+        json[name] = value;
+    }
+    return json;
+}
+
 int list_cases(Shell& shell, const cases::Study& study) {
     nlohmann::json all = nlohmann::json::array();
-    for (const auto& one : cases::sweep_cases(study)) {
-        all.push_back({{"name", one.name}, {"folder", one.folder.string()}, {"present", one.present}});
-        shell.print((one.present ? "present  " : "missing  ") + one.name + "  " + one.conditions.label());
+    for (const auto& one : cases::sweep_cases(study, shell.progress())) {
+        const std::string state = to_string(one.state);
+        all.push_back({{"name", one.name},
+                       {"folder", one.folder.string()},
+                       {"present", one.present},
+                       {"state", state},
+                       {"reason", one.reason},
+                       {"conditions", conditions_of(one.conditions)}});
+        shell.print(state + std::string(9 - state.size(), ' ') + one.name + "  " + one.conditions.label() +
+                    (one.reason.empty() ? "" : "  (" + one.reason + ")"));
     }
     if (shell.json) {
         shell.print_json({{"cases", all}});
@@ -92,34 +130,40 @@ int list_cases(Shell& shell, const cases::Study& study) {
 }
 
 int submit(Shell& shell, const cases::Study& study, const SweepArguments& given) {
-    const std::string script = cases::slurm_script(study, fs::read_symlink("/proc/self/exe").string());
-    if (script.empty()) {
-        shell.print("nothing is missing");
-        if (shell.json) {
-            shell.print_json({{"missing", 0}});
-        }
-        return done;
+    cases::SlurmSubmission what;
+    if (study.sweep) {
+        what.settings = study.sweep->slurm;
+        what.script = given.script.empty() ? study.folder() / study.sweep->folder / "sweep.sh" : fs::path(given.script);
     }
-    const fs::path file = given.script.empty() ? study.folder() / study.sweep->folder / "sweep.sh" : fs::path(given.script);
-    core::write_file(file, script);
-    const auto sbatch = cases::find_program("sbatch");
-    std::string answer;
-    if (sbatch) {
-        const core::TemporaryFolder scratch;
-        const fs::path log = scratch.path() / "sbatch";
-        cases::ChildProcess child(sbatch->string(), {"--parsable", fs::absolute(file).string()}, fs::absolute(file).parent_path(), log);
-        while (!child.ended()) {
-            shell.progress().check();
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-        answer = std::string(core::trimmed(core::read_file(log)));
-        if (*child.ended() != 0) {
-            throw core::SystemError("slurm", "sbatch refused the job: " + answer, {file.string(), {}, {}, {}});
-        }
+    for (const auto& [text, option] : {std::pair{&what.settings.partition, &given.partition},
+                                       {&what.settings.time, &given.time},
+                                       {&what.settings.memory, &given.memory},
+                                       {&what.settings.account, &given.account}}) {
+        *text = option->empty() ? *text : *option;
     }
-    shell.print("wrote " + file.string() + (sbatch ? "; submitted as job " + answer : "; 'sbatch' is not here: submit it where Slurm is, in a folder that both machines see"));
-    if (shell.json) {
-        shell.print_json({{"script", file.string()}, {"job", sbatch ? nlohmann::json(answer) : nlohmann::json(nullptr)}});
+    what.settings.throttle = given.throttle.value_or(what.settings.throttle);
+    what.settings.max_array = given.max_array.value_or(what.settings.max_array);
+    what.program = fs::read_symlink("/proc/self/exe").string();
+    what.keep_stale = given.stale == "keep";
+    what.replace_stale = given.stale == "replace";
+    const auto arrays = cases::submit_sweep(study, what, shell.progress());
+    nlohmann::json json = nlohmann::json::array();
+    for (const auto& array : arrays) {
+        shell.print("wrote " + array.script.string() + " of " + std::to_string(array.names.size()) + " cases" +
+                    (array.job.empty()
+                         ? "; 'sbatch' is not here: submit it where Slurm is, in a folder that both machines see"
+                         : "; submitted as job " + array.job));
+        json.push_back({{"script", array.script.string()},
+                        {"job", array.job.empty() ? nlohmann::json(nullptr) : nlohmann::json(array.job)},
+                        {"cases", array.names}});
+    }
+    if (arrays.empty()) {
+        shell.print("nothing is missing that does not wait or run already");
+    }
+    if (shell.json && arrays.empty()) {
+        shell.print_json({{"missing", 0}, {"arrays", json}});
+    } else if (shell.json) {
+        shell.print_json({{"script", json[0]["script"]}, {"job", json[0]["job"]}, {"arrays", json}});
     }
     return done;
 }
@@ -134,24 +178,37 @@ int sweep(Shell& shell, const SweepArguments& given) {
     }
     cases::SweepOptions options;
     options.jobs = given.jobs > 0 ? given.jobs : static_cast<int>(core::threads());
+    options.stale = given.stale == "keep"      ? cases::StaleCases::keep
+                    : given.stale == "replace" ? cases::StaleCases::replace
+                                               : cases::StaleCases::redo;
+    options.submission = given.submission;
     if (!given.only.empty()) {
         options.only = given.only;
     }
     const auto outcomes = cases::sweep_locally(study, options, shell.progress());
     int failed = 0;
+    int solved = 0;
     nlohmann::json all = nlohmann::json::array();
     for (const auto& one : outcomes) {
         failed += one.error.empty() ? 0 : 1;
-        all.push_back({{"name", one.name}, {"seconds", one.seconds}, {"error", one.error}});
-        if (one.error.empty()) {
-            shell.print(one.name + ": solved in " + seconds(one.seconds));
-        } else {
+        solved += one.error.empty() && one.skipped.empty() ? 1 : 0;
+        all.push_back({{"name", one.name},
+                       {"seconds", one.seconds},
+                       {"error", one.error},
+                       {"skipped", one.skipped},
+                       {"note", one.note}});
+        if (!one.error.empty()) {
             shell.warn(one.name + ": " + one.error);
+        } else if (!one.skipped.empty()) {
+            shell.print(one.name + ": left alone: " + one.skipped);
+        } else {
+            shell.print(one.name + ": solved in " + seconds(one.seconds) +
+                        (one.note.empty() ? "" : " (" + one.note + ")"));
         }
     }
     if (outcomes.empty()) {
         shell.print("nothing is missing");
-    } else if (failed < static_cast<int>(outcomes.size())) {
+    } else if (solved > 0) {
         shell.info("the study has the new cases: underbody study run " + given.study);
     }
     if (shell.json) {
@@ -175,7 +232,10 @@ void add_solve_command(CLI::App& app, Shell& shell) {
         "Examples:\n"
         "  underbody solve case\n"
         "  underbody solve case --json\n"
-        "Needs OpenFOAM (Debian: openfoam). Ctrl-C ends the solver too; the logs stay in the folder.");
+        "Needs OpenFOAM (Debian: openfoam). Ctrl-C ends the solver too, and so does a kill; the logs stay in the "
+        "folder, and the next\n"
+        "solve goes on from the last checkpoint. --again begins anew and keeps the earlier results in the folder "
+        "previous.");
     shell.on(command, [&shell, o] {
         const core::ReplacingAllowed the_case;
         return solve(shell, o->folder, o->again);
@@ -190,7 +250,25 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
     command->add_option("--jobs", o->jobs, "local: cases at a time, each on one core (default: all cores)")->check(CLI::Range(1, 1024));
     command->add_option("--only", o->only, "local: this case alone, by name");
     command->add_option("--script", o->script, "slurm: where the batch script goes (default: sweep.sh beside the cases)");
-    command->add_flag("--list", o->list, "only say which cases are there and which are missing");
+    command
+        ->add_option("--stale", o->stale,
+                     "cases solved for another shape, mesh, flow or number of iterations: redo (solved again, the old "
+                     "folder kept in set_aside), replace (solved again, the old one removed), keep (left as they are)")
+        ->check(CLI::IsMember({"redo", "replace", "keep"}))
+        ->capture_default_str();
+    command->add_option("--partition", o->partition,
+                        "slurm: as sbatch takes it (default: [sweep.slurm] of study.toml, else the site's)");
+    command->add_option("--time", o->time, "slurm: limit of a case, 02:00:00");
+    command->add_option("--memory", o->memory, "slurm: of a case, 4G");
+    command->add_option("--account", o->account, "slurm: as sbatch takes it");
+    command->add_option("--throttle", o->throttle, "slurm: cases at a time")->check(CLI::Range(1, 1000000));
+    command
+        ->add_option("--max-array", o->max_array,
+                     "slurm: cases in one job array; more make several (default: what scontrol says, else 1000)")
+        ->check(CLI::Range(1, 4000000));
+    command->add_option("--submission", o->submission, "of the Slurm job whose task this is")->group("");
+    command->add_flag("--list", o->list,
+                      "only say how far each case is: missing, waiting, running, solved, stale, failed, present");
     command->footer(
         "Examples:\n"
         "  underbody sweep mystudy --list\n"
@@ -203,7 +281,13 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
         "  pitch = [\"0 deg\", \"2 deg\"]\n"
         "  speed = \"0.5 m/s\"\n"
         "  # folder, conditions, kinematic_viscosity, cell, surface_level, layers, iterations\n"
-        "Solved cases belong to the study without a [[case]]. A sweep that was stopped goes on where it was.");
+        "  [sweep.slurm]                        # all optional\n"
+        "  partition = \"cfd\"\n"
+        "  time = \"02:00:00\"\n"
+        "  # memory, account, throttle, max_array, options = [\"--nice=100\"]\n"
+        "Solved cases belong to the study without a [[case]]. A sweep that was stopped goes on where it was, a solve "
+        "from its last\n"
+        "checkpoint. Two sweeps of one study never make the same case: the second leaves it alone.");
     shell.on(command, [&shell, o] {
         const core::ReplacingAllowed the_cases;
         return sweep(shell, *o);

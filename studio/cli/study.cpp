@@ -26,6 +26,8 @@ struct StudyArguments {
     std::string files;
     std::vector<std::string> conditions;
     std::string symmetry;
+    std::string design_points;
+    std::vector<std::string> parameters;
     std::string what;
     std::vector<std::string> zones;
 };
@@ -79,8 +81,24 @@ void print_warnings(Shell& shell, const cases::StudyResults& results) {
     }
 }
 
+/// What was left out on opening the study stands where its numbers are read.
+void show_notes(Shell& shell, const cases::Study& study) {
+    for (const auto& note : study.notes) {
+        shell.print((note.severity == core::Problem::Severity::note ? "note: " : "warning: ") + note.message);
+    }
+}
+
+/// The same, and what there is to say about the run.
+nlohmann::json json_of_notes(const cases::Study& study, const std::vector<std::string>& notes) {
+    nlohmann::json json = notes;
+    for (const auto& note : study.notes) {
+        json.push_back(note.message);
+    }
+    return json;
+}
+
 /// What was done and what went wrong; the exit code.
-int tell(Shell& shell, const cases::StudyResults& results) {
+int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& results) {
     for (const auto& note : results.notes) {
         shell.info(note);
     }
@@ -94,9 +112,15 @@ int tell(Shell& shell, const cases::StudyResults& results) {
     if (shell.json) {
         nlohmann::json json;
         to_json(json, results);
+        json["notes"] = json_of_notes(study, results.notes);
+        json["not_settled"] = cases::not_settled(results.loads);
         shell.print_json(json);
     }
+    show_notes(shell, study);
     print_warnings(shell, results);
+    if (const auto names = cases::not_settled(results.loads); !names.empty()) {
+        shell.print(std::to_string(names.size()) + " of " + std::to_string(results.loads.rows()) + " solutions have not settled, the first '" + names.front() + "'");
+    }
     shell.print(std::to_string(results.computed) + " results computed, " + std::to_string(results.reused) + " unchanged, " +
                 std::to_string(results.failed) + " failed");
     return results.failed == 0 ? done : wrong_input;
@@ -125,7 +149,7 @@ int run_and_report(Shell& shell, const StudyArguments& arguments) {
     const core::ReplacingAllowed report_and_exports;  // of the study's own folder, by whichever version
     const auto study = cases::Study::open(arguments.folder);
     const auto results = results_of_run(shell, study, run_options(arguments));
-    const int code = tell(shell, results);
+    const int code = tell(shell, study, results);
     shell.print("report: " + results.report.string());
     return code;
 }
@@ -142,10 +166,11 @@ nlohmann::json json_of_case(const cases::Case& entry, const cases::CaseLoads& lo
         item["conditions"][name] = value;
     }
     for (const auto& value : loads.values) {
-        if (value.name == "lift_force" || value.name == "drag_force") {
+        if (value.name == "lift_force" || value.name == "drag_force" || value.name.ends_with("_sigma")) {
             item[value.name] = value.value;
         }
     }
+    item["settled"] = {{"verdict", loads.settled}, {"why", loads.settled_why}};
     for (const auto& warning : loads.warnings) {
         item["warnings"].push_back(warning.message);
     }
@@ -159,7 +184,7 @@ int list(Shell& shell, const StudyArguments& arguments) {
         shell.info(note);
     }
     nlohmann::json json = nlohmann::json::array();
-    std::vector<std::vector<std::string>> rows = {{"case", "conditions", "lift", "drag", "", "file"}};
+    std::vector<std::vector<std::string>> rows = {{"case", "conditions", "lift", "drag", "solution", "", "file"}};
     std::size_t changed = 0;
     for (const auto& loads : results.case_loads) {
         const cases::Case& entry = study.cases[loads.entry];
@@ -171,13 +196,14 @@ int list(Shell& shell, const StudyArguments& arguments) {
         const bool known = !loads.values.empty();
         const std::string remark = !known ? to_string(loads.state) : loads.warnings.empty() ? "" : "warning";
         rows.push_back({entry.name, entry.conditions.label(), known ? in_unit(loads.value("lift_force"), "N", "N") + " N" : "-",
-                        known ? in_unit(loads.value("drag_force"), "N", "N") + " N" : "-", remark, entry.file.string()});
+                        known ? in_unit(loads.value("drag_force"), "N", "N") + " N" : "-", known ? loads.settled : "-", remark, entry.file.string()});
     }
     if (shell.json) {
-        shell.print_json({{"title", study.title}, {"cases", json}, {"notes", results.notes}});
+        shell.print_json({{"title", study.title}, {"cases", json}, {"notes", json_of_notes(study, results.notes)}});
         return done;
     }
     shell.print(study.title + ": " + std::to_string(study.cases.size()) + " cases\n" + aligned(rows));
+    show_notes(shell, study);
     print_warnings(shell, results);
     if (changed > 0) {
         shell.print("changed: for " + std::to_string(changed) + " cases, files, options or code are no longer those of the stored loads; underbody study run computes them again");
@@ -322,6 +348,31 @@ std::string with_symmetry(std::string text, const std::string& symmetry, const c
     return end == std::string::npos ? text + "\n" + line : text.insert(end + 1, line);
 }
 
+/// The lines of a [[case]] whose conditions stand in a table of design points.
+std::string design_points_of(const StudyArguments& arguments) {
+    if (arguments.design_points.empty() && arguments.parameters.empty()) {
+        return {};
+    }
+    if (arguments.design_points.empty()) {
+        throw core::UsageError("usage", "--parameter belongs to --design-points", {},
+                               "--design-points points.csv --parameter P1=gap");
+    }
+    const std::filesystem::path table =
+        std::filesystem::absolute(arguments.design_points)
+            .lexically_relative(std::filesystem::absolute(arguments.folder).lexically_normal());
+    std::string text = "design_points = " + core::toml_string(table.string()) + "\n";
+    for (const auto& parameter : arguments.parameters) {
+        const std::size_t equal = parameter.find('=');
+        if (equal == std::string::npos) {
+            throw core::UsageError("parse", "'" + parameter + "' is not of the form PARAMETER=quantity", {},
+                                   "--parameter \"P1=gap [mm]\", or --parameter P2= for none");
+        }
+        text += "parameters." + core::toml_string(core::trimmed(std::string_view(parameter).substr(0, equal))) + " = " +
+                core::toml_string(core::trimmed(std::string_view(parameter).substr(equal + 1))) + "\n";
+    }
+    return text;
+}
+
 std::string case_text(const StudyArguments& arguments) {
     std::string text = "\n[[case]]\nfiles = " + core::toml_string(arguments.files) + "\n";
     std::string zones;
@@ -336,7 +387,7 @@ std::string case_text(const StudyArguments& arguments) {
         }
         text += "conditions." + condition.substr(0, equal) + " = " + core::toml_string(condition.substr(equal + 1)) + "\n";
     }
-    return text;
+    return text + design_points_of(arguments);
 }
 
 /// What is wrong stands in the lines to be added, which nobody has seen yet: says it without their place.
@@ -371,8 +422,12 @@ int add(Shell& shell, const StudyArguments& arguments) {
     const auto old_lines = std::count(text.begin(), text.end(), '\n');
     text = with_symmetry(std::move(text), arguments.symmetry, before ? &*before : nullptr) + case_text(arguments);
     std::size_t count = 0;
+    nlohmann::json notes = nlohmann::json::array();
     try {
-        count = cases::Study::from_text(text, file).cases.size() - (before ? before->cases.size() : 0);
+        const auto after = cases::Study::from_text(text, file);
+        count = after.cases.size() - (before ? before->cases.size() : 0);
+        show_notes(shell, after);
+        notes = json_of_notes(after, {});
     } catch (const core::InputError& error) {
         say_of_new_lines(error, arguments, file, old_lines);
         throw;
@@ -382,7 +437,7 @@ int add(Shell& shell, const StudyArguments& arguments) {
     const nlohmann::json passed_over = left_out(arguments, shell);
     shell.print(std::to_string(count) + " cases added to " + file.string());
     if (shell.json) {
-        shell.print_json({{"added", count}, {"study", file.string()}, {"left_out", passed_over}});
+        shell.print_json({{"added", count}, {"study", file.string()}, {"left_out", passed_over}, {"notes", notes}});
     }
     return done;
 }
@@ -401,7 +456,8 @@ void add_study_command(CLI::App& app, Shell& shell) {
         "  underbody study verify cases/evie                    our loads against the solver's own (exit 4 when beyond)\n"
         "  underbody study why cases/evie region/glide          from a number back to the files, settings and code that made it\n"
         "  underbody study add mystudy --files 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --condition speed=0.5m/s\n"
-        "  underbody study add mystudy --files 'runs/{variant}-h{gap:mm}/case.foam' --symmetry y --zones hull,base");
+        "  underbody study add mystudy --files 'runs/{variant}-h{gap:mm}/case.foam' --symmetry y --zones hull,base\n"
+        "  underbody study add mystudy --files 'hull_files/dp{design_point}/FFF/Fluent/*.dat.h5' --design-points points.csv --parameter P3=gap");
 
     auto* run_command = study->add_subcommand("run", "compute what changed, write the report");
     add_common(run_command, *arguments);
@@ -438,6 +494,9 @@ void add_study_command(CLI::App& app, Shell& shell) {
     add_command->add_option("--condition", arguments->conditions, "name=value held for all of them (repeatable)");
     add_command->add_option("--symmetry", arguments->symmetry, "half models: normal axis of their plane (y), written to [frame]");
     add_command->add_option("--zones", arguments->zones, "zones that are the body: names, * and ? allowed; several with commas")->delimiter(',');
+    add_command->add_option("--design-points", arguments->design_points,
+                            "Workbench's table of design points (CSV): the conditions of the files; {design_point} in --files is the number behind dp");
+    add_command->add_option("--parameter", arguments->parameters, "of that table: P1=gap, \"P1=gap [mm]\", or P2= for no condition (repeatable)");
     shell.on(add_command, [arguments, &shell] { return add(shell, *arguments); });
 }
 

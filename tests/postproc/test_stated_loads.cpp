@@ -1,6 +1,4 @@
 // Loads against what a solver states of itself: force reports, monitors, OpenFOAM's forces.
-#include "postproc/stated_loads.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -10,6 +8,8 @@
 #include "core/random.h"
 #include "core/text.h"
 #include "postproc/loads_table.h"
+#include "postproc/settled.h"
+#include "postproc/stated_loads.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -310,16 +310,20 @@ TEST_F(StatedLoads, ThatDriftAreWarnedOfUnlessTheyAreRounding) {
         }
         return stated_by_monitor(monitor_source("side_force=" + written("side.out", text).string()), result);
     };
-    const auto warnings = unsettled(result, {drifting(1e-3)});
-    ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_THAT(warnings[0].message, HasSubstr("side_force has not settled"));
-    EXPECT_THAT(warnings[0].place.file, HasSubstr("side.out"));
+    core::Problems notes;
+    const fs::path nowhere = "/nowhere/case.csv";
+    const Settled judged = settled_by(result, {drifting(1e-3)}, nowhere, notes);
+    EXPECT_EQ(judged.verdict, SettledVerdict::not_settled);
+    EXPECT_THAT(judged.why, HasSubstr("side_force drifts by"));
+    EXPECT_THAT(judged.loads.at(0).file, HasSubstr("side.out"));
     ASSERT_FALSE(drifting(1e-16).history->settled);
-    EXPECT_TRUE(unsettled(result, {drifting(1e-16)}).empty());
+    EXPECT_EQ(settled_by(result, {drifting(1e-16)}, nowhere, notes).verdict, SettledVerdict::settled);
     // Of a body without a force there is nothing that it could be small beside, but what the solver states.
     LoadsResult nothing = result;
     nothing.total = {};
-    EXPECT_EQ(unsettled(nothing, {drifting(1e-16)}).size(), 1U);
+    nothing.named = {};
+    EXPECT_EQ(settled_by(nothing, {drifting(1e-16)}, nowhere, notes).verdict, SettledVerdict::not_settled);
+    EXPECT_TRUE(notes.empty());
 }
 
 TEST_F(StatedLoads, OfAMonitorAreRefusedWhenTheyAreNotClear) {

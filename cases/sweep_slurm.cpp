@@ -1,0 +1,287 @@
+#include "cases/sweep_slurm.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "cases/case_lock.h"
+#include "cases/child_process.h"
+#include "cases/sweep_parts.h"
+#include "core/file.h"
+#include "core/text.h"
+
+namespace underbody::cases {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int usual_max_array = 1000;  ///< Slurm's own default of MaxArraySize is 1001, indices below it
+
+/// A word for the shell.
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text) {
+        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return result + "'";
+}
+
+struct Answer {
+    int code = 0;
+    std::string text;
+};
+
+/// What a program of Slurm says; nothing when it is not here.
+std::optional<Answer> ask(const std::string& program, const std::vector<std::string>& arguments, const fs::path& folder,
+                          core::Progress& progress) {
+    const auto file = find_program(program);
+    if (!file) {
+        return {};
+    }
+    const core::TemporaryFolder scratch;
+    const fs::path log = scratch.path() / "answer";
+    ChildProcess child(file->string(), arguments, folder, log);
+    while (!child.ended()) {
+        progress.check();
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return Answer{*child.ended(), std::string(core::trimmed(core::read_file(log)))};
+}
+
+std::string job_name(const std::string& submission) { return "underbody-sweep-" + submission; }
+
+/// Unlikely to come again, on whatever machine.
+std::string new_submission() {
+    std::random_device device;
+    const char* digits = "0123456789abcdef";
+    std::string text;
+    for (int i = 0; i < 12; ++i) {
+        text += digits[device() % 16];
+    }
+    return text;
+}
+
+std::string now_text() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts = {};
+    ::gmtime_r(&now, &parts);
+    char text[64];
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts);
+    return text;
+}
+
+std::string text_of(const SlurmClaim& claim) {
+    return nlohmann::json(
+               {{"submission", claim.submission}, {"job", claim.job}, {"task", claim.task}, {"since", claim.since}})
+               .dump() +
+           "\n";
+}
+
+/// False when the case has been claimed meanwhile.
+bool claim_case(const fs::path& folder, const SlurmClaim& claim) {
+    const fs::path file = claim_file(folder);
+    fs::create_directories(file.parent_path());
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (descriptor < 0 && errno == EEXIST) {
+        return false;
+    }
+    const std::string text = text_of(claim);
+    if (descriptor < 0 || ::write(descriptor, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
+        const int error = errno;
+        if (descriptor >= 0) {
+            ::close(descriptor);
+            ::unlink(file.c_str());
+        }
+        throw core::SystemError("write", std::string("cannot be written: ") + std::strerror(error),
+                                {file.string(), {}, {}, {}});
+    }
+    ::close(descriptor);
+    return true;
+}
+
+/// Tasks that the site takes in one array.
+int tasks_per_array(const SlurmSpec& settings, core::Progress& progress) {
+    if (settings.max_array > 0) {
+        return settings.max_array;
+    }
+    if (const auto answer = ask("scontrol", {"show", "config"}, ".", progress); answer && answer->code == 0) {
+        for (const auto line : core::split(answer->text, '\n')) {
+            const auto equals = line.find('=');
+            if (core::trimmed(line).starts_with("MaxArraySize") && equals != std::string_view::npos) {
+                const auto size = core::parse_integer(core::trimmed(line.substr(equals + 1)));
+                return size && *size > 1 ? static_cast<int>(*size) - 1 : usual_max_array;  // indices end below it
+            }
+        }
+    }
+    return usual_max_array;
+}
+
+std::string script_text(const Study& study, const SlurmSubmission& what, const std::string& submission,
+                        const std::vector<std::string>& names) {
+    const SlurmSpec& s = what.settings;
+    std::string title = study.title;
+    std::replace(title.begin(), title.end(), '\n', ' ');
+    const std::string folder = fs::absolute(study.folder()).lexically_normal().string();
+    const auto option = [](const char* name, const std::string& value) {
+        return value.empty() ? std::string() : std::string("#SBATCH --") + name + "=" + value + "\n";
+    };
+    std::string script = "#!/bin/sh\n# One task for each case that the study '" + title +
+                         "' misses.\n#SBATCH --job-name=" + job_name(submission) + "\n#SBATCH --array=1-" +
+                         std::to_string(names.size()) + (s.throttle > 0 ? "%" + std::to_string(s.throttle) : "") +
+                         "\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\n" + option("partition", s.partition) +
+                         option("time", s.time) + option("mem", s.memory) + option("account", s.account);
+    for (const auto& further : s.options) {
+        script += "#SBATCH " + further + "\n";
+    }
+    script += "case \"$SLURM_ARRAY_TASK_ID\" in\n";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        script += std::to_string(i + 1) + ") name=" + quoted(names[i]) + " ;;\n";
+    }
+    return script + "*) echo 'run this as a Slurm job array' >&2; exit 2 ;;\nesac\nexec " + quoted(what.program) +
+           " sweep " + quoted(folder) + " --engine local --jobs 1 --only \"$name\" --submission " + submission +
+           (what.replace_stale ? " --stale replace"
+            : what.keep_stale  ? " --stale keep"
+                               : "") +
+           "\n";
+}
+
+/// The cases of one array, claimed for it.
+struct Claimed {
+    std::vector<const SweepCase*> cases;
+    std::string submission = new_submission();
+
+    void release() const {
+        for (const SweepCase* one : cases) {
+            std::error_code ignored;
+            fs::remove(claim_file(one->folder), ignored);
+        }
+    }
+    void write_job(const std::string& job) const {
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            if (auto claim = read_claim(cases[i]->folder); claim && claim->submission == submission) {
+                claim->job = job;
+                core::write_file(claim_file(cases[i]->folder), text_of(*claim));
+            }
+        }
+    }
+};
+
+}  // namespace
+
+fs::path claim_file(const fs::path& case_folder) { return beside(case_folder, ".submitted"); }
+
+std::optional<SlurmClaim> read_claim(const fs::path& case_folder) {
+    std::error_code ignored;
+    const fs::path file = claim_file(case_folder);
+    if (!fs::is_regular_file(file, ignored)) {
+        return {};
+    }
+    const auto json = nlohmann::json::parse(core::read_file(file), nullptr, false);
+    SlurmClaim claim;
+    if (json.is_object()) {
+        claim.submission = json.value("submission", "");
+        claim.job = json.value("job", "");
+        claim.task = json.value("task", 0);
+        claim.since = json.value("since", "");
+    }
+    return claim;
+}
+
+std::optional<std::string> SlurmQueue::state(const SlurmClaim& claim) {
+    auto known = known_.find(claim.submission);
+    if (known == known_.end()) {
+        std::optional<std::map<int, std::string>> tasks;
+        const auto answer =
+            ask("squeue", {"--noheader", "--array", "--name", job_name(claim.submission), "--format", "%K %T"}, ".",
+                core::Progress::none());
+        if (answer && answer->code == 0) {
+            tasks.emplace();
+            for (const auto line : core::split(answer->text, '\n')) {
+                const auto words = core::split(core::trimmed(line), ' ');
+                const auto task = core::parse_integer(words.front());
+                if (task && words.size() > 1) {
+                    (*tasks)[static_cast<int>(*task)] = std::string(words.back());
+                }
+            }
+        }
+        known = known_.emplace(claim.submission, std::move(tasks)).first;
+    }
+    if (!known->second) {
+        return {};
+    }
+    const auto task = known->second->find(claim.task);
+    return task == known->second->end() ? "" : task->second;
+}
+
+std::vector<SlurmArray> submit_sweep(const Study& study, const SlurmSubmission& what, core::Progress& progress) {
+    if (!study.sweep) {
+        return (void)wanted_cases(study, {}, progress), std::vector<SlurmArray>{};  // says that there is none
+    }
+    SweepOptions options;
+    options.stale = what.keep_stale ? StaleCases::keep : what.replace_stale ? StaleCases::replace : StaleCases::redo;
+    const fs::path submit_lock = study.folder() / study.sweep->folder / ".submit.lock";
+    const auto lock = CaseLock::take(submit_lock, "sweep --engine slurm");
+    if (!lock) {
+        throw core::InputError(
+            "busy", "the sweep is being submitted by " + CaseLock::holder(submit_lock).value_or("another process"),
+            {study.folder().string(), {}, {}, {}});
+    }
+    auto wanted = wanted_cases(study, options, progress);
+    std::erase_if(wanted, [](const SweepCase& one) {
+        return one.state == SweepState::running || one.state == SweepState::waiting;
+    });
+    const auto sbatch = find_program("sbatch");
+    const auto most = static_cast<std::size_t>(wanted.empty() ? 1 : tasks_per_array(what.settings, progress));
+    std::vector<SlurmArray> arrays;
+    for (std::size_t next = 0; next < wanted.size();) {
+        Claimed claimed;
+        SlurmArray array;
+        for (; next < wanted.size() && claimed.cases.size() < most; ++next) {
+            const SweepCase& one = wanted[next];
+            const SlurmClaim claim{claimed.submission, {}, static_cast<int>(claimed.cases.size()) + 1, now_text()};
+            std::error_code ignored;
+            fs::remove(claim_file(one.folder), ignored);  // of a job that is gone: see wanted_cases
+            if (!sbatch || claim_case(one.folder, claim)) {
+                claimed.cases.push_back(&one);
+                array.names.push_back(one.name);
+            }
+        }
+        if (array.names.empty()) {
+            continue;
+        }
+        const std::string number = arrays.empty() ? "" : "-" + std::to_string(arrays.size() + 1);
+        array.script =
+            what.script.parent_path() / (what.script.stem().string() + number + what.script.extension().string());
+        core::write_file(array.script, script_text(study, what, claimed.submission, array.names));
+        if (sbatch) {
+            std::vector<std::string> arguments = {"--parsable"};
+            if (what.settings.throttle > 0 && !arrays.empty()) {
+                arguments.push_back("--dependency=afterany:" + arrays.back().job);
+            }
+            arguments.push_back(fs::absolute(array.script).string());
+            const auto answer = ask("sbatch", arguments, fs::absolute(array.script).parent_path(), progress);
+            if (!answer || answer->code != 0) {
+                claimed.release();
+                throw core::SystemError(
+                    "slurm", "sbatch refused the job: " + (answer ? answer->text : ""),
+                    {array.script.string(), {}, {}, {}},
+                    arrays.empty() ? "" : std::to_string(arrays.size()) + " arrays before it were submitted");
+            }
+            array.job = answer->text.substr(0, answer->text.find_first_of(";\n"));
+            claimed.write_job(array.job);
+        }
+        arrays.push_back(std::move(array));
+    }
+    return arrays;
+}
+
+}  // namespace underbody::cases

@@ -1,0 +1,58 @@
+// A sweep as Slurm job arrays.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cases/study.h"
+#include "core/progress.h"
+
+namespace underbody::cases {
+
+/// A case that was submitted: NAME.submitted beside its folder, written before the job is.
+struct SlurmClaim {
+    std::string submission;  ///< also the end of the job's name
+    std::string job;         ///< Slurm's number; empty while it is not known
+    int task = 0;            ///< index in the array
+    std::string since;
+};
+std::filesystem::path claim_file(const std::filesystem::path& case_folder);
+std::optional<SlurmClaim> read_claim(const std::filesystem::path& case_folder);
+
+/// What Slurm says of claims; each submission is asked for once.
+class SlurmQueue {
+public:
+    /// "PENDING", "RUNNING", ...; "" when Slurm no longer has it; nothing when it cannot be asked (no squeue here, or
+    /// it fails).
+    std::optional<std::string> state(const SlurmClaim& claim);
+
+private:
+    std::map<std::string, std::optional<std::map<int, std::string>>> known_;
+};
+
+/// One array of a sweep.
+struct SlurmArray {
+    std::filesystem::path script;
+    std::vector<std::string> names;  ///< cases, task 1 first
+    std::string job;                 ///< number; empty when there is no sbatch here
+};
+
+struct SlurmSubmission {
+    std::filesystem::path script;  ///< of the first array; those that follow are called NAME-2.sh, ...
+    SlurmSpec settings;
+    std::string program;  ///< this program, as the tasks call it
+    bool keep_stale = false, replace_stale = false;
+};
+
+/// Writes the scripts of the missing cases, each task `program sweep STUDY --only NAME`, and submits them where there
+/// is an sbatch. Cases that wait or run already are left out, and marked as submitted before sbatch is called: nobody
+/// submits them twice. More cases than the site takes in one array (SlurmSpec::max_array, else what `scontrol` says,
+/// else 1000) make several; with a throttle one begins when the other has ended. Empty when nothing is missing. Throws
+/// core::SystemError: sbatch refuses (its cases are free again).
+std::vector<SlurmArray> submit_sweep(const Study& study, const SlurmSubmission& what,
+                                     core::Progress& progress = core::Progress::none());
+
+}  // namespace underbody::cases
