@@ -91,7 +91,7 @@ std::vector<FileTable> inputs() {
          "which quantity a parameter of that table is, where its name does not say it",
          {{"*", "text", "P1 = \"gap [mm]\"", "by its name", "a condition, with a unit that the table does not say; \"\": none"}},
          false,
-         true},
+         "parameters = { P1 = \"gap [mm]\" }"},
         conditions("case[].conditions", "conditions that the file names do not say",
                    "conditions = { mesh = \"medium\", speed = \"0.5 m/s\" }"),
         {"body[]",
