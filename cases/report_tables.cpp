@@ -51,7 +51,7 @@ std::vector<Shown> condition_columns(const core::Table& loads) {
     std::vector<Shown> columns;
     for (const auto& column : loads.columns()) {
         const bool measured = column.name.ends_with("_force") || column.name.ends_with("_moment");
-        if (column.is_text() && column.name != "case") {
+        if (column.is_text() && column.name != "case" && column.name != "settled") {
             columns.push_back({column.name, "", "", column.name});
         } else if (!column.is_text() && core::find_quantity(column.name) != nullptr && !measured) {
             const std::string to = column.name == "gap" ? "mm" : column.name == "pitch" ? "deg" : column.unit;
@@ -99,6 +99,7 @@ ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) 
         }
     }
     table.header.emplace_back("closure");
+    table.header.emplace_back("solution");
     std::unordered_set<std::string> warned;
     for (const auto& one : results.case_loads) {
         if (!one.warnings.empty()) {
@@ -132,6 +133,8 @@ ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) 
         const core::Column* closure = loads.find("closure");
         // Rounding is no opening.
         cells.push_back(closure == nullptr ? "-" : std::abs(closure->numbers[row]) < 1e-9 ? "0" : number(closure->numbers[row], 3));
+        const core::Column* settled = loads.find("settled");
+        cells.push_back(settled != nullptr && settled->is_text() ? settled->text[row] : "unknown");
         if (!warned.empty()) {
             cells.emplace_back(warned.contains(name) ? "see the warnings" : "");
         }
