@@ -39,6 +39,7 @@ const std::string& ForceTable::unit() const { return impl_->unit; }
 const std::vector<TableAxis>& ForceTable::axes() const { return impl_->axes; }
 const std::string& ForceTable::kind() const { return impl_->kind; }
 const std::string& ForceTable::source() const { return impl_->source; }
+double ForceTable::sampling_error() const { return impl_->sampling_error; }
 const core::Problems& ForceTable::remarks() const { return impl_->remarks; }
 const core::Table& ForceTable::points() const { return impl_->points; }
 const std::vector<double>& ForceTable::knots(std::size_t axis) const { return impl_->surface.axis(axis).points(); }
@@ -120,9 +121,16 @@ Evaluation ForceTable::at(std::span<const double> point) const {
         result.outside = result.outside || result.beyond[k] != 0;
     }
     result.value = value_by_policy(point.data(), result.slope.data());
-    result.sigma = t.error.sigma(point.data(), result.beyond.data());
+    result.sigma = sigma(point.data());
+    const Support* support = t.data_support();
+    result.no_data = result.outside || (support != nullptr && support->no_data(point.data()));
     return result;
 }
+
+const Support* ForceTable::Impl::data_support() const {
+    return support ? support.get() : hull ? &hull->support() : nullptr;
+}
+const Support* data_support(const ForceTable& table) { return table.impl().data_support(); }
 
 double beyond_points(const ForceTable& table, const double* point) { return table.impl().hull ? table.impl().hull->distance(point) : 0; }
 
@@ -148,8 +156,10 @@ core::Problems outside_remarks(const ForceTable& table, const Held& held) {
 double ForceTable::sigma(const double* point) const noexcept {
     std::array<double, max_axes> beyond{};
     for (std::size_t k = 0; k < impl_->axes.size(); ++k) {
-        const TableAxis& axis = impl_->axes[k];
-        beyond[k] = point[k] < axis.lower ? point[k] - axis.lower : point[k] > axis.upper ? point[k] - axis.upper : 0;
+        const GridAxis& axis = impl_->surface.axis(k);
+        beyond[k] = point[k] < axis.lower()   ? point[k] - axis.lower()
+                    : point[k] > axis.upper() ? point[k] - axis.upper()
+                                              : 0;
     }
     return impl_->error.sigma(point, beyond.data());
 }

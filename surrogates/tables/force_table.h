@@ -20,7 +20,8 @@ inline constexpr std::size_t max_axes = 4;
 struct TableAxis {
     std::string name;  ///< a quantity name: gap, pitch, speed, jet_voltage, ...
     std::string unit;  ///< SI
-    double lower = 0;
+    double lower =
+        0;  ///< the range of the table; its grid lines may reach further (sums of tables that end in different places)
     double upper = 0;
     std::vector<double> points;  ///< distinct set points, ascending
     RangePolicy range = RangePolicy::clamp;
@@ -32,6 +33,9 @@ struct Evaluation {
     std::array<double, max_axes> slope{};      ///< d value / d axis, SI
     std::array<double, max_axes> beyond{};     ///< how far outside each axis, SI, signed; 0 inside
     bool outside = false;
+    /// No points lie around: outside, or in a corner of the axes' box that has none (see Support). The value is an
+    /// extrapolation, its error a guess.
+    bool no_data = false;
 };
 
 struct FitOptions {
@@ -95,6 +99,10 @@ public:
     [[nodiscard]] bool is_monotone_interpolation() const;
     /// Columns of the points that held one value throughout (name, SI value): the conditions the table was made under.
     [[nodiscard]] const std::vector<std::pair<std::string, double>>& conditions() const;
+
+    /// Of a table that stands for a function known elsewhere (the forces of a model): its largest difference from that
+    /// function, in unit(). 0 for others.
+    [[nodiscard]] double sampling_error() const;
 
     /// Another table whose values are drawn from this one's error (correlated along the axes), for probability maps.
     [[nodiscard]] ForceTable drawn(std::uint64_t seed) const;

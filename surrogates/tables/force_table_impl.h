@@ -13,6 +13,7 @@
 namespace underbody::tables {
 
 class Hull;
+class Support;
 struct ProcessMixture;
 
 struct ForceTable::Impl {
@@ -29,6 +30,13 @@ struct ForceTable::Impl {
     ErrorModel error;   ///< standard deviation over the same axes
     std::shared_ptr<const ProcessMixture> processes;  ///< of a table by Gaussian processes; null for others
     std::shared_ptr<const Hull> hull;                  ///< of scattered points of two and more axes; null for others
+    std::shared_ptr<const Support>
+        support;  ///< where there is data, when it is not the hull that says so; null for others
+
+    double sampling_error = 0;
+
+    /// Null: everywhere within the axes.
+    [[nodiscard]] const Support* data_support() const;
 };
 
 }  // namespace underbody::tables

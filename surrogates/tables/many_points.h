@@ -5,6 +5,7 @@
 
 #include "surrogates/tables/force_table.h"
 #include "surrogates/tables/line.h"
+#include "surrogates/tables/support.h"
 
 namespace underbody::tables {
 
@@ -16,6 +17,10 @@ void values(const ForceTable& table, const double* points, std::size_t count, do
 /// factor of four or more). > 0: no points lie around, the error is that of an extrapolation although no axis is exceeded. 0 inside, for one axis and
 /// for grids. Beyond an axis its end counts.
 double beyond_points(const ForceTable& table, const double* point);
+
+/// Which parts of the axes' box have points of the table around them (Evaluation::no_data says the same of one point);
+/// null: all of it.
+const Support* data_support(const ForceTable& table);
 
 /// A warning for every held value that lies outside its axis: by how much, what the table does there, and whether the number would fit in the unit of the
 /// table's file.

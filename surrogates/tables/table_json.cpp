@@ -43,6 +43,8 @@ void to_json(nlohmann::json& json, const ForceTable& table) {
 nlohmann::json to_json(const ForceTable& table, const std::vector<double>& point, const Evaluation& evaluation) {
     nlohmann::json json{{"quantity", table.quantity()}, {"unit", table.unit()},           {"value", evaluation.value},
                         {"sigma", evaluation.sigma},    {"outside", evaluation.outside}, {"kind", table.kind()}};
+    json["no_data"] = evaluation.no_data;
+    json["max_error"] = table.sampling_error();
     json["beyond_points"] = beyond_points(table, point.data());
     for (std::size_t k = 0; k < point.size(); ++k) {
         const std::string& name = table.axes()[k].name;
