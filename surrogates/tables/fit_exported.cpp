@@ -1,5 +1,8 @@
 // Reads back what `export --format csv` wrote: grid, Hermite data and error, without a new fit.
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -8,16 +11,19 @@
 #include "surrogates/tables/fit.h"
 #include "surrogates/tables/force_table_impl.h"
 #include "surrogates/tables/hull.h"
+#include "surrogates/tables/support.h"
 
 namespace underbody::tables {
 
 namespace {
 
-nlohmann::json facts_of(const core::Table& table) {
+/// The line about a quantity.
+nlohmann::json facts_of(const core::Table& table, const std::string& quantity) {
     for (const auto& comment : table.comments) {
         if (comment.find("\"underbody_table\"") != std::string::npos) {
             nlohmann::json facts = nlohmann::json::parse(comment, nullptr, false);
-            if (facts.is_object()) {
+            const auto named = facts.is_object() ? facts.find("quantity") : facts.end();
+            if (facts.is_object() && named != facts.end() && *named == quantity) {
                 return facts;
             }
         }
@@ -52,6 +58,42 @@ std::vector<std::string> slope_columns(const std::string& quantity, const std::v
     return names;
 }
 
+/// What counts as inside: the grid may reach further.
+void set_known_range(std::vector<TableAxis>& axes, const nlohmann::json& facts) {
+    const auto known = facts.find("known");
+    if (known == facts.end()) {
+        return;
+    }
+    const auto ranges = known->get<std::vector<std::array<double, 2>>>();
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        const double rounding = 1e-9 * (axes[k].upper - axes[k].lower);
+        if (k >= ranges.size() || !(ranges[k][0] < ranges[k][1]) || ranges[k][0] < axes[k].lower - rounding ||
+            ranges[k][1] > axes[k].upper + rounding) {
+            throw core::InputError("range", "an exported table has no valid range of its axis " + axes[k].name, {},
+                                   "export it again");
+        }
+        axes[k].lower = ranges[k][0];
+        axes[k].upper = ranges[k][1];
+    }
+}
+
+Support read_support(const nlohmann::json& json, std::size_t axes) {
+    auto lines = json.at("lines").get<std::vector<std::vector<double>>>();
+    auto cells = json.at("has_data").get<std::vector<std::uint8_t>>();
+    std::size_t count = lines.size() == axes ? 1 : 0;
+    for (const auto& x : lines) {
+        const bool ascending = x.size() >= 2 && std::adjacent_find(x.begin(), x.end(), [](double a, double b) {
+                                                    return !(a < b);
+                                                }) == x.end();
+        count *= ascending ? x.size() - 1 : 0;
+    }
+    if (count == 0 || count != cells.size()) {
+        throw core::InputError("parse", "an exported table has lines and cells of its data that do not fit together",
+                               {}, "export it again");
+    }
+    return {std::move(lines), std::move(cells)};
+}
+
 std::shared_ptr<const ForceTable::Impl> taken_back(const nlohmann::json& facts, const core::Table& table, const std::string& quantity, const FitOptions& options) {
     FitOptions named = options;
     named.axes = facts.value("axes", std::vector<std::string>{});
@@ -84,6 +126,10 @@ std::shared_ptr<const ForceTable::Impl> taken_back(const nlohmann::json& facts, 
     const nlohmann::json conditions = facts.value("conditions", nlohmann::json::object());
     for (const auto& [name, value] : conditions.items()) {
         result->constants.emplace_back(name, value.get<double>());
+    }
+    set_known_range(result->axes, facts);
+    if (facts.contains("support")) {
+        result->support = std::make_shared<Support>(read_support(facts["support"], result->axes.size()));
     }
     if (facts.contains("hull")) {
         result->hull = std::make_shared<Hull>(result->axes, facts["hull"].get<std::vector<std::vector<double>>>());
@@ -126,9 +172,9 @@ std::shared_ptr<const ForceTable::Impl> taken_back(const nlohmann::json& facts, 
 }  // namespace
 
 std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, const std::string& quantity, const FitOptions& options) {
-    const nlohmann::json facts = facts_of(table);
+    const nlohmann::json facts = facts_of(table, quantity);
     try {
-        return facts.is_null() || facts.value("quantity", "") != quantity ? nullptr : taken_back(facts, table, quantity, options);
+        return facts.is_null() ? nullptr : taken_back(facts, table, quantity, options);
     } catch (const nlohmann::json::exception& error) {
         throw core::InputError("parse", std::string("the line of an exported table that describes it is damaged: ") + error.what(), {table.source, {}, {}, {}},
                                "export it again");

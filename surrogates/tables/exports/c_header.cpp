@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/file.h"
+#include "core/hash.h"
 #include "core/text.h"
 #include "surrogates/tables/exports/export_grid.h"
 
@@ -43,16 +44,24 @@ Index index_of(const std::vector<double>& x) {
 
 class Writer {
 public:
-    explicit Writer(const ExportGrid& grid) : g_(grid), n_(grid.axes.size()), name_(grid.name), real_(grid.single_precision ? "float" : "double") {}
+    explicit Writer(const ExportGrid& grid)
+        : g_(grid),
+          n_(grid.axes.size()),
+          many_(grid.quantities.size() > 1),
+          name_(grid.name),
+          real_(grid.single_precision ? "float" : "double") {}
 
     std::string text() {
-        head();
         data();
         helpers();
         evaluation();
         shorthands();
-        out_ += "\n#endif\n";
-        return std::move(out_);
+        // Another table has another guard, also under the same name: then a compiler says what is defined twice, and
+        // nothing is left out in silence.
+        std::string content;
+        std::swap(content, out_);
+        head("UNDERBODY_" + upper_name() + "_" + core::content_hash(content).substr(0, 12) + "_H");
+        return out_ + content + "\n#endif\n";
     }
 
 private:
@@ -73,6 +82,15 @@ private:
         const bool small = std::all_of(g_.axes.begin(), g_.axes.end(), [](const ExportAxis& a) { return a.points.size() <= 65535; });
         return small ? "unsigned short" : "unsigned";
     }
+    /// Of an array of one quantity.
+    [[nodiscard]] std::string own(const ExportQuantity& q, const std::string& what) const {
+        return many_ ? identifier(q.name) + "_" + what : what;
+    }
+    /// A member of the result for one quantity.
+    [[nodiscard]] std::string member(const ExportQuantity& q, const std::string& what) const {
+        return "result->" + (many_ ? identifier(q.name) + "." : std::string()) + what;
+    }
+
     template <class Values, class Format>
     void array(const std::string& type, const std::string& name, const Values& values, Format&& format) {
         out_ += "static const " + type + " " + name_ + "_" + name + "[" + std::to_string(values.size()) + "] = {";
@@ -92,7 +110,19 @@ private:
         array(real_, name, values, [this](double v) { return number(v); });
     }
 
-    void head() {
+    /// Coordinates as the controller has them: in single precision neighbours may not become one.
+    [[nodiscard]] std::vector<double> coordinates(std::vector<double> x) const {
+        for (std::size_t i = 0; g_.single_precision && i < x.size(); ++i) {
+            float v = static_cast<float>(x[i]);
+            if (i > 0 && v <= static_cast<float>(x[i - 1])) {
+                v = std::nextafter(static_cast<float>(x[i - 1]), INFINITY);
+            }
+            x[i] = static_cast<double>(v);
+        }
+        return x;
+    }
+
+    void head(const std::string& guard) {
         out_ += "/*\n";
         for (auto line : header_lines(g_)) {
             for (std::size_t at; (at = line.find("*/")) != std::string::npos;) {
@@ -107,55 +137,100 @@ private:
         for (std::size_t k = 0; k < n_; ++k) {
             out_ += (k == 0 ? "" : ", ") + g_.axes[k].name + " [" + g_.axes[k].unit + "]";
         }
-        out_ += "}\n *      or " + name_ + "_value(";
+        out_ += "}\n";
+        const std::string of = many_ ? "_" + identifier(g_.first().name) : "";
+        out_ += " *      or " + name_ + of + "_value(";
         for (std::size_t k = 0; k < n_; ++k) {
             out_ += (k == 0 ? "" : ", ") + identifier(g_.axes[k].name);
         }
         out_ += ") for the value alone.\n * A point that is not a number gives a value that is not a number.\n */\n";
-        const std::string guard = "UNDERBODY_" + upper_name() + "_H";
         out_ += "#ifndef " + guard + "\n#define " + guard + "\n\n";
         out_ += "#define " + upper_name() + "_AXES " + std::to_string(n_) + "\n\n";
         out_ += "typedef " + real_ + " " + name_ + "_real;\n\n";
-        out_ += "typedef struct {\n    " + name_ + "_real value;                /* " + g_.unit + " */\n";
-        out_ += "    " + name_ + "_real slope[" + std::to_string(n_) + "];             /* " + g_.unit + " per unit of each axis */\n";
-        out_ += "    " + name_ + "_real sigma;                /* " + g_.unit + ", one standard deviation */\n";
+        const auto members = [&](const std::string& unit) {
+            out_ += "    " + name_ + "_real value;                /* " + unit + " */\n";
+            out_ += "    " + name_ + "_real slope[" + std::to_string(n_) + "];             /* " + unit +
+                    " per unit of each axis */\n";
+            out_ += "    " + name_ + "_real sigma;                /* " + unit + ", one standard deviation */\n";
+        };
+        if (many_) {
+            out_ += "typedef struct {\n";
+            members("N or N m");
+            out_ += "} " + name_ + "_quantity;\n\n";
+        }
+        out_ += "typedef struct {\n";
+        for (const auto& q : g_.quantities) {
+            if (many_) {
+                out_ += "    " + name_ + "_quantity " + identifier(q.name) + ";   /* " + q.unit + " */\n";
+            } else {
+                members(q.unit);
+            }
+        }
         out_ += "    " + name_ + "_real beyond[" + std::to_string(n_) + "];            /* how far outside each axis, signed; 0 inside */\n";
         out_ += "    int outside;                   /* 1 when the point lies outside the table */\n";
-        out_ += "    int refused;                   /* 1 when it lies outside an axis that refuses this: value and slopes are not numbers then */\n} " + name_ +
-                "_result;\n\n";
+        out_ +=
+            "    int refused;                   /* 1 when it lies outside an axis that refuses this: value and slopes "
+            "are not numbers then */\n";
+        out_ +=
+            "    int no_data;                   /* 1 where no points of the table lie around: outside, or in an empty "
+            "corner of its box */\n} " +
+            name_ + "_result;\n\n";
     }
 
     void data() {
         for (std::size_t k = 0; k < n_; ++k) {
             const std::string id = std::to_string(k);
-            const auto& x = g_.axes[k].points;
+            const auto x = coordinates(g_.axes[k].points);
             out_ += "/* " + g_.axes[k].name + " [" + g_.axes[k].unit + "] */\n";
             reals("x" + id, x);
             const Index index = index_of(x);
             per_unit_.push_back(index.per_unit);
             buckets_.push_back(index.first.size());
             array(index_type(), "first" + id, index.first, [](std::size_t v) { return std::to_string(v); });
-            if (has_cells(k)) {
-                reals("cell" + id, g_.error.cell_error(k));
+            for (const auto& q : g_.quantities) {
+                if (has_cells(q, k)) {
+                    reals(own(q, "cell" + id), q.error.cell_error(k));
+                }
             }
         }
-        out_ += "/* value, slope along axis 0";
-        out_ += n_ > 1 ? ", slope along axis 1, both, ..." : "";
-        out_ += " at every grid point, last axis fastest */\n";
-        reals("data", g_.surface.hermite());
-        if (has_sigma()) {
-            out_ += "/* one standard deviation at every grid point */\n";
-            reals("sigma_data", g_.error.node_sigma());
+        for (const auto& q : g_.quantities) {
+            out_ += "/* " + (many_ ? q.name + ": " : std::string()) + "value, slope along axis 0";
+            out_ += n_ > 1 ? ", slope along axis 1, both, ..." : "";
+            out_ += " at every grid point, last axis fastest */\n";
+            reals(own(q, "data"), q.surface.hermite());
+            if (has_sigma(q)) {
+                out_ += "/* one standard deviation at every grid point */\n";
+                reals(own(q, "sigma_data"), q.error.node_sigma());
+            }
         }
+        support_data();
         out_ += "\n";
     }
 
-    [[nodiscard]] bool has_sigma() const {
-        const auto& sigma = g_.error.node_sigma();
+    /// A bit a cell, the first in the lowest bit.
+    void support_data() {
+        if (g_.support.empty()) {
+            return;
+        }
+        out_ +=
+            "/* where there are points: lines along each axis, and a bit for every cell between them, last axis "
+            "fastest */\n";
+        for (std::size_t k = 0; k < n_; ++k) {
+            reals("known" + std::to_string(k), coordinates(g_.support.lines()[k]));
+        }
+        std::vector<unsigned> bytes((g_.support.has_data().size() + 7) / 8, 0);
+        for (std::size_t i = 0; i < g_.support.has_data().size(); ++i) {
+            bytes[i / 8] |= g_.support.has_data()[i] != 0 ? 1U << i % 8 : 0;
+        }
+        array("unsigned char", "known", bytes, [](unsigned v) { return std::to_string(v); });
+    }
+
+    [[nodiscard]] static bool has_sigma(const ExportQuantity& q) {
+        const auto& sigma = q.error.node_sigma();
         return std::any_of(sigma.begin(), sigma.end(), [](double s) { return s != 0; });
     }
-    [[nodiscard]] bool has_cells(std::size_t k) const {
-        const auto& cells = g_.error.cell_error(k);
+    [[nodiscard]] static bool has_cells(const ExportQuantity& q, std::size_t k) {
+        const auto& cells = q.error.cell_error(k);
         return std::any_of(cells.begin(), cells.end(), [](double s) { return s != 0; });
     }
 
@@ -172,21 +247,40 @@ private:
         out_ += "    w[2] = t * t * (" + three + " - " + two + " * t);\n    w[3] = -h * t * t * r;\n";
         out_ += "    d[2] = " + six + " * t * r / h;\n    d[0] = -d[2];\n    d[1] = r * (" + one + " - " + three + " * t);\n    d[3] = t * (" + three +
                 " * t - " + two + ");\n}\n\n";
+        if (!g_.support.empty()) {
+            out_ += "/* cell between ascending lines; beyond them the nearest */\nstatic inline unsigned " + name_ +
+                    "_between(const " + name_ + "_real* x, unsigned cells, " + name_ +
+                    "_real v) {\n    unsigned low = 0, high = cells;\n    while (high - low > 1u) {\n"
+                    "        const unsigned middle = (low + high) / 2u;\n        if (v >= x[middle]) {\n            "
+                    "low = middle;\n        } else {\n"
+                    "            high = middle;\n        }\n    }\n    return low;\n}\n\n";
+        }
+        if (many_) {
+            sum_function();
+        }
     }
 
     void evaluation() {
         const std::string real = name_ + "_real";
         const std::string n = std::to_string(n_);
         out_ += "/* Everything at a point. */\nstatic inline void " + name_ + "_at(const " + real + "* point, " + name_ + "_result* result) {\n";
-        out_ += "    " + real + " w[" + n + "][4], d[" + n + "][4], t[" + n + "], sigma = " + number(0) + ";\n";
+        out_ += "    " + real + " w[" + n + "][4], d[" + n + "][4], t[" + n + "], over[" + n + "];\n";
         out_ += "    unsigned cell[" + n + "];\n    int held[" + n + "];\n";
         out_ += "    result->outside = 0;\n";
         for (std::size_t k = 0; k < n_; ++k) {
             axis_part(k);
         }
-        sum_part();
-        sigma_part();
+        for (const auto& q : g_.quantities) {
+            if (many_) {
+                out_ += "    " + name_ + "_sum(" + name_ + "_" + own(q, "data") + ", cell, w, d, &" +
+                        member(q, "value") + ", " + member(q, "slope") + ");\n";
+            } else {
+                sum_part(name_ + "_data", "result->value", "result->slope");
+            }
+            sigma_part(q);
+        }
         outside_part();
+        no_data_part();
         out_ += "}\n\n";
     }
 
@@ -194,14 +288,22 @@ private:
         const std::string real = name_ + "_real";
         const std::string id = std::to_string(k);
         const std::string x = name_ + "_x" + id;
-        const std::size_t cells = g_.axes[k].points.size() - 1;
+        const ExportAxis& axis = g_.axes[k];
+        const std::size_t cells = axis.points.size() - 1;
         const std::string last = x + "[" + std::to_string(cells) + "]";
         out_ += "    {\n        const " + real + " v = point[" + id + "];\n        " + real + " p = v;\n";
-        out_ += "        result->beyond[" + id + "] = " + number(0) + ";\n        held[" + id + "] = 0;\n";
+        out_ += "        result->beyond[" + id + "] = " + number(0) + ";\n        over[" + id + "] = " + number(0) +
+                ";\n        held[" + id + "] = 0;\n";
         out_ += "        if (!(v >= " + x + "[0])) {\n            p = " + x + "[0];\n            held[" + id + "] = 1;\n";
-        out_ += "            result->beyond[" + id + "] = v - p;\n            result->outside = 1;\n";
+        out_ += "            over[" + id + "] = v - p;\n";
         out_ += "        } else if (v > " + last + ") {\n            p = " + last + ";\n            held[" + id + "] = 1;\n";
-        out_ += "            result->beyond[" + id + "] = v - p;\n            result->outside = 1;\n        }\n";
+        out_ += "            over[" + id + "] = v - p;\n        }\n";
+        const std::string lower = axis.ends_with_range() ? x + "[0]" : number(axis.lower),
+                          upper = axis.ends_with_range() ? last : number(axis.upper);
+        out_ += "        if (!(v >= " + lower + ")) {\n            result->beyond[" + id + "] = v - " + lower +
+                ";\n            result->outside = 1;\n";
+        out_ += "        } else if (v > " + upper + ") {\n            result->beyond[" + id + "] = v - " + upper +
+                ";\n            result->outside = 1;\n        }\n";
         out_ += "        cell[" + id + "] = " + name_ + "_cell(" + x + ", " + name_ + "_first" + id + ", " + std::to_string(cells) + "u, " +
                 std::to_string(buckets_[k]) + "u, " + number(per_unit_[k]) + ", p);\n";
         out_ += "        {\n            const " + real + " h = " + x + "[cell[" + id + "] + 1u] - " + x + "[cell[" + id + "]];\n";
@@ -209,78 +311,98 @@ private:
         out_ += "            t[" + id + "] = (p - " + x + "[cell[" + id + "]]) / h;\n            if (!(v >= " + x + "[0]) && !(v < " + x + "[0])) {\n                t[" + id +
                 "] = v - v;\n            }\n";
         out_ += "            " + name_ + "_weights(h, t[" + id + "], w[" + id + "], d[" + id + "]);\n";
-        if (g_.axes[k].range == RangePolicy::extrapolate) {
+        if (axis.range == RangePolicy::extrapolate) {
             // The functions of the end cell go on along their tangents.
-            out_ += "            if (held[" + id + "]) {\n                unsigned m;\n                for (m = 0; m < 4u; ++m) {\n                    w[" + id +
-                    "][m] += result->beyond[" + id + "] * d[" + id + "][m];\n                }\n            }\n";
+            out_ += "            if (held[" + id +
+                    "]) {\n                unsigned m;\n                for (m = 0; m < 4u; ++m) {\n                   "
+                    " w[" +
+                    id + "][m] += over[" + id + "] * d[" + id + "][m];\n                }\n            }\n";
         }
         out_ += "        }\n    }\n";
     }
 
-    void sum_part() {
+    /// The sum of one quantity, for all of them.
+    void sum_function() {
+        const std::string real = name_ + "_real";
+        out_ += "static inline void " + name_ + "_sum(const " + real + "* data, const unsigned* cell, " + real +
+                " (*w)[4], " + real + " (*d)[4], " + real + "* value, " + real + "* slope) {\n";
+        sum_part("data", "*value", "slope");
+        out_ += "}\n\n";
+    }
+
+    void sum_part(const std::string& data, const std::string& value, const std::string& slope) {
         const std::string real = name_ + "_real";
         if (n_ == 1) {
-            out_ += "    {\n        const " + real + "* a = " + name_ + "_data + 2u * cell[0];\n";
-            out_ += "        result->value = w[0][0] * a[0] + w[0][1] * a[1] + w[0][2] * a[2] + w[0][3] * a[3];\n";
-            out_ += "        result->slope[0] = d[0][0] * a[0] + d[0][1] * a[1] + d[0][2] * a[2] + d[0][3] * a[3];\n    }\n";
+            out_ += "    {\n        const " + real + "* a = " + data + " + 2u * cell[0];\n";
+            out_ += "        " + value + " = w[0][0] * a[0] + w[0][1] * a[1] + w[0][2] * a[2] + w[0][3] * a[3];\n";
+            out_ += "        " + slope +
+                    "[0] = d[0][0] * a[0] + d[0][1] * a[1] + d[0][2] * a[2] + d[0][3] * a[3];\n    }\n";
             return;
         }
         if (n_ == 2) {
             const std::string columns = std::to_string(g_.axes[1].points.size()) + "u";
-            out_ += "    {\n        const " + real + "* a = " + name_ + "_data + 4u * (cell[0] * " + columns + " + cell[1]);\n";
+            out_ +=
+                "    {\n        const " + real + "* a = " + data + " + 4u * (cell[0] * " + columns + " + cell[1]);\n";
             out_ += "        const " + real + "* b = a + 4u * " + columns + ";\n        " + real + " g[4], s[4];\n        unsigned i;\n";
             out_ += "        /* along axis 0, for value and axis-1 slope at both ends of axis 1 */\n";
             out_ += "        for (i = 0; i < 4u; ++i) {\n            const unsigned j = 2u * i;\n";
             out_ += "            g[i] = w[0][0] * a[j] + w[0][1] * a[j + 1u] + w[0][2] * b[j] + w[0][3] * b[j + 1u];\n";
             out_ += "            s[i] = d[0][0] * a[j] + d[0][1] * a[j + 1u] + d[0][2] * b[j] + d[0][3] * b[j + 1u];\n        }\n";
-            out_ += "        result->value = w[1][0] * g[0] + w[1][1] * g[1] + w[1][2] * g[2] + w[1][3] * g[3];\n";
-            out_ += "        result->slope[0] = w[1][0] * s[0] + w[1][1] * s[1] + w[1][2] * s[2] + w[1][3] * s[3];\n";
-            out_ += "        result->slope[1] = d[1][0] * g[0] + d[1][1] * g[1] + d[1][2] * g[2] + d[1][3] * g[3];\n    }\n";
+            out_ += "        " + value + " = w[1][0] * g[0] + w[1][1] * g[1] + w[1][2] * g[2] + w[1][3] * g[3];\n";
+            out_ += "        " + slope + "[0] = w[1][0] * s[0] + w[1][1] * s[1] + w[1][2] * s[2] + w[1][3] * s[3];\n";
+            out_ += "        " + slope +
+                    "[1] = d[1][0] * g[0] + d[1][1] * g[1] + d[1][2] * g[2] + d[1][3] * g[3];\n    }\n";
             return;
         }
         const std::string n = std::to_string(n_) + "u";
         const std::string width = std::to_string(std::size_t{1} << n_) + "u";
-        out_ += "    {\n        unsigned corner, mask, k, j;\n        result->value = " + number(0) + ";\n";
-        out_ += "        for (j = 0; j < " + n + "; ++j) {\n            result->slope[j] = " + number(0) + ";\n        }\n";
+        out_ += "    {\n        unsigned corner, mask, k, j;\n        " + value + " = " + number(0) + ";\n";
+        out_ +=
+            "        for (j = 0; j < " + n + "; ++j) {\n            " + slope + "[j] = " + number(0) + ";\n        }\n";
         out_ += "        for (corner = 0; corner < " + width + "; ++corner) {\n            unsigned node = 0;\n            const " + real + "* a;\n";
         for (std::size_t k = 0; k < n_; ++k) {
             out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" + std::to_string(k) + "] + (corner >> " +
                     std::to_string(k) + " & 1u);\n";
         }
-        out_ += "            a = " + name_ + "_data + " + width + " * node;\n";
+        out_ += "            a = " + data + " + " + width + " * node;\n";
         out_ += "            for (mask = 0; mask < " + width + "; ++mask) {\n";
         out_ += "                " + real + " product = a[mask];\n";
         out_ += "                for (k = 0; k < " + n + "; ++k) {\n                    product *= w[k][2u * (corner >> k & 1u) + (mask >> k & 1u)];\n                }\n";
-        out_ += "                result->value += product;\n                for (j = 0; j < " + n + "; ++j) {\n                    " + real + " part = a[mask];\n";
+        out_ += "                " + value + " += product;\n                for (j = 0; j < " + n +
+                "; ++j) {\n                    " + real + " part = a[mask];\n";
         out_ += "                    for (k = 0; k < " + n + "; ++k) {\n                        part *= (k == j ? d : w)[k][2u * (corner >> k & 1u) + (mask >> k & 1u)];\n";
-        out_ += "                    }\n                    result->slope[j] += part;\n                }\n            }\n        }\n    }\n";
+        out_ += "                    }\n                    " + slope +
+                "[j] += part;\n                }\n            }\n        }\n    }\n";
     }
 
-    void sigma_part() {
+    void sigma_part(const ExportQuantity& q) {
         const std::string real = name_ + "_real";
         const std::string one = number(1);
-        if (has_sigma()) {
-            out_ += "    {\n        unsigned corner;\n        for (corner = 0; corner < " + std::to_string(std::size_t{1} << n_) + "u; ++corner) {\n";
+        out_ += "    {\n        " + real + " sigma = " + number(0) + ";\n";
+        if (has_sigma(q)) {
+            out_ += "        unsigned corner;\n        for (corner = 0; corner < " +
+                    std::to_string(std::size_t{1} << n_) + "u; ++corner) {\n";
             out_ += "            unsigned node = 0;\n            " + real + " weight = " + one + ";\n";
             for (std::size_t k = 0; k < n_; ++k) {
                 const std::string id = std::to_string(k);
                 out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" + id + "] + (corner >> " + id + " & 1u);\n";
                 out_ += "            weight *= (corner >> " + id + " & 1u) ? t[" + id + "] : " + one + " - t[" + id + "];\n";
             }
-            out_ += "            sigma += weight * " + name_ + "_sigma_data[node];\n        }\n    }\n";
+            out_ += "            sigma += weight * " + name_ + "_" + own(q, "sigma_data") + "[node];\n        }\n";
         }
         for (std::size_t k = 0; k < n_; ++k) {
             const std::string id = std::to_string(k);
-            if (has_cells(k)) {
-                out_ += "    sigma += " + name_ + "_cell" + id + "[cell[" + id + "]] * " + number(4) + " * t[" + id + "] * (" + one + " - t[" + id + "]);\n";
+            if (has_cells(q, k)) {
+                out_ += "        sigma += " + name_ + "_" + own(q, "cell" + id) + "[cell[" + id + "]] * " + number(4) +
+                        " * t[" + id + "] * (" + one + " - t[" + id + "]);\n";
             }
-            const auto& growth = g_.error.growth(k);
+            const auto& growth = q.error.growth(k);
             if (growth[0] != 0 || growth[1] != 0) {
-                out_ += "    sigma += result->beyond[" + id + "] * (result->beyond[" + id + "] < " + number(0) + " ? " + number(-growth[0]) + " : " + number(growth[1]) +
-                        ");\n";
+                out_ += "        sigma += over[" + id + "] * (over[" + id + "] < " + number(0) + " ? " +
+                        number(-growth[0]) + " : " + number(growth[1]) + ");\n";
             }
         }
-        out_ += "    result->sigma = sigma;\n";
+        out_ += "        " + member(q, "sigma") + " = sigma;\n    }\n";
     }
 
     void outside_part() {
@@ -289,48 +411,73 @@ private:
             const std::string id = std::to_string(k);
             const RangePolicy range = g_.axes[k].range;
             if (range == RangePolicy::clamp) {
-                out_ += "    if (held[" + id + "]) {\n        result->slope[" + id + "] = " + number(0) + ";\n    }\n";
+                out_ += "    if (held[" + id + "]) {\n";
+                for (const auto& q : g_.quantities) {
+                    out_ += "        " + member(q, "slope") + "[" + id + "] = " + number(0) + ";\n";
+                }
+                out_ += "    }\n";
             } else if (range == RangePolicy::refuse) {
-                refused += (refused.empty() ? "held[" : " || held[") + id + "]";
+                const std::string beyond = "result->beyond[" + id + "]";
+                refused += (refused.empty() ? "!(" : " || !(") + beyond + " >= " + number(0) + " && " + beyond +
+                           " <= " + number(0) + ")";
             }
         }
-        out_ += "    result->refused = " + (refused.empty() ? "0" : refused) + ";\n";
+        out_ += "    result->refused = " + (refused.empty() ? "0" : "(" + refused + ") ? 1 : 0") + ";\n";
         if (!refused.empty()) {
-            out_ += "    if (result->refused) {\n        const " + name_ + "_real zero = " + number(0) + ";\n        result->value = zero / zero;\n";
-            for (std::size_t k = 0; k < n_; ++k) {
-                out_ += "        result->slope[" + std::to_string(k) + "] = result->value;\n";
+            out_ += "    if (result->refused) {\n        const " + name_ + "_real zero = " + number(0) + ";\n";
+            for (const auto& q : g_.quantities) {
+                out_ += "        " + member(q, "value") + " = zero / zero;\n";
+                for (std::size_t k = 0; k < n_; ++k) {
+                    out_ +=
+                        "        " + member(q, "slope") + "[" + std::to_string(k) + "] = " + member(q, "value") + ";\n";
+                }
             }
             out_ += "    }\n";
         }
-        if (std::all_of(g_.axes.begin(), g_.axes.end(), [](const ExportAxis& a) { return a.range == RangePolicy::extrapolate; })) {
-            out_ += "    (void)held;\n";
+        out_ += "    (void)held;\n    (void)over;\n";
+    }
+
+    void no_data_part() {
+        out_ += "    result->no_data = result->outside;\n";
+        if (g_.support.empty()) {
+            return;
         }
+        out_ += "    {\n        unsigned bit = 0;\n";
+        for (std::size_t k = 0; k < n_; ++k) {
+            const std::string id = std::to_string(k), cells = std::to_string(g_.support.lines()[k].size() - 1) + "u";
+            out_ += "        bit = bit * " + cells + " + " + name_ + "_between(" + name_ + "_known" + id + ", " +
+                    cells + ", point[" + id + "]);\n";
+        }
+        out_ += "        if (((unsigned)" + name_ +
+                "_known[bit >> 3] >> (bit & 7u) & 1u) == 0u) {\n            result->no_data = 1;\n        }\n    }\n";
     }
 
     void shorthands() {
         std::string parameters;
-        std::string list;
+        std::string fill;
         for (std::size_t k = 0; k < n_; ++k) {
             const std::string id = identifier(g_.axes[k].name);
             parameters += (k == 0 ? "" : ", ") + name_ + "_real " + id;
-            list += (k == 0 ? "" : ", ") + id;
+            fill += "    point[" + std::to_string(k) + "] = " + id + ";\n";
         }
-        const std::string fill = [&] {
-            std::string text;
-            for (std::size_t k = 0; k < n_; ++k) {
-                text += "    point[" + std::to_string(k) + "] = " + identifier(g_.axes[k].name) + ";\n";
-            }
-            return text;
-        }();
         const std::string begin = "    " + name_ + "_real point[" + std::to_string(n_) + "];\n    " + name_ + "_result result;\n" + fill + "    " + name_ +
                                   "_at(point, &result);\n";
-        out_ += "static inline " + name_ + "_real " + name_ + "_value(" + parameters + ") {\n" + begin + "    return result.value;\n}\n\n";
-        out_ += "static inline " + name_ + "_real " + name_ + "_sigma(" + parameters + ") {\n" + begin + "    return result.sigma;\n}\n\n";
-        out_ += "static inline int " + name_ + "_outside(" + parameters + ") {\n" + begin + "    return result.outside;\n}\n";
+        for (const auto& q : g_.quantities) {
+            const std::string of = many_ ? "_" + identifier(q.name) : "", inner = many_ ? identifier(q.name) + "." : "";
+            out_ += "static inline " + name_ + "_real " + name_ + of + "_value(" + parameters + ") {\n" + begin +
+                    "    return result." + inner + "value;\n}\n\n";
+            out_ += "static inline " + name_ + "_real " + name_ + of + "_sigma(" + parameters + ") {\n" + begin +
+                    "    return result." + inner + "sigma;\n}\n\n";
+        }
+        out_ += "static inline int " + name_ + "_outside(" + parameters + ") {\n" + begin +
+                "    return result.outside;\n}\n\n";
+        out_ += "static inline int " + name_ + "_no_data(" + parameters + ") {\n" + begin +
+                "    return result.no_data;\n}\n";
     }
 
     const ExportGrid& g_;
     std::size_t n_;
+    bool many_;
     std::string name_;
     std::string real_;
     std::string out_;
@@ -340,8 +487,12 @@ private:
 
 }  // namespace
 
-void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& /*result*/) {
+void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result) {
     core::write_file(path, Writer(grid).text());
+    if (grid.self_test) {
+        write_c_self_test(grid, path);
+        result.files.push_back(c_self_test(path));
+    }
 }
 
 }  // namespace underbody::tables

@@ -73,6 +73,11 @@ const std::vector<ExportFormat>& export_formats() {
 
 ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path, const ExportOptions& options,
                           core::Progress& progress) {
+    return export_tables({table}, format, path, options, progress);
+}
+
+ExportResult export_tables(const std::vector<ForceTable>& tables, const std::string& format,
+                           const std::filesystem::path& path, const ExportOptions& options, core::Progress& progress) {
     const auto found = std::find_if(exporters().begin(), exporters().end(), [&](const Exporter& e) { return e.format.name == format; });
     if (found == exporters().end()) {
         std::vector<std::string> names;
@@ -81,19 +86,35 @@ ExportResult export_table(const ForceTable& table, const std::string& format, co
         }
         throw core::UsageError("format", "there is no export format '" + format + "'", {}, core::did_you_mean(format, names));
     }
-    if (table.axes().size() > found->most_axes) {
-        throw core::UsageError("format", "the format " + format + " takes at most " + std::to_string(found->most_axes) + " axes, this table has " + std::to_string(table.axes().size()),
+    const std::size_t axes = tables.front().axes().size();
+    if (axes > found->most_axes) {
+        throw core::UsageError("format",
+                               "the format " + format + " takes at most " + std::to_string(found->most_axes) +
+                                   " axes, this table has " + std::to_string(axes),
                                {}, "hold one of them: select rows with --where");
     }
-    check_path(path, table, options.overwrite);
-    if (found->beside != nullptr) {
-        check_path(found->beside(path), table, options.overwrite);
+    for (const ForceTable& table : tables) {
+        check_path(path, table, options.overwrite);
+        if (found->beside != nullptr) {
+            check_path(found->beside(path), table, options.overwrite);
+        }
+    }
+    if (options.self_test && format != "c") {
+        throw core::UsageError("format", "a self-test is written beside a C header, not beside " + format);
+    }
+    if (options.self_test) {
+        check_path(c_self_test(path), tables.front(), options.overwrite);
     }
     progress.report(0, "export");
-    const ExportGrid grid = export_grid(table, options, found->straight, progress);
+    ExportOptions named = options;
+    named.name = identifier(options.name.empty() ? path.stem().string() : options.name);
+    const ExportGrid grid = export_grid(tables, named, found->straight, progress);
     ExportResult result;
     result.files.push_back(path);
-    result.error = grid.thinning_error;
+    result.error = grid.first().difference;
+    for (const auto& quantity : grid.quantities) {
+        result.errors.emplace_back(quantity.name, quantity.difference);
+    }
     result.remarks = grid.remarks;
     for (const auto& axis : grid.axes) {
         result.grid.push_back(axis.points.size());

@@ -3,7 +3,9 @@
 // A new format is one file in this folder and one line in `exporters()` (export.cpp).
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,18 +22,24 @@ enum class Frame {
 };
 
 struct ExportOptions {
-    std::string name;                   ///< prefix of C identifiers, model name; empty: the quantity
+    std::string name;                   ///< prefix of C identifiers, model name; empty: that of the file
     bool single_precision = false;      ///< C: float instead of double
     Frame frame = Frame::up;
     double max_error = 0;               ///< > 0: thin the grid to the smallest that stays within this share of the force's range
     std::vector<std::pair<std::string, std::size_t>> points;  ///< axis -> that many evenly spaced points
     bool overwrite = false;             ///< also files that this program did not write
+    bool self_test = false;  ///< C: beside the header NAME_test.c, a program that compares it with what this program
+                             ///< says at many points
+    /// Where the forces act: from the centre of gravity to the centre of the base, x forward, y starboard, z down, m.
+    /// For formats that apply them to a body.
+    std::optional<std::array<double, 3>> lever;
 };
 
 struct ExportResult {
     std::vector<std::filesystem::path> files;  ///< the first is the one asked for
     std::vector<std::size_t> grid;             ///< points an axis
-    double error = 0;                          ///< largest difference from the table in its range, in its unit (0: none)
+    double error = 0;  ///< largest difference of the first quantity from the table in its range, in its unit (0: none)
+    std::vector<std::pair<std::string, double>> errors;  ///< of every quantity, each in its unit
     core::Problems remarks;
 };
 
@@ -46,5 +54,9 @@ const std::vector<ExportFormat>& export_formats();
 /// when the path holds something this program did not write, or the file that the table was made of; core::SystemError when it cannot be written. Whole files by rename.
 ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path,
                           const ExportOptions& options = {}, core::Progress& progress = core::Progress::none());
+/// Several forces and moments in one file, on one grid, looked up by one call. At least one; the same axes.
+ExportResult export_tables(const std::vector<ForceTable>& tables, const std::string& format,
+                           const std::filesystem::path& path, const ExportOptions& options = {},
+                           core::Progress& progress = core::Progress::none());
 
 }  // namespace underbody::tables

@@ -113,33 +113,63 @@ std::vector<std::string> other_constants(const ForceTable& table) {
     return lines;
 }
 
-void write_origin(ExportGrid& grid, const ForceTable& table, const ExportOptions& options) {
-    auto& lines = grid.origin;
-    lines.push_back("Force table by Underbody: " + grid.quantity + " [" + grid.unit + "]" + (grid.meaning.empty() ? "" : ", " + grid.meaning));
+std::string made_from(const ForceTable& table) {
     std::string source = "Made from " + (table.source().empty() ? std::string("points in memory") : table.source());
     std::error_code ignored;
     if (!table.source().empty() && std::filesystem::is_regular_file(table.source(), ignored)) {
         source += " (content " + core::content_hash_of_file(table.source()) + ")";
     }
-    lines.push_back(source + ": " + std::to_string(table.points().rows()) + " points, fitted as " + table.kind());
+    return source + (table.sampling_error() > 0 || table.kind() == "force of a model"
+                         ? ": the forces that this model simulates"
+                         : ": " + std::to_string(table.points().rows()) + " points, fitted as " + table.kind());
+}
+
+void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const ExportOptions& options) {
+    auto& lines = grid.origin;
+    std::string title = "Force table by Underbody: ";
+    for (const auto& q : grid.quantities) {
+        title += (&q == &grid.quantities.front() ? "" : "; ") + q.name + " [" + q.unit + "]" +
+                 (q.meaning.empty() ? "" : ", " + q.meaning);
+    }
+    lines.push_back(title);
+    std::vector<std::string> sources;
+    for (const ForceTable& table : tables) {
+        const std::string line = made_from(table);
+        if (std::find(sources.begin(), sources.end(), line) == sources.end()) {
+            sources.push_back(line);
+            lines.push_back(line);
+        }
+    }
     for (const auto& axis : grid.axes) {
-        lines.push_back("Axis " + axis.name + " [" + axis.unit + "]: " + core::format_number(axis.points.front(), 9) + " to " +
-                        core::format_number(axis.points.back(), 9) + ", " + std::to_string(axis.points.size()) + " points");
+        lines.push_back("Axis " + axis.name + " [" + axis.unit + "]: " + core::format_number(axis.lower, 9) + " to " +
+                        core::format_number(axis.upper, 9) + ", " + std::to_string(axis.points.size()) + " points" +
+                        (axis.ends_with_range() ? ""
+                                                : " from " + core::format_number(axis.points.front(), 9) + " to " +
+                                                      core::format_number(axis.points.back(), 9) +
+                                                      ", because some of the tables reach further"));
     }
     for (const auto& [name, value] : grid.conditions) {
         const auto* known = core::find_quantity(name);
         lines.push_back("Holds for " + name + " = " + core::format_number(value, 9) + (known != nullptr ? " " + known->unit : ""));
     }
-    for (const auto& line : other_constants(table)) {
+    for (const auto& line : other_constants(tables.front())) {
         lines.push_back(line);
     }
-    if (!grid.hull.empty()) {
-        lines.push_back("The points do not fill the box of the axes: where none lie around, the value is an extrapolation, and sigma says how far to trust it");
+    if (!grid.support.empty()) {
+        lines.push_back(
+            "The points do not fill the box of the axes: where none lie around, the value is an extrapolation, sigma "
+            "says how far to trust it, and no_data is 1");
     }
     lines.push_back(options.frame == Frame::ned ? "Frame: body axes, x forward, y starboard, z down (NED); pitch and pitch_moment nose up"
                                                 : "Frame: lift positive up, drag positive against the motion; pitch and pitch_moment nose up");
-    if (grid.thinning_error > 0) {
-        lines.push_back("Differs from the full table by at most " + core::format_number(grid.thinning_error, 3) + " " + grid.unit);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const auto& q = grid.quantities[i];
+        if (q.difference > 0) {
+            const std::string what = tables.size() > 1 ? ": " + q.name : "";
+            lines.push_back((tables[i].sampling_error() > 0 ? "Differs from what the model simulates by at most "
+                                                            : "Differs from the full table by at most ") +
+                            core::format_number(q.difference, 3) + " " + q.unit + what);
+        }
     }
     lines.push_back("sigma is one standard deviation: errors of the points and of the fit between them; 0 where none are known");
 }
@@ -152,7 +182,7 @@ std::string identifier(const std::string& text) {
         const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128;
         result += plain ? c : '_';
     }
-    if (result.empty() || std::isdigit(static_cast<unsigned char>(result.front())) != 0) {
+    if (result.empty() || std::isalpha(static_cast<unsigned char>(result.front())) == 0) {
         result.insert(result.begin(), 't');
     }
     return result;
@@ -222,69 +252,168 @@ void add_thinning(ErrorModel& error, const CubicGrid& full, const Resampled& thi
 
 }  // namespace
 
-ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, bool straight, core::Progress& progress) {
-    if (!(options.max_error >= 0) || options.max_error >= 1) {
-        throw core::UsageError("range", "the largest error is a share of the force's range between 0 and 1, such as 0.5%");
-    }
+namespace {
+
+/// One table on the grid that the options ask for, in the frame of the table.
+struct Chosen {
+    Resampled surface;
+    ErrorModel error;
+};
+
+Chosen chosen(const ForceTable& table, const ExportOptions& options, bool straight, core::Problems& remarks,
+              core::Progress& progress) {
     const ForceTable::Impl& full = table.impl();
-    ExportGrid grid;
-    grid.single_precision = options.single_precision;
-    grid.quantity = full.quantity;
-    grid.unit = full.unit;
-    if (const auto* known = core::find_quantity(full.quantity)) {
-        grid.meaning = known->meaning;
-    }
-    Resampled chosen = chosen_surface(table, options, straight, grid.remarks, progress);
-    grid.thinning_error = chosen.difference;
-    ErrorModel error = straight ? full.error.straightened(chosen.grid.points(), chosen.difference) : full.error.resampled(chosen.grid.points());
+    Resampled surface = chosen_surface(table, options, straight, remarks, progress);
+    ErrorModel error = straight ? full.error.straightened(surface.grid.points(), surface.difference)
+                                : full.error.resampled(surface.grid.points());
     if (!straight) {
-        add_thinning(error, full.surface, chosen, progress);
+        add_thinning(error, full.surface, surface, progress);
     }
-    unsigned mirrored = 0;
-    double factor = 1;
-    std::vector<std::string> names;
-    for (const auto& axis : full.axes) {
-        names.push_back(axis.name);
-    }
-    if (options.frame == Frame::ned) {
-        for (const auto& t : turned_quantities) {
-            if (grid.quantity == t.up) {
-                factor = t.ned == std::string("y_force") ? 1 : -1;
-                grid.quantity = t.ned;
-                grid.meaning = t.meaning;
-                break;
-            }
-        }
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            for (const auto& t : turned_axes) {
-                if (names[k] == t.up) {
-                    names[k] = t.ned;
-                    mirrored |= 1U << k;
-                    break;
+    return {std::move(surface), std::move(error)};
+}
+
+/// All on the lines of all.
+void bring_together(std::vector<Chosen>& all, const std::vector<ForceTable>& tables) {
+    std::vector<std::vector<double>> lines = all.front().surface.grid.points();
+    for (std::size_t i = 1; i < all.size(); ++i) {
+        const auto points = all[i].surface.grid.points();
+        bool same = points.size() == lines.size();
+        for (std::size_t k = 0; same && k < lines.size(); ++k) {
+            const double span = lines[k].back() - lines[k].front();
+            same = tables[i].axes()[k].name == tables[0].axes()[k].name &&
+                   std::abs(points[k].front() - lines[k].front()) < 1e-9 * span &&
+                   std::abs(points[k].back() - lines[k].back()) < 1e-9 * span;
+            std::vector<double> both;
+            std::merge(lines[k].begin(), lines[k].end(), points[k].begin(), points[k].end(), std::back_inserter(both));
+            std::vector<double> apart{both.front()};
+            for (const double x : both) {
+                if (x > apart.back() + 1e-9 * span) {
+                    apart.push_back(x);
                 }
             }
+            apart.back() = lines[k].back();
+            lines[k] = std::move(apart);
+        }
+        if (!same) {
+            throw core::UsageError("axis",
+                                   tables[0].quantity() + " and " + tables[i].quantity() +
+                                       " have not the same axes and ranges: they cannot share a grid",
+                                   {}, "name the axes and hold the others, or export them one by one");
         }
     }
-    grid.surface = factor == 1 && mirrored == 0 ? std::move(chosen.grid) : chosen.grid.transformed(factor, mirrored);
-    grid.error = mirrored_error(error, grid.surface, mirrored);
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        grid.axes.push_back({names[k], full.axes[k].unit, grid.surface.axis(k).points(), full.axes[k].range});
+    for (auto& one : all) {
+        if (all.size() > 1 && one.surface.grid.points() != lines) {
+            one.surface.grid = one.surface.grid.resampled(lines);
+            one.error = one.error.resampled(lines);
+        }
     }
-    for (const auto& [name, value] : table.conditions()) {
-        const auto turned = std::find_if(std::begin(turned_axes), std::end(turned_axes), [&](const Turned& t) { return name == t.up; });
-        const bool turns = options.frame == Frame::ned && turned != std::end(turned_axes);
-        grid.conditions.emplace_back(turns ? turned->ned : name, turns ? -value : value);
+}
+
+/// What the frame does to names and signs.
+struct Turn {
+    std::vector<std::string> axis_names;
+    unsigned mirrored = 0;
+};
+
+Turn turn_of(const ForceTable& table, Frame frame) {
+    Turn turn;
+    for (const auto& axis : table.axes()) {
+        const auto turned = std::find_if(std::begin(turned_axes), std::end(turned_axes),
+                                         [&](const Turned& t) { return axis.name == t.up; });
+        const bool turns = frame == Frame::ned && turned != std::end(turned_axes);
+        turn.mirrored |= turns ? 1U << turn.axis_names.size() : 0;
+        turn.axis_names.push_back(turns ? turned->ned : axis.name);
     }
-    if (full.hull) {
-        grid.hull = full.hull->points();
+    return turn;
+}
+
+ExportQuantity quantity_of(const ForceTable& table, Chosen chosen, const ExportOptions& options, unsigned mirrored) {
+    ExportQuantity quantity{
+        table.quantity(), table.unit(), "", {}, {}, chosen.surface.difference + table.sampling_error()};
+    if (const auto* known = core::find_quantity(table.quantity())) {
+        quantity.meaning = known->meaning;
+    }
+    double factor = 1;
+    for (const auto& t : turned_quantities) {
+        if (options.frame == Frame::ned && quantity.name == t.up) {
+            factor = t.ned == std::string("y_force") ? 1 : -1;
+            quantity.name = t.ned;
+            quantity.meaning = t.meaning;
+            break;
+        }
+    }
+    quantity.surface = factor == 1 && mirrored == 0 ? std::move(chosen.surface.grid)
+                                                    : chosen.surface.grid.transformed(factor, mirrored);
+    quantity.error = mirrored_error(chosen.error, quantity.surface, mirrored);
+    return quantity;
+}
+
+void add_axes(ExportGrid& grid, const std::vector<ForceTable>& tables, const Turn& turn) {
+    for (std::size_t k = 0; k < turn.axis_names.size(); ++k) {
+        ExportAxis axis{turn.axis_names[k],
+                        tables[0].axes()[k].unit,
+                        grid.first().surface.axis(k).points(),
+                        tables[0].axes()[k].range,
+                        -INFINITY,
+                        INFINITY};
+        for (const ForceTable& table : tables) {
+            const TableAxis& own = table.axes()[k];
+            const bool turns = (turn.mirrored >> k & 1) != 0;
+            axis.lower = std::max(axis.lower, turns ? -own.upper : own.lower);
+            axis.upper = std::min(axis.upper, turns ? -own.lower : own.upper);
+        }
+        grid.axes.push_back(std::move(axis));
+    }
+}
+
+void add_data_support(ExportGrid& grid, const std::vector<ForceTable>& tables, unsigned mirrored) {
+    for (const ForceTable& table : tables) {
+        if (const Support* support = table.impl().data_support()) {
+            grid.support = grid.support.both(support->mirrored(mirrored));
+        }
+    }
+    if (tables.size() == 1 && tables[0].impl().hull) {
+        grid.hull = tables[0].impl().hull->points();
         for (auto& point : grid.hull) {
             for (std::size_t k = 0; k < point.size(); ++k) {
                 point[k] = (mirrored >> k & 1) != 0 ? -point[k] : point[k];
             }
         }
     }
-    grid.name = identifier(options.name.empty() ? grid.quantity : options.name);
-    write_origin(grid, table, options);
+}
+
+}  // namespace
+
+ExportGrid export_grid(const std::vector<ForceTable>& tables, const ExportOptions& options, bool straight,
+                       core::Progress& progress) {
+    if (!(options.max_error >= 0) || options.max_error >= 1) {
+        throw core::UsageError("range",
+                               "the largest error is a share of the force's range between 0 and 1, such as 0.5%");
+    }
+    ExportGrid grid;
+    grid.name = options.name;
+    grid.frame = options.frame;
+    grid.lever = options.lever;
+    grid.single_precision = options.single_precision;
+    grid.self_test = options.self_test;
+    std::vector<Chosen> all;
+    for (const ForceTable& table : tables) {
+        all.push_back(chosen(table, options, straight, grid.remarks, progress));
+    }
+    bring_together(all, tables);
+    const Turn turn = turn_of(tables[0], options.frame);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        grid.quantities.push_back(quantity_of(tables[i], std::move(all[i]), options, turn.mirrored));
+    }
+    add_axes(grid, tables, turn);
+    for (const auto& [name, value] : tables[0].conditions()) {
+        const auto turned = std::find_if(std::begin(turned_axes), std::end(turned_axes),
+                                         [&n = name](const Turned& t) { return n == t.up; });
+        const bool turns = options.frame == Frame::ned && turned != std::end(turned_axes);
+        grid.conditions.emplace_back(turns ? turned->ned : name, turns ? -value : value);
+    }
+    add_data_support(grid, tables, turn.mirrored);
+    write_origin(grid, tables, options);
     return grid;
 }
 

@@ -1,12 +1,15 @@
 // What every format writes: the grid with its Hermite data, its error, and the words for its header.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "surrogates/tables/error_model.h"
 #include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/grid.h"
+#include "surrogates/tables/support.h"
 
 namespace underbody::tables {
 
@@ -15,29 +18,52 @@ struct ExportAxis {
     std::string unit;
     std::vector<double> points;
     RangePolicy range = RangePolicy::clamp;
+    double lower = 0, upper = 0;  ///< what counts as inside; the points may reach further
+
+    /// Do the points end where the range does?
+    [[nodiscard]] bool ends_with_range() const { return lower == points.front() && upper == points.back(); }
 };
 
-struct ExportGrid {
-    std::string name;      ///< identifier
-    std::string quantity;  ///< in the frame: lift_force or z_force ...
+/// One force or moment over the axes.
+struct ExportQuantity {
+    std::string name;  ///< in the frame: lift_force or z_force ...
     std::string unit;
-    std::string meaning;   ///< one line with its sign
-    std::vector<ExportAxis> axes;
+    std::string meaning;  ///< one line with its sign
     CubicGrid surface;
     ErrorModel error;
+    double difference =
+        0;  ///< in `unit`: largest from the table, between the points too, and from the model that a table stands for
+};
+
+/// Where the forces act and how the vehicle is turned, when a model says it: from the centre of gravity to the centre
+/// of the base, x forward, y starboard, z down, m.
+using Lever = std::array<double, 3>;
+
+struct ExportGrid {
+    std::string name;  ///< identifier
+    std::vector<ExportAxis> axes;
+    std::vector<ExportQuantity> quantities;  ///< at least one, all on the same grid
+    Frame frame = Frame::up;
     /// Where it came from, line by line: program, source and its hash, kind, points, range, conditions, frame, thinning, remarks.
     std::vector<std::string> origin;
     std::vector<std::pair<std::string, double>> conditions;  ///< that the table holds for, SI
     std::vector<std::vector<double>> hull;  ///< points around which the table knows something; empty: all of the axes' box
-    double thinning_error = 0;  ///< in `unit`: largest difference from the table, between the points too
+    Support support;                        ///< where it has data
+    std::optional<Lever> lever;
     core::Problems remarks;
     bool single_precision = false;
+    bool self_test = false;
+
+    [[nodiscard]] const ExportQuantity& first() const { return quantities.front(); }
 };
 
-/// The table in the frame and on the grid that the options ask for. `straight`: for a consumer that draws straight lines between the points. These stay
-/// within `max_error` of the table (else core::UsageError); where neither an error nor points are asked for, the cells of the table are halved until they
-/// stay within a thousandth of the force's range or 400, 60 or 20 points an axis (one, two, more axes) are reached. `thinning_error` says what came of it.
-ExportGrid export_grid(const ForceTable& table, const ExportOptions& options, bool straight, core::Progress& progress);
+/// The tables in the frame and on one grid as the options ask for. `straight`: for a consumer that draws straight lines
+/// between the points. These stay within `max_error` of the table (else core::UsageError); where neither an error nor
+/// points are asked for, the cells of the table are halved until they stay within a thousandth of the force's range or
+/// 400, 60 or 20 points an axis (one, two, more axes) are reached. `difference` says what came of it. Throws
+/// core::UsageError when the tables have not the same axes.
+ExportGrid export_grid(const std::vector<ForceTable>& tables, const ExportOptions& options, bool straight,
+                       core::Progress& progress);
 
 /// A function taken on other grid lines, with its slopes, and how far it is from what it was taken of.
 struct Resampled {
@@ -62,10 +88,14 @@ std::vector<std::string> outside_lines(const ExportGrid& grid);
 /// origin, then these lines.
 std::vector<std::string> header_lines(const ExportGrid& grid);
 
-/// Letters, digits and underscores; never starts with a digit.
+/// Letters, digits and underscores; starts with a letter.
 std::string identifier(const std::string& text);
 
 // The formats.
+std::filesystem::path c_self_test(const std::filesystem::path& path);  ///< NAME_test.c beside NAME.h
+/// A program without a library that says 0 when the header gives the values, slopes, errors and flags of the grid at
+/// points in and around it.
+void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& header);
 void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_csv(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_json(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);

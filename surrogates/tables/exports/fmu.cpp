@@ -101,7 +101,7 @@ EXPORTED fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], 
                 evaluated = 1;
             }
             value[i] = out[vr[i] - AXES];
-            if (refused && vr[i] <= AXES + AXES) {
+            if (refused && is_value_or_slope(vr[i] - AXES)) {
                 status = fmi2Discard; /* outside an axis that refuses this: no value, no slopes */
             }
         } else {
@@ -120,23 +120,64 @@ EXPORTED fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], 
     }
     return fmi2OK;
 }
+
+/* Derivatives of all outputs along one axis. In a cell, and beyond an end, every output is a cubic of that coordinate at most, so that four places give its
+   slope to rounding; the flags are constant there. 1 when the point is refused. */
+static int derivatives(const double* input, unsigned axis, double* out) {
+    static const double place[4] = {0.125, 0.375, 0.625, 0.875};
+    double point[AXES], at[OUTPUTS], begin, width, t;
+    unsigned i, j, m;
+    interval(axis, input[axis], &begin, &width);
+    t = (input[axis] - begin) / width;
+    memcpy(point, input, sizeof(point));
+    for (j = 0; j < OUTPUTS; ++j) {
+        out[j] = 0;
+    }
+    for (i = 0; i < 4u; ++i) {
+        double slope = 0; /* of the Lagrange polynomial of place i at t */
+        for (m = 0; m < 4u; ++m) {
+            if (m != i) {
+                double product = 1 / (place[i] - place[m]);
+                for (j = 0; j < 4u; ++j) {
+                    if (j != i && j != m) {
+                        product *= (t - place[j]) / (place[i] - place[j]);
+                    }
+                }
+                slope += product;
+            }
+        }
+        point[axis] = begin + place[i] * width;
+        if (evaluate(point, at)) {
+            return 1;
+        }
+        for (j = 0; j < OUTPUTS - 2u; ++j) {
+            out[j] += slope / width * at[j];
+        }
+    }
+    return 0;
+}
 EXPORTED fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
                                                  size_t n_known, const fmi2Real d_known[], fmi2Real d_unknown[]) {
     double out[OUTPUTS];
     size_t i, j;
+    for (i = 0; i < n_unknown; ++i) {
+        if (unknown[i] < AXES || unknown[i] >= AXES + OUTPUTS) {
+            return fmi2Error;
+        }
+        d_unknown[i] = 0;
+    }
     if (evaluate(((const Instance*)c)->input, out)) {
         return fmi2Discard;
     }
-    for (i = 0; i < n_unknown; ++i) {
-        d_unknown[i] = 0;
-        if (unknown[i] != AXES) {
-            return fmi2Error; /* slopes are known for the value only */
+    for (j = 0; j < n_known; ++j) {
+        if (known[j] >= AXES) {
+            return fmi2Error;
         }
-        for (j = 0; j < n_known; ++j) {
-            if (known[j] >= AXES) {
-                return fmi2Error;
-            }
-            d_unknown[i] += out[1 + known[j]] * d_known[j];
+        if (derivatives(((const Instance*)c)->input, known[j], out)) {
+            return fmi2Discard;
+        }
+        for (i = 0; i < n_unknown; ++i) {
+            d_unknown[i] += out[unknown[i] - AXES] * d_known[j];
         }
     }
     return fmi2OK;
@@ -230,19 +271,60 @@ EXPORTED fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s
 EXPORTED fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String* value) { UNUSED(c); UNUSED(s); *value = ""; return fmi2Discard; }
 )";
 
+double start_value(const ExportAxis& axis) { return 0.5 * (axis.lower + axis.upper); }
+
+/// Cells along each axis, and what lies beyond its ends, as places between which every output is one polynomial: the
+/// lines of the table, and those of the range, where an axis refuses.
+std::string interval_function(const ExportGrid& grid) {
+    std::string text =
+        "/* The cell along an axis, or a stretch beyond its end. */\nstatic void interval(unsigned axis, double v, "
+        "double* begin, double* width) {\n"
+        "    const " +
+        grid.name + "_real* x = 0;\n    unsigned cells = 0, low = 0, high;\n    switch (axis) {\n";
+    for (std::size_t k = 0; k < grid.axes.size(); ++k) {
+        const std::string id = std::to_string(k);
+        text += "    case " + id + "u:\n        x = " + grid.name + "_x" + id +
+                ";\n        cells = " + std::to_string(grid.axes[k].points.size() - 1) + "u;\n        break;\n";
+    }
+    return text +
+           "    default:\n        break;\n    }\n    high = cells;\n"
+           "    if (!(v >= (double)x[0])) {\n        *width = 2 * ((double)x[0] - v) + (double)x[1] - (double)x[0];\n  "
+           "      *begin = (double)x[0] - *width;\n        return;\n    }\n"
+           "    if (v > (double)x[cells]) {\n        *width = 2 * (v - (double)x[cells]) + (double)x[1] - "
+           "(double)x[0];\n        *begin = (double)x[cells];\n        return;\n    }\n"
+           "    while (high - low > 1u) {\n        const unsigned middle = (low + high) / 2u;\n        if (v >= "
+           "(double)x[middle]) {\n            low = middle;\n        } else {\n"
+           "            high = middle;\n        }\n    }\n    *begin = (double)x[low];\n    *width = (double)x[low + "
+           "1u] - (double)x[low];\n}\n";
+}
+
 std::string source(const ExportGrid& grid, const std::string& guid) {
-    const std::size_t n = grid.axes.size();
+    const std::size_t n = grid.axes.size(), quantities = grid.quantities.size();
     std::string text = "/* " + grid.origin.front() + "; FMU 2.0, model exchange and co-simulation. */\n#include \"table.h\"\n";
-    text += "#define GUID \"" + guid + "\"\n#define AXES " + std::to_string(n) + "u\n#define OUTPUTS " + std::to_string(n + 3) + "u\n";
+    text +=
+        "#define GUID \"" + guid + "\"\n#define AXES " + std::to_string(n) + "u\n#define QUANTITIES " +
+        std::to_string(quantities) +
+        "u\n/* of each quantity the value, its slopes and its error; then outside and no_data */\n#define OUTPUTS " +
+        std::to_string(quantities * (n + 2) + 2) + "u\n";
     text += "static const double start_values[AXES] = {";
     for (std::size_t k = 0; k < n; ++k) {
-        text += (k == 0 ? "" : ", ") + core::format_number(0.5 * (grid.axes[k].points.front() + grid.axes[k].points.back()));
+        text += (k == 0 ? "" : ", ") + core::format_number(start_value(grid.axes[k]));
     }
-    text += "};\n/* 1 when the point is refused. */\nstatic int evaluate(const double* input, double* out) {\n    " + grid.name + "_real point[AXES];\n    " + grid.name + "_result r;\n    unsigned k;\n";
+    text +=
+        "};\nstatic int is_value_or_slope(unsigned output) { return output < QUANTITIES * (AXES + 2u) && output % "
+        "(AXES + 2u) <= AXES; }\n";
+    text += "/* 1 when the point is refused. */\nstatic int evaluate(const double* input, double* out) {\n    " +
+            grid.name + "_real point[AXES];\n    " + grid.name + "_result r;\n    unsigned k;\n";
     text += "    for (k = 0; k < AXES; ++k) {\n        point[k] = (" + grid.name + "_real)input[k];\n    }\n    " + grid.name + "_at(point, &r);\n";
-    text += "    out[0] = (double)r.value;\n    for (k = 0; k < AXES; ++k) {\n        out[1 + k] = (double)r.slope[k];\n    }\n";
-    text += "    out[1 + AXES] = (double)r.sigma;\n    out[2 + AXES] = r.outside;\n    return r.refused;\n}\n";
-    return text + wrapper;
+    for (std::size_t q = 0; q < quantities; ++q) {
+        const std::string of = quantities > 1 ? identifier(grid.quantities[q].name) + "." : "",
+                          at = std::to_string(q * (n + 2)) + "u";
+        text += "    out[" + at + "] = (double)r." + of + "value;\n    for (k = 0; k < AXES; ++k) {\n        out[" +
+                at + " + 1u + k] = (double)r." + of + "slope[k];\n    }\n";
+        text += "    out[" + at + " + 1u + AXES] = (double)r." + of + "sigma;\n";
+    }
+    text += "    out[OUTPUTS - 2u] = r.outside;\n    out[OUTPUTS - 1u] = r.no_data;\n    return r.refused;\n}\n";
+    return text + interval_function(grid) + wrapper;
 }
 
 std::string description(const ExportGrid& grid, const std::string& guid) {
@@ -273,15 +355,21 @@ std::string description(const ExportGrid& grid, const std::string& guid) {
         units.push_back(unit);
     };
     for (const auto& axis : grid.axes) {
-        variable(axis.name, axis.unit, "axis, " + core::format_number(axis.points.front(), 6) + " to " + core::format_number(axis.points.back(), 6), true,
-                 0.5 * (axis.points.front() + axis.points.back()));
+        variable(axis.name, axis.unit,
+                 "axis, " + core::format_number(axis.lower, 6) + " to " + core::format_number(axis.upper, 6), true,
+                 start_value(axis));
     }
-    variable(grid.quantity, grid.unit, grid.meaning.empty() ? grid.quantity : grid.meaning, false, 0);
-    for (const auto& axis : grid.axes) {
-        variable(grid.quantity + "_per_" + axis.name, grid.unit + "/(" + axis.unit + ")", "slope", false, 0);
+    for (const auto& q : grid.quantities) {
+        variable(q.name, q.unit, q.meaning.empty() ? q.name : q.meaning, false, 0);
+        for (const auto& axis : grid.axes) {
+            variable(q.name + "_per_" + axis.name, q.unit + "/(" + axis.unit + ")", "slope", false, 0);
+        }
+        variable(q.name + "_sigma", q.unit, "one standard deviation", false, 0);
     }
-    variable(grid.quantity + "_sigma", grid.unit, "one standard deviation", false, 0);
-    variable(grid.quantity + "_outside", "1", "1 when the point lies outside the table", false, 0);
+    const std::string flags = grid.quantities.size() > 1 ? "" : grid.first().name + "_";
+    variable(flags + "outside", "1", "1 when the point lies outside the table", false, 0);
+    variable(flags + "no_data", "1",
+             "1 where no points of the table lie around: outside, or in an empty corner of its box", false, 0);
     xml += "  <UnitDefinitions>\n";
     for (const auto& unit : units) {
         xml += "    <Unit name=\"" + escaped(unit) + "\"/>\n";
@@ -321,7 +409,9 @@ bool compiled(const std::filesystem::path& folder) {
 
 }  // namespace
 
-void export_fmu(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result) {
+void export_fmu(const ExportGrid& asked, const std::filesystem::path& path, ExportResult& result) {
+    ExportGrid grid = asked;
+    grid.single_precision = false;  // the numbers of FMI are doubles
     core::TemporaryFolder folder("underbody-fmu");
     ExportResult ignored;
     export_c(grid, folder.path() / "table.h", ignored);

@@ -130,11 +130,16 @@ BENCHMARK(scipy_regular_grid_interpolator)->Iterations(1)->Unit(benchmark::kMill
 void c_header(benchmark::State& state) {
     core::TemporaryFolder folder;
     tables::export_table(grid_table(100), "c", folder.path() / "table.h");
-    core::write_file(folder.path() / "main.c",
-                     "#define _POSIX_C_SOURCE 199309L\n#include <stdio.h>\n#include <time.h>\n#include \"table.h\"\nstatic double p[131072];\nint main(void){unsigned s=1;int i,k;double sum=0;struct timespec a,b;"
-                     "for(i=0;i<65536;++i){s=s*1664525u+1013904223u;p[2*i]=.001+.099*(s/4294967296.0);s=s*1664525u+1013904223u;p[2*i+1]=-.1+.2*(s/4294967296.0);}"
-                     "clock_gettime(CLOCK_PROCESS_CPUTIME_ID,&a);for(k=0;k<50;++k)for(i=0;i<65536;++i){lift_force_result r;lift_force_at(p+2*i,&r);sum+=r.value+r.slope[0]+r.slope[1];}"
-                     "clock_gettime(CLOCK_PROCESS_CPUTIME_ID,&b);printf(\"%g %g\\n\",((b.tv_sec-a.tv_sec)*1e9+(b.tv_nsec-a.tv_nsec))/(50*65536.0),sum);return 0;}\n");
+    core::write_file(
+        folder.path() / "main.c",
+        "#define _POSIX_C_SOURCE 199309L\n#include <stdio.h>\n#include <time.h>\n#include \"table.h\"\nstatic double "
+        "p[131072];\nint main(void){unsigned s=1;int i,k;double sum=0;struct timespec a,b;"
+        "for(i=0;i<65536;++i){s=s*1664525u+1013904223u;p[2*i]=.001+.099*(s/"
+        "4294967296.0);s=s*1664525u+1013904223u;p[2*i+1]=-.1+.2*(s/4294967296.0);}"
+        "clock_gettime(CLOCK_PROCESS_CPUTIME_ID,&a);for(k=0;k<50;++k)for(i=0;i<65536;++i){table_result "
+        "r;table_at(p+2*i,&r);sum+=r.value+r.slope[0]+r.slope[1];}"
+        "clock_gettime(CLOCK_PROCESS_CPUTIME_ID,&b);printf(\"%g "
+        "%g\\n\",((b.tv_sec-a.tv_sec)*1e9+(b.tv_nsec-a.tv_nsec))/(50*65536.0),sum);return 0;}\n");
     const std::string at = "cd '" + folder.path().string() + "' && cc -std=c99 -O2 main.c -o main && ./main";
     for (auto _ : state) {
         FILE* pipe = ::popen(at.c_str(), "r");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include "core/random.h"
 #include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/force_table.h"
+#include "surrogates/tables/sampled.h"
 #include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody::test {
@@ -69,7 +71,62 @@ inline tables::ForceTable three_axes(const std::string& range = "clamp") {
     return tables::ForceTable::fit(table, "lift_force", interpolation(range));
 }
 
-/// One to three axes under each policy and under mixtures of them.
+/// Scattered points along a diagonal band: the corners of the box of their axes have no data.
+inline tables::ForceTable band(const std::string& range = "clamp") {
+    std::vector<double> g, p, f;
+    for (int i = 0; i < 12; ++i) {
+        for (const int j : {-1, 0, 1}) {
+            g.push_back(0.002 + 0.001 * i);
+            p.push_back(0.01 * (i + j) - 0.05);
+            f.push_back(std::exp(-200 * g.back()) + 4 * p.back() + 30 * p.back() * p.back());
+        }
+    }
+    core::Table data;
+    data.source = "band";
+    data.add_numbers("gap", "m", g);
+    data.add_numbers("pitch", "rad", p);
+    data.add_numbers("lift_force", "N", f);
+    tables::FitOptions options;
+    options.range = tables::parse_range_policies(range);
+    return tables::ForceTable::fit(data, "lift_force", options);
+}
+
+/// A sum of two tables, one of which ends earlier: from there on it holds its value, the sum goes on changing and
+/// counts as outside.
+inline tables::ForceTable sum_of_tables(const std::string& range = "clamp",
+                                        const std::string& quantity = "lift_force") {
+    const auto long_one = two_axes(),
+               short_one = tables::ForceTable::fit(csv("gap [m], lift_force [N], lift_force_sigma [N]\n.002, .5, "
+                                                       ".02\n.01, .2, .01\n.03, .1, .01\n.05, .3, .03\n"),
+                                                   "lift_force", interpolation());
+    tables::SampledFunction sum;
+    sum.quantity = quantity;
+    sum.unit = "N";
+    sum.kind = "force of a model";
+    sum.source = "sum";
+    const auto policies = tables::parse_range_policies(range);
+    sum.axes = {{"gap", "m", 0.002, 0.05, policies.of("gap"), long_one.knots(0), {0.002, 0.05}},
+                {"pitch",
+                 "rad",
+                 long_one.axes()[1].lower,
+                 long_one.axes()[1].upper,
+                 policies.of("pitch"),
+                 long_one.knots(1),
+                 {}}};
+    sum.axes[0].lines.insert(sum.axes[0].lines.end(), {0.002, 0.01, 0.03, 0.05});
+    std::sort(sum.axes[0].lines.begin(), sum.axes[0].lines.end());
+    const double sign = quantity == "lift_force" ? 1 : -0.3;
+    sum.value = [=](const double* p) { return sign * (long_one.value(p) + short_one.value(p)); };
+    sum.sigma = [=](const double* p) { return std::abs(sign) * std::hypot(long_one.sigma(p), short_one.sigma(p)); };
+    sum.points = long_one.points();
+    if (quantity != "lift_force") {
+        sum.points.add_numbers(quantity, "N", sum.points.numbers("lift_force"));
+    }
+    return tables::sampled_table(sum);
+}
+
+/// One to three axes under each policy and under mixtures of them; empty corners; a grid that reaches further than the
+/// range.
 inline std::vector<tables::ForceTable> tables_of_all_policies() {
     return {one_axis(),
             one_axis("extrapolate"),
@@ -81,7 +138,11 @@ inline std::vector<tables::ForceTable> tables_of_all_policies() {
             two_axes("gap=extrapolate,pitch=refuse"),
             three_axes(),
             three_axes("gap=extrapolate,pitch=clamp,speed=refuse"),
-            three_axes("extrapolate,speed=clamp")};
+            three_axes("extrapolate,speed=clamp"),
+            band(),
+            band("gap=refuse,pitch=extrapolate"),
+            sum_of_tables(),
+            sum_of_tables("gap=refuse,pitch=clamp")};
 }
 
 /// Random points, a third of the coordinates drawn from a range three times as wide.
@@ -115,6 +176,7 @@ inline Expected expected(const tables::ForceTable& table, const double* point) {
     } catch (const core::InputError&) {
         result.refused = true;
         result.at.outside = true;
+        result.at.no_data = true;
         result.at.sigma = table.sigma(point);
         result.at.value = std::nan("");
         result.at.slope.fill(std::nan(""));
@@ -141,13 +203,24 @@ struct Sizes {
     }
 };
 
-/// One evaluation by a consumer, as `value, slope..., sigma, outside`, is that of the table to `tolerance` of its size (slopes to ten times that).
-inline void expect_alike(const tables::ForceTable& table, const double* point, const Sizes& sizes, double tolerance, double value, const double* slope,
-                         double sigma, bool outside) {
+/// Does a coordinate lie in one of the narrow cells that stand for a kink?
+inline bool at_a_kink(const tables::ForceTable& table, std::size_t k, double x) {
+    const auto& lines = table.knots(k);
+    const auto above = std::upper_bound(lines.begin(), lines.end(), x);
+    return above != lines.begin() && above != lines.end() &&
+           *above - *(above - 1) < 1e-6 * (lines.back() - lines.front());
+}
+
+/// One evaluation by a consumer, as `value, slope..., sigma, outside, no_data`, is that of the table to `tolerance` of
+/// its size (slopes to ten times that, but along an axis at a kink, where they are differences of nearly equal
+/// numbers).
+inline void expect_alike(const tables::ForceTable& table, const double* point, const Sizes& sizes, double tolerance,
+                         double value, const double* slope, double sigma, bool outside, bool no_data) {
     const Expected e = expected(table, point);
     const std::size_t n = table.axes().size();
     EXPECT_NEAR(sigma, e.at.sigma, tolerance * sizes.sigma);
     EXPECT_EQ(outside, e.at.outside);
+    EXPECT_EQ(no_data, e.at.no_data);
     if (e.refused) {
         EXPECT_TRUE(std::isnan(value));
     } else {
@@ -156,7 +229,7 @@ inline void expect_alike(const tables::ForceTable& table, const double* point, c
     for (std::size_t k = 0; k < n && slope != nullptr; ++k) {
         if (e.refused) {
             EXPECT_TRUE(std::isnan(slope[k]));
-        } else {
+        } else if (!at_a_kink(table, k, point[k])) {
             EXPECT_NEAR(slope[k], e.at.slope[k], 10 * tolerance * sizes.slope[k]);
         }
     }

@@ -21,7 +21,25 @@ struct JsonTable {
         double slope[tables::max_axes] = {};
         double sigma = 0;
         bool outside = false;
+        bool no_data = false;
     };
+
+    /// Is the cell between its lines where the point lies without data?
+    [[nodiscard]] bool empty_cell(const double* p) const {
+        if (!j.contains("support")) {
+            return false;
+        }
+        std::size_t cell = 0;
+        for (std::size_t k = 0; k < j["axes"].size(); ++k) {
+            const auto lines = j["support"]["lines"][k].get<std::vector<double>>();
+            std::size_t i = 0;
+            while (i + 2 < lines.size() && p[k] >= lines[i + 1]) {
+                ++i;
+            }
+            cell = cell * (lines.size() - 1) + i;
+        }
+        return j["support"]["has_data"][cell] == 0;
+    }
 
     [[nodiscard]] Value at(const double* p) const {
         const std::size_t n = j["axes"].size();
@@ -43,11 +61,13 @@ struct JsonTable {
             const double r = 1 - s;
             f[k] = {r * r * (1 + 2 * s), h * s * r * r, s * s * (3 - 2 * s), -h * s * s * r};
             d[k] = {-6 * s * r / h, r * r - 2 * s * r, 6 * s * r / h, s * s - 2 * s * r};
-            if (x != p[k]) {
+            const std::string word = j["axes"][k]["outside"];
+            if (p[k] < j["axes"][k]["lower"].get<double>() || p[k] > j["axes"][k]["upper"].get<double>()) {
                 result.outside = true;
-                const std::string word = j["axes"][k]["outside"];
-                zero[k] = word == "clamp";
                 refused = refused || word == "refuse";
+            }
+            if (x != p[k]) {
+                zero[k] = word == "clamp";
                 for (std::size_t i = 0; i < 4 && word == "extrapolate"; ++i) {
                     f[k][i] += (p[k] - x) * d[k][i];
                 }
@@ -80,6 +100,7 @@ struct JsonTable {
                 }
             }
         }
+        result.no_data = result.outside || empty_cell(p);
         if (refused) {
             result.value = std::nan("");
             std::fill_n(result.slope, n, std::nan(""));

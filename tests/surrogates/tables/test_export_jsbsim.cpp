@@ -2,9 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
+#include <array>
 
 #include "tests/surrogates/tables/exports_support.h"
+#include "tests/surrogates/tables/jsbsim_evaluator.h"
 
 namespace underbody {
 namespace {
@@ -12,78 +13,36 @@ namespace {
 using tables::ForceTable;
 using ::testing::HasSubstr;
 
-/// One function of the file: points an axis, values with the last axis fastest.
+/// One function of the file, over its axes as plain inputs.
 struct Linear {
-    std::vector<std::vector<double>> points;
-    std::vector<double> values;
+    test::Jsbsim file;
+    std::string name;
+    std::vector<std::string> axes;
 
-    Linear(const std::string& xml, const std::string& name, std::size_t axes) : points(axes) {
-        const std::size_t begin = xml.find("<function name=\"underbody/" + name + "\">");
-        const std::string text = xml.substr(begin, xml.find("</function>", begin) - begin);
-        std::vector<std::vector<double>> layers;  // rows by columns each
-        for (std::size_t at = text.find("<tableData"); at != std::string::npos; at = text.find("<tableData", at + 1)) {
-            const std::size_t open = text.find('>', at);
-            if (const std::size_t quote = text.find("breakPoint=\"", at); quote < open) {
-                points[2].push_back(std::stod(text.substr(quote + 12)));
-            }
-            layers.push_back(rows_of(text.substr(open + 1, text.find("</tableData>", at) - open - 1), axes > 1));
-        }
-        for (std::size_t i = 0; i < layers.front().size(); ++i) {
-            for (const auto& layer : layers) {
-                values.push_back(layer[i]);
-            }
+    Linear(const std::string& xml, std::string function, const ForceTable& table)
+        : file(plain(xml)), name("underbody/t/" + std::move(function)) {
+        for (const auto& axis : table.axes()) {
+            axes.push_back("underbody/t/" + axis.name);
         }
     }
 
-    [[nodiscard]] double at(const double* p) const {
-        const std::size_t n = points.size();
-        std::vector<std::size_t> cell(n, 0);
-        std::vector<double> t(n);
-        for (std::size_t k = 0; k < n; ++k) {
-            const auto& x = points[k];
-            while (cell[k] + 2 < x.size() && p[k] >= x[cell[k] + 1]) {
-                ++cell[k];
-            }
-            t[k] = std::clamp((p[k] - x[cell[k]]) / (x[cell[k] + 1] - x[cell[k]]), 0.0, 1.0);
+    [[nodiscard]] double at(const double* p) {
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            file.properties[axes[k]] = p[k];
         }
-        double sum = 0;
-        for (std::size_t corner = 0; corner < std::size_t{1} << n; ++corner) {
-            double weight = 1;
-            std::size_t node = 0;
-            for (std::size_t k = 0; k < n; ++k) {
-                const std::size_t up = corner >> k & 1;
-                weight *= up != 0 ? t[k] : 1 - t[k];
-                node = node * points[k].size() + cell[k] + up;
-            }
-            sum += weight * values[node];
-        }
-        return sum;
+        return file.property(name);
     }
 
 private:
-    std::vector<double> rows_of(const std::string& text, bool columns) {
-        std::vector<double> values_here;
-        points[0].clear();
-        std::istringstream lines(text);
-        bool header = columns;
-        for (std::string line; std::getline(lines, line);) {
-            std::istringstream numbers(line);
-            std::vector<double> row;
-            for (double v; numbers >> v;) {
-                row.push_back(v);
+    /// The file without the functions that take the axes from the state of the vehicle.
+    static std::string plain(std::string xml) {
+        for (const char* axis : {"pitch", "speed", "gap"}) {
+            const std::size_t begin = xml.find("<function name=\"underbody/t/" + std::string(axis) + "\">");
+            if (begin != std::string::npos) {
+                xml.erase(begin, xml.find("</function>", begin) + 11 - begin);
             }
-            if (row.empty()) {
-                continue;
-            }
-            if (header) {
-                points[1] = row;
-                header = false;
-                continue;
-            }
-            points[0].push_back(row.front());
-            values_here.insert(values_here.end(), row.begin() + 1, row.end());
         }
-        return values_here;
+        return xml;
     }
 };
 
@@ -103,12 +62,15 @@ TEST(ExportsOfJsbsim, InterpolateLinearlyWithinWhatTheySay) {
             const auto result = export_table(table, "jsbsim", folder.path() / "t.xml", options);
             const std::string xml = core::read_file(folder.path() / "t.xml");
             if (test::have("python3")) {
-                EXPECT_EQ(std::system(("python3 -c \"import xml.dom.minidom as m;d=m.parse('" + (folder.path() / "t.xml").string() +
-                                       "');assert len(d.getElementsByTagName('function'))==" + std::to_string(2 + n) + "\"").c_str()),
-                          0);
+                EXPECT_EQ(
+                    std::system(
+                        ("python3 -c \"import xml.dom.minidom as m;d=m.parse('" + (folder.path() / "t.xml").string() +
+                         "');assert len([f for f in d.getElementsByTagName('table')])==" + std::to_string(2 + n) + "\"")
+                            .c_str()),
+                    0);
             }
-            const Linear value(xml, "lift_force", n), sigma(xml, "lift_force_sigma", n);
-            const auto points = test::random_points(table, 10000);
+            Linear value(xml, "lift_force", table), sigma(xml, "lift_force_sigma", table);
+            const auto points = test::random_points(table, 2000);
             for (std::size_t i = 0; i < points.size(); i += n) {
                 const double difference = std::abs(value.at(&points[i]) - table.value(&points[i]));
                 ASSERT_LE(difference, result.error);
@@ -157,7 +119,7 @@ TEST(ExportsOfJsbsim, StateAnErrorNearThatOfTheTable) {
     core::TemporaryFolder folder;
     const auto table = test::two_axes();
     const auto result = export_table(table, "jsbsim", folder.path() / "t.xml");
-    const Linear sigma(core::read_file(folder.path() / "t.xml"), "lift_force_sigma", 2);
+    Linear sigma(core::read_file(folder.path() / "t.xml"), "lift_force_sigma", table);
     core::Random random(17);
     double stated = 0, own = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -178,6 +140,85 @@ TEST(ExportsOfJsbsim, SayThatTheyOnlyHoldTheirEnds) {
     }
     EXPECT_THAT(remarks, HasSubstr("JSBSim holds the ends of gap: it cannot refuse"));
     EXPECT_THAT(core::read_file(folder.path() / "t.xml"), HasSubstr("Outside the range of an axis JSBSim holds the end value"));
+}
+
+using Vector = std::array<double, 3>;
+
+/// From axes along the heading, to starboard and down to body axes, roll after pitch.
+Vector to_body(const Vector& v, double pitch, double roll) {
+    const double st = std::sin(pitch), ct = std::cos(pitch), sp = std::sin(roll), cp = std::cos(roll);
+    const double x = v[0] * ct - v[2] * st, z = v[0] * st + v[2] * ct;
+    return {x, v[1] * cp + z * sp, -v[1] * sp + z * cp};
+}
+
+TEST(ExportsOfJsbsim, ApplyTheForcesToTheBodyAtTheCentreOfItsBase) {
+    const ForceTable lift = test::sum_of_tables(), drag = test::sum_of_tables("clamp", "drag_force");
+    core::Table turning;
+    turning.source = "turning";
+    const ForceTable two = test::two_axes();
+    const core::Table& points = two.points();
+    turning.add_numbers("gap", "m", points.numbers("gap"));
+    turning.add_numbers("pitch", "rad", points.numbers("pitch"));
+    turning.add_numbers("pitch_moment", "N m", points.numbers("lift_force"));
+    core::TemporaryFolder folder;
+    for (const auto frame : {tables::Frame::up, tables::Frame::ned}) {
+        tables::ExportOptions options;
+        options.frame = frame;
+        const Vector lever{0.012, 0.003, 0.051};
+        options.lever = lever;
+        // Moments have the range of their own table; on one grid with the others only when that is the same, so here
+        // alone.
+        const auto result = export_tables({lift, drag}, "jsbsim", folder.path() / "hull.xml", options);
+        const double most = result.errors[0].second + result.errors[1].second;  // straight lines between the points
+        export_table(ForceTable::fit(turning, "pitch_moment", test::interpolation()), "jsbsim",
+                     folder.path() / "turn.xml", options);
+        test::Jsbsim hull(core::read_file(folder.path() / "hull.xml")),
+            turn(core::read_file(folder.path() / "turn.xml"));
+        core::Random random(31);
+        for (int i = 0; i < 2000; ++i) {
+            const double pitch = random.uniform(-0.08, 0.08), roll = random.uniform(-0.3, 0.3),
+                         height = random.uniform(0.04, 0.2);
+            const Vector flow{random.uniform(-1, 3), 0.1, random.uniform(-0.2, 0.2)};
+            for (test::Jsbsim* file : {&hull, &turn}) {
+                file->properties["attitude/theta-rad"] = pitch;
+                file->properties["attitude/phi-rad"] = roll;
+                file->properties["position/h-agl-ft"] = height / 0.3048;
+                file->properties["velocities/u-aero-fps"] = flow[0] / 0.3048;
+                file->properties["velocities/w-aero-fps"] = flow[2] / 0.3048;
+            }
+            // How far the base hangs below the centre of gravity: the lever turned back to the vertical.
+            const Vector down = to_body({0, 0, 1}, pitch, roll);
+            const double at[2] = {height - down[0] * lever[0] - down[1] * lever[1] - down[2] * lever[2], pitch};
+            ASSERT_NEAR(hull.property("underbody/hull/gap"), at[0], 1e-14);
+            const double forward = flow[0] * std::cos(pitch) + flow[2] * std::sin(pitch);
+            const double sense = forward / std::sqrt(forward * forward + 1e-6);
+            const double up = lift.value(at), back = sense * drag.value(at);
+            const auto [force, moment] = hull.reactions();
+            const Vector wanted = to_body({-back, 0, -up}, pitch, roll);
+            for (std::size_t k = 0; k < 3; ++k) {
+                ASSERT_NEAR(4.4482216152605 * force[k], wanted[k], most);
+                const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+                ASSERT_NEAR(1.3558179483314004 * moment[k],
+                            lever[a] * 4.4482216152605 * force[b] - lever[b] * 4.4482216152605 * force[a], 1e-12);
+            }
+            const auto [none, nose_up] = turn.reactions();
+            ASSERT_EQ(none, (Vector{0, 0, 0}));
+            ASSERT_NEAR(1.3558179483314004 * nose_up[1], turn.property("underbody/turn/pitch_moment"), 1e-12);
+        }
+    }
+}
+
+TEST(ExportsOfJsbsim, WithoutAPlaceOfTheBaseSaySo) {
+    core::TemporaryFolder folder;
+    const auto result = export_table(test::two_axes(), "jsbsim", folder.path() / "t.xml");
+    std::string remarks;
+    for (const auto& remark : result.remarks) {
+        remarks += remark.message + "\n";
+    }
+    EXPECT_THAT(remarks, HasSubstr("nothing says where the centre of the base lies"));
+    const std::string xml = core::read_file(folder.path() / "t.xml");
+    EXPECT_THAT(xml, HasSubstr("Inputs to be set, in SI units: underbody/t/gap [m]"));
+    EXPECT_TRUE(test::Jsbsim(xml).properties.contains("underbody/t/gap"));
 }
 
 }  // namespace

@@ -32,13 +32,38 @@ void check_read_back(const std::string& format) {
         const test::Sizes sizes(table, points);
         for (std::size_t i = 0; i < points.size(); i += n) {
             const auto e = test::expected(again, &points[i]);
-            ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, &points[i], sizes, 1e-12, e.at.value, e.at.slope.data(), e.at.sigma, e.at.outside));
+            ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, &points[i], sizes, 1e-12, e.at.value, e.at.slope.data(),
+                                                       e.at.sigma, e.at.outside, e.at.no_data));
         }
     }
 }
 
 TEST(ExportsOfText, OfCsvReadBackAsTheSameTable) { check_read_back("csv"); }
 TEST(ExportsOfText, OfJsonReadBackAsTheSameTable) { check_read_back("json"); }
+
+TEST(ExportsOfText, OfSeveralForcesReadBackEachAsItself) {
+    core::TemporaryFolder folder;
+    const std::vector<ForceTable> both{test::sum_of_tables(), test::sum_of_tables("clamp", "side_force")};
+    for (const char* format : {"csv", "json"}) {
+        const auto path = folder.path() / (std::string("t.") + format);
+        tables::export_tables(both, format, path);
+        for (const ForceTable& table : both) {
+            const ForceTable again = ForceTable::read(path, table.quantity());
+            EXPECT_EQ(again.kind(), "exported grid");
+            EXPECT_EQ(again.axes()[0].lower, 0.002);
+            EXPECT_EQ(again.axes()[0].upper, 0.05);
+            const auto points = test::random_points(table, 2000);
+            const test::Sizes sizes(table, points);
+            for (std::size_t i = 0; i < points.size(); i += 2) {
+                const auto e = test::expected(again, &points[i]);
+                ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, &points[i], sizes, 1e-12, e.at.value,
+                                                           e.at.slope.data(), e.at.sigma, e.at.outside, e.at.no_data));
+            }
+        }
+    }
+    EXPECT_THROW(tables::export_tables({test::sum_of_tables(), test::one_axis()}, "csv", folder.path() / "x.csv"),
+                 core::UsageError);
+}
 
 TEST(ExportsOfText, OfOlderVersionsAreReadWithTheirOnePolicyForAllAxes) {
     core::TemporaryFolder folder;
@@ -51,7 +76,9 @@ TEST(ExportsOfText, OfOlderVersionsAreReadWithTheirOnePolicyForAllAxes) {
     auto json = nlohmann::json::parse(core::read_file(folder.path() / "t.json"));
     json["outside"] = "extrapolate";
     for (auto& axis : json["axes"]) {
-        axis.erase("outside");
+        for (const char* newer : {"outside", "lower", "upper"}) {
+            axis.erase(newer);
+        }
     }
     core::write_file(folder.path() / "old.json", json.dump());
     for (const char* name : {"old.csv", "old.json"}) {
@@ -142,7 +169,8 @@ TEST(ExportsOfText, OfJsonEvaluateByTheirOwnWords) {
         const test::Sizes sizes(table, points);
         for (std::size_t i = 0; i < points.size(); i += n) {
             const auto v = json.at(&points[i]);
-            ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, &points[i], sizes, 1e-12, v.value, v.slope, v.sigma, v.outside));
+            ASSERT_NO_FATAL_FAILURE(
+                test::expect_alike(table, &points[i], sizes, 1e-12, v.value, v.slope, v.sigma, v.outside, v.no_data));
         }
     }
 }
