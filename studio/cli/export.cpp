@@ -1,9 +1,14 @@
 // underbody export: force tables for controllers.
+#include "surrogates/tables/exports/export.h"
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/error.h"
 #include "core/own_files.h"
@@ -13,7 +18,7 @@
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/cli/table_options.h"
-#include "surrogates/tables/exports/export.h"
+#include "surrogates/dynamics/model.h"
 
 namespace underbody::studio {
 
@@ -28,13 +33,16 @@ struct ExportCommand {
     std::string max_error;
     std::string points;
     std::string number = "double";
+    std::string base_centre;
     bool overwrite = false;
+    bool self_test = false;
 };
 
 tables::ExportOptions options_of(const ExportCommand& command) {
     tables::ExportOptions options;
     options.name = command.name;
     options.overwrite = command.overwrite;
+    options.self_test = command.self_test;
     if (command.number != "double" && command.number != "float") {
         throw core::UsageError("number", "numbers are double or float, not '" + command.number + "'");
     }
@@ -79,13 +87,41 @@ std::string format_of(const ExportCommand& command) {
     throw core::UsageError("format", "'" + command.out + "' ends like no export", {}, "say --format, or end it in " + endings);
 }
 
+/// "x,y,z"
+std::array<double, 3> read_place(const std::string& text) {
+    const auto parts = core::split(text, ',');
+    if (parts.size() != 3) {
+        throw core::UsageError("parse", "--base-centre: '" + text + "' is not x,y,z", {},
+                               "such as --base-centre \"0,0,50 mm\"");
+    }
+    std::array<double, 3> place{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        place[k] = option_value("--base-centre", std::string(core::trimmed(parts[k])), "m");
+    }
+    return place;
+}
+
+/// Where the forces act: as the option says, or the model.
+std::optional<std::array<double, 3>> lever_of(const ExportCommand& command) {
+    if (!command.base_centre.empty()) {
+        return read_place(command.base_centre);
+    }
+    if (!command.table.is_model()) {
+        return std::nullopt;
+    }
+    const auto centre = dynamics::read_model(command.table.file).vehicle.base_centre();
+    return std::isnan(centre[2]) ? std::nullopt : std::optional(centre);
+}
+
 int run_export(Shell& shell, const ExportCommand& command) {
     const std::string format = format_of(command);
     auto options = options_of(command);
     options.overwrite = options.overwrite || shell.force;
     const core::ReplacingAllowed by_the_export_itself;  // it knows its own files by what is in them
-    const auto table = command.table.fit(shell);
-    const auto result = tables::export_table(table, format, command.out, options, shell.progress());
+    options.lever = lever_of(command);
+    const bool several = command.table.quantity.find(',') != std::string::npos || command.table.quantity == "all";
+    const auto all = several ? command.table.fit_all(shell) : std::vector<tables::ForceTable>{command.table.fit(shell)};
+    const auto result = tables::export_tables(all, format, command.out, options, shell.progress());
     shell.show(result.remarks);
     std::string grid;
     for (const auto points : result.grid) {
@@ -94,10 +130,22 @@ int run_export(Shell& shell, const ExportCommand& command) {
     for (const auto& file : result.files) {
         shell.print(file.string());
     }
-    shell.info(table.quantity() + " on a grid of " + grid +
-               (result.error > 0 ? ", within " + core::format_number(result.error, 3) + " " + table.unit() + " of the full table" : ""));
+    nlohmann::json errors = nlohmann::json::array();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto& table = all[i];
+        const double error = result.errors[i].second;
+        shell.info(table.quantity() + " on a grid of " + grid +
+                   (error > 0 ? ", within " + core::format_number(error, 3) + " " + table.unit() +
+                                    (command.table.is_model() ? " of what the model simulates" : " of the full table")
+                              : ""));
+        errors.push_back({{"quantity", result.errors[i].first}, {"unit", table.unit()}, {"max_error", error}});
+    }
     if (shell.json) {
-        nlohmann::json document{{"format", format}, {"grid", result.grid}, {"error", result.error}, {"quantity", table.quantity()}};
+        nlohmann::json document{{"format", format},
+                                {"grid", result.grid},
+                                {"error", result.error},
+                                {"quantity", all.front().quantity()},
+                                {"quantities", errors}};
         document["files"] = nlohmann::json::array();
         for (const auto& file : result.files) {
             document["files"].push_back(file.string());
@@ -119,11 +167,17 @@ void add_export_command(CLI::App& app, Shell& shell) {
     }
     sub->add_option("--format", command->format, formats + " (default: by the ending of --out)");
     sub->add_option("--out", command->out, "file to write")->required();
-    sub->add_option("--name", command->name, "prefix of identifiers (default: the quantity)");
+    sub->add_option("--name", command->name, "prefix of identifiers, model name (default: that of the file)");
     sub->add_option("--frame", command->frame, "up: lift positive up | ned: body axes, z down")->capture_default_str();
     sub->add_option("--max-error", command->max_error, "thins the grid to the smallest that stays within this share of the force's range, such as 0.5%");
     sub->add_option("--points", command->points, "evenly spaced points an axis, such as gap=40,pitch=9");
     sub->add_option("--number", command->number, "double | float (C)")->capture_default_str();
+    sub->add_option("--base-centre", command->base_centre,
+                    "JSBSim: from the centre of gravity to the centre of the base, x forward, y starboard, z down, "
+                    "such as \"0,0,50 mm\" (default: the model's)");
+    sub->add_flag(
+        "--self-test", command->self_test,
+        "C: beside the header NAME_test.c, a program that compares it with what this program says at 200 points");
     sub->add_flag("--overwrite", command->overwrite, "replace a file that this program did not write");
     std::string text = "Formats:\n";
     for (const auto& format : tables::export_formats()) {
@@ -132,7 +186,11 @@ void add_export_command(CLI::App& app, Shell& shell) {
     sub->footer(text +
                 "Examples:\n"
                 "  underbody export lift.csv --format c --out lift.h --max-error 0.5%\n"
-                "  underbody export found/model.toml --format c --out lift.h      the force of a model, with what discover added to it\n"
+                "  underbody export found/model.toml --format c --out lift.h      the force of a model, with what "
+                "discover added to it\n"
+                "  underbody export model.toml --quantity lift_force,drag_force,pitch_moment --axes "
+                "gap,pitch,speed=0:0.8,jet_voltage=0:12 --out body.h\n"
+                "      all forces of a model over all its axes, in one header and one call\n"
                 "  underbody export loads.csv --quantity pitch_moment --format json --out moment.json --frame ned");
     shell.on(sub, [&shell, command] { return run_export(shell, *command); });
 }

@@ -89,6 +89,9 @@ int run_at(Shell& shell, const AtCommand& command) {
                 const auto& axis = table.axes()[k];
                 line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " + tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
             }
+            if (e.no_data && !e.outside) {
+                line += "   no points around";
+            }
             if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
                 shell.warn("no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
                            " % of the axes' ranges outside them): the value is an extrapolation, its error says how far to trust it");

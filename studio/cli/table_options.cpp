@@ -1,23 +1,35 @@
 #include "studio/cli/table_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "surrogates/dynamics/force_points.h"
+#include "surrogates/dynamics/force_tables.h"
 #include "surrogates/tables/figures.h"
 #include "surrogates/tables/select.h"
 
 namespace underbody::studio {
 
 void TableOptions::add_to(CLI::App& command) {
-    command.add_option("table", file, "points as CSV: gap [mm], pitch [deg], ..., lift_force [N], lift_force_sigma [N], ...; or a JSON that 'export' wrote; or a model.toml: its forces, with the effects that change them")->required();
-    command.add_option("--quantity", quantity, "column to use (default: lift_force, or the first force of the table)");
+    command
+        .add_option(
+            "table", file,
+            "points as CSV: gap [mm], pitch [deg], ..., lift_force [N], lift_force_sigma [N], ...; or a JSON that "
+            "'export' wrote; or a model.toml: its forces as it simulates them, with the effects that change them")
+        ->required();
+    command.add_option("--quantity", quantity,
+                       "column to use (default: lift_force, or the first force of the table); export, fit, at: "
+                       "several, lift_force,pitch_moment, or all");
     command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either; of a model: what is held, such as speed=0.5m/s");
-    command.add_option("--axes", axes, "columns that are axes, such as gap,pitch (default: all known ones that vary)");
+    command.add_option("--axes", axes,
+                       "columns that are axes, such as gap,pitch (default: all known ones that vary); of a model also "
+                       "what scales its forces: gap,pitch,speed=0:0.8,jet_voltage=0:12V");
     command.add_option("--kind", kind, "automatic | interpolation | gaussian_process | spline (auto, gp for short)")->capture_default_str();
     command.add_option("--range", range, "outside the points: clamp | refuse | extrapolate, for all axes or one by one: gap=refuse,pitch=clamp (default clamp, or what an exported table says)");
 }
@@ -40,14 +52,19 @@ tables::FitOptions TableOptions::fit_options() const {
 
 namespace {
 
-std::vector<std::string> quantities_of(const core::Table& table, const std::string& asked) {
+std::vector<std::string> names_of(const std::string& list) {
     std::vector<std::string> names;
-    for (const auto name : core::split(asked, ',')) {
+    for (const auto name : core::split(list, ',')) {
         if (!core::trimmed(name).empty()) {
             names.emplace_back(core::trimmed(name));
         }
     }
-    if (names.empty()) {
+    return names;
+}
+
+std::vector<std::string> quantities_of(const core::Table& table, const std::string& asked) {
+    std::vector<std::string> names = names_of(asked);
+    if (names.empty() || names.front() == "all") {
         names = tables::force_columns(table);
     }
     if (names.empty()) {
@@ -57,22 +74,83 @@ std::vector<std::string> quantities_of(const core::Table& table, const std::stri
     return names;
 }
 
-}  // namespace
-
-core::Table TableOptions::points(Shell& shell) const {
-    if (std::filesystem::path(file).extension() != ".toml") {
-        return tables::selected_rows(tables::read_points(file), where);
-    }
+dynamics::Conditions held_of(const std::string& where) {
     dynamics::Conditions held;
     for (const auto& [name, value] : read_assignments(where)) {
         held.set(name, value);
     }
-    auto found = dynamics::force_points(dynamics::read_model(file), held);
+    return held;
+}
+
+/// "gap,pitch,speed=0:0.8,jet_voltage=0:12V"
+std::vector<dynamics::ForceAxis> axes_of(const std::string& text) {
+    std::vector<dynamics::ForceAxis> axes;
+    for (const std::string& part : names_of(text)) {
+        const std::size_t equals = part.find('=');
+        dynamics::ForceAxis axis{std::string(core::trimmed(part.substr(0, equals))), {}, {}};
+        if (equals != std::string::npos) {
+            const std::size_t colon = part.find(':', equals);
+            dynamics::Channel channel{};
+            if (colon == std::string::npos) {
+                throw core::UsageError("parse", "'" + part + "' is not of the form NAME=LOWER:UPPER", {},
+                                       "such as --axes gap,speed=0:0.8");
+            }
+            if (dynamics::find_channel(axis.name, channel)) {
+                axis.lower = option_value("--axes", part.substr(equals + 1, colon - equals - 1),
+                                          dynamics::channel_unit(channel));
+                axis.upper = option_value("--axes", part.substr(colon + 1), dynamics::channel_unit(channel));
+            }
+        }
+        axes.push_back(std::move(axis));
+    }
+    return axes;
+}
+
+}  // namespace
+
+core::Table TableOptions::points(Shell& shell) const {
+    if (!is_model()) {
+        return tables::selected_rows(tables::read_points(file), where);
+    }
+    auto found = dynamics::force_points(dynamics::read_model(file), held_of(where));
     shell.show(found.remarks);
     return std::move(found.points);
 }
 
+bool TableOptions::is_model() const { return std::filesystem::path(file).extension() == ".toml"; }
+
+std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, bool remarks) const {
+    if (kind != "automatic" && kind != "auto") {
+        throw core::UsageError(
+            "kind", "the forces of a model are taken as it simulates them: --kind " + kind + " is for points", {},
+            "leave it out, or say 'fit' at the force in the model");
+    }
+    const dynamics::Model model = dynamics::read_model(file);
+    dynamics::ForceTablesOptions options;
+    options.held = held_of(where);
+    options.axes = axes_of(axes);
+    options.quantities = names_of(quantity);
+    options.range = tables::parse_range_policies(range);
+    if (options.quantities.empty() || options.quantities.front() == "all") {
+        options.quantities = model.quantities();
+    }
+    if (one && options.quantities.size() > 1) {
+        options.quantities.resize(1);
+    }
+    auto found = dynamics::force_tables(model, options, shell.progress());
+    shell.show(found.remarks);
+    for (const auto& table : found.tables) {
+        if (remarks) {
+            shell.show(table.remarks());
+        }
+    }
+    return std::move(found.tables);
+}
+
 tables::ForceTable TableOptions::fit(Shell& shell) const {
+    if (is_model()) {
+        return of_model(shell, true, true).front();
+    }
     const auto table = points(shell);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
     shell.show(fitted.remarks());
@@ -80,6 +158,9 @@ tables::ForceTable TableOptions::fit(Shell& shell) const {
 }
 
 std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks) const {
+    if (is_model()) {
+        return of_model(shell, false, remarks);
+    }
     const auto table = points(shell);
     std::vector<tables::ForceTable> all;
     for (const auto& name : quantities_of(table, quantity)) {

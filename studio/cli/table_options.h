@@ -28,11 +28,17 @@ struct TableOptions {
     [[nodiscard]] tables::FitOptions fit_options() const;
     /// The rows that were asked for; of a model (.toml) its forces as points. Remarks go to the shell.
     [[nodiscard]] core::Table points(Shell& shell) const;
+    /// Is the file a model? Then its forces are taken as it simulates them, not fitted.
+    [[nodiscard]] bool is_model() const;
     /// Fits one quantity: the one asked for, or the first force of the table. Remarks go to the shell.
     [[nodiscard]] tables::ForceTable fit(Shell& shell) const;
     /// All quantities asked for ("a,b"), or all forces of the table.
     /// `remarks`: false for who prints them beside each table.
     [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true) const;
+
+private:
+    /// The forces of a model; only the first quantity when `one`.
+    [[nodiscard]] std::vector<tables::ForceTable> of_model(Shell& shell, bool one, bool remarks) const;
 };
 
 /// A value in the unit that the user's file has for the quantity.

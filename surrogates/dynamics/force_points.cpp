@@ -4,35 +4,12 @@
 #include <cmath>
 #include <map>
 
-#include "core/text.h"
 #include "core/units.h"
-#include "surrogates/dynamics/effects/effect.h"
+#include "surrogates/dynamics/vehicle_forces.h"
 
 namespace underbody::dynamics {
 
 namespace {
-
-void remark(ForcePoints& out, const Model& model, std::string text) {
-    out.remarks.push_back({core::Problem::Severity::warning, std::move(text), {model.name, {}, {}, {}}});
-}
-
-/// Keeps the static effects of the vehicle; the others are named in the remarks.
-Model of_the_vehicle(const Model& model, ForcePoints& out) {
-    Model kept = model.resolved();
-    std::string left;
-    std::erase_if(kept.effects, [&left](const EffectUse& use) {
-        const EffectInfo& info = effect(use.name).info();
-        const bool goes = info.belongs_to_the_rig || info.seen_in == SeenIn::time_series;
-        if (goes) {
-            left += (left.empty() ? "" : ", ") + use.name;
-        }
-        return goes;
-    });
-    if (!left.empty()) {
-        remark(out, model, "left out of the force, because it belongs to the rig or to the motion: " + left);
-    }
-    return kept;
-}
 
 using Axes = std::map<Channel, std::vector<double>>;
 
@@ -108,57 +85,19 @@ Axes axes_of(const Model& model, const Conditions& held) {
     return axes;
 }
 
-/// What scales and is no axis: held somewhere, and said.
-void hold_scales(const Model& model, const Axes& axes, Conditions& held, ForcePoints& out) {
-    for (const ForceSource& source : model.forces) {
-        for (const ForceScale& scale : source.scales) {
-            if (axes.contains(scale.channel) || held.has(scale.channel)) {
-                continue;
-            }
-            held[scale.channel] = model.conditions.get(scale.channel, scale.reference);
-            remark(
-                out, model,
-                std::string(channel_name(scale.channel)) + " is held at " +
-                    core::format_number(held[scale.channel], 6) + " " + channel_unit(scale.channel) +
-                    (model.conditions.has(scale.channel) ? ", the model's condition" : ", the reference of its scale"));
-        }
-    }
-}
-
-/// What the forces were computed for, one value a column: held channels, and the vehicle they belong to.
-void add_constants(core::Table& points, const Model& model, const Axes& axes, const Conditions& held) {
-    const auto add = [&](const char* name, const char* unit, double value) {
-        if (points.find(name) == nullptr && std::isfinite(value)) {  // what the model does not state is not stated here
-            points.add_numbers(name, unit, std::vector<double>(points.rows(), value));
-        }
-    };
-    for (std::size_t i = 0; i < channel_count; ++i) {
-        const auto channel = static_cast<Channel>(i);
-        if (held.has(channel) && !axes.contains(channel)) {
-            add(channel_name(channel), channel_unit(channel), held[channel]);
-        }
-    }
-    add("mass", "kg", model.vehicle.mass);
-    add("added_mass_heave", "kg", model.vehicle.added_mass_heave);
-    add("net_weight", "N", model.vehicle.net_weight);
-    add("length", "m", model.vehicle.length);
-    add("width", "m", model.vehicle.width);
-    add("density", "kg/m^3", model.environment.density);
-}
-
 }  // namespace
 
 ForcePoints force_points(const Model& declared, const Conditions& given) {
     ForcePoints out;
-    const std::vector<std::string> quantities = declared.quantities();
-    if (quantities.empty()) {
-        throw core::InputError("missing", "the model has no force source", {declared.name, {}, {}, {}},
-                               "declare it: [[force]] quantity = \"lift_force\", table = ...");
-    }
-    const Model model = of_the_vehicle(declared, out);
+    const Model model = of_the_vehicle(declared, out.remarks);
+    const std::vector<std::string> quantities = model.quantities();
     Conditions held = given;
     const Axes axes = axes_of(model, held);
-    hold_scales(model, axes, held, out);
+    std::vector<Channel> channels;
+    for (const auto& [channel, points] : axes) {
+        channels.push_back(channel);
+    }
+    hold_scales(model, channels, held, out.remarks);
     const std::size_t count = points_of(axes, 1);
     if (count > most_points) {
         throw core::InputError("range", "the tables of the model have more than a million set points together",
@@ -190,7 +129,7 @@ ForcePoints force_points(const Model& declared, const Conditions& given) {
     for (std::size_t q = 0; q < quantities.size(); ++q) {
         out.points.add_numbers(quantities[q], core::find_quantity(quantities[q])->unit, std::move(forces[q]));
     }
-    add_constants(out.points, model, axes, held);
+    add_constants(out.points, model, channels, held);
     return out;
 }
 

@@ -190,12 +190,19 @@ StaticModel::StaticModel(const Model& model, const std::string& quantity)
     }
 }
 
-double StaticModel::operator()(const Conditions& set_point, bool* outside) const {
+StaticPoint StaticModel::before(const Conditions& set_point) const {
     StaticPoint seen{set_point.over(model_.conditions), &model_};
-    const Conditions asked = seen.conditions;
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
         kinds_[i]->before(seen, model_.effects[i]);
     }
+    return seen;
+}
+
+Conditions StaticModel::seen(const Conditions& set_point) const { return before(set_point).conditions; }
+
+double StaticModel::operator()(const Conditions& set_point, bool* outside) const {
+    const StaticPoint seen = before(set_point);
+    const Conditions asked = set_point.over(model_.conditions);
     double value = sum_of_sources(model_, quantity_, seen.conditions, outside);
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
         value = kinds_[i]->after(quantity_, value, seen, asked, model_.effects[i]);

@@ -189,8 +189,12 @@ class StaticModel {
 public:
     StaticModel(const Model& model, const std::string& quantity);
     double operator()(const Conditions& set_point, bool* outside = nullptr) const;
+    /// The conditions that the force tables are asked at: the set point over the model's own, changed by its effects.
+    [[nodiscard]] Conditions seen(const Conditions& set_point) const;
+    [[nodiscard]] const Model& model() const { return model_; }
 
 private:
+    [[nodiscard]] StaticPoint before(const Conditions& set_point) const;
     Model model_;
     std::string quantity_;
     std::vector<const Effect*> kinds_;
