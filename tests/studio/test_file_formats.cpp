@@ -81,6 +81,7 @@ fs::path examples_in(const core::TemporaryFolder& scratch) {
     core::write_file(folder / "shapes" / "ellipse.toml",
                      "[body]\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\nheight = \"145 mm\"\nbase_cut = 0.75\n");
     core::write_file(folder / "lift.csv", "gap [mm], lift_force [N]\n1, 0.6\n5, 0.3\n20, 0.1\n");
+    core::write_file(folder / "points.csv", "Name,P1 - gap [mm]\nDP 5,5\n");
     core::write_file(folder / "run-01.csv", "time [s], gap [mm]\n0, 10\n0.1, 11\n0.2, 12\n");
     return folder;
 }
@@ -125,6 +126,9 @@ std::string document(const FileFormat& format, const FileTable& of, const FileKe
             }
         }
         // What the reader wants beside.
+        if (table.path == "case[]" && of.path == "case[].parameters") {
+            text += "design_points = \"points.csv\"\n";
+        }
         if (table.path == "sweep" && !(here && key != nullptr && key->name == "speed")) {
             text += "speed = \"0.5 m/s\"\n";
         }
@@ -137,6 +141,9 @@ std::string document(const FileFormat& format, const FileTable& of, const FileKe
         if (table.path == "effect[]" && of.path != "effect[].*" && !(here && key != nullptr && key->name == "*")) {
             text += "force = \"0.01 N\"\n";
         }
+    }
+    if (text.find("design_points = ") != std::string::npos) {
+        text = replaced(text, "h{gap:mm}", "h{design_point}");
     }
     return text;
 }
