@@ -9,6 +9,7 @@
 #include "core/figure.h"
 #include "core/progress.h"
 #include "core/table.h"
+#include "core/water.h"
 #include "geometry/body_shape.h"
 #include "geometry/placement.h"
 #include "geometry/surface_mesh.h"
@@ -42,7 +43,7 @@ struct AddedMass {
 };
 
 struct AddedMassOptions {
-    double density = 1000;
+    double density = core::default_water_density;  ///< kg/m^3
     std::optional<Placement> placement;
     /// Point of the moments; the centroid of the volume when empty.
     std::optional<Vec3> reference;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/water.h"
 #include "geometry/placement.h"
 #include "geometry/surface_mesh.h"
 
@@ -16,7 +17,7 @@ namespace underbody::geometry {
 struct FlowOptions {
     Placement placement;                ///< gap, pitch (roll must be 0 for a half model)
     double speed = 0.5;                 ///< m/s
-    double density = 998;               ///< kg/m^3
+    double density = core::default_water_density;  ///< kg/m^3
     double kinematic_viscosity = 1e-6;  ///< m^2/s
     double turbulence_intensity = 0.01;
     double viscosity_ratio = 5;                                ///< eddy over molecular viscosity at the inlet

@@ -5,14 +5,15 @@
 #include <array>
 #include <nlohmann/json_fwd.hpp>
 
+#include "core/water.h"
 #include "geometry/surface_mesh.h"
 
 namespace underbody::geometry {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-constexpr double standard_gravity = 9.80665;      ///< m/s^2
-constexpr double default_water_density = 1000.0;  ///< kg/m^3 (docs/physics.md section 1)
+constexpr double standard_gravity = 9.80665;  ///< m/s^2
+using core::default_water_density;
 
 /// SI, in the axes of the mesh.
 struct MassProperties {

@@ -150,7 +150,9 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
     Lookup everywhere(from.zones(), array, shift);
     if (to.zones().empty() || from.zones().empty()) {
         const Field& bare = to.zones().empty() ? b : a;
-        throw core::InputError("zone", "there is no surface of a body to compare on", {bare.files.empty() ? "" : bare.files.front(), {}, {}, {}}, "name its zones with --zones");
+        throw core::InputError("zone", "there is no surface of a body to compare on",
+                               {bare.files.empty() ? "" : bare.files.front(), {}, {}, {}},
+                               "name its zones (option 'zones')");
     }
     // Beyond this there is nothing to compare with: another shape, not another mesh.
     const double apart = 0.02 * diagonal(to.whole_body());

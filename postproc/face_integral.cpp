@@ -35,6 +35,16 @@ struct Sums {
     V3 area_vector, pressure_force, pressure_moment, shear_force, shear_moment, flux_of_place;
 
     UNDERBODY_INLINE void place(const V3& x, const V3& a) { flux_of_place.v += x.v * a.v; }
+    /// Adds those of a face whose area and shear count `share` times.
+    UNDERBODY_INLINE void add(const Sums& face, double share) {
+        area += share * face.area;
+        area_vector = area_vector + face.area_vector;
+        pressure_force = pressure_force + face.pressure_force;
+        pressure_moment = pressure_moment + face.pressure_moment;
+        shear_force = shear_force + share * face.shear_force;
+        shear_moment = shear_moment + share * face.shear_moment;
+        flux_of_place = flux_of_place + face.flux_of_place;
+    }
 };
 
 /// Reads what belongs to a face. `node_pressure`, `node_shear`: values by node, else one for the face; without a
@@ -166,6 +176,9 @@ private:
         }
     }
 
+    /// A fan of triangles around the mean of the corners. The area that shear acts on is the size of the area vector,
+    /// as in finite-volume solvers (and for quadrilaterals above): the triangles of a warped polygon have more
+    /// together.
     UNDERBODY_INLINE void polygon(std::size_t face, const Index* n, Index count, Sums& sums) const {
         V3 centre;
         V3 t_centre;
@@ -179,11 +192,14 @@ private:
         centre = per * centre;
         t_centre = per * t_centre;
         p_centre *= per;
+        Sums own;
         for (Index i = 0; i < count; ++i) {
             const Index m = n[i];
             const Index o = n[i + 1 < count ? i + 1 : 0];
-            triangle({centre, point(m), point(o)}, {p_centre, p(face, m), p(face, o)}, {t_centre, t(face, m), t(face, o)}, sums);
+            triangle({centre, point(m), point(o)}, {p_centre, p(face, m), p(face, o)},
+                     {t_centre, t(face, m), t(face, o)}, own);
         }
+        sums.add(own, own.area > 0 ? norm(own.area_vector) / own.area : 0);
     }
 
     const double* points_;

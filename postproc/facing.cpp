@@ -112,8 +112,11 @@ private:
         const double enclosed = std::accumulate(along.begin(), along.end(), 0.0) / static_cast<double>(along.size());
         if (!anchored && is_duct(along)) {
             facing_.problems.push_back({core::Problem::Severity::warning,
-                                        "the walls are open at both ends, as those of a duct are: on which side their fluid is cannot be told from their shape, "
-                                        "and outside is taken; for a flow inside give the side, --fluid file or --fluid reversed", {}});
+                                        "the walls are open at both ends, as those of a duct are: on which side their "
+                                        "fluid is cannot be told from their shape, "
+                                        "and outside is taken; for a flow inside give the side, option 'fluid file' or "
+                                        "option 'fluid reversed'",
+                                        {}});
             return false;
         }
         if (!anchored && std::abs(enclosed) < tiny_volume()) {

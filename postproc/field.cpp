@@ -151,11 +151,12 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
         }
     }
     const Importer* importer = importer_for(path);
-    if (importer == nullptr && fs::is_regular_file(status) && fs::file_size(path, error) == 0) {
-        throw core::InputError("format", "the file is empty", place);  // an empty NAME.foam stands for the case around it
-    }
     if (importer == nullptr) {
         const std::string known = what_it_is(path);
+        if (known.empty() && fs::is_regular_file(status) && fs::file_size(path, error) == 0) {
+            throw core::InputError("format", "the file is empty",
+                                   place);  // an empty NAME.foam stands for the case around it
+        }
         throw core::InputError("format", "unrecognised file format: no importer knows this content", place,
                                known.empty() ? "known formats: " + known_formats() : "it looks like " + known);
     }

@@ -33,7 +33,7 @@ struct ArrayInfo {
     std::string original_name;  ///< as in the file
     std::string original_unit;  ///< as in the file, may be empty
     Location on = Location::nodes;
-    int components = 1;
+    int components = 1;  ///< six: a symmetric tensor as xx yy zz xy yz xz; nine: xx xy xz yx ... zz
 };
 
 /// A surface, a volume, a line or a set of points, with its own name.
@@ -83,6 +83,7 @@ struct ReadOptions {
     std::vector<std::string> zones;         ///< patterns (* ?); empty: all
     bool surfaces_only = false;             ///< leave volumes out, for loads
     std::optional<double> time;             ///< s, of files with several times; nothing: the last one. A warning of files that state none
+    std::string base;  ///< of a CGNS file with several: its name, or its number from 1; empty: the last
     std::filesystem::path companion;        ///< the mesh of a results file, when it cannot be found by name
     /// Units that the file does not say: original column or variable name -> unit ("Pressure" -> "Pa").
     std::vector<std::pair<std::string, std::string>> units;

@@ -112,7 +112,8 @@ public:
             }
         }
         if (base_.empty()) {
-            throw core::InputError("zone", "no zone fits '" + options.base + "' as the base above the gap", place_of(field), "name it with --base");
+            throw core::InputError("zone", "no zone fits '" + options.base + "' as the base above the gap",
+                                   place_of(field), "name it (option 'base')");
         }
         place_mirror_by_body(field, options);
         volume_ = volume_with(field, {"velocity", "pressure"});

@@ -69,7 +69,8 @@ private:
     void set_axes() {
         Vector up = options_.up;
         if (revolved_ && mirror_.axis >= 0) {
-            throw core::UsageError("usage", "an axisymmetric case is whole already", {}, "leave --symmetry away");
+            throw core::UsageError("usage", "an axisymmetric case is whole already", {},
+                                   "leave option 'symmetry' away");
         }
         result_.dimension = field_.dimension;
         if (field_.dimension == 2) {
@@ -77,7 +78,8 @@ private:
             note(revolved_ ? "axisymmetric: forces are those on the whole body of revolution about the x axis; across it they cancel"
                            : "two-dimensional: forces and moments are per metre depth");
             if (std::abs(options_.forward[2]) > 0.5 * norm(options_.forward)) {
-                throw core::UsageError("usage", "in a two-dimensional case forward lies in its plane", {}, "for instance --forward +x --up +y");
+                throw core::UsageError("usage", "in a two-dimensional case forward lies in its plane", {},
+                                       "for instance option 'forward +x' and option 'up +y'");
             }
             if (std::abs(options_.up[2]) > 0.5 * norm(options_.up)) {
                 const bool along_y = std::abs(options_.forward[1]) > std::abs(options_.forward[0]);
@@ -87,7 +89,8 @@ private:
         }
         axes_ = vehicle_axes(options_.forward, up);
         if (revolved_ && std::abs(axes_.forward[0]) < 1 - 1e-6) {
-            throw core::UsageError("usage", "an axisymmetric case has its axis along x: forward lies along it", {}, "--forward +x or --forward -x");
+            throw core::UsageError("usage", "an axisymmetric case has its axis along x: forward lies along it", {},
+                                   "option 'forward +x' or option 'forward -x'");
         }
         result_.forward = axes_.forward;
         result_.up = axes_.up;
@@ -101,7 +104,8 @@ private:
                 continue;
             }
             if (!options_.accept_problems) {
-                throw InputError("file", problem.message, problem.place, "export the file again, or go on with --accept-problems");
+                throw InputError("file", problem.message, problem.place,
+                                 "export the file again, or go on with option 'accept-problems'");
             }
             result_.problems.push_back(problem);
         }
@@ -126,11 +130,15 @@ private:
         constexpr double closed = 1e-3;
         if (result_.closure > closed) {
             const std::string half = half_model_hint();
-            throw InputError("zone", "which walls are the body? " + others + ". The others (" + quoted(body) + ") are not closed either (closure " +
-                                         core::format_number(result_.closure, 3) + ")", place(),
-                             (half.empty() ? "" : half + "; ") + "name the body's zones: --zones '" + list + "', or sum over every wall: --zones '*'");
+            throw InputError("zone",
+                             "which walls are the body? " + others + ". The others (" + quoted(body) +
+                                 ") are not closed either (closure " + core::format_number(result_.closure, 3) + ")",
+                             place(),
+                             (half.empty() ? "" : half + "; ") + "name the body's zones: option 'zones " + list +
+                                 "', or sum over every wall: option 'zones *'");
         }
-        warn("left out of the sum: " + others + ". The loads are those on " + quoted(body) + ", which close; --zones '*' sums over every wall");
+        warn("left out of the sum: " + others + ". The loads are those on " + quoted(body) +
+             ", which close; option 'zones *' sums over every wall");
     }
 
     // ---- where ----
@@ -261,6 +269,8 @@ private:
         result_.named = named(result_.total);
         result_.named_pressure = named(result_.pressure);
         result_.named_viscous = named(result_.viscous);
+        take_solver_references();
+        result_.length = options_.references.length.value_or(extent_along(axes_.forward));
         result_.closure = result_.area > 0 ? norm(area_vector) / result_.area : 0;
         for (std::size_t k = 0; k < 3; ++k) {
             result_.force_per_reference_pascal[k] = area_vector[k] == 0 ? 0 : -area_vector[k];
@@ -288,7 +298,10 @@ private:
                                shown({1000 * result_.force_per_reference_pascal[0], 1000 * result_.force_per_reference_pascal[1], 1000 * result_.force_per_reference_pascal[2]}) + " N";
             const std::string half = half_model_hint();
             const std::string one = opening_zone();
-            warn(text + (!one.empty() ? "; it closes without zone '" + one + "' (a ground?): name the zones of the body with --zones" : half.empty() ? "" : "; " + half));
+            warn(text + (!one.empty() ? "; it closes without zone '" + one +
+                                            "' (a ground?): name the zones of the body (option 'zones')"
+                         : half.empty() ? ""
+                                        : "; " + half));
         }
     }
 
@@ -316,7 +329,9 @@ private:
         refuse_a_whole_body();
         const double inside = area_in_plane(static_cast<std::size_t>(mirror_.axis), mirror_.at);
         if (inside > 1e-3 * result_.area) {
-            warn(core::format_number(inside, 3) + " m^2 of the surface lie in the symmetry plane itself, where a half model has no wall: is that a ground, or the plane of symmetry? name the zones of the body with --zones");
+            warn(core::format_number(inside, 3) +
+                 " m^2 of the surface lie in the symmetry plane itself, where a half model has no wall: is that a "
+                 "ground, or the plane of symmetry? name the zones of the body (option 'zones')");
         }
     }
 
@@ -333,8 +348,10 @@ private:
         }
         if (bounds_a_volume(sums)) {
             const std::string axis(1, "xyz"[mirror_.axis]);
-            throw InputError("range", "the surface closes without a mirror image: it is no half model", place(),
-                             "leave --symmetry away, or state the plane between two bodies side by side: --symmetry " + axis + "=0");
+            throw InputError(
+                "range", "the surface closes without a mirror image: it is no half model", place(),
+                "leave option 'symmetry' away, or state the plane between two bodies side by side: option 'symmetry " +
+                    axis + "=0'");
         }
     }
 
@@ -383,7 +400,7 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const bool ends_at_zero = std::abs(extent_.lower[k]) < 1e-3 * size || std::abs(extent_.upper[k]) < 1e-3 * size;
             if (std::abs(open[k]) > 0.99 * norm(open) && ends_at_zero && area_in_plane(k, 0) < 0.01 * norm(open)) {
-                return std::string("a half model? then --symmetry ") + "xyz"[k];
+                return std::string("a half model? then option 'symmetry ") + "xyz"[k] + "'";
             }
         }
         return {};
@@ -418,27 +435,47 @@ private:
         }
     }
 
+    /// m, of the body along an axis; with its mirror image it reaches as far on the other side, and its half need not
+    /// begin at the plane.
+    [[nodiscard]] double extent_along(const Vector& axis) const {
+        double size = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const bool doubled = static_cast<int>(k) == mirror_.axis;
+            size += std::abs(axis[k]) *
+                    (doubled ? 2 * std::max(extent_.upper[k] - mirror_.at, mirror_.at - extent_.lower[k])
+                             : extent_.upper[k] - extent_.lower[k]);
+        }
+        return size;
+    }
+
+    /// Those that a Fluent case states.
+    void take_solver_references() {
+        SolverReferences& references = result_.solver_references;
+        references.density = options_.references.density ? options_.references.density : field_.density;
+        for (const auto& [name, target] : {std::pair{"reference-density", &references.density},
+                                           {"reference-velocity", &references.speed},
+                                           {"reference-area", &references.area},
+                                           {"reference-length", &references.length}}) {
+            const auto found = std::find_if(field_.metadata.begin(), field_.metadata.end(),
+                                            [&](const auto& entry) { return entry.first == name; });
+            if (const auto value = found == field_.metadata.end() ? std::nullopt : core::parse_number(found->second)) {
+                *target = *value;
+            }
+        }
+    }
+
     void coefficients() {
         const LoadsReferences& given = options_.references;
         const auto density = given.density ? given.density : field_.density;
         if (!density || !given.speed || !(*given.speed > 0) || !(*density > 0)) {
             return;
         }
-        const auto extent = [&](const Vector& axis) {
-            double size = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                // With its mirror image the body reaches as far on the other side; its half need not begin at the plane.
-                const bool doubled = static_cast<int>(k) == mirror_.axis;
-                size += std::abs(axis[k]) * (doubled ? 2 * std::max(extent_.upper[k] - mirror_.at, mirror_.at - extent_.lower[k]) : extent_.upper[k] - extent_.lower[k]);
-            }
-            return size;
-        };
         LoadsCoefficients c;
         c.density = *density;
         c.speed = *given.speed;
-        c.length = given.length.value_or(extent(axes_.forward));
-        c.width = given.width.value_or(extent(axes_.starboard));
-        c.height = given.height.value_or(extent(axes_.up));
+        c.length = result_.length;
+        c.width = given.width.value_or(extent_along(axes_.starboard));
+        c.height = given.height.value_or(extent_along(axes_.up));
         c.lengths_from = given.length && given.width && given.height ? "given" : given.length || given.width || given.height ? "given, others from the bounding box" : "bounding box";
         const bool strip = field_.dimension == 2 && !revolved_;  // one metre of it: a rectangle
         const double share = strip ? 1 : std::atan(1.0);

@@ -102,6 +102,11 @@ struct LeftOutZone {
     By by = By::shape;  ///< `doubled`: it is of the body, but its faces stand in other zones too
 };
 
+/// The reference values that the solver itself uses for coefficients, as far as the file states them.
+struct SolverReferences {
+    std::optional<double> density, speed, area, length;  ///< kg/m^3, m/s, m^2, m
+};
+
 struct LoadsResult {
     std::string file;
     std::optional<double> time;          ///< of the field (s, or the iteration of a steady run), where the file says
@@ -119,6 +124,7 @@ struct LoadsResult {
     std::vector<ZoneLoads> zones;
     std::vector<LeftOutZone> left_out;   ///< a ground, a tunnel, an inlet, a wall that stands twice in the file; only when no zones were named
     double area = 0;                     ///< m^2
+    double length = 0;  ///< m, of the body: as given among the references, else its extent along forward
     double closure = 0;                  ///< size of the summed area vector over the area: 0 for a closed surface
     Vector force_per_reference_pascal{}; ///< N/Pa: what 1 Pa added to every pressure would add to the force
     std::string depth;                   ///< of a plane case: "per metre depth", "of the whole body of revolution"; else empty
@@ -126,6 +132,7 @@ struct LoadsResult {
     std::string orientation;             ///< how it is known which way the faces look
     std::optional<Vector> centre_of_pressure;  ///< m, on the forward line through the reference; none without lift
     std::optional<LoadsCoefficients> coefficients;
+    SolverReferences solver_references;
     std::vector<LoadsStation> stations;
     core::Problems problems;             ///< open surface, no wall shear, orientation not settled, ...
 };
@@ -150,5 +157,8 @@ struct LoadsColumn {
     double value = 0;
 };
 std::vector<LoadsColumn> table_row(const LoadsResult& result);
+/// These, the coefficients where there are any, the reference point and length: what a row of every table of loads
+/// holds.
+std::vector<LoadsColumn> table_columns(const LoadsResult& result);
 
 }  // namespace underbody::postproc

@@ -51,6 +51,7 @@ void to_json(nlohmann::json& json, const LoadsResult& result) {
     json["viscous"] = json_of(result.viscous);
     json["viscous"].update(json_of(result.named_viscous));
     json["area"] = result.area;
+    json["length"] = result.length;
     json["closure"] = result.closure;
     json["force_per_reference_pascal"] = result.force_per_reference_pascal;
     if (!result.depth.empty()) {
@@ -96,6 +97,20 @@ std::vector<LoadsColumn> table_row(const LoadsResult& result) {
         {"drag_pressure", "N", result.named_pressure.drag_force}, {"drag_viscous", "N", result.named_viscous.drag_force},
         {"closure", "1", result.closure}};
     return row;
+}
+
+std::vector<LoadsColumn> table_columns(const LoadsResult& result) {
+    std::vector<LoadsColumn> columns = table_row(result);
+    if (result.coefficients) {
+        columns.push_back({"lift_coefficient", "1", result.coefficients->lift});
+        columns.push_back({"drag_coefficient", "1", result.coefficients->drag});
+        columns.push_back({"pitch_moment_coefficient", "1", result.coefficients->pitch_moment});
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        columns.push_back({std::string("reference_") + "xyz"[k], "m", result.reference[k]});
+    }
+    columns.push_back({"reference_length", "m", result.length});
+    return columns;
 }
 
 }  // namespace underbody::postproc

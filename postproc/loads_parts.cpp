@@ -179,10 +179,12 @@ private:
     void choose_zones() {
         for (const Zone* zone : wanted_zones()) {
             if (!is_surface(*zone)) {
-                throw InputError("zone", "zone '" + zone->name + "' has no faces, so that forces cannot be integrated", place(),
-                                 field_.format == "CFD-Post CSV" ? "export it with 'Line and Face Connectivity', or leave it out with --zones"
+                throw InputError("zone", "zone '" + zone->name + "' has no faces, so that forces cannot be integrated",
+                                 place(),
+                                 field_.format == "CFD-Post CSV"
+                                     ? "export it with 'Line and Face Connectivity', or leave it out (option 'zones')"
                                  : zone->kind == ZoneKind::line ? lines_hint
-                                                                : "leave it out with --zones");
+                                                                : "leave it out (option 'zones')");
             }
             Part part;
             part.zone = zone;
@@ -294,7 +296,9 @@ private:
         });
         const auto bodies = separate_bodies(walls);
         if (!bodies.empty()) {
-            warn("zones " + quoted(bodies) + " are bodies of their own that lie apart: the loads are the sum over all; name those that are meant with --zones");
+            warn("zones " + quoted(bodies) +
+                 " are bodies of their own that lie apart: the loads are the sum over all; name those that are meant "
+                 "(option 'zones')");
         }
     }
 
@@ -315,7 +319,8 @@ private:
                 result_.left_out.push_back({name, "its faces stand in " + quoted(others) + " too", LeftOutZone::By::doubled});
                 warn("left out of the sum: " + faces);
             } else {
-                throw InputError("zone", faces + ", and would count twice", place(), "name zones without common faces: --zones");
+                throw InputError("zone", faces + ", and would count twice", place(),
+                                 "name zones without common faces (option 'zones')");
             }
         }
         std::size_t at = 0;
@@ -334,8 +339,11 @@ private:
                 continue;
             }
             if (reference.kind != PressureReference::Kind::gauge || !(reference.operating_pressure > 0)) {
-                throw InputError("reference", "zone '" + part.zone->name + "' has an absolute pressure and others have a gauge pressure, and the file does not say what lies between", place(),
-                                 "sum them apart: --zones");
+                throw InputError("reference",
+                                 "zone '" + part.zone->name +
+                                     "' has an absolute pressure and others have a gauge pressure, and the file does "
+                                     "not say what lies between",
+                                 place(), "sum them apart (option 'zones')");
             }
             part.values.reference_pressure += reference.operating_pressure;
             warn("zone '" + part.zone->name + "' has only an absolute pressure: " + core::format_number(reference.operating_pressure) + " Pa, the file's operating pressure, was taken from it");
@@ -365,8 +373,10 @@ private:
             array = array_of(part, "kinematic_pressure", on_nodes);
             const auto density = options_.references.density ? options_.references.density : field_.density;
             if (array != nullptr && !density) {
-                throw InputError("missing", "zone '" + part.zone->name + "' has p/rho instead of a pressure, and the file does not say the density", place(),
-                                 "give it: --density \"998 kg/m^3\"");
+                throw InputError("missing",
+                                 "zone '" + part.zone->name +
+                                     "' has p/rho instead of a pressure, and the file does not say the density",
+                                 place(), "give it: option 'density 998 kg/m^3'");
             }
             scale = density.value_or(1);
         }
@@ -384,13 +394,22 @@ private:
             });
             if (without_unit != part.zone->arrays.end()) {
                 const std::string& name = without_unit->original_name;
-                throw InputError("missing", "zone '" + part.zone->name + "' has no pressure but '" + name + "', of which the file does not say the unit", place(),
-                                 "say it: --unit " + name + "=Pa, or of p/rho --unit \"" + name + "=m^2/s^2\" with --density");
+                throw InputError("missing",
+                                 "zone '" + part.zone->name + "' has no pressure but '" + name +
+                                     "', of which the file does not say the unit",
+                                 place(),
+                                 "say it: option 'unit " + name + "=Pa', or of p/rho option 'unit " + name +
+                                     "=m^2/s^2' with option 'density'");
             }
             if (names.empty()) {
-                throw InputError("missing", "zone '" + part.zone->name + "' has no pressure, nor any other values: this is a mesh alone", place(),
-                                 field_.format.starts_with("Fluent") ? "no results lie beside it under its name; give the results file (.dat, .dat.h5), with --mesh if the mesh has another name"
-                                                                     : "give the file that the solver's results are in");
+                throw InputError(
+                    "missing",
+                    "zone '" + part.zone->name + "' has no pressure, nor any other values: this is a mesh alone",
+                    place(),
+                    field_.format.starts_with("Fluent")
+                        ? "no results lie beside it under its name; give the results file (.dat, .dat.h5), with option "
+                          "'mesh' if the mesh has another name"
+                        : "give the file that the solver's results are in");
             }
             throw InputError("missing", "zone '" + part.zone->name + "' has no pressure", place(), core::did_you_mean("pressure", names));
         }
@@ -413,8 +432,10 @@ private:
             array = array_of(part, "kinematic_wall_shear", on_nodes);
             scale = options_.references.density ? *options_.references.density : field_.density.value_or(std::nan(""));
             if (array != nullptr && std::isnan(scale)) {
-                throw InputError("missing", "zone '" + part.zone->name + "' has wall shear over density, and the file does not say the density", place(),
-                                 "give it: --density \"998 kg/m^3\"");
+                throw InputError(
+                    "missing",
+                    "zone '" + part.zone->name + "' has wall shear over density, and the file does not say the density",
+                    place(), "give it: option 'density 998 kg/m^3'");
             }
         }
         if (array == nullptr || array->GetNumberOfComponents() != 3) {

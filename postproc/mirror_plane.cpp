@@ -21,7 +21,8 @@ MirrorPlane mirror_plane_from(const std::string& text) {
     const auto equals = text.find('=');
     const std::string axis = core::lower_case(core::trimmed(std::string_view(text).substr(0, equals)));
     if (axis.size() != 1 || axis[0] < 'x' || axis[0] > 'z') {
-        throw core::UsageError("usage", "'" + text + "' is no symmetry plane", {}, "give its normal axis: --symmetry y, or --symmetry y=0.1");
+        throw core::UsageError("usage", "'" + text + "' is no symmetry plane", {},
+                               "give its normal axis, option 'symmetry y', or with its place, option 'symmetry y=0.1'");
     }
     plane.axis = axis[0] - 'x';
     if (equals != std::string::npos) {
@@ -133,15 +134,19 @@ PlacedMirror place_mirror(const MirrorPlane& plane, const std::vector<const Surf
         }
     }
     if (ends.low() < mirror.at - ends.slack && ends.high() > mirror.at + ends.slack) {
-        throw core::InputError("range", "the surface lies on both sides of " + shown(mirror.at) + ": it is no half model", place, "leave --symmetry away");
+        throw core::InputError("range",
+                               "the surface lies on both sides of " + shown(mirror.at) + ": it is no half model", place,
+                               "leave option 'symmetry' away");
     }
     const auto is_at_plane = [&](double end) { return std::abs(end - mirror.at) <= ends.slack; };
     const std::array<double, 2> both = {ends.low(), ends.high()};
     const bool opens_at_plane = std::any_of(both.begin(), both.end(), [&](double end) { return is_at_plane(end) && ends.open_at(end); });
     for (const double end : both) {
         if (plane.at && !opens_at_plane && !is_at_plane(end) && ends.open_at(end)) {
-            throw core::InputError("range", "the symmetry plane was said to lie at " + shown(mirror.at) + ", but the surface is open at " + shown(end) + ", where it ends", place,
-                                   "--symmetry " + axis + " takes the plane where the surface is open");
+            throw core::InputError("range",
+                                   "the symmetry plane was said to lie at " + shown(mirror.at) +
+                                       ", but the surface is open at " + shown(end) + ", where it ends",
+                                   place, "option 'symmetry " + axis + "' takes the plane where the surface is open");
         }
     }
     return mirror;

@@ -281,7 +281,8 @@ core::Table probe_points(const Field& field, const std::vector<Point>& points, c
     }
     const bool volumes = !options.on_surface && std::any_of(field.zones.begin(), field.zones.end(), [](const Zone& z) { return z.volume != nullptr && z.volume->GetNumberOfCells() > 0; });
     if (volumes && !options.zones.empty()) {
-        throw core::UsageError("usage", "zones choose surfaces, but it is the volume that is looked into", {}, "--on-surface looks on surfaces, or leave --zones away");
+        throw core::UsageError("usage", "zones choose surfaces, but it is the volume that is looked into", {},
+                               "option 'on-surface' looks on surfaces, or leave option 'zones' away");
     }
     const auto arrays = chosen_arrays(field, options, volumes);
     if (volumes) {

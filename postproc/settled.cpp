@@ -221,7 +221,7 @@ private:
 
     /// What the history's drift and scatter count against, in the history's unit; 0: nothing that it could.
     [[nodiscard]] double scale_of(const LoadHistory& load) const {
-        const double force = force_ * (load.quantity.ends_with("_moment") ? std::sqrt(std::max(result_.area, 0.0)) : 1);
+        const double force = force_ * (load.quantity.ends_with("_moment") ? result_.length : 1);
         if (!own_unit_.contains(load.quantity)) {
             const bool known_unit = load.sigma > 0;
             return known_unit ? std::max(force * load.scatter.standard_uncertainty / load.sigma,

@@ -36,13 +36,16 @@ struct StatedLoad {
 /// A monitor that the user names: which quantity a column of which file is.
 struct MonitorSource {
     std::string quantity;  ///< one of the six named loads, lift_force to yaw_moment
+    bool coefficient =
+        false;  ///< the column holds it over the solver's reference force (moments: times its reference length)
     std::string unit;      ///< of the column, as UDUNITS-2 reads it; empty: SI
     double scale = 1;      ///< number before the unit: "2.4 N" turns a coefficient into a force
     std::string file;
     std::string column;    ///< may be empty when there is only one
 };
 
-/// "lift_force=lift.out", "drag_force [lbf]=report.out:drag". Throws core::UsageError for anything else, with the nearest name.
+/// "lift_force=lift.out", "drag_force [lbf]=report.out:drag", "lift_coefficient=cl.out". Throws core::UsageError for
+/// anything else, with the nearest name.
 MonitorSource monitor_source(const std::string& text);
 
 /// Every row of the force and moment reports in a text (Fluent's "Forces - Direction Vector ..."), totals and parts. Of
@@ -50,9 +53,11 @@ MonitorSource monitor_source(const std::string& text);
 /// Throws core::InputError: no report in the file, a direction without length.
 std::vector<StatedLoad> stated_in_report(const std::filesystem::path& path);
 
-/// A column of a report file (.out, .csv) as one of the named loads of `result`, moments about its reference point. Where
-/// the field has a time, up to that: by the monitor's column of times, or where it counts iterations by the one of that
-/// number (OpenFOAM's steady time); else to the end. Throws core::InputError: no such column, a history too short to judge.
+/// A column of a report file (.out, .csv) as one of the named loads of `result`, moments about its reference point.
+/// Where the field has a time, up to that: by the monitor's column of times, or where it counts iterations by the one
+/// of that number (OpenFOAM's steady time); else to the end. Coefficients become forces by the reference values in the
+/// monitor's own heading (OpenFOAM), else by those that the CFD file states (Fluent). Throws core::InputError: no such
+/// column, a history too short to judge, reference values of coefficients that nobody states.
 StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& result);
 
 /// The forces that OpenFOAM wrote beside the case (see read_openfoam_forces), as the named loads of `result` with
@@ -72,13 +77,9 @@ struct Comparison {
     std::string stated_in;  ///< the report; empty: the conditions (manifest)
     double value = 0;
     double stated = 0;      ///< of the whole body: doubled where the report is of a half model
-    /// |value - stated| over the size of the force on the same zones, the stated one where the own is nothing (moments:
-    /// times the root of their area).
-    double of_force = 0;
+    double of_force = 0;    ///< their deviation (deviation.h)
+    std::string hint{};     ///< what may be behind a large deviation: the other sign, half a body
 };
-
-/// |difference| over `force`; over `fallback` where there is no force at all (a pure moment).
-double share_of(double difference, double force, double fallback);
 
 void to_json(nlohmann::json& json, const Comparison& comparison);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "postproc/deviation.h"
 #include "postproc/stated_loads.h"
 #include "postproc/stated_parts.h"
 #include "postproc/vector_math.h"
@@ -16,7 +17,6 @@ namespace {
 
 struct Covered {
     Wrench total, pressure, viscous;
-    double area = 0;
     std::string missing;  ///< a zone that is not there
 };
 
@@ -24,7 +24,7 @@ void add_to(Wrench& sum, const Wrench& more) { sum = {plus(sum.force, more.force
 
 Covered covered_by(const LoadsResult& result, const std::vector<std::string>& zones) {
     if (zones.empty()) {
-        return {result.total, result.pressure, result.viscous, result.area, {}};
+        return {result.total, result.pressure, result.viscous, {}};
     }
     Covered sum;
     for (const auto& name : zones) {
@@ -36,7 +36,6 @@ Covered covered_by(const LoadsResult& result, const std::vector<std::string>& zo
         }
         add_to(sum.pressure, zone->pressure);
         add_to(sum.viscous, zone->viscous);
-        sum.area += zone->area;
     }
     add_to(sum.total, sum.pressure);
     add_to(sum.total, sum.viscous);
@@ -82,9 +81,6 @@ bool of_a_far_time(const LoadsResult& result, const StatedLoad& load) {
     return of_another_time(result, load) && std::abs(*load.time - *result.time) > far * std::max(std::abs(*load.time), std::abs(*result.time));
 }
 
-/// What is no more than this share of a force is nothing beside it: symmetry leaves such rests, which never settle.
-constexpr double rounding = 1e-9;
-
 /// The largest component of the whole force that the same file states of the same zones.
 double largest_stated_force(const std::vector<StatedLoad>& stated, const StatedLoad& like) {
     double largest = 0;
@@ -95,15 +91,6 @@ double largest_stated_force(const std::vector<StatedLoad>& stated, const StatedL
     }
     return largest;
 }
-
-}  // namespace
-
-double share_of(double difference, double force, double fallback) {
-    const double scale = force > 0 ? force : fallback;
-    return scale > 0 ? std::abs(difference) / scale : 0;
-}
-
-namespace {
 
 /// Notes about what is stated, each once for a file (or a zone).
 class Notes {
@@ -153,6 +140,27 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// What a deviation looks like that is none of the numbers: the other sign, or one of them of half the body.
+std::string hint_for(const Comparison& one, bool moment, const LoadScale& scale) {
+    constexpr double large = 0.3;
+    constexpr double alike = 0.05;
+    if (!(one.of_force > large)) {
+        return {};
+    }
+    const auto fits = [&](double factor) {
+        return deviation(one.value, factor * one.stated, moment, scale) < alike * one.of_force;
+    };
+    return fits(-1) ? "it has the other sign: stated along the opposite direction? A monitor is turned round by \"" +
+                          one.quantity + " [-1 " + (moment ? "N m" : "N") + "]=FILE\""
+           : fits(2)   ? "twice of it would fit: is what is stated that of half the body?"
+           : fits(0.5) ? "half of it would fit: is the field that of half the body?"
+                       : "";
+}
+
+}  // namespace
+
 std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std::vector<StatedLoad>& stated, core::Problems& problems) {
     std::vector<Comparison> comparisons;
     Notes notes(problems);
@@ -180,10 +188,10 @@ std::vector<Comparison> compare_with_solver(const LoadsResult& result, const std
         one.stated_in = load.file;
         one.value = dot(load.moment ? moment : wrench.force, load.direction);
         one.stated = halves * load.value;
-        const double own = norm(body.total.force);
-        const double theirs = halves * largest_stated_force(stated, load);
-        const double force = own > rounding * theirs ? own : theirs;  // nought is no measure
-        one.of_force = share_of(one.value - one.stated, force * (load.moment ? std::sqrt(body.area) : 1), std::max(std::abs(one.value), std::abs(one.stated)));
+        const LoadScale scale =
+            load_scale(norm(body.total.force), halves * largest_stated_force(stated, load), result.length);
+        one.of_force = deviation(one.value, one.stated, load.moment, scale);
+        one.hint = hint_for(one, load.moment, scale);
         comparisons.push_back(std::move(one));
     }
     if (result.mirror_axis >= 0 && !stated.empty()) {
@@ -196,6 +204,9 @@ void to_json(nlohmann::json& json, const Comparison& c) {
     json = {{"quantity", c.quantity}, {"value", c.value}, {"stated", c.stated}, {"difference", c.value - c.stated}, {"of_force", c.of_force}};
     if (!c.stated_in.empty()) {
         json["stated_in"] = c.stated_in;
+    }
+    if (!c.hint.empty()) {
+        json["hint"] = c.hint;
     }
 }
 

@@ -7,13 +7,15 @@
 #include "postproc/importers/reports.h"
 #include "postproc/stated_loads.h"
 #include "postproc/stated_parts.h"
+#include "postproc/vector_math.h"
 
 namespace underbody::postproc {
 
 using core::InputError;
 
 MonitorSource monitor_source(const std::string& text) {
-    const char* example = "for instance --monitor lift_force=lift-rfile.out, or \"drag_force [N]=report.out:drag\"";
+    const char* example =
+        "for instance option 'monitor lift_force=lift-rfile.out', or \"drag_force [N]=report.out:drag\"";
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size()) {
         throw core::UsageError("usage", "'" + text + "' is no QUANTITY=FILE", {}, example);
@@ -32,10 +34,22 @@ MonitorSource monitor_source(const std::string& text) {
             source.unit = scaled.unit;
         }
     }
+    constexpr std::string_view over_reference = "_coefficient";
+    if (head.ends_with(over_reference)) {
+        source.coefficient = true;
+        const std::string load = head.substr(0, head.size() - over_reference.size());
+        head = load.ends_with("_moment") ? load : load + "_force";
+        if (!source.unit.empty()) {
+            throw core::UsageError("unit", "'" + load + "_coefficient' is a pure number, without a unit", {},
+                                   "a number before a unit makes a force of it: \"" + head + " [2.4 N]=FILE\"");
+        }
+    }
     source.quantity = head;
     const std::vector<std::string> names = {"lift_force", "drag_force", "side_force", "pitch_moment", "roll_moment", "yaw_moment"};
     if (std::find(names.begin(), names.end(), head) == names.end()) {
-        throw core::UsageError("usage", "'" + head + "' is no load that a monitor can give", {}, core::did_you_mean(head, names));
+        throw core::UsageError(
+            "usage", "'" + head + "' is no load that a monitor can give", {},
+            core::did_you_mean(head, names) + "; of coefficients lift_coefficient, pitch_moment_coefficient ...");
     }
     const std::string si = core::find_quantity(head)->unit;
     if (!source.unit.empty() && (!core::is_unit(source.unit) || !core::same_dimension(source.unit, si))) {
@@ -94,6 +108,47 @@ std::optional<FieldRow> row_of_field(const Monitor& monitor, const LoadsResult& 
 
 }  // namespace
 
+namespace {
+
+/// N (moments: N m) that a coefficient of 1 stands for.
+double reference_of(const MonitorSource& source, const Monitor& monitor, const LoadsResult& result, bool moment) {
+    const auto& own = monitor.coefficients;
+    const SolverReferences& solver = result.solver_references;
+    const auto density = own && own->density ? own->density : solver.density;
+    const auto speed = own ? own->speed : solver.speed;
+    const auto area = own ? own->area : solver.area;
+    const auto length = own ? own->length : solver.length;
+    const std::string missing = !density            ? "density"
+                                : !speed            ? "speed"
+                                : !area             ? "area"
+                                : moment && !length ? "length"
+                                                    : "";
+    if (!missing.empty()) {
+        throw InputError("missing", "coefficients, and nobody says the reference " + missing + " that they refer to",
+                         {monitor.file, {}, {}, {}},
+                         missing == "density" ? "give it: option 'density'"
+                                              : "state the force that 1 stands for: \"" + source.quantity + " [2.4 " +
+                                                    (moment ? "N m" : "N") + "]=FILE\"");
+    }
+    return 0.5 * *density * *speed * *speed * *area * (moment ? *length : 1);
+}
+
+/// OpenFOAM states in its table which way its coefficients count; another program's are taken the vehicle's way.
+void take_direction(const Monitor& monitor, StatedLoad& load) {
+    if (!monitor.coefficients) {
+        return;
+    }
+    const std::string name = load.quantity.substr(0, load.quantity.find('_')) + (load.moment ? "Axis" : "Dir");
+    for (const auto& [own, direction] : monitor.coefficients->directions) {
+        if (const double size = norm(direction); own == name && size > 0) {
+            load.direction = plus({}, direction, 1 / size);
+        }
+    }
+    load.centre = monitor.coefficients->centre.value_or(load.centre);
+}
+
+}  // namespace
+
 StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& result) {
     const Monitor monitor = read_monitor(source.file);
     std::string column = source.column;
@@ -104,8 +159,10 @@ StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& res
             throw InputError("missing", "the monitor has no column of values, only '" + monitor.columns.front() + "'", {monitor.file, {}, {}, {}});
         }
         if (candidates.size() > 1) {
-            throw InputError("missing", "the monitor has several columns: which one is " + source.quantity + "?", {monitor.file, {}, {}, {}},
-                             core::did_you_mean("", candidates) + "; say --monitor " + source.quantity + "=" + source.file + ":COLUMN");
+            throw InputError("missing", "the monitor has several columns: which one is " + source.quantity + "?",
+                             {monitor.file, {}, {}, {}},
+                             core::did_you_mean("", candidates) + "; say option 'monitor " + source.quantity + "=" +
+                                 source.file + ":COLUMN'");
         }
         column = candidates.front();
     }
@@ -126,6 +183,11 @@ StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& res
     load.moment = axis.moment;
     load.direction = axis.direction;
     load.centre = result.reference;
+    if (source.coefficient) {
+        const double reference = reference_of(source, monitor, result, load.moment);
+        std::for_each(history.begin(), history.end(), [&](double& value) { value *= reference; });
+        take_direction(monitor, load);
+    }
     if (const auto row = row_of_field(monitor, result)) {
         load.time = row->time;
         load.later = history.size() - row->index - 1;

@@ -71,6 +71,12 @@ void add_array(const Zone& zone, const ArrayInfo& info, std::vector<ArraySummary
     }
     found->zones.push_back(zone.name);
     if (auto* array = find_array(zone, info)) {
+        for (int k = 0; k < array->GetNumberOfComponents() && array->HasAComponentName() &&
+                        found->component_names.size() < static_cast<std::size_t>(info.components);
+             ++k) {
+            found->component_names.emplace_back(array->GetComponentName(k) != nullptr ? array->GetComponentName(k)
+                                                                                      : "");
+        }
         take_range(*array, *found);
     }
 }
@@ -152,6 +158,9 @@ void to_json(nlohmann::json& json, const FieldSummary& summary) {
     for (const auto& array : summary.arrays) {
         json["arrays"].push_back({{"name", array.name}, {"unit", array.unit}, {"on", array.on}, {"components", array.components}, {"min", array.min}, {"max", array.max},
                                   {"missing", array.missing}, {"zones", array.zones}, {"original_name", array.original_name}, {"original_unit", array.original_unit}});
+        if (!array.component_names.empty()) {
+            json["arrays"].back()["component_names"] = array.component_names;
+        }
     }
     json["points_counted"] = "zone by zone: points of several zones count in each of them";
     json["metadata"] = nlohmann::json::object();

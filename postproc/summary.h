@@ -28,6 +28,7 @@ struct ArraySummary {
     std::string unit;
     std::string on;  ///< "nodes", "faces", "cells"; "nodes, faces" when zones differ
     int components = 1;
+    std::vector<std::string> component_names;  ///< of a tensor: XX, YY, ZZ, XY, YZ, XZ
     double min = 0;  ///< of the size for vectors; missing values left out
     double max = 0;
     std::size_t missing = 0;

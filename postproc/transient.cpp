@@ -148,7 +148,7 @@ LoadsCase mean_of(Run run, core::Problems& notes) {
         }
         if (values.size() >= shortest_history) {
             const IterationScatter scatter = iteration_scatter(values);
-            const double scale = force * (column.unit == "N m" ? std::sqrt(std::max(result.loads.area, 0.0)) : 1);
+            const double scale = force * (column.unit == "N m" ? result.loads.length : 1);
             const std::string fault = fault_of(scatter, scale, true);
             drift += fault.empty() ? "" : (drift.empty() ? "" : "; ") + column.name + " " + fault;
             result.settled.loads.push_back({column.name, result.file, scatter, mean.error});

@@ -17,7 +17,8 @@ VehicleAxes vehicle_axes(const Vector& forward, const Vector& up) {
     };
     VehicleAxes axes{unit(forward, "forward"), unit(up, "up"), {}};
     if (std::abs(dot(axes.forward, axes.up)) > 1e-6) {
-        throw core::UsageError("usage", "forward and up are not perpendicular", {}, "for instance --forward +x --up +z");
+        throw core::UsageError("usage", "forward and up are not perpendicular", {},
+                               "for instance option 'forward +x' and option 'up +z'");
     }
     axes.starboard = cross(axes.forward, axes.up);
     return axes;

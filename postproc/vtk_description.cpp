@@ -2,8 +2,11 @@
 
 #include <vtkFieldData.h>
 #include <vtkNew.h>
+#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -122,26 +125,51 @@ Description description_from(const json& whole) {
 
 }  // namespace
 
-void describe_in(vtkDataObject& data, const Field& field, const std::vector<DescribedZone>& zones) {
+namespace {
+
+vtkSmartPointer<vtkAbstractArray> array_of(const std::string& text, bool as_bytes) {
+    if (as_bytes) {
+        auto bytes = vtkSmartPointer<vtkUnsignedCharArray>::New();
+        bytes->SetNumberOfValues(static_cast<vtkIdType>(text.size()));
+        std::copy(text.begin(), text.end(), bytes->GetPointer(0));
+        return bytes;
+    }
+    auto strings = vtkSmartPointer<vtkStringArray>::New();
+    strings->InsertNextValue(text);
+    return strings;
+}
+
+std::optional<std::string> text_of(vtkAbstractArray* array) {
+    if (auto* strings = vtkStringArray::SafeDownCast(array); strings != nullptr && strings->GetNumberOfValues() == 1) {
+        return std::string(strings->GetValue(0));
+    }
+    if (auto* bytes = vtkUnsignedCharArray::SafeDownCast(array); bytes != nullptr && bytes->GetNumberOfValues() > 0) {
+        return std::string(bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues());
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+void describe_in(vtkDataObject& data, const Field& field, const std::vector<DescribedZone>& zones, bool as_bytes) {
     json whole = json_of(field);
     whole["zones"] = json::array();
     for (const auto& zone : zones) {
         whole["zones"].push_back(json_of(zone));
     }
-    vtkNew<vtkStringArray> text;
-    text->SetName(description_name);
     // One sign a byte: VTK's readers and writers of XML treat others in their own ways.
-    text->InsertNextValue(whole.dump(-1, ' ', true, json::error_handler_t::replace));
-    data.GetFieldData()->AddArray(text);
+    const auto array = array_of(whole.dump(-1, ' ', true, json::error_handler_t::replace), as_bytes);
+    array->SetName(description_name);
+    data.GetFieldData()->AddArray(array);
 }
 
 std::optional<Description> description_in(vtkDataObject& data) {
-    auto* text = vtkStringArray::SafeDownCast(data.GetFieldData()->GetAbstractArray(description_name));
-    if (text == nullptr || text->GetNumberOfValues() != 1) {
+    const auto text = text_of(data.GetFieldData()->GetAbstractArray(description_name));
+    if (!text) {
         return std::nullopt;
     }
     try {
-        const json whole = json::parse(std::string(text->GetValue(0)));
+        const json whole = json::parse(*text);
         if (whole.at("version").get<int>() != version) {
             return std::nullopt;
         }

@@ -25,13 +25,14 @@ struct Description {
     std::vector<DescribedZone> zones;
 };
 
-/// The name of the field data array: one string, JSON.
+/// The name of the field data array: JSON, as one string, or as its bytes.
 constexpr const char* description_name = "underbody";
 /// The cell array that tells zones apart.
 constexpr const char* mark_name = "zone";
 
-/// Puts the description into the field data. The zones are those whose data `data` holds, in their order.
-void describe_in(vtkDataObject& data, const Field& field, const std::vector<DescribedZone>& zones);
+/// Puts the description into the field data. The zones are those whose data `data` holds, in their order. `as_bytes`:
+/// as an array of numbers, for programs that know no other (meshio).
+void describe_in(vtkDataObject& data, const Field& field, const std::vector<DescribedZone>& zones, bool as_bytes);
 
 /// What `describe_in` wrote; nothing when there is none or it is damaged.
 std::optional<Description> description_in(vtkDataObject& data);

@@ -4,10 +4,13 @@
 #include <vtkAppendPolyData.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -39,8 +42,24 @@ Joined joined_from(const Zone& zone, vtkDataSet& data) {
     return joined;
 }
 
-/// Units and origin travel with the data: for people, and for ourselves.
-void describe(vtkDataObject& data, const Field& field, const std::vector<Joined>& parts) {
+std::vector<DescribedZone> described(const std::vector<Joined>& parts) {
+    std::vector<DescribedZone> zones;
+    for (const auto& part : parts) {
+        DescribedZone one;
+        one.zone = *part.zone;
+        one.zone.surface = nullptr;
+        one.zone.volume = nullptr;
+        one.mark = part.mark;
+        one.surface = part.zone->volume == nullptr;
+        one.points = part.data->GetNumberOfPoints();
+        one.cells = part.data->GetNumberOfCells();
+        zones.push_back(std::move(one));
+    }
+    return zones;
+}
+
+/// For people: where the data come from, what the arrays are in, which number is which zone.
+void describe_in_words(vtkDataObject& data, const Field& field, const std::vector<Joined>& parts) {
     vtkNew<vtkStringArray> origin;
     origin->SetName("origin");
     for (const auto& file : field.files) {
@@ -51,30 +70,44 @@ void describe(vtkDataObject& data, const Field& field, const std::vector<Joined>
     std::vector<std::string> seen;
     vtkNew<vtkStringArray> names;
     names->SetName("zone_names");
-    std::vector<DescribedZone> zones;
     for (const auto& part : parts) {
-        const Zone& zone = *part.zone;
-        names->InsertNextValue(std::to_string(part.mark) + " " + zone.name);
-        for (const auto& info : zone.arrays) {
+        names->InsertNextValue(std::to_string(part.mark) + " " + part.zone->name);
+        for (const auto& info : part.zone->arrays) {
             if (std::find(seen.begin(), seen.end(), info.name) == seen.end()) {
                 seen.push_back(info.name);
                 units->InsertNextValue(info.name + " [" + info.unit + "]");
             }
         }
-        DescribedZone described;
-        described.zone = zone;
-        described.zone.surface = nullptr;
-        described.zone.volume = nullptr;
-        described.mark = part.mark;
-        described.surface = zone.volume == nullptr;
-        described.points = part.data->GetNumberOfPoints();
-        described.cells = part.data->GetNumberOfCells();
-        zones.push_back(std::move(described));
     }
     data.GetFieldData()->AddArray(origin);
     data.GetFieldData()->AddArray(units);
     data.GetFieldData()->AddArray(names);
-    describe_in(data, field, zones);
+}
+
+/// What VTK and ParaView know as the unit of an array.
+void label_units(vtkDataSet& data, const std::vector<Joined>& parts) {
+    for (const auto& part : parts) {
+        for (const auto& info : part.zone->arrays) {
+            for (vtkDataSetAttributes* attributes : {static_cast<vtkDataSetAttributes*>(data.GetPointData()),
+                                                     static_cast<vtkDataSetAttributes*>(data.GetCellData())}) {
+                if (vtkDataArray* array = attributes->GetArray(info.name.c_str());
+                    array != nullptr && !info.unit.empty()) {
+                    array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), info.unit.c_str());
+                }
+            }
+        }
+    }
+}
+
+/// Units and origin travel with the data: for people, and for ourselves. Other programs' readers of unstructured grids
+/// know numbers alone, and would refuse the file for a string.
+void describe(vtkDataSet& data, const Field& field, const std::vector<Joined>& parts) {
+    const bool numbers_alone = vtkUnstructuredGrid::SafeDownCast(&data) != nullptr;
+    if (!numbers_alone) {
+        describe_in_words(data, field, parts);
+    }
+    label_units(data, parts);
+    describe_in(data, field, described(parts), numbers_alone);
 }
 
 /// Numbers its zones in its cells: by their ids, unless two have the same.

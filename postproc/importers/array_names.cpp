@@ -46,7 +46,27 @@ CanonicalName named_as_scalar(CanonicalName canonical) {
     return canonical;
 }
 
+namespace {
+
+/// Scalars U, V (and W) are the components of a velocity, as Tecplot files and others name them; "U" alone may be its
+/// size.
+void name_u_as_component(std::vector<ArrayPlan>& plans) {
+    const auto scalar = [&](const char* letter, const char* meaning) {
+        const auto found = std::find_if(plans.begin(), plans.end(), [&](const ArrayPlan& plan) {
+            return plan.components == 1 && core::lower_case(plan.own) == letter && plan.name == meaning;
+        });
+        return found == plans.end() ? nullptr : &*found;
+    };
+    ArrayPlan* first = scalar("u", "velocity_magnitude");
+    if (first != nullptr && scalar("v", "velocity_y") != nullptr && scalar("u", "velocity_x") == nullptr) {
+        first->name = "velocity_x";
+    }
+}
+
+}  // namespace
+
 void settle_names(std::vector<ArrayPlan>& plans, const core::Place& place, core::Problems& problems) {
+    name_u_as_component(plans);
     std::unordered_map<std::string, ArrayPlan*> plainest;
     for (auto& plan : plans) {
         if (plan.name.empty()) {

@@ -23,8 +23,8 @@ struct ArrayPlan {
 /// others write so.
 CanonicalName named_as_scalar(CanonicalName canonical);
 
-/// Gives every array a name of its own. Of several of one meaning the one with the plainest spelling has the canonical name,
-/// the others go by their own; a warning says so.
+/// Gives every array a name of its own. A scalar "U" beside a scalar "V" is velocity_x. Of several of one meaning the
+/// one with the plainest spelling has the canonical name, the others go by their own; a warning says so.
 void settle_names(std::vector<ArrayPlan>& plans, const core::Place& place, core::Problems& problems);
 
 /// Is an array asked for, by the file's name, its settled one or that of the vector it is a component of? The `phase`

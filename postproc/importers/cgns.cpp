@@ -26,7 +26,7 @@ namespace {
 class Reader {
 public:
     Reader(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress)
-        : file_(path, options.time), name_(path.string()), options_(options), progress_(progress) {}
+        : file_(path, options.time, options.base), name_(path.string()), options_(options), progress_(progress) {}
 
     Field read();
     [[nodiscard]] std::string understood() const {
@@ -127,7 +127,12 @@ void Reader::add_notes(Field& field) const {
     if (!unread_.empty()) {
         add(core::Problem::Severity::warning, "values that boundaries hold for themselves (BCDataSet) are not read: " + listed(unread_));
     }
-    if (file_.bases() > 1) {
+    if (const auto others = file_.other_bases(); !others.empty() && options_.base.empty()) {
+        add(core::Problem::Severity::warning, "the file has " + std::to_string(file_.bases()) +
+                                                  " bases, of which the last is read, '" + file_.base_name() +
+                                                  "': what is in " + listed(others) +
+                                                  " is not here (option 'cgns-base' chooses another)");
+    } else if (file_.bases() > 1) {
         add(core::Problem::Severity::note, "of " + std::to_string(file_.bases()) + " bases '" + file_.base_name() + "' is read");
     }
     for (const auto& warning : file_.warnings()) {

@@ -89,7 +89,8 @@ bool CgnsFile::open_newer(bool hdf5) {
     return linked && cg_open(own.c_str(), CG_MODE_READ, &file_) == CG_OK;
 }
 
-CgnsFile::CgnsFile(const std::filesystem::path& path, std::optional<double> time) : name_(path.string()) {
+CgnsFile::CgnsFile(const std::filesystem::path& path, std::optional<double> time, const std::string& base)
+    : name_(path.string()) {
     core::note_content(path);
     std::error_code error;
     bytes_ = std::filesystem::file_size(path, error);
@@ -114,7 +115,7 @@ CgnsFile::CgnsFile(const std::filesystem::path& path, std::optional<double> time
         if (bases_ < 1) {
             fail("there is no base in the file");
         }
-        choose_step(time);
+        choose_step(time, base);
         opened(cg_base_read(file_, base_, base_name.data(), &cell_dimension_, &physical_dimension_), "base");
         if (cell_dimension_ < 1 || cell_dimension_ > 3) {
             fail("its cells have " + std::to_string(cell_dimension_) + " dimensions");
@@ -126,6 +127,37 @@ CgnsFile::CgnsFile(const std::filesystem::path& path, std::optional<double> time
         cg_close(file_);
         throw;
     }
+}
+
+std::vector<std::string> CgnsFile::base_names() const {
+    std::vector<std::string> names;
+    for (int base = 1; base <= bases_; ++base) {
+        std::array<char, 33> name{};
+        int cells = 0;
+        int space = 0;
+        names.emplace_back(cg_base_read(file_, base, name.data(), &cells, &space) == CG_OK ? name.data() : "");
+    }
+    return names;
+}
+
+/// By its name, or by its number where none has that name.
+int CgnsFile::base_called(const std::string& base) const {
+    const std::vector<std::string> names = base_names();
+    if (const auto found = std::find(names.begin(), names.end(), base); found != names.end()) {
+        return static_cast<int>(found - names.begin()) + 1;
+    }
+    const auto number = core::parse_integer(base);
+    if (!number || *number < 1 || *number > bases_) {
+        throw core::InputError("missing", "there is no base '" + base + "' in this file", {name_, {}, {}, {}},
+                               core::did_you_mean(base, names));
+    }
+    return static_cast<int>(*number);
+}
+
+std::vector<std::string> CgnsFile::other_bases() const {
+    std::vector<std::string> names = bases_ > 1 && !base_per_step_ ? base_names() : std::vector<std::string>();
+    std::erase(names, base_name_);
+    return names;
 }
 
 CgnsFile::~CgnsFile() { cg_close(file_); }

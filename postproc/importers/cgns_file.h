@@ -76,13 +76,15 @@ class CgnsFile {
 public:
     /// The base and step of `time` [s]; without it the last base, or the latest of those that state times, and its last
     /// step. A time that the file does not state is refused.
-    explicit CgnsFile(const std::filesystem::path& path, std::optional<double> time = {});
+    explicit CgnsFile(const std::filesystem::path& path, std::optional<double> time = {}, const std::string& base = {});
     ~CgnsFile();
     CgnsFile(const CgnsFile&) = delete;
     CgnsFile& operator=(const CgnsFile&) = delete;
 
     /// Of the library that wrote the file, where it is later than the one here; 0 otherwise.
     [[nodiscard]] float newer_version() const { return version_; }
+    /// The names of all bases; empty where there is one, or where each is a step in time.
+    [[nodiscard]] std::vector<std::string> other_bases() const;
     [[nodiscard]] int bases() const { return bases_; }
     [[nodiscard]] const std::string& base_name() const { return base_name_; }
     [[nodiscard]] int cell_dimension() const { return cell_dimension_; }
@@ -152,7 +154,9 @@ private:
     void warn(const std::string& what);
     [[noreturn]] void refuse_time(const std::string& why) const;
     [[nodiscard]] Steps steps_of_base(int base) const;
-    void choose_step(std::optional<double> time);
+    [[nodiscard]] std::vector<std::string> base_names() const;
+    [[nodiscard]] int base_called(const std::string& base) const;
+    void choose_step(std::optional<double> time, const std::string& base);
     void find_zones_of_step();
     static bool names_something(std::string_view pointer);
     [[nodiscard]] std::vector<std::string> names_by_step(std::string_view array) const;
@@ -172,6 +176,7 @@ private:
     std::uint64_t most_values_ = 0;
     int file_ = -1;
     int bases_ = 0;
+    bool base_per_step_ = false;
     int base_ = 1;
     std::string base_name_;
     std::vector<int> zones_;

@@ -33,24 +33,28 @@ CgnsFile::Steps CgnsFile::steps_of_base(int base) const {
 }
 
 /// The base and the step of the time asked for; without one the last base, or the latest of those that state times.
-void CgnsFile::choose_step(std::optional<double> time) {
+/// Where a base is asked for, all this is of that one alone.
+void CgnsFile::choose_step(std::optional<double> time, const std::string& asked) {
+    const int only = asked.empty() ? 0 : base_called(asked);
     std::vector<Steps> bases;
     std::vector<std::pair<int, std::size_t>> places;  // base and step of each time
     for (int base = 1; base <= bases_; ++base) {
-        bases.push_back(steps_of_base(base));
+        bases.push_back(only == 0 || only == base ? steps_of_base(base) : Steps{});
         for (std::size_t step = 0; step < bases.back().times.size(); ++step) {
             times_.push_back(bases.back().times[step]);
             places.emplace_back(base, step);
         }
     }
-    base_ = bases_;
-    steps_ = static_cast<std::size_t>(bases.back().count);
+    base_ = only == 0 ? bases_ : only;
+    const Steps& last = bases[static_cast<std::size_t>(base_ - 1)];
+    steps_ = static_cast<std::size_t>(last.count);
     step_ = steps_ > 0 ? steps_ - 1 : 0;
     time_asked_ = time.has_value();
-    const bool base_per_step = std::count_if(bases.begin(), bases.end(), [](const Steps& steps) { return !steps.times.empty(); }) > 1;
-    if (time || base_per_step || !bases.back().times.empty()) {
+    base_per_step_ =
+        std::count_if(bases.begin(), bases.end(), [](const Steps& steps) { return !steps.times.empty(); }) > 1;
+    if (time || base_per_step_ || !last.times.empty()) {
         const auto latest = static_cast<std::size_t>(std::max_element(times_.begin(), times_.end()) - times_.begin());
-        const std::size_t place = time ? step_at(times_, *time, name_) : base_per_step ? latest : times_.size() - 1;
+        const std::size_t place = time ? step_at(times_, *time, name_) : base_per_step_ ? latest : times_.size() - 1;
         std::tie(base_, step_) = places[place];
         steps_ = static_cast<std::size_t>(bases[static_cast<std::size_t>(base_ - 1)].count);
         time_ = times_[place];
@@ -158,7 +162,8 @@ int CgnsFile::grid_of_step(const CgnsZone& zone) {
 }
 
 void CgnsFile::refuse_time(const std::string& why) const {
-    throw core::InputError("range", why + ": what belongs to the time asked for cannot be told", {name_, {}, {}, {}}, "leave --time away");
+    throw core::InputError("range", why + ": what belongs to the time asked for cannot be told", {name_, {}, {}, {}},
+                           "leave option 'time' away");
 }
 
 }  // namespace underbody::postproc

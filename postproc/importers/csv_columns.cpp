@@ -130,7 +130,8 @@ private:
         state_unit(plan);
         const std::string& stated = options_.length_unit;
         if (!plan.has_unit && stated.empty()) {
-            throw InputError("unit", "coordinate '" + plan.name + "' has no unit", place, "say it with --length-unit mm (or m, inch, ...)");
+            throw InputError("unit", "coordinate '" + plan.name + "' has no unit", place,
+                             "say it: option 'length-unit mm' (or m, inch, ...)");
         }
         if (plan.has_unit && !stated.empty() && core::same_dimension(plan.unit, stated) && core::conversion(plan.unit, stated).scale != 1) {
             note(Severity::warning, "coordinate '" + plan.name + "' is in " + plan.unit + ": a length unit (" + stated + ") is for files that state none", place);
@@ -147,7 +148,8 @@ private:
         const bool counts = meaning.name == "pressure" || meaning.name.starts_with("wall_shear");  // for loads: nothing is guessed
         const bool pure = meaning.unit.empty() || meaning.unit == "1";
         if (!plan.has_unit && !pure && counts) {
-            throw InputError("unit", "column '" + plan.name + "' has no unit", place, "say it with --unit \"" + plan.name + "=" + meaning.unit + "\"");
+            throw InputError("unit", "column '" + plan.name + "' has no unit", place,
+                             "say it: option 'unit " + plan.name + "=" + meaning.unit + "'");
         }
         if (!plan.has_unit) {
             if (!pure) {

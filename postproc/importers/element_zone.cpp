@@ -354,6 +354,7 @@ Zone zone_from(ElementPart&& part, std::vector<PartValues>&& values, int volume_
         }
         auto array = given_to_vtk<vtkDoubleArray>(std::move(named.values), named.info.components);
         array->SetName(named.info.name.c_str());
+        name_tensor_components(*array);
         (named.on_nodes ? point_data : cell_data)->AddArray(array);
         zone.arrays.push_back(std::move(named.info));
     }

@@ -155,7 +155,10 @@ void Values::place(PartValues& values, std::size_t first, std::size_t count, boo
     }
     const auto n = static_cast<std::size_t>(variable_.components);
     Buffer<double> column(stored);
-    for (std::size_t k = 0; k < n; ++k) {
+    // Symmetric tensors stand as xx yy zz xy xz yz; here, as in VTK, as xx yy zz xy yz xz.
+    static constexpr std::array<std::size_t, 6> symmetric = {0, 1, 2, 3, 5, 4};
+    for (std::size_t written = 0; written < n; ++written) {
+        const std::size_t k = n == symmetric.size() ? symmetric[written] : written;
         in_.reals(column.data(), stored);
         for (std::size_t i = 0; i < stored && keep; ++i) {
             const std::size_t place = partial ? static_cast<std::size_t>(places[i] - 1) : i;

@@ -220,6 +220,20 @@ void CaseReader::geometry(const std::string& key, const std::string& rest) {
     }
 }
 
+namespace {
+
+/// "complex scalar per node: 1 pressure FILE_RE FILE_IM 50": what is not read of it, and why.
+std::string unread_variable(const std::string& key, const std::vector<std::string>& words) {
+    if (!key.starts_with("complex")) {
+        return "variables '" + key + "' are not read";
+    }
+    const std::string name = words.size() >= 4 ? words[words.size() - 4] : words.empty() ? "" : words.front();
+    return "the complex variable '" + name +
+           "' is not read: it is an amplitude and a phase over frequency, no field at one time";
+}
+
+}  // namespace
+
 void CaseReader::variable(const std::string& key, const std::string& rest) {
     auto words = words_of(rest);
     if (key.starts_with("constant per case") || key.starts_with("constant per part")) {
@@ -238,7 +252,7 @@ void CaseReader::variable(const std::string& key, const std::string& rest) {
                                                                  : 0;
     if (entry.variable.components == 0 || (!entry.variable.on_nodes && !on_elements)) {
         result_.problems.push_back(
-            {core::Problem::Severity::note, "'" + key + "' is not read", {path_.string(), line_, {}, {}}});
+            {core::Problem::Severity::warning, unread_variable(key, words), {path_.string(), line_, {}, {}}});
         return;
     }
     take_sets(words, 2, entry.pattern);

@@ -201,7 +201,10 @@ std::int64_t EnsightInput::part_number(bool first) {
         }
     }
     if (number < 1) {
-        fail("a part with number " + std::to_string(number));
+        throw core::InputError(
+            "format", "a part has the number " + std::to_string(number) + ": EnSight counts parts from 1", in_.place(),
+            number == 0 ? "the program that wrote it counts from 0: export it again with part numbers from 1"
+                        : "the file is damaged or of another coding");
     }
     return number;
 }

@@ -262,6 +262,13 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
     }
     std::size_t too_small = 0;
     const auto elements = elements_of(blocks, zone.kind == ZoneKind::wall, too_small);
+    if (too_small > 0 && zone.kind == ZoneKind::interface && elements.empty()) {
+        field.problems.push_back({core::Problem::Severity::warning,
+                                  "the faces of interface '" + zone.name +
+                                      "' have no corners in the file, only the cells beside them: it is left out",
+                                  {mesh_.file, {}, {}, {}}});
+        return;
+    }
     if (too_small > 0) {
         field.problems.push_back({core::Problem::Severity::error,
                                   std::to_string(too_small) + " faces of zone '" + zone.name + "' have fewer corners than a face can have, and are left out: is the mesh damaged?",

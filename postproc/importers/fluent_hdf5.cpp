@@ -49,7 +49,7 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
         }
         if (mesh_path.empty()) {
             throw core::InputError("missing", "these are solution data without a mesh", {path.string(), {}, {}, {}},
-                                   "name the case (.cas.h5) they belong to: --mesh FILE");
+                                   "name the case (.cas.h5) they belong to: option 'mesh FILE'");
         }
     }
     if (!data_path.empty()) {

@@ -66,7 +66,7 @@ Files files_of(const fs::path& path, const ReadOptions& options) {
         }
         if (mesh.empty()) {
             throw core::InputError("missing", "these are solution data without a mesh", {path.string(), {}, {}, {}},
-                                   "name the case (.cas) they belong to: --mesh FILE");
+                                   "name the case (.cas) they belong to: option 'mesh FILE'");
         }
         return {mesh, path, true};
     }

@@ -17,7 +17,8 @@ namespace {
 /// The values of a chunk, handed out in order.
 class ChunkValues {
 public:
-    ChunkValues(const Hdf5ChunkLayout& layout, const Hdf5Chunk& chunk) : chunk_(chunk), size_(layout.chunk_bytes()) {
+    ChunkValues(const Hdf5ChunkLayout& layout, const Hdf5Chunk& chunk)
+        : chunk_(chunk), size_(layout.chunk_bytes()), used_(layout.used_bytes(chunk.row)) {
         if (chunk.deflated && ::inflateInit(&zip_) != Z_OK) {
             throw std::bad_alloc();
         }
@@ -26,6 +27,9 @@ public:
         zip_.avail_in = static_cast<unsigned>(chunk.bytes.size());
         // What is shuffled has the first bytes of all values first: it is inflated as a whole.
         constexpr std::size_t most_inflated = 1032;
+        const bool as_whole =
+            chunk.deflated ? size_ / most_inflated <= chunk.bytes.size() : size_ == chunk.bytes.size();
+        size_ = as_whole ? size_ : used_;
         sound_ = chunk.deflated ? size_ / most_inflated <= chunk.bytes.size() : size_ == chunk.bytes.size();
         if (sound_ && chunk.shuffled) {
             unshuffle(layout.width);
@@ -39,7 +43,9 @@ public:
     ChunkValues(const ChunkValues&) = delete;
     ChunkValues& operator=(const ChunkValues&) = delete;
 
-    /// The next `bytes` bytes, there until the next call; null: the chunk is damaged.
+    /// How many bytes there are, as far as is known: a chunk that is inflated may turn out to have its used rows only.
+    [[nodiscard]] std::size_t size() const { return size_; }
+    /// The next `bytes` bytes, there until the next call (behind `size` nothing of use); null: the chunk is damaged.
     const unsigned char* next(std::size_t bytes) {
         if (!sound_) {
             return nullptr;
@@ -66,6 +72,10 @@ private:
         zip_.avail_out = static_cast<unsigned>(bytes);
         const int result = ::inflate(&zip_, Z_SYNC_FLUSH);
         ended_ = result == Z_STREAM_END;
+        if (ended_ && zip_.total_out == used_) {
+            size_ = used_;
+            return window_.data();
+        }
         sound_ = zip_.avail_out == 0 && (result == Z_OK || ended_);
         return sound_ ? window_.data() : nullptr;
     }
@@ -75,7 +85,7 @@ private:
             return;
         }
         const std::size_t count = size_ / width;
-        values_.resize(size_);
+        values_.resize(count * width);
         for (std::size_t byte = 0; byte < width; ++byte) {
             for (std::size_t i = 0; i < count; ++i) {
                 values_[i * width + byte] = planes[byte * count + i];
@@ -86,6 +96,7 @@ private:
 
     const Hdf5Chunk& chunk_;
     std::size_t size_;
+    std::size_t used_;  ///< of the rows that the data set has
     std::size_t at_ = 0;
     std::size_t taken_ = 0;
     z_stream zip_{};
@@ -122,16 +133,35 @@ bool take_filters(hid_t properties, Hdf5ChunkLayout& layout) {
 
 }  // namespace
 
+namespace {
+
+/// The first row of the last chunks.
+hsize_t last_chunk_row(const Hdf5ChunkLayout& layout) {
+    return layout.lengths[0] == 0 ? 0 : (layout.lengths[0] - 1) / layout.chunk[0] * layout.chunk[0];
+}
+
+/// Do the bytes of plain chunks add up where the last ones have no more rows than the data set?
+bool ends_cut(const Hdf5ChunkLayout& layout, hsize_t chunks) {
+    const hsize_t last_chunks = (layout.lengths[1] + layout.chunk[1] - 1) / layout.chunk[1];
+    const std::uint64_t spare = (layout.chunk_bytes() - layout.used_bytes(last_chunk_row(layout))) * last_chunks;
+    return layout.stored_bytes + spare == chunks * layout.chunk_bytes();
+}
+
+}  // namespace
+
 std::optional<Hdf5ChunkLayout> layout_of_chunks(hid_t set, hid_t type, hid_t space, std::string& refusal) {
     const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose);
     Hdf5ChunkLayout layout;
     const int rank = H5Sget_simple_extent_ndims(space);
     unsigned options = 0;
     if (!properties.good() || rank < 1 || rank > 2 || H5Pget_chunk(properties.get(), rank, layout.chunk) != rank ||
-        H5Sget_simple_extent_dims(space, layout.lengths, nullptr) < 0 || H5Pget_chunk_opts(properties.get(), &options) < 0 || options != 0) {
+        H5Sget_simple_extent_dims(space, layout.lengths, nullptr) < 0 ||
+        H5Pget_chunk_opts(properties.get(), &options) < 0 ||
+        (options & ~static_cast<unsigned>(H5D_CHUNK_DONT_FILTER_PARTIAL_CHUNKS)) != 0) {
         refusal = "how its chunks lie in the file is not understood";
         return {};
     }
+    layout.edges_plain = options != 0;
     layout.width = H5Tget_size(type);
     constexpr hsize_t widest = 65536;
     constexpr hsize_t largest = (hsize_t{1} << 32) - 1;
@@ -147,7 +177,10 @@ std::optional<Hdf5ChunkLayout> layout_of_chunks(hid_t set, hid_t type, hid_t spa
     hsize_t chunks = 0;
     layout.stored_bytes = H5Dget_storage_size(set);
     // Of what is not packed the library says the size that a chunk should have, and reads as much as the file has.
-    if (layout.filters.empty() && (H5Dget_num_chunks(set, space, &chunks) < 0 || layout.stored_bytes != chunks * layout.chunk_bytes())) {
+    const bool counted = layout.filters.empty() && H5Dget_num_chunks(set, space, &chunks) >= 0;
+    layout.last_cut = counted && layout.stored_bytes != chunks * layout.chunk_bytes() && ends_cut(layout, chunks);
+    if (layout.filters.empty() &&
+        (!counted || (layout.stored_bytes != chunks * layout.chunk_bytes() && !layout.last_cut))) {
         refusal = "its " + std::to_string(chunks) + " chunks have " + std::to_string(layout.stored_bytes) + " bytes, which are not " + std::to_string(layout.chunk[0] * layout.chunk[1]) + " values each";
         return {};
     }
@@ -193,14 +226,22 @@ std::string load_chunk(hid_t set, const Hdf5ChunkLayout& layout, std::uint64_t f
     if (size == 0 || size > file_bytes || (plain && (size != layout.chunk_bytes() || layout.stored_bytes > file_bytes))) {
         return "its values cannot be read";
     }
-    // A plain chunk may have other bytes in the file than it should, but no more than all have together.
-    Buffer<unsigned char> room(plain ? layout.stored_bytes : 0);
+    // A plain chunk may have other bytes in the file than it should, but no more than all have together. Of one that is
+    // cut the library states the full size all the same.
+    Buffer<unsigned char> room(plain ? std::max<std::uint64_t>(size, layout.stored_bytes) : 0);
+    std::fill_n(room.data(), plain ? size : 0, static_cast<unsigned char>(0));
     chunk.bytes.resize(plain ? 0 : size);
     if (H5Dread_chunk(set, H5P_DEFAULT, offset, &skipped, plain ? room.data() : chunk.bytes.data()) < 0) {
         return "its values cannot be read";
     }
     if (plain) {
-        chunk.bytes.assign(room.data(), room.data() + size);
+        const bool cut = layout.last_cut && chunk.row == last_chunk_row(layout);
+        chunk.bytes.assign(room.data(), room.data() + (cut ? layout.used_bytes(chunk.row) : size));
+    }
+    if (layout.edges_plain &&
+        (chunk.row + layout.chunk[0] > layout.lengths[0] || chunk.column + layout.chunk[1] > layout.lengths[1])) {
+        chunk.deflated = chunk.shuffled = false;
+        return {};
     }
     const auto used = [&](H5Z_filter_t filter) {
         const auto found = std::find(layout.filters.begin(), layout.filters.end(), filter);
@@ -218,9 +259,9 @@ bool unpack(const Hdf5ChunkLayout& layout, const Hdf5Chunk& chunk, hsize_t end, 
             const std::function<bool(hsize_t row, hsize_t rows, const unsigned char* stored)>& take) {
     constexpr std::size_t window = std::size_t{1} << 18;  // stays near the processor
     const hsize_t at_once = std::max<hsize_t>(1, window / layout.row_bytes());
-    const hsize_t last = end == layout.lengths[0] ? layout.chunk[0] : end - chunk.row;
     ChunkValues values(layout, chunk);
-    for (hsize_t row = 0; row < last; row += at_once) {
+    const hsize_t last = end == layout.lengths[0] ? values.size() / layout.row_bytes() : end - chunk.row;
+    for (hsize_t row = 0; row < last && row * layout.row_bytes() < values.size(); row += at_once) {
         progress.check();
         const hsize_t some = std::min(at_once, last - row);
         const unsigned char* stored = values.next(some * layout.row_bytes());

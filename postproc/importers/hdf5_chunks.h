@@ -23,9 +23,16 @@ struct Hdf5ChunkLayout {
     std::size_t width = 1;  ///< bytes of a value
     std::vector<H5Z_filter_t> filters;  ///< in the order of writing: shuffled, deflated, with a check sum; none of them twice
     std::uint64_t stored_bytes = 0;  ///< of all chunks in the file
+    bool edges_plain = false;        ///< chunks that reach beyond the data set are stored without filters
+    bool last_cut = false;           ///< plain chunks, of which the last have no more rows than the data set
 
     [[nodiscard]] std::size_t row_bytes() const { return chunk[1] * width; }
     [[nodiscard]] std::size_t chunk_bytes() const { return chunk[0] * row_bytes(); }
+    /// The bytes of those rows of the chunk at `row` that the data set has: some writers (Fluent Meshing) store no
+    /// others.
+    [[nodiscard]] std::size_t used_bytes(hsize_t row) const {
+        return (row + chunk[0] > lengths[0] ? lengths[0] - row : chunk[0]) * row_bytes();
+    }
 };
 
 /// Of a data set with one or two dimensions whose values lie in chunks; `refusal` says why they cannot be unpacked here
@@ -46,8 +53,9 @@ hsize_t stored_size(hid_t set, const Hdf5Chunk& chunk);
 /// wrong with them; nothing: they are good.
 std::string load_chunk(hid_t set, const Hdf5ChunkLayout& layout, std::uint64_t file_bytes, Hdf5Chunk& chunk);
 
-/// Calls `take(first row, rows, values)` for the rows of a chunk up to `end` (of the data set), some at a time, as long as
-/// it says true. At the end of the data set the chunk is unpacked to its own end, where its check sum is. False: damaged.
+/// Calls `take(first row, rows, values)` for the rows of a chunk up to `end` (of the data set), some at a time, as long
+/// as it says true. At the end of the data set the chunk is unpacked to its own end, where its check sum is; it may end
+/// with the last row of the data set. False: damaged.
 bool unpack(const Hdf5ChunkLayout& layout, const Hdf5Chunk& chunk, hsize_t end, core::Progress& progress,
             const std::function<bool(hsize_t row, hsize_t rows, const unsigned char* stored)>& take);
 

@@ -441,7 +441,7 @@ Field Reader::read() {
     mesh_.cell_blocks.push_back(std::move(cells));
     check_mesh(mesh_, options_.surfaces_only, progress_);
     progress_.report(0.5, "reading the fields of time " + time_name_);
-    FoamFields fields(mesh_, options_, progress_, values_);
+    FoamFields fields(mesh_, folder_, options_, progress_, values_);
     for (const auto& piece : pieces_) {
         if (!time_name_.empty()) {
             fields.read(piece, piece.folder / time_name_);

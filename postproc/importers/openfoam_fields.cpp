@@ -54,37 +54,101 @@ void FoamFields::name_quantity(ValueBlock& block, const std::vector<double>& dim
     block.unit = known ? "m^2/s^2" : core::si_unit(unit);
 }
 
-FoamFields::PatchValues FoamFields::patch_values(FoamInput& in, std::size_t components) {
+namespace {
+
+constexpr const char* values_of_cells =
+    "valuesOfTheCells";  ///< what "$internalField" stands for where each cell has its own
+constexpr const char* not_here = "valuesOfAnotherPatch";
+
+/// "uniform 5", "uniform (1 0 0)", to be read again.
+std::string as_text(const std::string& before, const std::vector<double>& numbers) {
+    std::string text = before + (numbers.size() > 1 ? " (" : " ");
+    for (const double number : numbers) {
+        text += core::format_number(number, 17) + " ";
+    }
+    return text + (numbers.size() > 1 ? ")" : "");
+}
+
+/// OpenFOAM's symmetric tensors stand as xx xy xz yy yz zz; here, as in VTK, as xx yy zz xy yz xz.
+template <typename Values>
+void order_as_vtk(Values& values, std::size_t components) {
+    for (std::size_t i = 0; components == 6 && i + 6 <= values.size(); i += 6) {
+        const std::array<double, 6> own = {values[i],     values[i + 3], values[i + 5],
+                                           values[i + 1], values[i + 4], values[i + 2]};
+        std::copy(own.begin(), own.end(), &values[i]);
+    }
+}
+
+}  // namespace
+
+/// What stands behind "value". A value that cannot be known here is one that stands elsewhere.
+void FoamFields::stated_value(FoamInput& in, std::size_t components, PatchValues& values, std::string& text) {
+    const std::string how = in.token();
+    values.uniform.clear();
+    values.one_a_face = values.elsewhere = false;
+    if (how == "uniform") {
+        try {
+            values.uniform = in.value(components);
+        } catch (const core::InputError& error) {
+            if (error.kind() != FoamInput::kind_unread) {
+                throw;
+            }
+            values.elsewhere = true;
+            in.skip_to_end_of_value();
+            return;
+        }
+        text = as_text("uniform", values.uniform);
+        order_as_vtk(values.uniform, components);
+        in.expect(";");
+    } else if (how == "nonuniform") {
+        in.skip_list_type();
+        values.list = in.reals(components);
+        order_as_vtk(values.list, components);
+        values.one_a_face = true;
+        text = not_here;
+        in.expect(";");
+    } else if (how != ";") {
+        values.elsewhere = how != values_of_cells;
+        text = how;
+        in.skip_entry();
+    }
+}
+
+FoamFields::PatchValues FoamFields::patch_values(FoamInput& in, const std::string& patch, std::size_t components) {
     PatchValues values;
-    in.expect("{");
+    std::string all;
+    if (const std::string brace = in.token(); brace.empty()) {
+        in.fail("the file ends within the boundary field");
+    } else if (brace != "{") {
+        in.give_up("the entry of patch '" + patch + "' is no dictionary in braces");
+    }
+    in.enter(patch);
     for (std::string key = in.token(); key != "}"; key = in.token()) {
         if (key.empty()) {
             in.fail("the file ends within a patch");
         }
+        std::string text;
+        if (key == ";") {
+            continue;  // behind a macro
+        }
         if (key == "type") {
-            values.type = in.token();
+            text = values.type = in.token();
             in.expect(";");
         } else if (key == "value") {
-            const std::string how = in.token();
-            if (how == "uniform") {
-                values.uniform = in.value(components);
-                in.expect(";");
-            } else if (how == "nonuniform") {
-                in.skip_list_type();
-                values.list = in.reals(components);
-                values.one_a_face = true;
-                in.expect(";");
-            } else if (how != ";") {
-                in.skip_entry();  // "$internalField"
-            }
+            stated_value(in, components, values, text);
         } else if (key.starts_with("#")) {
             in.skip_directive();
             values.elsewhere = true;
+            continue;
         } else {
             values.elsewhere = values.elsewhere || key.starts_with("$");
-            in.skip_entry();
+            in.skip_entry(&text);
         }
+        in.define(key, text);
+        all += key + " " + text + ";\n";
     }
+    in.leave();
+    in.define(patch, all);
     return values;
 }
 
@@ -92,12 +156,18 @@ FoamFields::PatchValues FoamFields::patch_values(FoamInput& in, std::size_t comp
 FoamFields::BoundaryValues FoamFields::boundary_values(FoamInput& in, std::size_t components) {
     BoundaryValues boundary;
     in.expect("{");
+    in.enter("boundaryField");
     for (std::string name = in.token(); name != "}" || in.was_quoted(); name = in.token()) {
         if (name.empty()) {
             in.fail("the file ends within the boundary field");
         }
-        if (!in.was_quoted() && name.starts_with("#")) {
-            in.skip_directive();  // boundary conditions of "setConstraintTypes" state no values
+        if (!in.was_quoted() && name == ";") {
+            continue;  // behind a macro
+        }
+        if (!in.was_quoted() && (name.starts_with("#") || name.starts_with("$"))) {
+            if (name.front() == '#') {
+                in.skip_directive();  // boundary conditions of "setConstraintTypes" state no values
+            }
             boundary.elsewhere = true;
             continue;
         }
@@ -106,8 +176,9 @@ FoamFields::BoundaryValues FoamFields::boundary_values(FoamInput& in, std::size_
         } catch (const core::InputError& error) {
             in.fail(error.message());
         }
-        boundary.values.push_back(patch_values(in, components));
+        boundary.values.push_back(patch_values(in, name, components));
     }
+    in.leave();
     return boundary;
 }
 
@@ -175,12 +246,18 @@ Buffer<double> FoamFields::inner_values(FoamInput& in, std::size_t components, s
     if (how == "nonuniform") {
         in.skip_list_type();
         values = in.reals(components);
+        order_as_vtk(values, components);
+        in.define("internalField", values_of_cells);
     } else if (how == "uniform") {
-        const auto one = in.value(components);
+        auto one = in.value(components);
+        in.define("internalField", as_text("uniform", one));
+        order_as_vtk(one, components);
         values.grow_to(cells * components);
         for (std::size_t i = 0; i < values.size(); ++i) {
             values[i] = one[i % components];
         }
+    } else if (how.starts_with("$") || how.starts_with("#")) {
+        in.give_up_at_macro(how);
     } else {
         in.fail("expected 'uniform' or 'nonuniform', found '" + how.substr(0, 40) + "'");
     }
@@ -246,6 +323,7 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
         return;
     }
     in.allow_repeated(std::max(mesh_.cells, mesh_.faces));
+    in.expand_macros(case_folder_);
     block.on_cells = true;
     block.zone = foam_volume_zone;
     block.components = static_cast<int>(components);
@@ -267,10 +345,12 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
         } else if (key == "boundaryField") {
             boundary = boundary_values(in, components);
             closed = true;
+        } else if (key.starts_with("#if") || key == "#else" || key == "#endif") {
+            in.give_up_at_macro(key);
         } else if (key.starts_with("#")) {
             in.skip_directive();
-        } else {
-            in.skip_entry();
+        } else if (key != ";") {
+            in.take_entry(key);
         }
     }
     if (dimensions.empty() || inner.size() != piece.cells * components || !closed) {
@@ -313,7 +393,18 @@ void FoamFields::read(const FoamPiece& piece, const fs::path& time) {
     std::sort(files.begin(), files.end());
     for (const auto& file : files) {
         progress_.check();
-        read_field(piece, file);
+        const std::size_t before = values_.size();
+        try {
+            read_field(piece, file);
+        } catch (const core::InputError& error) {
+            if (error.kind() != FoamInput::kind_unread) {
+                throw;
+            }
+            values_.resize(before);
+            problems_.push_back({core::Problem::Severity::warning,
+                                 "the field '" + file.filename().string() + "' is left out: " + error.message(),
+                                 error.place()});
+        }
     }
 }
 

@@ -39,10 +39,13 @@ struct FoamPiece {
 class FoamFields {
 public:
     /// The mesh must outlive this; values go into `out`.
-    FoamFields(const FaceMesh& mesh, const ReadOptions& options, core::Progress& progress, std::vector<ValueBlock>& out)
-        : mesh_(mesh), options_(options), progress_(progress), values_(out) {}
+    FoamFields(const FaceMesh& mesh, std::filesystem::path case_folder, const ReadOptions& options,
+               core::Progress& progress, std::vector<ValueBlock>& out)
+        : mesh_(mesh), case_folder_(std::move(case_folder)), options_(options), progress_(progress), values_(out) {}
 
-    /// All fields in the folder of a time. Throws InputError for one that is damaged or of another mesh.
+    /// All fields in the folder of a time. Macros and included files of the case are expanded; a field whose values
+    /// only OpenFOAM can compute ("#calc", "#codeStream") is left out, and told. Throws InputError for one that is
+    /// damaged or of another mesh.
     void read(const FoamPiece& piece, const std::filesystem::path& time);
     /// Is the pressure one over density?
     [[nodiscard]] bool kinematic() const { return kinematic_; }
@@ -70,11 +73,13 @@ private:
     [[nodiscard]] bool is_wanted(const ValueBlock& block) const;
     static Buffer<double> inner_values(FoamInput& in, std::size_t components, std::uint64_t cells);
     static void name_quantity(ValueBlock& block, const std::vector<double>& dimensions);
-    static PatchValues patch_values(FoamInput& in, std::size_t components);
+    static PatchValues patch_values(FoamInput& in, const std::string& patch, std::size_t components);
+    static void stated_value(FoamInput& in, std::size_t components, PatchValues& values, std::string& text);
     static BoundaryValues boundary_values(FoamInput& in, std::size_t components);
     void tell_guess(const FoamPatch& patch, const PatchValues* given, const std::string& variable, const std::filesystem::path& file);
 
     const FaceMesh& mesh_;
+    std::filesystem::path case_folder_;
     const ReadOptions& options_;
     core::Progress& progress_;
     std::vector<ValueBlock>& values_;

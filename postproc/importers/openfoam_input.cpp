@@ -31,36 +31,43 @@ constexpr std::size_t longest_word = 65536;
 
 }  // namespace
 
-FoamInput::FoamInput(const fs::path& path) : in_(present(path)) { read_header(); }
+FoamInput::FoamInput(const fs::path& path) : file_(present(path)), in_(&file_) { read_header(); }
 
 bool FoamInput::exists(const fs::path& path) {
     std::error_code error;
     return fs::is_regular_file(present(path), error);
 }
 
-void FoamInput::fail(const std::string& what) const { throw core::InputError("format", what, in_.place()); }
+void FoamInput::fail(const std::string& what) const { throw core::InputError("format", what, place()); }
 
 /// The next character that is neither blank nor comment, not taken; -1 at the end.
 int FoamInput::next() {
     for (;;) {
-        const int c = in_.peek();
+        const int c = in_->peek();
         if (is_space(c)) {
-            in_.get();
+            in_->get();
             continue;
         }
-        if (c != '/' || !in_.ensure(2)) {
+        if (c < 0 && !pushed_.empty()) {
+            pop();
+            continue;
+        }
+        if (expanding_ && ((c == '$' && substitute()) || (c == '#' && include()))) {
+            continue;
+        }
+        if (c != '/' || !in_->ensure(2)) {
             return c;
         }
-        const char second = in_.here()[1];
+        const char second = in_->here()[1];
         if (second == '/') {
-            for (int d = in_.get(); d >= 0 && d != '\n';) {
-                d = in_.get();
+            for (int d = in_->get(); d >= 0 && d != '\n';) {
+                d = in_->get();
             }
         } else if (second == '*') {
-            in_.skip(2);
-            for (int before = 0, d = in_.get(); d >= 0 && !(before == '*' && d == '/');) {
+            in_->skip(2);
+            for (int before = 0, d = in_->get(); d >= 0 && !(before == '*' && d == '/');) {
                 before = d;
-                d = in_.get();
+                d = in_->get();
             }
         } else {
             return c;
@@ -76,12 +83,12 @@ std::string FoamInput::token() {
     }
     std::string word;
     if (is_mark(c)) {
-        word += static_cast<char>(in_.get());
+        word += static_cast<char>(in_->get());
         return word;
     }
     if (c == '"') {
-        in_.get();
-        for (c = in_.get(); c != '"'; c = in_.get()) {
+        in_->get();
+        for (c = in_->get(); c != '"'; c = in_->get()) {
             if (c < 0 || word.size() > longest_word) {
                 fail("the file ends within a quoted text");
             }
@@ -89,13 +96,29 @@ std::string FoamInput::token() {
         }
         return word;
     }
-    for (; c >= 0 && !is_space(c) && !is_mark(c) && c != '"'; c = in_.peek()) {
-        word += static_cast<char>(in_.get());
+    if (c == '#' && in_->ensure(2) && in_->here()[1] == '{') {
+        return code();
+    }
+    for (; c >= 0 && !is_space(c) && !is_mark(c) && c != '"'; c = in_->peek()) {
+        word += static_cast<char>(in_->get());
         if (word.size() > longest_word) {
             fail("a word that is too long");
         }
     }
     return word;
+}
+
+/// "#{ ... #}" as one word, whatever stands in it; the code itself is passed over.
+std::string FoamInput::code() {
+    in_->skip(2);
+    for (int before = 0, c = in_->get(); !(before == '#' && c == '}');) {
+        if (c < 0) {
+            fail("the file ends within code");
+        }
+        before = c;
+        c = in_->get();
+    }
+    return "#{";
 }
 
 void FoamInput::expect(const std::string& wanted) {
@@ -109,7 +132,7 @@ bool FoamInput::accept(char c) {
     if (next() != static_cast<unsigned char>(c)) {
         return false;
     }
-    in_.get();
+    in_->get();
     return true;
 }
 
@@ -122,35 +145,38 @@ void FoamInput::skip_list_type() {
 }
 
 double FoamInput::number() {
-    next();
-    in_.ensure(64);
+    const int first = next();
+    if (expanding_ && (first == '$' || first == '#')) {
+        give_up_at_macro(token());
+    }
+    in_->ensure(64);
     double value = 0;
-    const auto [rest, error] = fast_float::from_chars(in_.here(), in_.end(), value);
+    const auto [rest, error] = fast_float::from_chars(in_->here(), in_->end(), value);
     if (error == std::errc::invalid_argument) {
         fail("expected a number, found '" + token().substr(0, 40) + "'");
     }
-    in_.move_to(rest);
+    in_->move_to(rest);
     return value;
 }
 
 std::uint32_t FoamInput::label() {
     next();
-    in_.ensure(16);
-    const char* p = in_.here();
+    in_->ensure(16);
+    const char* p = in_->here();
     std::uint64_t value = 0;
-    while (p != in_.end() && static_cast<unsigned char>(*p - '0') < 10 && value < 0xffffffffULL) {
+    while (p != in_->end() && static_cast<unsigned char>(*p - '0') < 10 && value < 0xffffffffULL) {
         value = value * 10 + static_cast<std::uint64_t>(*p++ - '0');
     }
-    if (p == in_.here() || value >= 0x7fffffffULL) {
+    if (p == in_->here() || value >= 0x7fffffffULL) {
         fail("expected a whole number from 0 to 2147483646, found '" + token().substr(0, 40) + "'");
     }
-    in_.move_to(p);
+    in_->move_to(p);
     return static_cast<std::uint32_t>(value);
 }
 
 std::uint64_t FoamInput::count() {
     next();
-    if (const int c = in_.peek(); c < '0' || c > '9') {
+    if (const int c = in_->peek(); c < '0' || c > '9') {
         fail("expected a number of items, found " + (c < 0 ? "the end of the file" : "'" + token().substr(0, 40) + "'"));
     }
     return label();
@@ -160,7 +186,7 @@ void FoamInput::read_header() {
     if (next() < 0) {
         fail("the file is empty");
     }
-    if (!in_.ensure(8) || std::memcmp(in_.here(), "FoamFile", 8) != 0) {
+    if (!in_->ensure(8) || std::memcmp(in_->here(), "FoamFile", 8) != 0) {
         fail("expected the header FoamFile");
     }
     token();
@@ -186,15 +212,15 @@ void FoamInput::read_header() {
 }
 
 void FoamInput::check_room(std::uint64_t count, std::uint64_t bytes) const {
-    if (count > in_.most_left() / bytes + 1) {
-        fail("the list announces " + std::to_string(count) + " items, but at most " + std::to_string(in_.most_left()) +
+    if (count > in_->most_left() / bytes + 1) {
+        fail("the list announces " + std::to_string(count) + " items, but at most " + std::to_string(in_->most_left()) +
              " bytes are left");
     }
 }
 
 /// "1000{0}" takes few bytes for many numbers: the mesh says how many there may be.
 void FoamInput::check_repeated(std::uint64_t count) const {
-    if (count > std::max(most_repeated_, in_.most_left())) {
+    if (count > std::max(most_repeated_, in_->most_left())) {
         fail("one value is repeated " + std::to_string(count) + " times, more than the mesh has places");
     }
 }
@@ -203,7 +229,7 @@ void FoamInput::raw_labels(std::uint32_t* out, std::uint64_t count) {
     std::vector<unsigned char> raw(std::min<std::uint64_t>(count, 16384) * label_bytes_);
     for (std::uint64_t done = 0; done < count;) {
         const std::uint64_t part = std::min<std::uint64_t>(16384, count - done);
-        in_.read(raw.data(), part * label_bytes_);
+        in_->read(raw.data(), part * label_bytes_);
         for (std::uint64_t i = 0; i < part; ++i) {
             std::int64_t value = 0;
             if (label_bytes_ == 8) {
@@ -226,13 +252,13 @@ void FoamInput::raw_labels(std::uint32_t* out, std::uint64_t count) {
 
 void FoamInput::raw_reals(double* out, std::uint64_t count) {
     if (scalar_bytes_ == 8 && !swapped_) {
-        in_.read(out, count * 8);
+        in_->read(out, count * 8);
         return;
     }
     std::vector<unsigned char> raw(std::min<std::uint64_t>(count, 16384) * scalar_bytes_);
     for (std::uint64_t done = 0; done < count;) {
         const std::uint64_t part = std::min<std::uint64_t>(16384, count - done);
-        in_.read(raw.data(), part * scalar_bytes_);
+        in_->read(raw.data(), part * scalar_bytes_);
         for (std::uint64_t i = 0; i < part; ++i) {
             if (scalar_bytes_ == 8) {
                 std::uint64_t bits = 0;
@@ -269,9 +295,9 @@ Buffer<std::uint32_t> FoamInput::labels() {
         return all;
     }
     expect("(");
-    check_room(size, binary_ ? label_bytes_ : 2);
+    check_room(size, binary() ? label_bytes_ : 2);
     Buffer<std::uint32_t> all(size);
-    if (binary_) {
+    if (binary()) {
         raw_labels(all.data(), size);
     } else {
         for (auto& value : all) {
@@ -301,9 +327,9 @@ Buffer<double> FoamInput::reals(std::size_t components) {
         return all;
     }
     expect("(");
-    check_room(size, binary_ ? scalar_bytes_ * components : 2 * components);
+    check_room(size, binary() ? scalar_bytes_ * components : 2 * components);
     Buffer<double> all(size * components);
-    if (binary_) {
+    if (binary()) {
         raw_reals(all.data(), size * components);
     } else {
         for (std::uint64_t i = 0; i < size; ++i) {
@@ -323,7 +349,7 @@ Buffer<double> FoamInput::reals(std::size_t components) {
 }
 
 void FoamInput::faces(Buffer<std::uint32_t>& offsets, Buffer<std::uint32_t>& nodes) {
-    if (class_ == "faceCompactList" && binary_) {
+    if (class_ == "faceCompactList" && binary()) {
         offsets = labels();
         nodes = labels();
         const bool begins = !offsets.empty() && offsets[0] == 0 && offsets[offsets.size() - 1] == nodes.size();
@@ -340,13 +366,13 @@ void FoamInput::faces(Buffer<std::uint32_t>& offsets, Buffer<std::uint32_t>& nod
         offsets[face] = static_cast<std::uint32_t>(nodes.size());
         const std::uint64_t corners = count();
         expect("(");
-        check_room(corners, binary_ ? label_bytes_ : 2);
+        check_room(corners, binary() ? label_bytes_ : 2);
         if (nodes.size() + corners > 0x7fffffffULL) {
             fail("too many corners");
         }
         for (std::uint64_t k = 0; k < corners; ++k) {
             std::uint32_t node = 0;
-            if (binary_) {
+            if (binary()) {
                 raw_labels(&node, 1);
             } else {
                 node = label();
@@ -381,44 +407,6 @@ std::size_t FoamInput::components_of(const std::string& type) {
            : has("vector")          ? 3
            : has("scalar")          ? 1
                                     : 0;
-}
-
-/// A list whose bytes may hold any character: by its count.
-void FoamInput::skip_list(std::size_t components, bool whole_numbers) {
-    if (whole_numbers) {
-        labels();
-    } else {
-        reals(components);
-    }
-}
-
-void FoamInput::skip_entry() {
-    int depth = 0;
-    for (;;) {
-        const std::string word = token();
-        if (word.empty()) {
-            fail("the file ends within an entry");
-        }
-        if (word == "{" || word == "(" || word == "[") {
-            ++depth;
-        } else if (word == "}" || word == ")" || word == "]") {
-            if (--depth < 0) {
-                fail("'" + word + "' without its beginning");
-            }
-            if (depth == 0 && word == "}") {
-                return;
-            }
-        } else if (word == ";" && depth == 0) {
-            return;
-        } else if (word.starts_with("List<") && binary_) {
-            const bool whole_numbers = word == "List<label>";
-            const std::size_t components = components_of(word);
-            if (!whole_numbers && components == 0) {
-                fail("a list of unknown type " + word.substr(0, 40));
-            }
-            skip_list(components, whole_numbers);
-        }
-    }
 }
 
 }  // namespace underbody::postproc

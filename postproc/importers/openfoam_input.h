@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "postproc/importers/buffer.h"
 #include "postproc/importers/byte_stream.h"
+#include "postproc/importers/openfoam_macros.h"
 
 namespace underbody::postproc {
 
@@ -16,11 +18,25 @@ class FoamInput {
 public:
     /// Opens `path`, or `path` + ".gz" when that is what there is, and reads the header.
     explicit FoamInput(const std::filesystem::path& path);
+    FoamInput(const FoamInput&) = delete;
+    FoamInput& operator=(const FoamInput&) = delete;
     /// Is one of both there?
     static bool exists(const std::filesystem::path& path);
 
     /// "volScalarField", "faceCompactList", ...; "" without a header.
     [[nodiscard]] const std::string& class_name() const { return class_; }
+
+    /// From here on "$name" is replaced by the entry of that name, and "#include" by the text of that file of the case.
+    /// What cannot be known without OpenFOAM ("#calc", "#codeStream", a name that is not there) is an InputError of the
+    /// kind `kind_unread` where a number is wanted, and a word elsewhere.
+    void expand_macros(const std::filesystem::path& case_folder);
+    static constexpr const char* kind_unread = "unread";
+    /// The files that were brought in so far.
+    [[nodiscard]] const std::vector<std::filesystem::path>& included() const { return included_; }
+    /// Names of entries are of this dictionary until `leave`.
+    void enter(const std::string& dictionary) { entries_.enter(dictionary); }
+    void leave() { entries_.leave(); }
+    void define(const std::string& key, const std::string& text);
 
     /// Lists of one repeated value may be this long.
     void allow_repeated(std::uint64_t count) { most_repeated_ = count; }
@@ -50,14 +66,23 @@ public:
 
     /// One value: "5" or "(1 0 0)".
     std::vector<double> value(std::size_t components);
-    /// The rest of an entry after its key: up to its ';' or the end of its block.
-    void skip_entry();
+    /// The rest of an entry after its key: up to its ';' or the end of its block. `text` gets its words (the first 64
+    /// kB).
+    void skip_entry(std::string* text = nullptr);
+    /// Up to the ';' behind a value that was begun.
+    void skip_to_end_of_value();
+    /// The same, and what it states is kept for macros.
+    void take_entry(const std::string& key);
 
     /// How many numbers "List<vector>" or "volVectorField" have a place; 0: no such type.
     static std::size_t components_of(const std::string& type);
 
-    [[nodiscard]] core::Place place() const { return in_.place(); }
+    /// Of the file itself, also within what it includes.
+    [[nodiscard]] core::Place place() const { return file_.place(); }
     [[noreturn]] void fail(const std::string& what) const;
+    /// Throws the InputError of what is sound, but cannot be read here.
+    [[noreturn]] void give_up(const std::string& what) const;
+    [[noreturn]] void give_up_at_macro(const std::string& word) const;
 
 private:
     void read_header();
@@ -68,8 +93,32 @@ private:
     void raw_labels(std::uint32_t* out, std::uint64_t count);
     void raw_reals(double* out, std::uint64_t count);
     void skip_list(std::size_t components, bool whole_numbers);
+    /// Text that is read before the file goes on, and the folder that its own includes start from.
+    struct Pushed {
+        Pushed(std::string&& read, std::filesystem::path from, const std::string& name)
+            : text(std::move(read)), folder(std::move(from)), stream(text, name) {}
+        std::string text;
+        std::filesystem::path folder;
+        ByteStream stream;
+    };
+    void push(std::string text, const std::filesystem::path& folder);
+    void pop();
+    bool substitute();
+    bool include();
+    std::string code();
+    bool take_rest(const std::string& key, std::string& text, int depth);
+    [[nodiscard]] std::filesystem::path folder() const;
+    /// Are lists stored as bytes at this place? What is pushed is text.
+    [[nodiscard]] bool binary() const { return binary_ && pushed_.empty(); }
 
-    ByteStream in_;
+    ByteStream file_;
+    ByteStream* in_ = nullptr;  ///< the file, or the last of what is pushed
+    std::vector<std::unique_ptr<Pushed>> pushed_;
+    std::size_t pushed_bytes_ = 0;
+    std::vector<std::filesystem::path> included_;
+    FoamEntries entries_;
+    std::filesystem::path case_folder_;
+    bool expanding_ = false;
     std::string class_;
     bool quoted_ = false;
     bool binary_ = false;

@@ -58,10 +58,21 @@ void check_length_unit(Field& field, const ReadOptions& options, const core::Pla
 
 void refuse_useless_options(const std::string& format, const ReadOptions& options, const core::Place& place) {
     if (options.time && !is_among(with_times, format)) {
-        throw core::InputError("option", "the file states no times to choose from (--time): those of the format " + format + " are of one time each", place, "leave --time away, or give the file of that time");
+        throw core::InputError(
+            "option",
+            "the file states no times to choose from: those of the format " + format + " are of one time each", place,
+            "leave option 'time' away, or give the file of that time");
+    }
+    if (!options.base.empty() && format != "CGNS") {
+        throw core::InputError(
+            "option", "a base is asked for ('" + options.base + "'), but files of the format " + format + " have none",
+            place, "bases are parts of CGNS files: leave option 'cgns-base' away");
     }
     if (!options.companion.empty() && !is_among(with_companion, format)) {
-        throw core::InputError("option", "a mesh beside it is given (--mesh " + options.companion.string() + "), but files of the format " + format + " have their own", place, "leave --mesh away");
+        throw core::InputError("option",
+                               "a mesh beside it is given (" + options.companion.string() +
+                                   "), but files of the format " + format + " have their own",
+                               place, "leave option 'mesh' away");
     }
 }
 

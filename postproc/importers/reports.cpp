@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <map>
 
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/cfx_output.h"
 #include "postproc/importers/openfoam_log.h"
+#include "postproc/importers/openfoam_table.h"
 #include "postproc/importers/report_words.h"
 #include "postproc/importers/residual_history.h"
 
@@ -93,46 +93,7 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& wo
 namespace {
 
 constexpr std::size_t most_columns = 4096;
-
-core::Problem repetition(std::size_t rows, const std::string& file) {
-    return {core::Problem::Severity::note,
-            std::to_string(rows) + " rows repeat or go back, as after a restart: the last ones count",
-            {file, {}, {}, {}}};
-}
-
-/// Rows by the first column; the last one of a number counts.
-class Rows {
-public:
-    void add(std::vector<double> row) {
-        if (!rows_.empty() && row[0] <= rows_.rbegin()->first) {
-            ++repeated_;
-        }
-        rows_[row[0]] = std::move(row);
-    }
-    [[nodiscard]] bool empty() const { return rows_.empty(); }
-    void into(Monitor& monitor) const {
-        monitor.values.assign(monitor.columns.size(), {});
-        std::size_t odd = 0;
-        for (const auto& [key, row] : rows_) {
-            for (std::size_t c = 0; c < monitor.columns.size(); ++c) {
-                monitor.values[c].push_back(row[c]);
-                odd += std::isfinite(row[c]) ? 0 : 1;
-            }
-        }
-        if (repeated_ > 0) {
-            monitor.problems.push_back(repetition(repeated_, monitor.file));
-        }
-        if (odd > 0) {
-            monitor.problems.push_back({core::Problem::Severity::warning,
-                                        std::to_string(odd) + " values are not finite: the solution has diverged",
-                                        {monitor.file, {}, {}, {}}});
-        }
-    }
-
-private:
-    std::map<double, std::vector<double>> rows_;
-    std::size_t repeated_ = 0;
-};
+constexpr const char* unnamed_steps = "Iteration";
 
 /// "  iter  continuity  x-velocity ...  time/iter": the names between.
 bool is_residual_header(const std::vector<std::string>& words) {
@@ -170,7 +131,7 @@ Monitor read_transcript(const std::string& file, std::string_view bytes) {
     }
     Monitor monitor = residuals.finish("iter");
     if (repeated > 0) {
-        monitor.problems.insert(monitor.problems.begin(), repetition(repeated, file));
+        monitor.problems.insert(monitor.problems.begin(), repeated_rows(repeated, file));
     }
     return monitor;
 }
@@ -182,7 +143,7 @@ bool is_quoted_title(std::string_view line, const std::vector<std::string>& word
 Monitor read_table(const std::string& file, std::string_view bytes, bool* begun = nullptr) {
     Monitor monitor;
     monitor.file = file;
-    Rows rows;
+    MonitorRows rows;
     std::int64_t number = 0;
     std::vector<std::vector<std::string>> heads;
     for (const auto raw : core::split(bytes, '\n')) {
@@ -218,7 +179,8 @@ Monitor read_table(const std::string& file, std::string_view bytes, bool* begun 
                 }
             }
             if (monitor.columns.empty() && row->size() == 2) {
-                monitor.columns = {"Iteration", heads.empty() || heads.back().empty() ? "value" : heads.back().back()};
+                monitor.columns = {unnamed_steps,
+                                   heads.empty() || heads.back().empty() ? "value" : heads.back().back()};
             }
             if (monitor.columns.empty()) {
                 fail_in_line(file, number, "a row of " + std::to_string(row->size()) + " numbers without their names");
@@ -246,6 +208,11 @@ Monitor read_table(const std::string& file, std::string_view bytes, bool* begun 
                                     {file, number, {}, {}}});
     }
     rows.into(monitor);
+    const auto& steps = monitor.values.front();
+    if (monitor.columns.front() == unnamed_steps &&
+        std::any_of(steps.begin(), steps.end(), [](double step) { return step != std::floor(step); })) {
+        monitor.columns.front() = "Time";  // no run counts in fractions
+    }
     return monitor;
 }
 
@@ -368,6 +335,9 @@ Monitor read_monitor(const std::filesystem::path& path) {
     if (has_openfoam_residuals(bytes)) {
         return read_openfoam_log(file.name(), bytes);
     }
+    if (has_openfoam_table(bytes)) {
+        return read_openfoam_table(file.name(), bytes);
+    }
     // A transcript has the header of its residuals on a line of its own, further down.
     std::size_t lines = 0;
     for (const auto line : core::split(bytes.substr(0, std::size_t{4} << 20), '\n')) {
@@ -477,7 +447,7 @@ ReportKinds report_kinds(const std::filesystem::path& path) {
     }
     kinds.plot = text.find("((xy/key/label") != std::string_view::npos;
     kinds.forces = has_cfx_forces(text);
-    kinds.monitor = has_cfx_iterations(text) || has_openfoam_residuals(text);
+    kinds.monitor = has_cfx_iterations(text) || has_openfoam_residuals(text) || has_openfoam_table(text);
     for (const auto raw : core::split(text, '\n')) {
         const auto line = core::trimmed(raw);
         kinds.forces = kinds.forces || report_begun_by(line).has_value();

@@ -3,14 +3,24 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
 
 namespace underbody::postproc {
+
+/// What a table of coefficients says of them (OpenFOAM's forceCoeffs): force = coefficient 1/2 density speed^2 area,
+/// moment that times the length.
+struct MonitorCoefficients {
+    std::optional<double> density, speed, area, length;                     ///< kg/m^3, m/s, m^2, m
+    std::optional<std::array<double, 3>> centre;                            ///< m, of the moments
+    std::vector<std::pair<std::string, std::array<double, 3>>> directions;  ///< liftDir, dragDir, pitchAxis ...
+};
 
 /// A table of histories: the first column counts iterations or time steps, every other one is a quantity.
 /// Units are the solver's: these files do not state any.
@@ -20,14 +30,32 @@ struct Monitor {
     std::vector<std::string> columns;
     std::vector<std::vector<double>> values;  ///< one list a column, all of the same length
     core::Problems problems;                  ///< restarts that repeat iterations, values that are not finite
+    std::optional<MonitorCoefficients> coefficients{};
 
     /// nullptr when there is no such column.
     [[nodiscard]] const std::vector<double>* find(const std::string& column) const;
 };
 
-/// Fluent report files (.out, `*-rfile.out`), monitors of Fluent 12 and older (two columns without header), tables with
-/// one line of names (.csv), the residuals in a transcript (.trn) and in the output of CFX's solver (.out). Found by
-/// content. After a restart the first column repeats or jumps back: the last value counts. Throws InputError with line.
+/// Rows of a monitor by their first number; of those of one number the last counts.
+class MonitorRows {
+public:
+    void add(std::vector<double> row);
+    [[nodiscard]] bool empty() const { return rows_.empty(); }
+    /// Gives `monitor`, whose columns have names, their values, and says what repeats and what is not finite.
+    void into(Monitor& monitor) const;
+
+private:
+    std::map<double, std::vector<double>> rows_;
+    std::size_t repeated_ = 0;
+};
+
+/// The note that goes with rows that repeat.
+core::Problem repeated_rows(std::size_t rows, const std::string& file);
+
+/// Tables of OpenFOAM's function objects (force.dat, coefficient.dat ...), Fluent report files (.out, `*-rfile.out`),
+/// monitors of Fluent 12 and older (two columns without header), tables with one line of names (.csv), the residuals in
+/// a transcript (.trn) and in the output of CFX's solver (.out). Found by content. After a restart the first column
+/// repeats or jumps back: the last value counts. Throws InputError with line.
 Monitor read_monitor(const std::filesystem::path& path);
 
 /// One curve of a Fluent .xy plot. Points come in the order of the file, which need not be that of the curve.

@@ -14,7 +14,7 @@ std::size_t step_at(const std::vector<double>& times, double wanted, const std::
         return std::abs(a - wanted) < std::abs(b - wanted);
     });
     if (nearest == times.end()) {
-        throw core::InputError("range", "the file states no times", place, "leave --time away");
+        throw core::InputError("range", "the file states no times", place, "leave option 'time' away");
     }
     if (!(std::abs(*nearest - wanted) <= 1e-6 * std::max(std::abs(wanted), std::abs(*nearest)))) {
         throw core::InputError("range", "there is no time " + core::format_number(wanted) + " s among the " +

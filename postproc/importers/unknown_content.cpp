@@ -31,11 +31,14 @@ struct Known {
 };
 
 constexpr std::array known = {
+    Known{"version https://git-lfs",
+          "a pointer of Git LFS in place of the file, which was never fetched: git lfs pull"},
     Known{"$MeshFormat", "a mesh of Gmsh: save it as CGNS (gmsh FILE -save -format cgns)"},
     Known{"\xFF\xFE", "text in UTF-16: save it as UTF-8 (\"CSV UTF-8\")"},
     Known{"\xFE\xFF", "text in UTF-16: save it as UTF-8 (\"CSV UTF-8\")"},
     Known{"#!TDV", "a binary Tecplot file: save it as ASCII"},
-    Known{"PK\x03\x04", "a packed archive (an Excel sheet, a Workbench project): unpack it, or save the sheet as CSV UTF-8"},
+    Known{"PK\x03\x04",
+          "a packed archive (an Excel sheet, a Workbench project): unpack it, or save the sheet as CSV UTF-8"},
     Known{"%PDF", "a PDF"},
     Known{"CDF", "netCDF (Exodus): save it as VTK in ParaView"},
     Known{"((", "a boundary profile of Fluent: it is no surface; export the surface as ASCII, CGNS or EnSight"},
@@ -53,12 +56,40 @@ std::string of_text(std::string_view text) {
     if (is_series(text)) {
         return "a list of files over time: give one of the files that it names";
     }
+    if (text.starts_with("FORMAT") &&
+        core::lower_case(text.substr(0, 400)).find("master_server") != std::string::npos) {
+        return "the list of an EnSight export in several parts (.sos): give one of the .case files that it names";
+    }
     const bool ensight = core::lower_case(text.substr(0, 400)).find("node id") != std::string::npos;
     return ensight ? "a geometry of EnSight: give the .case (.encas) that names it" : "";
 }
 
+/// The folder of an OpenFOAM case to which a folder, a .foam file or a controlDict belongs; empty: to none.
+fs::path foam_case_of(const fs::path& path) {
+    std::error_code error;
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    for (const fs::path& folder : {whole, whole.parent_path(), whole.parent_path().parent_path()}) {
+        if (fs::is_regular_file(folder / "system" / "controlDict", error)) {
+            return folder;
+        }
+    }
+    return {};
+}
+
+std::string without_mesh(const fs::path& path) {
+    const fs::path folder = foam_case_of(path);
+    std::error_code error;
+    const bool whole = folder.empty() || fs::is_directory(folder / "constant" / "polyMesh", error);
+    return whole ? ""
+                 : "an OpenFOAM case without a mesh: there is no constant/polyMesh in it (make the mesh, blockMesh for "
+                   "instance, or copy that folder too)";
+}
+
 std::string of_folder(const fs::path& path) {
     std::error_code error;
+    if (fs::is_empty(path, error) && !error) {
+        return "an empty folder";
+    }
     std::vector<std::string> regions;
     for (const auto& entry : fs::directory_iterator(path / "constant", error)) {
         if (fs::is_directory(entry.path() / "polyMesh", error)) {
@@ -79,7 +110,7 @@ std::string of_folder(const fs::path& path) {
             return "an OpenFOAM case with the files of all processors in one (" + name + "): put it together with reconstructPar";
         }
     }
-    return "";
+    return without_mesh(path);
 }
 
 }  // namespace
@@ -95,6 +126,11 @@ std::string what_it_is(const fs::path& path) {
         return of_folder(path);
     }
     const std::string head = head_of(path);
+    const bool of_a_case =
+        path.extension() == ".foam" || path.extension() == ".OpenFOAM" || path.filename() == "controlDict";
+    if (const std::string mesh = of_a_case ? without_mesh(path) : std::string(); !mesh.empty()) {
+        return mesh;
+    }
     if (head.starts_with("\x1F\x8B")) {
         const std::string inside = of_text(inflated_head(head));
         return "gzip: unpack it (gunzip -k " + path.filename().string() + ")" + (inside.empty() ? "" : "; inside is " + inside);
@@ -103,7 +139,8 @@ std::string what_it_is(const fs::path& path) {
         return text;
     }
     if (report_kinds(path).any()) {
-        return "a report of the solver, no field: see 'underbody info', and 'underbody loads --monitor' and '--report'";
+        return "a report of the solver, no field: its summary is shown by 'info', and loads are compared with it as a "
+               "report or a monitor";
     }
     return has_lone_returns(path) ? "text whose lines end in carriage returns alone: make them line feeds (tr '\\r' '\\n' < FILE > NEW)" : "";
 }

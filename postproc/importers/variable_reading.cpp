@@ -41,7 +41,10 @@ bool same_unit(const std::string& a, const std::string& b) {
 
 std::string settled(const std::string* stated, const std::string& own, const std::string& in_file, const core::Place& place, core::Problems& problems) {
     if (stated != nullptr && !in_file.empty() && !same_unit(*stated, in_file)) {
-        say_once(problems, {core::Problem::Severity::warning, "the file has '" + own + "' in " + in_file + "; " + *stated + " is taken, as stated (--unit)", place});
+        say_once(problems,
+                 {core::Problem::Severity::warning,
+                  "the file has '" + own + "' in " + in_file + "; " + *stated + " is taken, as stated (option 'unit')",
+                  place});
     }
     return stated != nullptr ? *stated : in_file;
 }
@@ -134,11 +137,12 @@ std::string unstated_name(const std::string& original) { return original + std::
 std::string name_in_file(const std::string& name) { return name.ends_with(unstated) ? name.substr(0, name.size() - unstated.size()) : name; }
 
 core::Problem unit_is_asked_for(const std::string& original, const core::Place& place) {
-    return {core::Problem::Severity::warning,
-            "'" + original + "' is " + (original == foam_pressure ? "pressure" : "wall shear stress") +
-                " [Pa], or that over density [m^2/s^2] as in OpenFOAM's incompressible cases; the file does not say which. "
-                "State it: --unit p=Pa, or --unit p=m^2/s^2 and --density",
-            place};
+    return {
+        core::Problem::Severity::warning,
+        "'" + original + "' is " + (original == foam_pressure ? "pressure" : "wall shear stress") +
+            " [Pa], or that over density [m^2/s^2] as in OpenFOAM's incompressible cases; the file does not say which. "
+            "State it: option 'unit p=Pa', or option 'unit p=m^2/s^2' and option 'density'",
+        place};
 }
 
 }  // namespace underbody::postproc

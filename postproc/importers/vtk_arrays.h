@@ -29,6 +29,17 @@ vtkSmartPointer<Array> given_to_vtk(Buffer<T>&& buffer, int components = 1) {
     return array;
 }
 
+/// Says which component of a tensor is which, in the order that VTK and ParaView expect: six are symmetric.
+inline void name_tensor_components(vtkDataArray& array) {
+    static constexpr const char* symmetric[] = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
+    static constexpr const char* full[] = {"XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"};
+    const int components = array.GetNumberOfComponents();
+    const bool wanted = (components == 6 || components == 9) && !array.HasAComponentName();
+    for (int k = 0; wanted && k < components; ++k) {
+        array.SetComponentName(k, components == 6 ? symmetric[k] : full[k]);
+    }
+}
+
 inline vtkSmartPointer<vtkPoints> points_from(Buffer<double>&& coordinates) {
     auto points = vtkSmartPointer<vtkPoints>::New();
     points->SetDataType(VTK_DOUBLE);

@@ -26,6 +26,7 @@
 #include "postproc/importers/array_names.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/variable_reading.h"
+#include "postproc/importers/vtk_arrays.h"
 #include "postproc/importers/vtk_described.h"
 #include "postproc/importers/vtk_sides.h"
 
@@ -62,9 +63,16 @@ void convert(vtkDataArray& values, const core::Conversion& conversion) {
 /// What `import` writes beside the arrays: "T [s]" for each, by the name.
 using Units = std::map<std::string, std::string>;
 
-Units units_in(vtkFieldData& data) {
+Units units_in(vtkDataSet& set) {
     Units units;
-    auto* lines = vtkStringArray::SafeDownCast(data.GetAbstractArray("units"));
+    if (const auto description = description_in(set)) {
+        for (const auto& described : description->zones) {
+            for (const auto& info : described.zone.arrays) {
+                units[info.name] = info.unit;
+            }
+        }
+    }
+    auto* lines = vtkStringArray::SafeDownCast(set.GetFieldData()->GetAbstractArray("units"));
     for (vtkIdType i = 0; lines != nullptr && i < lines->GetNumberOfValues(); ++i) {
         const std::string& line = lines->GetValue(i);
         if (const auto open = line.rfind(" ["); open != std::string::npos && line.back() == ']') {
@@ -127,6 +135,7 @@ void add_arrays(Field& field, Zone& zone, vtkDataSetAttributes& data, Location o
         convert(*values, conversion);
         if (plans[i].component < 0) {
             values->SetName(info.name.c_str());
+            name_tensor_components(*values);
             data.AddArray(values);
             zone.arrays.push_back(std::move(info));
             continue;
@@ -372,7 +381,7 @@ std::vector<std::pair<vtkSmartPointer<vtkDataArray>, ArrayInfo>> take_described(
 
 /// The zones of a data set that we wrote: their kinds, sides and units stand in it.
 void add_described_zones(Field& field, const std::string& name, vtkDataSet& data, const Description& description, const ReadOptions& options) {
-    const Units units = units_in(*data.GetFieldData());
+    const Units units = units_in(data);
     auto parts = parts_of(data, description);
     for (auto& part : parts) {
         Zone zone = std::move(part.zone);
@@ -431,7 +440,7 @@ void add_zone(Field& field, Origin& origin, const std::string& name, vtkDataObje
     }
     zone.kind = zone.volume != nullptr ? ZoneKind::fluid : ZoneKind::unknown;
     const int dimension = is_plane(zone) ? 2 : 3;
-    const Units units = units_in(*read->GetFieldData());
+    const Units units = units_in(*read);
     add_arrays(field, zone, *data->GetPointData(), Location::nodes, units, dimension, options);
     add_arrays(field, zone, *data->GetCellData(), zone.surface != nullptr ? Location::faces : Location::cells, units, dimension, options);
     vtkPointSet* own = zone.surface != nullptr ? static_cast<vtkPointSet*>(zone.surface) : static_cast<vtkPointSet*>(zone.volume);

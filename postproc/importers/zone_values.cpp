@@ -56,6 +56,7 @@ std::string phase_suffix(int phase) { return phase == 1 ? "" : ".phase-" + std::
 void add_cell_array(Zone& zone, vtkCellData& data, ArrayInfo info, Buffer<double>&& values) {
     auto array = given_to_vtk<vtkDoubleArray>(std::move(values), info.components);
     array->SetName(info.name.c_str());
+    name_tensor_components(*array);
     data.AddArray(array);
     zone.arrays.push_back(std::move(info));
 }

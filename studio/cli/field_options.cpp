@@ -27,6 +27,8 @@ void FieldOptions::add_to(CLI::App& command, bool with_zones) {
     command.add_option("--length-unit", length_unit, "unit of coordinates that the file does not say (mm, inch ...)");
     command.add_option("--unit", units, "unit of a variable that the file does not say: \"Pressure=Pa\"");
     command.add_option("--mesh", mesh, "the mesh or case file that a results file belongs to")->check(CLI::ExistingFile);
+    command.add_option("--cgns-base", base,
+                       "which base of a CGNS file with several: its name, or its number from 1; default: the last");
     command.add_option("--time", time, "which time of a file with several (CGNS, EnSight, OpenFOAM): a time that it states; default: the last");
 }
 
@@ -34,6 +36,7 @@ postproc::ReadOptions FieldOptions::read_options() const {
     postproc::ReadOptions options;
     options.length_unit = length_unit;
     options.companion = mesh;
+    options.base = base;
     if (!time.empty()) {
         options.time = core::parse_in(time, "s");
     }

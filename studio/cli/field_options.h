@@ -17,13 +17,14 @@ namespace underbody::studio {
 /// For options with several names, parted by commas: blanks around each are not of the name.
 std::string trimmed_name(const std::string& name);
 
-/// --zones, --length-unit, --unit, --mesh, --time.
+/// --zones, --length-unit, --unit, --mesh, --time, --cgns-base.
 struct FieldOptions {
     std::vector<std::string> zones;
     std::string length_unit;
     std::vector<std::string> units;
     std::string mesh;
     std::string time;
+    std::string base;
 
     void add_to(CLI::App& command, bool with_zones = true);
     /// Throws core::UsageError for a --unit without '='.

@@ -89,6 +89,24 @@ void show_missing_arrays(Shell& shell, const postproc::Field& field, const std::
     }
 }
 
+/// What is not a number goes into the file as it is: who draws or sums it has to know.
+void show_missing_values(Shell& shell, const postproc::FieldSummary& summary) {
+    for (const auto& array : summary.arrays) {
+        if (array.missing > 0) {
+            shell.warn(summary.file + ": '" + array.name + "' has " + std::to_string(array.missing) +
+                       " values that are not numbers: written as NaN");
+        }
+    }
+}
+
+/// Folders that were not there: a name misspelt makes one.
+void show_new_folder(Shell& shell, const fs::path& output) {
+    std::error_code error;
+    if (output.has_parent_path() && !fs::exists(output.parent_path(), error)) {
+        shell.info("made the folder '" + output.parent_path().string() + "', which was not there");
+    }
+}
+
 /// What a batch leaves behind when a file of it fails.
 std::string those_written(const nlohmann::json& written, std::size_t all) {
     std::string names;
@@ -136,8 +154,11 @@ void add_import_command(CLI::App& app, Shell& shell) {
                 const auto field = postproc::read_field(file, read, shell.progress());
                 shell.show(field.problems);
                 show_missing_arrays(shell, field, options->arrays);
+                show_new_folder(shell, outputs[i]);
                 shell.show(postproc::write_vtk(field, outputs[i], shell.progress()));
-                nlohmann::json entry = postproc::summarise(field);
+                const postproc::FieldSummary summary = postproc::summarise(field);
+                show_missing_values(shell, summary);
+                nlohmann::json entry = summary;
                 entry["out"] = outputs[i].string();
                 written.push_back(std::move(entry));
             } catch (const core::Error&) {

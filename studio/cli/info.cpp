@@ -148,7 +148,11 @@ void add_info_command(CLI::App& app, Shell& shell) {
         FieldOptions field;
     };
     auto options = std::make_shared<Options>();
-    command->add_option("file", options->file, "a CFD-Post CSV, Fluent, EnSight, CGNS, OpenFOAM or VTK file; or a monitor (.out), transcript, .xy plot or force report")->required();
+    command
+        ->add_option("file", options->file,
+                     "a CFD-Post CSV, Fluent, EnSight, CGNS, OpenFOAM or VTK file; or a monitor (.out, OpenFOAM's "
+                     ".dat), transcript, .xy plot or force report")
+        ->required();
     options->field.add_to(*command);
     command->footer(
         "Examples:\n"

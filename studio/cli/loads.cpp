@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +15,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/loads_table.h"
+#include "postproc/mesh_study.h"
 #include "postproc/stated_loads.h"
 #include "core/batch_problems.h"
 #include "postproc/transient.h"
@@ -218,7 +220,8 @@ void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
         const bool part = zone || one.quantity.find(" part of ") != std::string::npos;
         if (!part || shell.verbose) {
             const std::string blanks(one.quantity.size() < 14 ? 14 - one.quantity.size() : 1, ' ');
-            shell.print("  " + one.quantity + blanks + cell(one.stated) + "  " + of_force(one));
+            shell.print("  " + one.quantity + blanks + cell(one.stated) + "  " + of_force(one) +
+                        (one.hint.empty() ? "" : ": " + one.hint));
         }
     }
     if (!comparisons.empty()) {
@@ -259,8 +262,9 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
         worst = std::max(worst, one.of_force);
         if (!(one.of_force <= allowed)) {
             ++failed;
-            shell.warn(one.file + ": " + one.quantity + " is " + core::format_number(one.value, 5) + ", stated " + core::format_number(one.stated, 5) +
-                       (one.stated_in.empty() ? "" : " in " + one.stated_in) + ": " + of_force(one));
+            shell.warn(one.file + ": " + one.quantity + " is " + core::format_number(one.value, 5) + ", stated " +
+                       core::format_number(one.stated, 5) + (one.stated_in.empty() ? "" : " in " + one.stated_in) +
+                       ": " + of_force(one) + (one.hint.empty() ? "" : "; " + one.hint));
         }
     }
     shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " + core::format_number(100 * worst, 3) +
@@ -354,9 +358,41 @@ postproc::Field field_of(Shell& shell, const LoadsArguments& given, const std::s
     return field;
 }
 
-postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const ConditionedFile& file, postproc::LoadsOptions options, core::Problems& problems) {
+/// Those that were read already as the other file of a pair (a case and its data) count once.
+class Seen {
+public:
+    /// The file that the same files were read by before; nothing when this is the first.
+    const ConditionedFile* before(const ConditionedFile& file, std::vector<std::string> files) {
+        for (auto& name : files) {
+            std::error_code ignored;
+            name = std::filesystem::weakly_canonical(name, ignored).string();
+        }
+        std::sort(files.begin(), files.end());
+        const auto [place, is_new] = by_files_.try_emplace(std::move(files), &file);
+        return is_new ? nullptr : place->second;
+    }
+
+private:
+    std::map<std::vector<std::string>, const ConditionedFile*> by_files_;
+};
+
+/// Throws core::InputError when one case has conditions of two kinds.
+void check_same(const ConditionedFile& file, const ConditionedFile& before) {
+    if (file.numbers != before.numbers || file.texts != before.texts) {
+        throw core::InputError(
+            "manifest",
+            "'" + file.path + "' and '" + before.path + "' are the files of one case, with different conditions",
+            {file.path, {}, {}, {}}, "name one of them");
+    }
+}
+
+/// `read_from`: the files that it was read from.
+postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const ConditionedFile& file,
+                            postproc::LoadsOptions options, core::Problems& problems,
+                            std::vector<std::string>& read_from) {
     const postproc::Field field = field_of(shell, given, file.path);
     problems = field.problems;
+    read_from = field.files;
     options.reference = reference_of(given.reference, file);
     if (!options.references.speed) {
         options.references.speed = condition_of(file, "speed");
@@ -365,7 +401,10 @@ postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const Con
         options.references.density = condition_of(file, "density");
     }
     postproc::LoadsCase one{file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {}, {}};
-    std::erase_if(one.numbers, [](const auto& entry) { return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z"; });
+    std::erase_if(one.numbers, [](const auto& entry) {
+        return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z" ||
+               entry.first == "reference_length";
+    });
     problems.insert(problems.end(), one.loads.problems.begin(), one.loads.problems.end());
     take_stated(shell, given, one, problems);
     return one;
@@ -391,12 +430,20 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
     core::BatchProblems said;
+    Seen seen;
     for (std::size_t i = 0; i < batch.files.size(); ++i) {
         shell.progress().check();
         shell.progress().report(static_cast<double>(i) / static_cast<double>(batch.files.size()), batch.files[i].path);
         core::Problems problems;
+        std::vector<std::string> read_from;
         try {
-            cases.push_back(case_of(shell, given, batch.files[i], options, problems));
+            auto one = case_of(shell, given, batch.files[i], options, problems, read_from);
+            if (const auto* before = seen.before(batch.files[i], read_from)) {
+                check_same(batch.files[i], *before);
+                shell.info(batch.files[i].path + ": the same case as '" + before->path + "', counted once");
+                continue;
+            }
+            cases.push_back(std::move(one));
             said.add(batch.files[i].path, problems);
         } catch (const core::InputError& error) {
             if (batch.files.size() == 1) {
@@ -447,7 +494,7 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study, notes);
     shell.show(notes);
     show_studies(shell, cases);
-    const bool several = batch.files.size() > 1 || (given.files.empty() && !given.manifest.empty());
+    const bool several = cases.size() + failures.size() > 1 || (given.files.empty() && !given.manifest.empty());
     const bool table = several || !given.manifest.empty() || !given.out.empty();
     if (!given.out.empty()) {
         core::write_csv(given.out, postproc::loads_table(cases, batch.number_units));

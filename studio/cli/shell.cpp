@@ -16,6 +16,7 @@
 #include "core/own_files.h"
 #include "core/parallel.h"
 #include "postproc/import_error.h"
+#include "studio/cli/option_words.h"
 #include "studio/cli/usage.h"
 
 namespace underbody::studio {
@@ -81,21 +82,21 @@ void Shell::print_json(const nlohmann::json& document) {
 
 void Shell::print(const std::string& text) {
     if (!json) {
-        std::cout << text << (text.ends_with('\n') ? "" : "\n");
+        std::cout << with_flags(text) << (text.ends_with('\n') ? "" : "\n");
     }
 }
 
-void Shell::warn(const std::string& text) { std::cerr << "underbody: warning: " << text << '\n'; }
+void Shell::warn(const std::string& text) { std::cerr << "underbody: warning: " << with_flags(text) << '\n'; }
 
 void Shell::info(const std::string& text) {
     if (!quiet) {
-        std::cerr << "underbody: " << text << '\n';
+        std::cerr << "underbody: " << with_flags(text) << '\n';
     }
 }
 
 void Shell::detail(const std::string& text) {
     if (verbose) {
-        std::cerr << "underbody: " << text << '\n';
+        std::cerr << "underbody: " << with_flags(text) << '\n';
     }
 }
 
@@ -134,11 +135,12 @@ void Shell::show(const core::Problems& problems) {
 }
 
 void Shell::report(const core::Error& error, const char* what) {
-    std::cerr << "underbody: " << what << ": " << error.what() << '\n';
+    std::cerr << "underbody: " << what << ": " << with_flags(error.what()) << '\n';
     if (!json) {
         return;
     }
-    nlohmann::json detail = {{"kind", error.kind()}, {"message", error.message()}, {"hint", error.hint()}};
+    nlohmann::json detail = {
+        {"kind", error.kind()}, {"message", with_flags(error.message())}, {"hint", with_flags(error.hint())}};
     const core::Place& place = error.place();
     if (!place.file.empty()) {
         detail["file"] = place.file;

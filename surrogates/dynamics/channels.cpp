@@ -1,53 +1,49 @@
 #include "surrogates/dynamics/channels.h"
 
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
 #include "core/error.h"
+#include "core/units.h"
 
 namespace underbody::dynamics {
 
 namespace {
 
-struct Entry {
-    const char* name;
-    const char* unit;
-};
+/// In the order of `Channel`; what they are in, the list of quantities says (core/units.h).
+constexpr std::array<const char*, channel_count> names = {
+    "time",        "gap",      "heave_velocity", "pitch",       "pitch_rate", "speed",
+    "jet_voltage", "jet_flow", "input_force",    "temperature", "depth",      "approach_direction"};
 
-constexpr Entry entries[channel_count] = {
-    {"time", "s"},
-    {"gap", "m"},
-    {"heave_velocity", "m/s"},
-    {"pitch", "rad"},
-    {"pitch_rate", "rad/s"},
-    {"speed", "m/s"},
-    {"jet_voltage", "V"},
-    {"jet_flow", "m^3/s"},
-    {"input_force", "N"},
-    {"temperature", "K"},
-    {"depth", "m"},
-    {"approach_direction", "1"},
-};
+std::array<const char*, channel_count> units_of_names() {
+    std::array<const char*, channel_count> units{};
+    for (std::size_t i = 0; i < channel_count; ++i) {
+        const core::QuantityName* quantity = core::find_quantity(names[i]);
+        if (quantity == nullptr) {
+            throw std::logic_error(std::string("the channel '") + names[i] + "' is not in the list of quantities");
+        }
+        units[i] = quantity->unit.c_str();
+    }
+    return units;
+}
 
 }  // namespace
 
-const char* channel_name(Channel channel) { return entries[static_cast<std::size_t>(channel)].name; }
-const char* channel_unit(Channel channel) { return entries[static_cast<std::size_t>(channel)].unit; }
+const char* channel_name(Channel channel) { return names[static_cast<std::size_t>(channel)]; }
+
+const char* channel_unit(Channel channel) {
+    static const auto units = units_of_names();
+    return units[static_cast<std::size_t>(channel)];
+}
 
 bool find_channel(std::string_view name, Channel& channel) {
-    for (std::size_t i = 0; i < channel_count; ++i) {
-        if (name == entries[i].name) {
-            channel = static_cast<Channel>(i);
-            return true;
-        }
-    }
-    return false;
+    const auto found = std::find(names.begin(), names.end(), name);
+    channel = found == names.end() ? channel : static_cast<Channel>(found - names.begin());
+    return found != names.end();
 }
 
-std::vector<std::string> channel_names() {
-    std::vector<std::string> names;
-    for (const Entry& entry : entries) {
-        names.emplace_back(entry.name);
-    }
-    return names;
-}
+std::vector<std::string> channel_names() { return {names.begin(), names.end()}; }
 
 void Conditions::set(std::string_view name, double value_si) {
     Channel channel{};

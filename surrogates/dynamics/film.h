@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/water.h"
+
 namespace underbody::dynamics {
 
 // ---- One-dimensional Reynolds film: the ground moves at +speed along x, the slider stands; pressure is ambient at
@@ -44,7 +46,7 @@ struct EllipticFilmInput {
     double pitch = 0;                        ///< rad, nose up
     double speed = 0;                        ///< m/s, of the body forward: the ground moves aft under it
     double heave_velocity = 0;               ///< m/s, up
-    double viscosity = 1e-3, density = 998;
+    double viscosity = 1e-3, density = core::default_water_density;
     int rings = 48;  ///< of the mesh
 };
 struct EllipticFilm {

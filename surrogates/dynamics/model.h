@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/toml.h"
+#include "core/water.h"
 #include "surrogates/dynamics/channels.h"
 #include "surrogates/dynamics/effects/effect.h"
 #include "surrogates/tables/force_table.h"
@@ -42,7 +43,7 @@ struct Vehicle {
 };
 
 struct Environment {
-    double density = 998;               ///< kg/m^3
+    double density = core::default_water_density;  ///< kg/m^3
     double kinematic_viscosity = 1e-6;  ///< m^2/s
     double temperature = 293.15;        ///< K
     double gravity = 9.80665;           ///< m/s^2

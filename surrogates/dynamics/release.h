@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/figure.h"
+#include "core/water.h"
 #include "surrogates/dynamics/film.h"
 
 namespace underbody::dynamics {
@@ -15,7 +16,7 @@ struct ReleaseSetup {
     double mass = 0;                                   ///< virtual mass far from the ground, kg
     double quadratic_drag = 0;                         ///< N s^2/m^2
     double extra_force = 0;                            ///< N, up: what the body weighs too little (dB)
-    double viscosity = 1e-3, density = 998;
+    double viscosity = 1e-3, density = core::default_water_density;
     bool squeeze = true;        ///< squeeze damping 12 mu G/h^3
     bool gap_mass = true;       ///< added mass rho G/h of the film
     double contact_gap = 1e-5;  ///< m; the push of 5 N means contact

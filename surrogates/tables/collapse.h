@@ -8,6 +8,7 @@
 
 #include "core/figure.h"
 #include "core/table.h"
+#include "core/water.h"
 
 namespace underbody::tables {
 
@@ -16,7 +17,7 @@ struct CollapseOptions {
     /// "jet_voltage" (F/V^2 over gap) or "jet_flow" (F/q^2 over gap: docs/physics.md section 5.1). Empty: the first of
     /// these that varies.
     std::string by;
-    double density = 998;  ///< kg/m^3
+    double density = core::default_water_density;  ///< kg/m^3
     double length = 0;     ///< m, where there is no column `length`; 0: the gap is not divided
     double width = 0;      ///< m, where there is no column `width`; S = pi/4 length width, or length^2 when no width is known, or 1
     double tolerance = 0.02;  ///< points without stated errors are judged by this share of the largest coefficient

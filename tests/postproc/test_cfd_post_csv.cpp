@@ -109,7 +109,7 @@ TEST(CfdPostCsv, ConvertsTheUnitsOfTheHeader) {
 
 TEST(CfdPostCsv, AsksForUnitsThatTheFileDoesNotSay) {
     const std::string no_length = replaced(good, "X [ m ], Y", "X, Y");
-    EXPECT_THAT(failure(no_length), HasSubstr("line 6: coordinate 'X' has no unit | say it with --length-unit"));
+    EXPECT_THAT(failure(no_length), HasSubstr("line 6: coordinate 'X' has no unit | say it: option 'length-unit"));
     ReadOptions options;
     options.length_unit = "m";
     EXPECT_EQ(read_text(no_length, options).zones.size(), 2U);

@@ -37,7 +37,7 @@ TEST(EnsightSamples, OpenFoamsPressureWaitsForItsUnit) {
     ASSERT_NE(field.find("hull"), nullptr);
     EXPECT_EQ(field.find("hull")->find("pressure"), nullptr);
     EXPECT_EQ(field.find("hull")->surface->GetNumberOfCells(), 1360);
-    EXPECT_THAT(field.problems.front().message, HasSubstr("--unit p=m^2/s^2"));
+    EXPECT_THAT(field.problems.front().message, HasSubstr("option 'unit p=m^2/s^2'"));
     ASSERT_NE(field.find("hull")->find("p (unit not stated)"), nullptr);
     EXPECT_EQ(field.find("hull")->find("p (unit not stated)")->original_name, "p");  // what loads asks for by its name
     ReadOptions options;

@@ -140,8 +140,9 @@ std::vector<FaceZone> zones() {
     return result;
 }
 
-/// `parts`: into how many pieces nodes and faces are cut, regardless of zones.
-void write_mesh(Writer& out, int parts = 1) {
+/// `parts`: into how many pieces nodes and faces are cut, regardless of zones. `placeholders`: an interface whose two
+/// faces have no nodes, only the cell beside them.
+void write_mesh(Writer& out, int parts = 1, bool placeholders = false) {
     const std::string root = "/meshes/1";
     out.group(root);
     out.attribute(root, "dimension", 3);
@@ -184,6 +185,15 @@ void write_mesh(Writer& out, int parts = 1) {
         }
         last.push_back(static_cast<std::int32_t>(c0.size()));
     }
+    if (placeholders) {
+        ids.push_back(9);
+        kinds.push_back(24);
+        names += ";mate";
+        first.push_back(static_cast<std::int32_t>(c0.size()) + 1);
+        sizes.insert(sizes.end(), {0, 0});
+        c0.insert(c0.end(), {1, 2});
+        last.push_back(static_cast<std::int32_t>(c0.size()));
+    }
     const auto count = static_cast<int>(c0.size());
     out.attribute(root, "faceCount", count);
     const std::string faces = root + "/faces/zoneTopology/";
@@ -197,7 +207,8 @@ void write_mesh(Writer& out, int parts = 1) {
         const int to = count * (p + 1) / parts;
         const std::string part = std::to_string(p + 1);
         out.ints(root + "/faces/nodes/" + part + "/nnodes", {sizes.begin() + from, sizes.begin() + to});
-        out.ints(root + "/faces/nodes/" + part + "/nodes", {nodes.begin() + 4 * from, nodes.begin() + 4 * to});
+        out.ints(root + "/faces/nodes/" + part + "/nodes",
+                 {nodes.begin() + 4 * from, placeholders ? nodes.end() : nodes.begin() + 4 * to});
         out.ids(root + "/faces/nodes/" + part, from + 1, to);
         out.ints(root + "/faces/c0/" + part, {c0.begin() + from, c0.begin() + to});
         out.ids(root + "/faces/c0/" + part, from + 1, to);
@@ -306,6 +317,25 @@ TEST(FluentHdf5, ASolidNeedsNoValuesAndAWallTakesThePressureOfItsCells) {
     ReadOptions options;
     options.companion = folder.path() / "tank.cas.h5";
     EXPECT_THAT(test::refusal(folder.path() / "tank.dat.h5", options), HasSubstr("its cells end at 1"));
+}
+
+TEST(FluentHdf5, AnInterfaceWhoseFacesHaveNoNodesIsLeftOutAndSaid) {
+    const core::TemporaryFolder folder;
+    {
+        Writer out(folder.path() / "tank.cas.h5");
+        write_mesh(out, 1, true);
+    }
+    const auto field = read_field(folder.path() / "tank.cas.h5");
+    EXPECT_EQ(test::cells_of(field), 2);
+    EXPECT_NEAR(test::volume_of(field), 2, 1e-12);
+    EXPECT_EQ(field.find("mate"), nullptr);
+    EXPECT_THAT(
+        test::told(field),
+        HasSubstr(
+            "the faces of interface 'mate' have no corners in the file, only the cells beside them: it is left out"));
+    for (const auto& problem : field.problems) {
+        EXPECT_NE(problem.severity, core::Problem::Severity::error) << problem.message;
+    }
 }
 
 TEST(FluentHdf5, AMeshIsInTheUnitThatItStates) {

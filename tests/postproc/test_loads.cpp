@@ -1,6 +1,4 @@
 // Loads against closed forms.
-#include "postproc/loads.h"
-
 #include <gmock/gmock.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -15,7 +13,9 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "postproc/loads.h"
 #include "postproc/loads_table.h"
+#include "postproc/mesh_study.h"
 
 namespace underbody::postproc {
 namespace {
@@ -138,6 +138,51 @@ TEST(Loads, ConvergeToTheBuoyancyWithTheSecondOrder) {
     }
 }
 
+TEST(Loads, ShearOnAWarpedPolygonActsOnTheSizeOfItsAreaVector) {
+    // A pyramid whose base is a warped hexagon; a finite-volume solver's face force is the traction times that size,
+    // and a Fluent file states forces, made tractions by it: the sum has to give them back.
+    std::vector<Vector> points;
+    for (int i = 0; i < 6; ++i) {
+        points.push_back({std::cos(M_PI * i / 3), std::sin(M_PI * i / 3), i % 2 == 0 ? 0.1 : -0.1});
+    }
+    points.push_back({0, 0, 2});
+    std::vector<std::vector<vtkIdType>> faces = {{5, 4, 3, 2, 1, 0}};
+    Vector area{};
+    for (int i = 0; i < 6; ++i) {
+        faces.push_back({i, (i + 1) % 6, 6});
+        const Vector part = cross(points[static_cast<std::size_t>(i)], points[static_cast<std::size_t>((i + 1) % 6)]);
+        area = plus(area, part, 0.5);
+    }
+    Zone zone = make_zone("base", points, faces, [](const Vector&) { return 0; });
+    vtkNew<vtkDoubleArray> shear;
+    shear->SetName("wall_shear");
+    shear->SetNumberOfComponents(3);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        shear->InsertNextTuple3(f == 0 ? 3 : 0, 0, 0);
+    }
+    zone.surface->GetPointData()->RemoveArray("wall_shear");
+    zone.surface->GetCellData()->AddArray(shear);
+    zone.arrays[1].on = Location::faces;
+    const auto result = loads(field_of({zone}), about({}));
+    EXPECT_NEAR(result.viscous.force[0], 3 * norm(area), 1e-12);
+    EXPECT_NEAR(norm(area), 3 * std::sqrt(3.0) / 2, 1e-12);  // the warp cancels in it: that of the flat hexagon
+    // The same on nodes, constant over them.
+    const auto on_nodes = loads(field_of({make_zone(
+                                    "base", points, faces, [](const Vector&) { return 0; },
+                                    [](const Vector&) {
+                                        return Vector{0, 0, 1};
+                                    })}),
+                                about({}));
+    double triangles = 0;
+    for (int i = 0; i < 6; ++i) {
+        const Vector& a = points[static_cast<std::size_t>(i)];
+        const Vector& b = points[static_cast<std::size_t>((i + 1) % 6)];
+        triangles += 0.5 * norm(cross(plus(b, a, -1), plus(points[6], a, -1)));
+    }
+    EXPECT_NEAR(on_nodes.viscous.force[2], norm(area) + triangles, 1e-12);
+    EXPECT_NEAR(on_nodes.area, norm(area) + triangles, 1e-12);
+}
+
 TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
     const auto p = [](const Vector& x) { return 30 * x[0] - 200 * x[2] + 1000 * x[0] * x[2] + 40; };
     const auto whole = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p)}), about({0.01, 0, -0.02}));
@@ -156,7 +201,7 @@ TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
     const auto forgotten = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, true)}), about({0.01, 0, -0.02}));
     EXPECT_NEAR(2 * forgotten.total.force[2], whole.total.force[2], 1e-9);  // the sides are settled also without the plane
     ASSERT_FALSE(forgotten.problems.empty());
-    EXPECT_THAT(forgotten.problems.back().message, HasSubstr("--symmetry y"));
+    EXPECT_THAT(forgotten.problems.back().message, HasSubstr("option 'symmetry y'"));
     EXPECT_GT(forgotten.closure, 0.1);
     EXPECT_THROW(loads(field_of({ellipsoid(20, {0.1, 0.1, 0.1}, p)}), about({}, "y")), core::InputError);
     // Nor is it half a body that is open elsewhere than at its plane.
@@ -364,7 +409,7 @@ TEST(Loads, AreRefusedWhereNobodyCanTellWhatTheBodyIs) {
     } catch (const core::InputError& error) {
         EXPECT_EQ(error.kind(), "zone");
         EXPECT_THAT(error.message(), HasSubstr("which walls are the body? zone 'ground'"));
-        EXPECT_THAT(error.hint(), HasSubstr("--zones '*'"));
+        EXPECT_THAT(error.hint(), HasSubstr("option 'zones *'"));
     }
 }
 
@@ -457,7 +502,8 @@ TEST(Loads, SayThatTheSideOfADuctIsNotKnown) {
         }
         const auto result = loads(duct, about({0, 0, 0}));
         ASSERT_FALSE(result.problems.empty());
-        EXPECT_THAT(result.problems.front().message, testing::AllOf(HasSubstr("as those of a duct"), HasSubstr("--fluid file")));
+        EXPECT_THAT(result.problems.front().message,
+                    testing::AllOf(HasSubstr("as those of a duct"), HasSubstr("option 'fluid file'")));
         EXPECT_EQ(result.zones[0].turned, turned);
         EXPECT_THAT(result.orientation, testing::Not(HasSubstr("closes")));
     }
@@ -646,8 +692,8 @@ TEST(Loads, SayHowToGiveTheUnitOfAPressureWithoutOne) {
         FAIL() << "accepted";
     } catch (const core::InputError& error) {
         EXPECT_THAT(error.message(), HasSubstr("has no pressure but 'p'"));
-        EXPECT_THAT(error.hint(), HasSubstr("--unit p=Pa"));
-        EXPECT_THAT(error.hint(), HasSubstr("--unit \"p=m^2/s^2\" with --density"));
+        EXPECT_THAT(error.hint(), HasSubstr("option 'unit p=Pa'"));
+        EXPECT_THAT(error.hint(), HasSubstr("option 'unit p=m^2/s^2' with option 'density'"));
     }
 }
 
@@ -674,7 +720,8 @@ TEST(Loads, OfAWholeBodyAreNotDoubled) {
         (void)loads(box(false, false), about({0, 0, 0}, "z"));
         ADD_FAILURE() << "a closed box passed for half of one";
     } catch (const core::InputError& error) {
-        EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("closes without a mirror image"), HasSubstr("--symmetry z=0")));
+        EXPECT_THAT(error.what(),
+                    testing::AllOf(HasSubstr("closes without a mirror image"), HasSubstr("option 'symmetry z=0'")));
     }
     EXPECT_NO_THROW((void)loads(box(false, false), about({0, 0, 0}, "z=-1")));
 }

@@ -262,6 +262,130 @@ TEST(OpenFoam, FilesThatAFieldIncludesArePassedOver) {
               plain.find("movingWall")->surface->GetCellData()->GetArray(name)->GetComponent(3, 0));
 }
 
+/// The box with another pressure: `top` before its cells' values, `inner` instead of these, another boundary field.
+void state_pressure(const fs::path& box, const std::string& top, const std::string& inner,
+                    const std::string& boundary) {
+    const std::string text = core::read_file(data("ascii") / "0.005/p");
+    const std::size_t begin = text.find("dimensions");
+    const std::size_t values = text.find("internalField");
+    std::ofstream(box / "0.005/p", std::ios::binary)
+        << text.substr(0, begin) << top << text.substr(begin, values - begin)
+        << (inner.empty() ? text.substr(values, text.find("boundaryField") - values) : "internalField " + inner + ";\n")
+        << "boundaryField\n{\n"
+        << boundary << "}\n";
+}
+
+const postproc::Field box_with(const fs::path& box, const std::string& top, const std::string& inner,
+                               const std::string& boundary) {
+    state_pressure(box, top, inner, boundary);
+    return read_field(box);
+}
+
+TEST(OpenFoam, MacrosStandForEntriesOfTheFileAndOfWhatItIncludes) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const std::string rest = "fixedWalls { type zeroGradient; }\nfrontAndBack { type empty; }\n";
+    const auto lid = [](const std::string& entries) { return "movingWall { " + entries + " }\n"; };
+    // A value, one of a dictionary, braces, a whole patch, the cells' own.
+    EXPECT_EQ(
+        pressure_on(box_with(box, "pLid 7;\n", "", lid("type fixedValue; value uniform $pLid;") + rest), "movingWall"),
+        7);
+    EXPECT_EQ(pressure_on(box_with(box, "lid { pressure 8; }\n", "",
+                                   lid("type fixedValue; value uniform $lid.pressure;") + rest),
+                          "movingWall"),
+              8);
+    EXPECT_EQ(pressure_on(box_with(box, "pLid 7;\nlid { pressure ${pLid}; }\n", "",
+                                   lid("type fixedValue; value uniform $:lid.pressure;") + rest),
+                          "movingWall"),
+              7);
+    EXPECT_EQ(pressure_on(box_with(box, "lid { type fixedValue; value uniform 9; }\n", "", lid("$lid;") + rest),
+                          "movingWall"),
+              9);
+    EXPECT_EQ(pressure_on(box_with(box, "whole \"uniform 3\";\nplain uniform 6;\n", "$plain",
+                                   lid("type calculated; value $internalField;") + rest),
+                          "fixedWalls"),
+              6);
+    const auto same =
+        box_with(box, "", "uniform 4",
+                 "\"other.*\" { type fixedValue; value uniform 2; }\n" + lid("type fixedValue; value $internalField;") +
+                     "fixedWalls { type fixedValue; value $..movingWall.value; }\nfrontAndBack { type empty; }\n");
+    EXPECT_EQ(pressure_on(same, "movingWall"), 4);
+    EXPECT_EQ(pressure_on(same, "fixedWalls"), 4);
+    EXPECT_THAT(test::told(same), testing::Not(HasSubstr("cells beside")));
+    const auto copied = box_with(
+        box, "", "",
+        "fixedWalls { type fixedValue; value uniform 5; }\n" + lid("$fixedWalls;") + "frontAndBack { type empty; }\n");
+    EXPECT_EQ(pressure_on(copied, "movingWall"), 5);
+    // Included: beside the field, below the case, and one that includes another; not what lies outside of the case.
+    core::write_file(box / "0.005/include/lids",
+                     "#include \"numbers\"\nlidDict { type fixedValue; value uniform $pLid; }\n");
+    core::write_file(box / "0.005/include/numbers", "pLid 11; // Pa m^3/kg\n");
+    EXPECT_EQ(pressure_on(box_with(box, "#include \"include/lids\"\n", "", lid("$lidDict;") + rest), "movingWall"), 11);
+    EXPECT_EQ(pressure_on(box_with(box, "#includeIfPresent \"$FOAM_CASE/0.005/include/numbers\"\n", "uniform $pLid",
+                                   lid("type zeroGradient;") + rest),
+                          "movingWall"),
+              11);
+    core::write_file(folder.path() / "outside", "pLid 12;\n");
+    EXPECT_THAT(
+        test::told(box_with(box, "#include \"../../outside\"\n", "uniform $pLid", lid("type zeroGradient;") + rest)),
+        HasSubstr(
+            "the field 'p' is left out: '$pLid' is not defined in the file, nor in what it includes of the case"));
+}
+
+TEST(OpenFoam, AFieldThatOnlyOpenFoamCanComputeIsLeftOutAndTheCaseIsRead) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const std::string boundary = "\".*\" { type zeroGradient; }\n";
+    for (const std::string inner : {"uniform $nowhere", "#codeStream { code #{ os << \"} ); \" ; } #}; }",
+                                    "uniform #calc \"1 + 2\"", "$nowhere", "uniform ${nowhere.at.all}"}) {
+        SCOPED_TRACE(inner);
+        const auto field = box_with(box, "", inner, boundary);
+        EXPECT_EQ(field.find("movingWall")->find("kinematic_pressure"), nullptr);
+        EXPECT_NE(field.find("movingWall")->find("velocity"), nullptr);
+        EXPECT_THAT(test::told(field), HasSubstr("the field 'p' is left out: "));
+    }
+    // What nobody asks for may be anything; what is without end is no trap.
+    const auto code =
+        box_with(box, "other #calc \"2*$x\";\nmore #codeStream { code #{ } } ( #}; };\n", "uniform 3", boundary);
+    EXPECT_EQ(pressure_on(code, "movingWall"), 3);
+    EXPECT_THAT(test::told(box_with(box, "a $b;\nb $a;\n", "uniform $b", boundary)),
+                HasSubstr("the field 'p' is left out"));
+    core::write_file(box / "0.005/round", "#include \"round\"\n");
+    EXPECT_THAT(test::told(box_with(box, "#include \"round\"\n", "uniform 3", boundary)),
+                HasSubstr("refer to one another without end"));
+    // A patch whose value cannot be known has that of its cells, and this is said.
+    const auto guessed = box_with(box, "", "uniform 3",
+                                  "movingWall { type fixedValue; value uniform $nowhere; }\nfixedWalls { type "
+                                  "fixedValue; value #calc \"1\"; }\nfrontAndBack { type empty; }\n");
+    EXPECT_EQ(pressure_on(guessed, "movingWall"), 3);
+    EXPECT_THAT(test::told(guessed),
+                HasSubstr("patch 'movingWall' takes its entry in 'p' from another, which is not read"));
+    EXPECT_THAT(test::told(guessed), HasSubstr("patch 'fixedWalls' takes its entry"));
+}
+
+TEST(OpenFoam, SymmetricTensorsAreInTheOrderOfVtk) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    std::string text = core::read_file(data("ascii") / "0.005/p");
+    text.replace(text.find("volScalarField"), 14, "volSymmTensorField");
+    std::ofstream(box / "0.005/R", std::ios::binary)
+        << text.substr(0, text.find("internalField"))
+        << "internalField uniform (11 12 13 22 23 33);\nboundaryField { \".*\" { type zeroGradient; } }\n";
+    const auto field = read_field(box);
+    for (auto* array : {field.find("internalMesh")->volume->GetCellData()->GetArray("R"),
+                        field.find("movingWall")->surface->GetCellData()->GetArray("R")}) {
+        ASSERT_NE(array, nullptr);
+        const double wanted[] = {11, 22, 33, 12, 23, 13};
+        for (int k = 0; k < 6; ++k) {
+            EXPECT_EQ(array->GetComponent(0, k), wanted[k]) << k;
+        }
+        EXPECT_STREQ(array->GetComponentName(4), "YZ");
+    }
+}
+
 TEST(OpenFoam, DimensionsMayHaveNames) {
     const core::TemporaryFolder folder;
     const fs::path box = folder.path() / "box";

@@ -95,6 +95,54 @@ TEST(Monitors, AHeadOfBracketsAloneLeavesTheColumnUnnamed) {
     EXPECT_THAT(monitor.values[1], ElementsAre(0.5, 0.6));
 }
 
+TEST(Monitors, TablesOfOpenFoamHaveTheNamesOfTheirHeading) {
+    const core::TemporaryFolder folder;
+    const auto read = [&](const std::string& text) {
+        core::write_file(folder.path() / "table.dat", text);
+        EXPECT_TRUE(report_kinds(folder.path() / "table.dat").monitor) << text;
+        return read_monitor(folder.path() / "table.dat");
+    };
+    const auto force =
+        read("# Force\n# CofR : (0 0 0)\n#\n# Time\ttotal_x\ttotal_y\ttotal_z\n0.1\t1 2 3\n0.2\t4 5 6\n");
+    EXPECT_EQ(force.title, "Force");
+    EXPECT_THAT(force.columns, testing::ElementsAre("Time", "total_x", "total_y", "total_z"));
+    EXPECT_THAT(*force.find("total_y"), testing::ElementsAre(2, 5));
+    EXPECT_FALSE(force.coefficients);
+    const auto brackets =
+        read("# Time (total_x total_y total_z) (pressure_x pressure_y pressure_z)\n1 (1 2 3) (4 5 6)\n");
+    EXPECT_THAT(brackets.columns, testing::ElementsAre("Time", "total_x", "total_y", "total_z", "pressure_x",
+                                                       "pressure_y", "pressure_z"));
+    const auto older = read(
+        "# Forces\n# Time forces(pressure viscous) moment(pressure viscous)\n1 ((1 2 3) (4 5 6)) ((7 8 9) (10 11 "
+        "12))\n");
+    EXPECT_EQ(older.columns.size(), 13U);
+    EXPECT_THAT(*older.find("moment_viscous_x"), testing::ElementsAre(10));
+    const auto coefficients = read(
+        "# Force coefficients\n# dragDir : (1 0 0)\n# liftDir : (0 0 1)\n# magUInf : 2\n# lRef : 0.5\n# Aref : 0.25\n# "
+        "CofR : (0.1 0 0)\n#\n"
+        "# Time Cd Cl Cl(f) CmPitch\n10 0.5 1 0.5 0.25\n");
+    EXPECT_THAT(coefficients.columns, testing::ElementsAre("Time", "Cd", "Cl", "Cl(f)", "CmPitch"));
+    ASSERT_TRUE(coefficients.coefficients);
+    EXPECT_EQ(coefficients.coefficients->area, 0.25);
+    const auto solver =
+        read("# Solver information\n# Time U_solver Ux_initial p_iters\n1 smoothSolver 0.5 7\n2 smoothSolver 0.25 6\n");
+    EXPECT_THAT(solver.columns, testing::ElementsAre("Time", "Ux_initial", "p_iters"));
+    const auto mean = read("# Region type : patch inlet\n# Time areaAverage(U)\n1 (1 2 3)\n");
+    EXPECT_THAT(mean.columns, testing::ElementsAre("Time", "areaAverage(U)_x", "areaAverage(U)_y", "areaAverage(U)_z"));
+    core::write_file(folder.path() / "table.dat", "# Time Cd\n1 2\n2 3 4\n");
+    EXPECT_THAT([&] { read_monitor(folder.path() / "table.dat"); },
+                testing::ThrowsMessage<core::InputError>(
+                    HasSubstr("table.dat:3: a row of 3 entries where there are 2 columns")));
+}
+
+TEST(Monitors, StepsThatAreNoWholeNumbersAreTimes) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "lift.out", "0.001 5\n0.002 6\n0.003 7\n");
+    EXPECT_EQ(read_monitor(folder.path() / "lift.out").columns.front(), "Time");
+    core::write_file(folder.path() / "lift.out", "1 5\n2 6\n3 7\n");
+    EXPECT_EQ(read_monitor(folder.path() / "lift.out").columns.front(), "Iteration");
+}
+
 TEST(Plots, CurvesHaveTheirNames) {
     const core::TemporaryFolder folder;
     const auto plot =

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "postproc/loads_table.h"
 #include "postproc/settled.h"
+#include "postproc/mesh_study.h"
 #include "postproc/stated_loads.h"
 #include "tests/support/support.h"
 
@@ -119,7 +120,7 @@ TEST_F(StatedLoads, AreFarFromAForceOfNothing) {
     };
     EXPECT_EQ(of("lift_force"), 1);
     EXPECT_EQ(of("drag_force"), 0.2);  // of the report's force, the lift of 1 N
-    EXPECT_NEAR(of("moment about (0, 1, 0) at (0, 0, 0) m"), 1 / std::sqrt(nothing.area), 1e-12);
+    EXPECT_NEAR(of("moment about (0, 1, 0) at (0, 0, 0) m"), 1 / nothing.length, 1e-12);
     // A report of moments alone: then over the moment itself.
     const std::string moments = report.substr(report.find("Moments"));
     EXPECT_EQ(compare_with_solver(nothing, stated_in_report(written("moments.txt", moments)), notes)[6].of_force, 1);
@@ -260,6 +261,89 @@ TEST_F(StatedLoads, OfAMonitorGiveTheirLastValueAndTheScatterOfTheirTail) {
     // Of a half model both count twice.
     const LoadsResult half = loads_of(true);
     EXPECT_NEAR(iteration_sigmas(half, {lift})[0].second, 2 * sigmas[0].second, 1e-15);
+}
+
+TEST_F(StatedLoads, AreMeasuredByTheForceOnTheSameZonesAndTheLengthOfTheBodyEverywhere) {
+    LoadsResult result = loads_of();
+    EXPECT_EQ(result.length, 2);
+    const double force = norm(result.total.force);
+    LoadsCase one{"box.csv",
+                  {{"pitch_moment", result.named.pitch_moment + 0.01 * force * 2},
+                   {"lift_force", result.named.lift_force - 0.03 * force}},
+                  {},
+                  result,
+                  {},
+                  {}};
+    core::Problems notes;
+    const auto by_manifest = compare_with_stated({one}, notes);
+    ASSERT_EQ(by_manifest.size(), 2U);
+    EXPECT_NEAR(by_manifest[0].of_force, 0.03, 1e-12);
+    EXPECT_NEAR(by_manifest[1].of_force, 0.01, 1e-12);
+    StatedLoad moment;
+    moment.quantity = "pitch_moment";
+    moment.moment = true;
+    moment.direction = result.starboard;
+    moment.centre = result.reference;
+    moment.value = result.named.pitch_moment + 0.01 * force * 2;
+    EXPECT_NEAR(compare_with_solver(result, {moment}, notes)[0].of_force, 0.01, 1e-12);
+    // A length that is given is the one that counts.
+    LoadsOptions options;
+    options.references.length = 4;
+    EXPECT_NEAR(
+        compare_with_solver(loads(read_field(folder_.path() / "box.csv"), options), {moment}, notes)[0].of_force, 0.005,
+        1e-12);
+}
+
+TEST_F(StatedLoads, OfTheOtherSignOrOfHalfABodySaySo) {
+    const LoadsResult result = loads_of();
+    const auto hint = [&](double value) {
+        StatedLoad lift;
+        lift.quantity = "lift_force";
+        lift.direction = result.up;
+        lift.value = value;
+        core::Problems notes;
+        return compare_with_solver(result, {lift}, notes)[0].hint;
+    };
+    EXPECT_EQ(hint(-1), "");
+    EXPECT_THAT(hint(1), HasSubstr("it has the other sign"));
+    EXPECT_THAT(hint(0.98), HasSubstr("lift_force [-1 N]=FILE"));
+    EXPECT_THAT(hint(-0.5), HasSubstr("twice of it would fit"));
+    EXPECT_THAT(hint(-2), HasSubstr("half of it would fit"));
+    EXPECT_EQ(hint(-0.8), "");
+    EXPECT_EQ(hint(5), "");
+}
+
+TEST_F(StatedLoads, OfCoefficientsBecomeForcesByTheReferenceValuesOfTheSolver) {
+    LoadsResult result = loads_of();
+    // OpenFOAM's own table states all but the density: 1/2 1000 2^2 0.25 = 500 N. Its drag counts along -x here.
+    const auto table = written("coefficient.dat",
+                               "# Force coefficients\n# dragDir : (-1 0 0)\n# liftDir : (0 0 1)\n# pitchAxis : (0 1 "
+                               "0)\n# magUInf : 2\n# lRef : 0.5\n# Aref : 0.25\n"
+                               "# CofR : (0 0 0)\n# Time Cd Cl CmPitch\n1 0 0 0\n2 0 0 0\n3 0 0 0\n4 0 0 0\n5 0 0 0\n6 "
+                               "0 0 0\n7 0 0 0\n8 -0.0004 -0.002 0.004\n");
+    const auto of = [&](const std::string& what, const std::string& column) {
+        return stated_by_monitor(monitor_source(what + "=" + table.string() + ":" + column), result);
+    };
+    EXPECT_THAT([&] { of("lift_coefficient", "Cl"); },
+                testing::ThrowsMessage<core::InputError>(HasSubstr("nobody says the reference density")));
+    result.solver_references.density = 1000;
+    EXPECT_NEAR(of("lift_coefficient", "Cl").value, -1, 1e-12);
+    core::Problems notes;
+    for (const auto& [what, column] :
+         {std::pair{"lift_coefficient", "Cl"}, {"drag_coefficient", "Cd"}, {"pitch_moment_coefficient", "CmPitch"}}) {
+        EXPECT_LT(compare_with_solver(result, {of(what, column)}, notes)[0].of_force, 1e-9) << what;
+    }
+    // Fluent's monitors state nothing, but its case does.
+    const auto monitor = written("cl.out",
+                                 "(\"Iteration\" \"cl\")\n1 -0.0004\n2 -0.0004\n3 -0.0004\n4 -0.0004\n5 -0.0004\n6 "
+                                 "-0.0004\n7 -0.0004\n8 -0.0004\n");
+    EXPECT_THAT([&] { stated_by_monitor(monitor_source("lift_coefficient=" + monitor.string()), result); },
+                testing::ThrowsMessage<core::InputError>(testing::AllOf(HasSubstr("nobody says the reference speed"),
+                                                                        HasSubstr("lift_force [2.4 N]=FILE"))));
+    result.solver_references = {1000, 1, 5, 1};
+    EXPECT_NEAR(stated_by_monitor(monitor_source("lift_coefficient=" + monitor.string()), result).value, -1, 1e-12);
+    EXPECT_THROW(monitor_source("lift_coefficient [N]=cl.out"), core::UsageError);
+    EXPECT_THROW(monitor_source("lift_coeficient=cl.out"), core::UsageError);
 }
 
 TEST_F(StatedLoads, OfAMonitorAreThoseOfTheFieldsTime) {

@@ -345,7 +345,7 @@ TEST(VtkFiles, PAndWallShearStressOfOpenFoamWaitForTheirUnit) {
     EXPECT_EQ(plain.zones.at(0).find("pressure"), nullptr);
     EXPECT_EQ(plain.zones.at(0).find("wall_shear"), nullptr);
     EXPECT_NE(plain.zones.at(0).find("p (unit not stated)"), nullptr);
-    EXPECT_THAT(plain.problems.front().message, HasSubstr("--unit p=m^2/s^2"));
+    EXPECT_THAT(plain.problems.front().message, HasSubstr("option 'unit p=m^2/s^2'"));
     const auto value = [&](const char* unit, const char* array, int component) {
         postproc::ReadOptions options;
         options.units = {{"p", unit}};

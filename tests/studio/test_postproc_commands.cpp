@@ -65,6 +65,40 @@ TEST_F(PostprocCommands, LoadsOfAFileThatIsCutWithinAFaceAreRefused) {
     EXPECT_THAT(cut(4).errors, testing::HasSubstr("cut.csv:33:1: a row of 2 node numbers"));
 }
 
+TEST_F(PostprocCommands, TheFilesOfOneCaseAreOneCase) {
+    UNDERBODY_NEEDS_SHARED("samples/fluent_cff/mixing_elbow.cas.h5");
+    const std::string stem = (test::shared_folder() / "samples/fluent_cff/mixing_elbow").string();
+    const auto both = run({"loads", stem + ".cas.h5", stem + ".dat.h5", "--zones", "wall-elbow", "--json"});
+    EXPECT_EQ(both.exit_code, 0) << both.errors;
+    EXPECT_THAT(both.errors, testing::HasSubstr("the same case as '" + stem + ".cas.h5', counted once"));
+    EXPECT_TRUE(json::parse(both.output).contains("lift_force"));  // one result, no list of two
+    core::write_file(folder_.path() / "list.csv", "file, gap [mm]\n" + stem + ".cas.h5, 5\n" + stem + ".dat.h5, 6\n");
+    EXPECT_THAT(run({"loads", "--manifest", "list.csv", "--zones", "wall-elbow"}).errors,
+                testing::HasSubstr("are the files of one case, with different conditions"));
+}
+
+TEST_F(PostprocCommands, ImportSaysWhatIsNoNumber) {
+    const std::string none =
+        "[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa "
+        "]\n0,0,0,1\n1,0,0,null\n0,1,0,nan\n\n[Faces]\n0,1,2\n";
+    core::write_file(folder_.path() / "none.csv", none);
+    const auto result = run({"import", "none.csv", "--out", "new/none.vtp"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_THAT(result.errors,
+                testing::HasSubstr("none.csv: 'pressure' has 2 values that are not numbers: written as NaN"));
+    EXPECT_THAT(result.errors, testing::HasSubstr("made the folder 'new', which was not there"));
+    EXPECT_THAT(run({"import", "a-h5.csv", "--out", "new/a.vtp"}).errors,
+                testing::Not(testing::HasSubstr("the folder")));
+}
+
+TEST_F(PostprocCommands, WhatLibrariesCallOptionsAreFlagsHere) {
+    const auto duct = run({"loads", "a-h5.csv", "--forward", "x", "--up", "x"});
+    EXPECT_THAT(duct.errors, testing::AllOf(testing::HasSubstr("for instance --forward +x and --up +z"),
+                                            testing::Not(testing::HasSubstr("option '"))));
+    const json refused = json::parse(run({"loads", "a-h5.csv", "--time", "3", "--json"}).output);
+    EXPECT_THAT(refused["error"]["hint"], testing::HasSubstr("leave --time away"));
+}
+
 TEST_F(PostprocCommands, LoadsAreNotWrittenOverWhatTheyAreMadeOf) {
     const auto refused = run({"loads", "a-h5.csv", "--out", "./a-h5.csv"});
     EXPECT_EQ(refused.exit_code, 2);

@@ -1,0 +1,20 @@
+#include "postproc/deviation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace underbody::postproc {
+
+LoadScale load_scale(double own, double stated, double length) {
+    constexpr double rounding = 1e-9;
+    return {own > rounding * stated ? own : stated, length};
+}
+
+double deviation(double own, double stated, bool moment, const LoadScale& scale) {
+    const double difference = std::abs(own - stated);
+    const double measure = scale.force * (moment ? scale.length : 1);
+    const double size = measure > 0 ? measure : std::max(std::abs(own), std::abs(stated));
+    return std::isnan(difference) ? difference : size > 0 ? difference / size : 0;
+}
+
+}  // namespace underbody::postproc
