@@ -83,7 +83,7 @@ struct ReadOptions {
     std::vector<std::string> zones;         ///< patterns (* ?); empty: all
     bool surfaces_only = false;             ///< leave volumes out, for loads
     std::optional<double> time;             ///< s, of files with several times; nothing: the last one. A warning of files that state none
-    std::string base;  ///< of a CGNS file with several: its name, or its number from 1; empty: the last
+    std::string base;                       ///< of a CGNS file with several: its name, or its number from 1; empty: the last
     std::filesystem::path companion;        ///< the mesh of a results file, when it cannot be found by name
     /// Units that the file does not say: original column or variable name -> unit ("Pressure" -> "Pa").
     std::vector<std::pair<std::string, std::string>> units;
