@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_name = 1000;  // of a macro or an included file
+constexpr std::size_t longest_macro = 1000;  // of a macro or an included file
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void FoamInput::pop() {
 /// "$name" or "${name}" at the place: what it stands for comes next. False, and nothing taken: it stands for nothing
 /// known.
 bool FoamInput::substitute() {
-    in_->ensure(longest_name);
+    in_->ensure(longest_macro);
     const std::string_view rest(in_->here(), static_cast<std::size_t>(in_->end() - in_->here()));
     const bool braces = rest.substr(1).starts_with('{');
     const std::size_t first = braces ? 2 : 1;
@@ -57,7 +57,7 @@ bool FoamInput::substitute() {
 /// "#include" at the place, of a file of the case: its text comes next. False, and nothing taken: another directive, or
 /// a file that is not read.
 bool FoamInput::include() {
-    in_->ensure(longest_name);
+    in_->ensure(longest_macro);
     const std::string_view rest(in_->here(), static_cast<std::size_t>(in_->end() - in_->here()));
     std::size_t at = 0;
     while (at < rest.size() && static_cast<unsigned char>(rest[at]) > ' ' && rest[at] != '"') {
