@@ -112,7 +112,7 @@ Value compute_loads(Engine& engine, const Case& entry) {
         problems.push_back({core::Problem::Severity::warning, "the solution has not settled: " + settled.why, {engine.path_in_study(entry.file), {}, {}, {}}});
     }
     // What the loads scatter by from iteration to iteration is an error of theirs.
-    auto columns = postproc::table_row(result);
+    auto columns = postproc::table_columns(result);
     for (const auto& load : settled.loads) {
         if (load.sigma > 0) {
             columns.push_back({load.quantity + "_sigma", core::find_quantity(load.quantity)->unit, load.sigma});

@@ -1,9 +1,12 @@
 // Mesh uncertainty: the same case on several meshes.
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cases/engine.h"
 #include "core/text.h"
+#include "postproc/mesh_study.h"
 #include "postproc/uncertainty.h"
 
 namespace underbody::cases {
@@ -36,6 +39,33 @@ std::vector<MeshRow> rows_of(const Engine& engine, const MeshSpec& spec) {
     return rows;
 }
 
+/// In what the cases differ besides their mesh: then they are not one mesh study.
+std::vector<std::string> other_differences(const Engine& engine, const MeshSpec& spec, const std::vector<MeshRow>& rows) {
+    const auto& names = engine.results.loads.text("case");
+    std::optional<postproc::SetPoint> first;
+    for (const Case* entry : engine.study.select(spec.where)) {
+        const bool used = std::any_of(rows.begin(), rows.end(), [&](const MeshRow& row) { return names[row.row] == entry->name; });
+        if (!used) {
+            continue;
+        }
+        const auto point = postproc::set_point(entry->conditions.texts, entry->conditions.numbers, spec.column);
+        if (first && *first != point) {
+            return postproc::differences(*first, point);
+        }
+        first = point;
+    }
+    return {};
+}
+
+/// What the finest mesh's loads are measured by.
+postproc::LoadScale scale_of(const core::Table& loads, std::size_t row) {
+    const auto value = [&](const char* name) {
+        const auto* column = loads.find(name);
+        return column != nullptr && std::isfinite(column->numbers[row]) ? column->numbers[row] : 0.0;
+    };
+    return {std::hypot(value("lift_force"), value("drag_force"), value("side_force")), value("reference_length")};
+}
+
 std::string compute_mesh(const Engine& engine, const MeshSpec& spec, const std::vector<MeshRow>& rows) {
     nlohmann::json document = {{"quantities", nlohmann::json::object()}, {"cells", nlohmann::json::array()}};
     for (const auto& row : rows) {
@@ -50,7 +80,7 @@ std::string compute_mesh(const Engine& engine, const MeshSpec& spec, const std::
             shown.push_back(column[row.row]);
         }
         nlohmann::json found;
-        postproc::to_json(found, postproc::mesh_uncertainty(values));
+        postproc::to_json(found, postproc::mesh_uncertainty_of(values, quantity.ends_with("_moment"), scale_of(engine.results.loads, rows.back().row)));
         found["values"] = shown;
         document["quantities"][quantity] = std::move(found);
     }
@@ -66,8 +96,14 @@ void run_meshes(Engine& engine) {
             engine.fail("mesh", spec.name, "fewer than two of its meshes have loads");
             continue;
         }
+        if (const auto others = other_differences(engine, spec, rows); !others.empty()) {
+            engine.fail("mesh", spec.name, "its cases differ in '" + others.front() + "' too, not in their mesh alone: choose those of one condition");
+            continue;
+        }
         const auto& files = engine.results.loads.text("case");
         Key key("mesh", {"postproc"});
+        const postproc::LoadScale scale = scale_of(engine.results.loads, rows.back().row);
+        key.add("force", scale.force).add("length", scale.length);
         for (const auto& row : rows) {
             key.add("cells", row.cells).through("loads", files[row.row]);
             for (const auto& quantity : spec.quantities) {

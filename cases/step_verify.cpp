@@ -7,6 +7,8 @@
 #include <unordered_set>
 
 #include "cases/engine.h"
+#include "postproc/deviation.h"
+#include "postproc/loads_case.h"
 
 namespace underbody::cases {
 
@@ -22,7 +24,7 @@ public:
         }
         for (const auto& column : report.columns()) {
             const auto* mine = loads.find(column.name);
-            if (mine != nullptr && !column.name.ends_with("_force") && !column.name.ends_with("_moment")) {
+            if (mine != nullptr && !postproc::is_result(column.name)) {
                 shared_.emplace_back(mine, &column);
                 comparable_ = comparable_ && mine->is_text() == column.is_text();
             }
@@ -97,23 +99,20 @@ private:
     bool comparable_ = true;  ///< what is a text here is one there
 };
 
-/// The size that a force's error is measured by: the resultant of lift and drag; of a moment, that times the length.
-double size_of(const core::Table& report, std::size_t row, const std::string& quantity, double length) {
+/// Size of the force that a row of a table states, as far as it states its parts.
+double resultant(const core::Table& table, std::size_t row) {
     double squares = 0;
     for (const char* name : {"lift_force", "drag_force", "side_force"}) {
-        if (const auto* column = report.find(name); column != nullptr && std::isfinite(column->numbers[row])) {
+        if (const auto* column = table.find(name); column != nullptr && std::isfinite(column->numbers[row])) {
             squares += column->numbers[row] * column->numbers[row];
         }
     }
-    if (squares == 0) {
-        squares = report.numbers(quantity)[row] * report.numbers(quantity)[row];
-    }
-    return std::sqrt(squares) * (quantity.ends_with("_moment") ? length : 1);
+    return std::sqrt(squares);
 }
 
 nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::Table& report) {
     const core::Table& loads = engine.results.loads;
-    const double length = engine.study.reference.number("length").value_or(1);
+    const auto* lengths = loads.find("reference_length");
     nlohmann::json rows = nlohmann::json::array();
     double worst = 0;
     std::string worst_case;
@@ -128,11 +127,14 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
         if (!mine || !chosen.contains(loads.text("case")[*mine])) {
             continue;
         }
+        const double length = lengths != nullptr ? lengths->numbers[*mine] : engine.study.reference.number("length").value_or(1);
+        const postproc::LoadScale scale = postproc::load_scale(resultant(loads, *mine), resultant(report, row), length);
         for (const auto& quantity : spec.quantities) {
             const double theirs = report.numbers(quantity)[row];
             const double ours = loads.numbers(quantity)[*mine];
-            const double size = size_of(report, row, quantity, length);
-            const double error = std::abs(ours - theirs) / size;
+            const bool moment = quantity.ends_with("_moment");
+            const double error = postproc::deviation(ours, theirs, moment, scale);
+            const double size = postproc::load_measure(ours, theirs, moment, scale);
             // The field is the last iteration, the report the mean of many: what a run swings by is no error of ours.
             const auto* scatter = report.find(quantity + "_scatter");
             const double swing = scatter != nullptr && std::isfinite(scatter->numbers[row]) ? 2 * scatter->numbers[row] / size : 0;

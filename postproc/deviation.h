@@ -15,6 +15,10 @@ struct LoadScale {
 /// measure.
 LoadScale load_scale(double own, double stated, double length);
 
+/// What the difference of `own` and `stated` is put over: the force, for a moment force times length; the larger of both
+/// where there is no force at all (a pure moment).
+double load_measure(double own, double stated, bool moment, const LoadScale& scale);
+
 /// |own - stated| of a force over the force, of a moment over force times length; over the larger of both where there
 /// is no force at all (a pure moment). 0 where both are 0; not-a-number where one of them is.
 double deviation(double own, double stated, bool moment, const LoadScale& scale);

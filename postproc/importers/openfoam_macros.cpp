@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "core/inputs.h"
+
 namespace underbody::postproc {
 
 namespace fs = std::filesystem;
@@ -79,6 +81,7 @@ std::optional<fs::path> included_file(std::string name, const fs::path& folder, 
     std::error_code error;
     const fs::path whole = fs::weakly_canonical(folder / name, error);  // an absolute name stays what it is
     const fs::path top = fs::weakly_canonical(case_folder, error);
+    core::note_presence(whole);
     const auto inside = std::mismatch(top.begin(), top.end(), whole.begin(), whole.end()).first == top.end();
     constexpr std::uintmax_t most = 1 << 20;
     if (name.empty() || error || !inside || !fs::is_regular_file(whole, error) || fs::file_size(whole, error) > most) {
