@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/text.h"
+#include "core/water.h"
 #include "geometry/body_report.h"
 #include "studio/cli/shell.h"
 
@@ -16,9 +17,12 @@ namespace underbody::studio {
 /// A number with at most `digits` significant digits.
 inline std::string rounded(double value, int digits = 6) { return core::format_number(value, digits); }
 
+/// Of the water, where nobody says: "998 kg/m^3".
+inline std::string default_density() { return core::format_number(core::default_water_density) + " kg/m^3"; }
+
 /// The options of the sub-commands that take one body.
 struct BodyInput {
-    std::string shape, unit, gap, pitch, roll, density = "1000 kg/m^3";
+    std::string shape, unit, gap, pitch, roll, density = default_density();
     double feature_angle = 20;
     std::size_t triangles = 20000;
     std::size_t panels = 1200;

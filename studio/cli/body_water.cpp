@@ -19,7 +19,7 @@ using core::format_number;
 // ---- body added-mass ----
 
 struct AddedMassCommand {
-    std::string shape, unit, gap = "1mm:100mm", pitch = "0 deg", density = "1000 kg/m^3", out, picture;
+    std::string shape, unit, gap = "1mm:100mm", pitch = "0 deg", density = default_density(), out, picture;
     std::size_t panels = 2000, count = 9;
 };
 

@@ -81,7 +81,7 @@ double error_of_ellipsoid(std::size_t panels, Matrix6* matrix = nullptr) {
     const AddedMass mass = added_mass(ellipsoid_surface(0.1016, 0.076, 0.0725, panels), options);
     double error = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        error = std::max(error, std::abs(mass.matrix[k][k] / (1000 * exact.translation[k]) - 1));
+        error = std::max(error, std::abs(mass.matrix[k][k] / (core::default_water_density * exact.translation[k]) - 1));
     }
     if (matrix != nullptr) {
         *matrix = mass.matrix;
@@ -128,7 +128,7 @@ TEST(AddedMass, GrowsLikeTheThinFilmTowardTheGround) {
         return added_mass(evie, 1200, options, false).matrix[2][2];
     };
     const double difference = heave(0.001) - heave(0.002);
-    EXPECT_NEAR(difference / (1000 * film * (1 / 0.001 - 1 / 0.002)), 1, 0.25);
+    EXPECT_NEAR(difference / (core::default_water_density * film * (1 / 0.001 - 1 / 0.002)), 1, 0.25);
 }
 
 TEST(AddedMass, ExtrapolationTakesOutMostOfTheError) {
@@ -232,7 +232,7 @@ TEST(AddedMass, OfASurfaceOfManyTrianglesIsThatOfItsShape) {
     EXPECT_EQ(free.fit->triangles, many.triangles.size());
     EXPECT_LT(free.fit->distance_rms, 1e-3);
     for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_NEAR(free.matrix[k][k] / (1000 * exact.translation[k]), 1, 0.005) << "Lamb within 0.5 %";
+        EXPECT_NEAR(free.matrix[k][k] / (core::default_water_density * exact.translation[k]), 1, 0.005) << "Lamb within 0.5 %";
     }
     const BodyShape evie;
     options.reference.reset();

@@ -124,7 +124,7 @@ TEST(ExactMass, BuoyancyOfABodyDoesNotDependOnItsTriangles) {
     const Body coarse = read_body(file, options);
     options.triangles = 20000;
     const Body fine = read_body(file, options);
-    const double exact = 1000 * standard_gravity * segment(0.1016, 0.076, 0.0725, 0.75).one;
+    const double exact = core::default_water_density * standard_gravity * segment(0.1016, 0.076, 0.0725, 0.75).one;
     EXPECT_NEAR(coarse.mass.buoyancy(), exact, 1e-9 * exact);  // was 157 mN low
     EXPECT_NEAR(fine.mass.buoyancy(), exact, 1e-9 * exact);    // was 17 mN low
     EXPECT_NEAR(coarse.outer_size().x, 0.2032, 1e-12);
