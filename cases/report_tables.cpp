@@ -41,7 +41,9 @@ std::map<std::string, double> errors_of(const Study& study, const StudyResults& 
         const core::Column* sigma = points.find(quantity + "_sigma");
         const core::Column* names = points.find("case");
         for (std::size_t row = 0; sigma != nullptr && names != nullptr && row < points.rows(); ++row) {
-            errors[names->text[row]] = sigma->numbers[row];
+            if (std::isfinite(sigma->numbers[row])) {
+                errors[names->text[row]] = sigma->numbers[row];
+            }
         }
     }
     return errors;

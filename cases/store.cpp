@@ -330,7 +330,7 @@ std::int64_t Store::put(const StoredResult& result, const std::string& about, co
         bytes.bind(2, value.data(), static_cast<int>(value.size()));
         bytes.exec();
         const std::string old =
-            "(SELECT id FROM result WHERE kind = ?1 AND name = ?2 ORDER BY id DESC LIMIT -1 OFFSET 4)";
+            "(SELECT id FROM result WHERE kind = ?1 AND name = ?2 ORDER BY id DESC LIMIT -1 OFFSET 8)";
         for (const char* table : {"result_value", "result"}) {
             SQLite::Statement forget(*database_, "DELETE FROM " + std::string(table) + " WHERE id IN " + old);
             forget.bind(1, result.kind);

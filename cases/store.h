@@ -75,7 +75,7 @@ public:
         std::string when;   ///< UTC
     };
     [[nodiscard]] std::optional<Made> made(std::int64_t id);
-    /// In one transaction: puts the result and forgets all but the last four of its kind and name. Gives its id.
+    /// In one transaction: puts the result and forgets all but the last eight of its kind and name. Gives its id.
     std::int64_t put(const StoredResult& result, const std::string& about, const std::string& value);
 
     /// Hashes of files by path: the stamp they had and the hash.

@@ -95,7 +95,9 @@ core::Table table_points(const TableSpec& spec, const StudyResults& results) {
     if (mesh > 0 || spec.relative_sigma > 0 || scatters) {
         std::vector<double> sigma;
         for (std::size_t i = 0; i < values.size(); ++i) {
-            sigma.push_back(std::hypot(mesh, spec.relative_sigma * values[i], scatter[i]));
+            // An error that nobody knows is an empty field: none is 0.
+            const double known = std::hypot(mesh, spec.relative_sigma * values[i], scatter[i]);
+            sigma.push_back(known > 0 ? known : std::nan(""));
         }
         points.add_numbers(spec.quantity + "_sigma", unit, std::move(sigma));
     }

@@ -200,12 +200,15 @@ std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& p
     const std::size_t slash = first == std::string::npos ? pattern_.rfind('/') : pattern_.rfind('/', first);
     const bool absolute = !pattern_.empty() && pattern_.front() == '/';
     const std::string fixed = slash == std::string::npos ? std::string() : pattern_.substr(0, slash);
-    const fs::path start = absolute ? fs::path(fixed.empty() ? "/" : fixed) : root / fixed;
+    fs::path start = absolute ? fs::path(fixed.empty() ? "/" : fixed) : root / fixed;
+    std::error_code error;
+    if (!absolute && !fs::exists(root, error)) {
+        start = start.lexically_normal();  // "new/../fields" is there before "new" is
+    }
     const std::string before = start.native().ends_with('/') ? start.native() : start.native() + "/";  // of what the walk gives
     const auto depth = std::count(pattern_.begin() + static_cast<std::ptrdiff_t>(slash == std::string::npos ? 0 : slash + 1),
                                   pattern_.end(), '/');
     std::vector<Found> found;
-    std::error_code error;
     for (auto entry = fs::recursive_directory_iterator(start, fs::directory_options::skip_permission_denied, error);
          !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
         const bool folder = entry->is_directory(error);

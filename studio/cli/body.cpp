@@ -155,7 +155,8 @@ void print_body(const geometry::Body& body, Shell& shell) {
     shell.print(body.name + ": " + std::to_string(body.mesh.triangles.size()) +
                 " triangles, closed, free of self-intersection");
     const geometry::Vec3 size = body.outer_size();
-    shell.print("size        length " + mm(size.x) + ", width " + mm(size.y) + ", height " + mm(size.z) + " mm over all" +
+    shell.print("size        length " + rounded(1e3 * size.x) + ", width " + rounded(1e3 * size.y) + ", height " +
+                rounded(1e3 * size.z) + " mm over all" +
                 (body.shape ? " (body.height, " + mm(body.shape->height) +
                                   " mm, is that of the whole ellipsoid before its base is cut)"
                             : ""));

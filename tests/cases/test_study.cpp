@@ -79,6 +79,7 @@ TEST_F(StudyFolder, NamesThatOccurTwiceGetTheFoldersThatTellThemApart) {
 }
 
 TEST_F(StudyFolder, AFolderMayBeACaseAndAMarkerAPattern) {
+    fs::create_directories(folder.path() / "runs");
     for (const char* name : {"a", "b"}) {
         fs::copy(test::data_folder() / "openfoam" / "ascii", folder.path() / "runs" / (std::string(name) + "-h5"),
                  fs::copy_options::recursive);

@@ -130,6 +130,11 @@ TEST(NamePattern, FindsFilesInFolders) {
     EXPECT_EQ(NamePattern("{d}/{v}-h{gap:mm}.csv").files(folder.path()).size(), 3U);
     EXPECT_EQ(NamePattern(folder.path().string() + "/x/*.csv").files().size(), 3U);
     EXPECT_TRUE(NamePattern("none/*.csv").files(folder.path()).empty());
+    // From a folder that is still to be made.
+    const auto beside = NamePattern("../x/{v}-h{gap:mm}.csv").files(folder.path() / "new");
+    ASSERT_EQ(beside.size(), 2U);
+    EXPECT_EQ(beside[0].path, (folder.path() / "x/a-h1.csv").lexically_normal());
+    EXPECT_TRUE(NamePattern("x/*.csv").files(folder.path() / "new").empty());
 }
 
 TEST(NamePattern, TellsWhichFilesLackANumber) {

@@ -352,8 +352,9 @@ TEST(OpenFoam, AFieldThatOnlyOpenFoamCanComputeIsLeftOutAndTheCaseIsRead) {
     EXPECT_EQ(pressure_on(code, "movingWall"), 3);
     EXPECT_THAT(test::told(box_with(box, "a $b;\nb $a;\n", "uniform $b", boundary)),
                 HasSubstr("the field 'p' is left out"));
-    core::write_file(box / "0.005/round", "#include \"round\"\n");
-    EXPECT_THAT(test::told(box_with(box, "#include \"round\"\n", "uniform 3", boundary)),
+    fs::create_directories(box / "0.005/include");  // in a folder of its own: files of a time are fields
+    core::write_file(box / "0.005/include/round", "#include \"round\"\n");
+    EXPECT_THAT(test::told(box_with(box, "#include \"include/round\"\n", "uniform 3", boundary)),
                 HasSubstr("refer to one another without end"));
     // A patch whose value cannot be known has that of its cells, and this is said.
     const auto guessed = box_with(box, "", "uniform 3",

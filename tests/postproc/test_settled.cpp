@@ -158,6 +158,7 @@ TEST_F(SettledTest, ResidualsAloneSayItWhenTheyAreLow) {
 }
 
 TEST_F(SettledTest, OtherCasesOfTheFolderHaveTheirOwnHistories) {
+    put("case.cas.h5", "x");
     put("case-coarse.csv", "x");
     monitor("case-coarse-lift.out", "lift", 100, [](int i) { return 0.1 * i; });
     monitor("lift.out", "lift", 100, [](int i) { return 0.1 * i; });  // whose?

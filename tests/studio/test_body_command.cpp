@@ -52,7 +52,7 @@ TEST(BodyCommand, SaysTheOuterSizeAndWhatTheKeyHeightMeans) {
     const core::TemporaryFolder folder;
     const auto run = run_underbody({"body", shape("ellipse"), "--panels", "0"}, folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
-    EXPECT_THAT(run.output, testing::HasSubstr("length 203.2, width 152, height 126.88 mm over all"));
+    EXPECT_THAT(run.output, testing::HasSubstr("length 203.2, width 152, height 126.875 mm over all"));
     EXPECT_THAT(run.output, testing::HasSubstr("body.height, 145 mm, is that of the whole ellipsoid before its base is cut"));
     const auto json = run_underbody({"body", shape("ellipse"), "--panels", "0", "--json"}, folder.path());
     const nlohmann::json document = nlohmann::json::parse(json.output);

@@ -253,7 +253,8 @@ ByProgram::Questions ByProgram::questions_of_the_table() {
             words.push_back("gap=" + gap);
         }
         Numbers n;
-        for (const auto& value : ask(words).at("values")) {
+        const json answer = ask(words);  // lives as long as the loop
+        for (const auto& value : answer.at("values")) {
             n.push_back(std::string(what) == "slope" ? value.at("slope").at("gap").get<double>() : value.at("value").get<double>());
         }
         return n;

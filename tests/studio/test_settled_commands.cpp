@@ -69,6 +69,8 @@ TEST_F(SettledCommands, AStudySaysItInListReportAndTables) {
     EXPECT_THAT(points, HasSubstr("lift_force_sigma"));
     EXPECT_THAT(again["results"]["table/lift"]["remarks"].dump(),
                 HasSubstr("solutions that have not settled: cube-h3"));
+    // Four solutions have no history: their error is unknown, not 0.
+    EXPECT_THAT(again["results"]["table/lift"]["remarks"].dump(), HasSubstr("4 of 6 points have no lift_force_sigma"));
     const json list = json::parse(run({"study", "list", "study", "--json"}).output)["cases"];
     for (const auto& one : list) {
         EXPECT_EQ(one["settled"]["verdict"], one["name"] == "cube-h3"   ? "not settled"

@@ -93,7 +93,8 @@ protected:
         const auto result = run({"sweep", "study", "--list", "--json"});
         EXPECT_EQ(result.exit_code, 0) << result.errors;
         json cases = json::object();
-        for (const auto& one : json::parse(result.output)["cases"]) {
+        const json told = json::parse(result.output);  // lives as long as the loop
+        for (const auto& one : told["cases"]) {
             cases[one["name"].get<std::string>()] = one;
         }
         return cases;

@@ -4,6 +4,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "core/error.h"
@@ -273,29 +274,51 @@ EXPORTED fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s,
 
 double start_value(const ExportAxis& axis) { return 0.5 * (axis.lower + axis.upper); }
 
-/// Cells along each axis, and what lies beyond its ends, as places between which every output is one polynomial: the
-/// lines of the table, and those of the range, where an axis refuses.
+/// Cells along each axis, and what lies beyond its ends, as places between which every output is one polynomial. Of an
+/// axis that refuses only what lies in its range, which may end at a line inside the grid: a point at that end belongs
+/// to the cell before it, and the rest of a cell that the range cuts is not used.
 std::string interval_function(const ExportGrid& grid) {
     std::string text =
         "/* The cell along an axis, or a stretch beyond its end. */\nstatic void interval(unsigned axis, double v, "
         "double* begin, double* width) {\n"
         "    const " +
-        grid.name + "_real* x = 0;\n    unsigned cells = 0, low = 0, high;\n    switch (axis) {\n";
+        grid.name +
+        "_real* x = 0;\n    double from = 0, to = 0, end;\n    unsigned cells = 0, low = 0, high = 0;\n"
+        "    switch (axis) {\n";
     for (std::size_t k = 0; k < grid.axes.size(); ++k) {
+        const ExportAxis& axis = grid.axes[k];
+        const auto& x = axis.points;
+        std::size_t first = 0, last = x.size() - 1;
+        double from = x.front(), to = x.back();
+        if (axis.range == RangePolicy::refuse) {
+            from = std::max(from, axis.lower);
+            to = std::min(to, axis.upper);
+            // Lines and ends that differ by rounding are one; the narrowest cells, beside kinks, are ten times as wide.
+            const double same = 1e-9 * (to - from);
+            while (first + 1 < last && x[first + 1] <= from + same) {
+                ++first;
+            }
+            while (last > first + 1 && x[last - 1] >= to - same) {
+                --last;
+            }
+        }
         const std::string id = std::to_string(k);
         text += "    case " + id + "u:\n        x = " + grid.name + "_x" + id +
-                ";\n        cells = " + std::to_string(grid.axes[k].points.size() - 1) + "u;\n        break;\n";
+                ";\n        cells = " + std::to_string(x.size() - 1) + "u;\n        low = " + std::to_string(first) +
+                "u;\n        high = " + std::to_string(last) + "u;\n        from = " + core::format_number(from) +
+                ";\n        to = " + core::format_number(to) + ";\n        break;\n";
     }
     return text +
-           "    default:\n        break;\n    }\n    high = cells;\n"
+           "    default:\n        break;\n    }\n"
            "    if (!(v >= (double)x[0])) {\n        *width = 2 * ((double)x[0] - v) + (double)x[1] - (double)x[0];\n  "
            "      *begin = (double)x[0] - *width;\n        return;\n    }\n"
            "    if (v > (double)x[cells]) {\n        *width = 2 * (v - (double)x[cells]) + (double)x[1] - "
            "(double)x[0];\n        *begin = (double)x[cells];\n        return;\n    }\n"
            "    while (high - low > 1u) {\n        const unsigned middle = (low + high) / 2u;\n        if (v >= "
            "(double)x[middle]) {\n            low = middle;\n        } else {\n"
-           "            high = middle;\n        }\n    }\n    *begin = (double)x[low];\n    *width = (double)x[low + "
-           "1u] - (double)x[low];\n}\n";
+           "            high = middle;\n        }\n    }\n"
+           "    *begin = (double)x[low] > from ? (double)x[low] : from;\n"
+           "    end = (double)x[low + 1u] < to ? (double)x[low + 1u] : to;\n    *width = end - *begin;\n}\n";
 }
 
 std::string source(const ExportGrid& grid, const std::string& guid) {

@@ -101,7 +101,7 @@ TEST(Continuation, SeesNoFoldWhereTheForceEndsFlat) {
     const auto table = monotone(csv("gap [m], lift_force [N]\n1, 1\n2, 0.5\n5, 0.2\n10, 0.1\n20, 0.05\n50, 0.02\n"));
     const double end = 50;
     double slope = 1;
-    table.value(&end, &slope);
+    (void)table.value(&end, &slope);
     ASSERT_NEAR(slope, 0, 1e-15);
     ContinuationOptions options;
     options.parameter = "net_weight";
@@ -238,8 +238,8 @@ TEST(Comparison, NamesNoWinnerWhereNothingRestores) {
 }
 
 TEST(Comparison, AsksADragForNoRestoringSlope) {
-    const auto a = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 1, .01\n0.5, .7, .01\n1, .5, .01\n"));
-    const auto b = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 2, .01\n0.5, 1.7, .01\n1, 1, .01\n"));
+    const auto a = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 1, .01\n0.5, .7, .01\n1, .5, .01\n"), "drag_force");
+    const auto b = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 2, .01\n0.5, 1.7, .01\n1, 1, .01\n"), "drag_force");
     const auto result = compare_tables({{"a", a}, {"b", b}}, {});
     EXPECT_EQ(result.measure, "lowest mean");
     EXPECT_EQ(result.winner, "a");

@@ -85,9 +85,10 @@ void enter_continuous_time(Fmu& fmu, void* instance) {
     EXPECT_EQ(asks_event + asks_end, 0);
 }
 
-/// Derivatives of every output along a direction, against differences of the outputs in the same cell (a place and its
-/// neighbours between two grid lines).
-void check_derivatives(Fmu& fmu, void* instance, const ForceTable& table, const double* point,
+/// Derivatives of every output along a direction: that of the value against the slopes of the table, at the ends of the
+/// range too; all against differences of the outputs in the same cell (a place and its neighbours between two grid
+/// lines).
+void check_derivatives(Fmu& fmu, void* instance, const ForceTable& table, const double* point, const test::Sizes& sizes,
                        const std::vector<unsigned>& outputs) {
     const std::size_t n = table.axes().size();
     const unsigned inputs[4] = {0, 1, 2, 3};
@@ -97,11 +98,24 @@ void check_derivatives(Fmu& fmu, void* instance, const ForceTable& table, const 
     const int status =
         fmu.call("fmi2GetDirectionalDerivative", instance, static_cast<const unsigned*>(outputs.data()), outputs.size(),
                  static_cast<const unsigned*>(inputs), n, static_cast<const double*>(along), change.data());
-    if (test::expected(table, point).refused) {
+    const auto expected = test::expected(table, point);
+    if (expected.refused) {
         ASSERT_EQ(status, discard);
         return;
     }
     ASSERT_EQ(status, ok);
+    double slope = 0, rounding = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto& x = table.knots(k);
+        const auto& axis = table.axes()[k];
+        const bool at_end = axis.range == tables::RangePolicy::refuse && point[k] == axis.upper;
+        auto above = at_end ? std::lower_bound(x.begin(), x.end(), point[k])
+                            : std::upper_bound(x.begin(), x.end(), point[k]);
+        above = std::clamp(above, x.begin() + 1, x.end() - 1);
+        slope += along[k] * expected.at.slope[k];
+        rounding += std::abs(along[k]) * (1e-12 * sizes.slope[k] + 1e-14 * sizes.value / (*above - *(above - 1)));
+    }
+    ASSERT_NEAR(change[0], slope, rounding);
     for (std::size_t k = 0; k < n; ++k) {
         const auto& x = table.knots(k);
         double low = point[k] < x.front() ? point[k] - (x.back() - x.front()) : x.back();
@@ -164,7 +178,7 @@ void check_values(Fmu& fmu, void* instance, const ForceTable& table, bool steps)
         ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, point, sizes, 1e-12, out[0], &out[1], out[1 + n],
                                                    out[2 + n] != 0, out[3 + n] != 0));
         if (i < 2000) {
-            ASSERT_NO_FATAL_FAILURE(check_derivatives(fmu, instance, table, point, outputs)) << "point " << i;
+            ASSERT_NO_FATAL_FAILURE(check_derivatives(fmu, instance, table, point, sizes, outputs)) << "point " << i;
         }
     }
     if (std::any_of(table.axes().begin(), table.axes().end(), [](const auto& a) { return a.range == tables::RangePolicy::refuse; })) {
