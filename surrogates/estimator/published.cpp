@@ -33,14 +33,16 @@ AugmentedModel given(const Matrix& a, const Vector& b) {
 }  // namespace
 
 std::function<double(double, double&)> reference_ground_force() {
-    core::Table points;
-    points.source = "REF-A";
-    points.add_numbers("gap", "m", knots_gap());
-    points.add_numbers("lift_force", "N", knots_force());
-    tables::FitOptions options;
-    options.kind = tables::FitOptions::Kind::spline;
-    const tables::ForceTable table = tables::ForceTable::fit(points, "lift_force", options);
-    return [table](double gap, double& slope) { return table.value(&gap, &slope); };
+    static const tables::ForceTable table = [] {  // fitted once: a fit judges its points by leaving them out
+        core::Table points;
+        points.source = "REF-A";
+        points.add_numbers("gap", "m", knots_gap());
+        points.add_numbers("lift_force", "N", knots_force());
+        tables::FitOptions options;
+        options.kind = tables::FitOptions::Kind::spline;
+        return tables::ForceTable::fit(points, "lift_force", options);
+    }();
+    return [](double gap, double& slope) { return table.value(&gap, &slope); };
 }
 
 SeparatedPlant reference_plant(ResistanceLaw drag) {
