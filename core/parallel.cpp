@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <memory>
@@ -38,6 +39,9 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
     const RecordInputs* const scope = InputScope::current();
     // Whoever waits for a loop within a loop does not take up a part of the outer one meanwhile: what a part holds, a lock or a
     // claim, would be held while it waits for what another holds.
+    // A loop within a loop does all its parts or throws: without a context of its own it would end early, without a word, when
+    // another part of the outer loop throws, and its caller would go on with what is half done.
+    tbb::task_group_context own(tbb::task_group_context::isolated);
     tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(
             std::size_t{0}, blocks,
@@ -46,7 +50,7 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
                 progress.check();
                 body(i * block, std::min(count, (i + 1) * block));
             },
-            tbb::simple_partitioner());
+            tbb::simple_partitioner(), own);
     });
     progress.check();
 }
