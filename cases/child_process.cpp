@@ -149,7 +149,8 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
         variables.emplace_back(*entry);
     }
     for (const auto& [name, value] : environment) {
-        std::erase_if(variables, [&, prefix = name + "="](const std::string& entry) { return entry.starts_with(prefix); });
+        std::erase_if(variables,
+                      [&, prefix = name + "="](const std::string& entry) { return entry.starts_with(prefix); });
         variables.push_back(name + "=" + value);
     }
     std::vector<std::string> words = {program};
@@ -166,7 +167,8 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
     const auto envp = pointers(variables);
     const int out = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (out < 0) {
-        throw core::SystemError("write", std::string("cannot write: ") + std::strerror(errno), {log.string(), {}, {}, {}});
+        throw core::SystemError("write", std::string("cannot write: ") + std::strerror(errno),
+                                {log.string(), {}, {}, {}});
     }
     const int nowhere = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
     int ends[2] = {-1, -1};

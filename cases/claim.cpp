@@ -21,7 +21,8 @@ off_t place_of(const std::string& kind, const std::string& name) {
 
 }  // namespace
 
-Claim::Claim(const std::filesystem::path& store, const std::string& kind, const std::string& name, core::Progress& progress) {
+Claim::Claim(const std::filesystem::path& store, const std::string& kind, const std::string& name,
+             core::Progress& progress) {
     const std::string lock_file = store.string() + ".lock";
     file_ = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0) {

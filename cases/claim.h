@@ -13,7 +13,8 @@ namespace underbody::cases {
 class Claim {
 public:
     /// Waits until the result is free. Throws core::Cancelled.
-    Claim(const std::filesystem::path& store, const std::string& kind, const std::string& name, core::Progress& progress);
+    Claim(const std::filesystem::path& store, const std::string& kind, const std::string& name,
+          core::Progress& progress);
     ~Claim();
     Claim(const Claim&) = delete;
     Claim& operator=(const Claim&) = delete;

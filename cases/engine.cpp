@@ -62,9 +62,8 @@ std::string Key::digest() const {
 }
 
 std::string Key::about() const {
-    nlohmann::json about = {{"code", nlohmann::json::object()},
-                            {"options", nlohmann::json::object()},
-                            {"from", nlohmann::json::array()}};
+    nlohmann::json about = {
+        {"code", nlohmann::json::object()}, {"options", nlohmann::json::object()}, {"from", nlohmann::json::array()}};
     for (const auto& [room, version] : code_) {
         about["code"][room] = version;
     }
@@ -116,13 +115,15 @@ Engine::Engine(const Study& the_study, const RunOptions& the_options, Mode the_m
 void Engine::tell_version() {
     if (store_->found_version() == 1) {
         results.notes.push_back(
-            "the store was written by Underbody 0.1.0, whose results do not record every file that they rest on: they are "
+            "the store was written by Underbody 0.1.0, whose results do not record every file that they rest on: they "
+            "are "
             "computed again, once; nothing in it is deleted");
     }
 }
 
 bool Engine::is_true(const StoredResult& result) {
-    return std::all_of(result.inputs.begin(), result.inputs.end(), [this](const StoredInput& input) { return states_.still(input); });
+    return std::all_of(result.inputs.begin(), result.inputs.end(),
+                       [this](const StoredInput& input) { return states_.still(input); });
 }
 
 std::optional<StoredResult> Engine::known(const std::string& kind, const std::string& name, const std::string& digest) {
@@ -137,8 +138,8 @@ std::optional<StoredResult> Engine::known(const std::string& kind, const std::st
     return std::nullopt;
 }
 
-StoredResult Engine::make_now(const std::string& kind, const std::string& name, const std::string& digest, const Key& key,
-                              const std::function<Value()>& work) {
+StoredResult Engine::make_now(const std::string& kind, const std::string& name, const std::string& digest,
+                              const Key& key, const std::function<Value()>& work) {
     core::InputRecord read([this](const core::Input& input) { return states_.state_of(input); });
     std::optional<Value> value;
     {
@@ -158,8 +159,7 @@ StoredResult Engine::make_now(const std::string& kind, const std::string& name, 
 }
 
 std::optional<Made> Engine::make(const std::string& kind, const std::string& name, const Key& key,
-                                 const std::function<Value()>& work, const std::string& shown,
-                                 StepResult* told) {
+                                 const std::function<Value()>& work, const std::string& shown, StepResult* told) {
     progress.check();
     const std::string digest = key.digest();
     std::optional<StoredResult> result = known(kind, name, digest);
@@ -210,8 +210,9 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
 std::string Engine::value(const Made& made) {
     auto bytes = store_->value(made.id);
     if (!bytes) {
-        throw core::SystemError("store", made.kind + " '" + made.name + "' has left the store during this run: another run made it anew",
-                                {store_->file().string(), {}, {}, {}}, "run the study again");
+        throw core::SystemError(
+            "store", made.kind + " '" + made.name + "' has left the store during this run: another run made it anew",
+            {store_->file().string(), {}, {}, {}}, "run the study again");
     }
     return std::move(*bytes);
 }
@@ -219,11 +220,21 @@ std::string Engine::value(const Made& made) {
 void Engine::record(StepResult step) {
     const std::lock_guard lock(mutex_);
     switch (step.state) {
-        case StepState::computed: ++results.computed; break;
-        case StepState::unchanged: ++results.reused; break;
-        case StepState::failed: ++results.failed; break;
-        case StepState::changed: ++results.changed; break;
-        case StepState::missing: ++results.missing; break;
+        case StepState::computed:
+            ++results.computed;
+            break;
+        case StepState::unchanged:
+            ++results.reused;
+            break;
+        case StepState::failed:
+            ++results.failed;
+            break;
+        case StepState::changed:
+            ++results.changed;
+            break;
+        case StepState::missing:
+            ++results.missing;
+            break;
     }
     results.steps.push_back(std::move(step));
 }
@@ -237,14 +248,16 @@ void Engine::figure(const std::string& name, const Key& key, const std::function
     // Captions travel with the picture: JSON head, then the PNG.
     const auto made = make("figure", name, with_renderer, [&] {
         const core::Figure figure = work();
-        return nlohmann::json({{"title", figure.title}, {"caption", figure.caption}}).dump() + "\n" + options.renderer(figure);
+        return nlohmann::json({{"title", figure.title}, {"caption", figure.caption}}).dump() + "\n" +
+               options.renderer(figure);
     });
     if (made) {
         unpack("figure/" + name, value(*made));
     }
 }
 
-void Engine::picture(const std::string& kind, const std::string& name, const Key& key, const std::function<std::string()>& work) {
+void Engine::picture(const std::string& kind, const std::string& name, const Key& key,
+                     const std::function<std::string()>& work) {
     if (!options.pictures) {
         return;
     }
@@ -259,9 +272,7 @@ void Engine::unpack(const std::string& name, const std::string& value) {
     add_picture(name, value.substr(end + 1));
 }
 
-std::string Engine::hash_of(const fs::path& file) {
-    return states_.state_of({core::Input::Kind::content, file, {}});
-}
+std::string Engine::hash_of(const fs::path& file) { return states_.state_of({core::Input::Kind::content, file, {}}); }
 
 void Engine::add_document(const std::string& key, const std::string& json) {
     const std::lock_guard lock(mutex_);

@@ -73,9 +73,9 @@ public:
     core::Progress& progress;
     StudyResults results;
 
-    /// The result for the key whose inputs are as they were: from the store, or made and put there. A failure (not a cancel)
-    /// is recorded as a step (under the name `shown`, or its own) and gives nothing: the other steps go on. Two runs at once
-    /// do not make one result twice. `step`: also told here.
+    /// The result for the key whose inputs are as they were: from the store, or made and put there. A failure (not a
+    /// cancel) is recorded as a step (under the name `shown`, or its own) and gives nothing: the other steps go on. Two
+    /// runs at once do not make one result twice. `step`: also told here.
     std::optional<Made> make(const std::string& kind, const std::string& name, const Key& key,
                              const std::function<Value()>& work, const std::string& shown = {},
                              StepResult* step = nullptr);
@@ -83,8 +83,10 @@ public:
     std::string value(const Made& made);
     /// A plot of the step, drawn when there is a renderer; kept under `figure/NAME`.
     void figure(const std::string& name, const Key& key, const std::function<core::Figure()>& work);
-    /// A 3D picture: `work` gives one line of JSON ({"caption"}) and the PNG behind it. Nothing without RunOptions::pictures.
-    void picture(const std::string& kind, const std::string& name, const Key& key, const std::function<std::string()>& work);
+    /// A 3D picture: `work` gives one line of JSON ({"caption"}) and the PNG behind it. Nothing without
+    /// RunOptions::pictures.
+    void picture(const std::string& kind, const std::string& name, const Key& key,
+                 const std::function<std::string()>& work);
 
     void add_document(const std::string& key, const std::string& json);
     void add_picture(const std::string& key, const std::string& png);
@@ -92,7 +94,9 @@ public:
     void fail(const std::string& kind, const std::string& name, const std::string& what);
 
     /// Path of a file as results name it: relative to the study.
-    [[nodiscard]] std::string path_in_study(const std::filesystem::path& file) const { return states_.stored_path(file); }
+    [[nodiscard]] std::string path_in_study(const std::filesystem::path& file) const {
+        return states_.stored_path(file);
+    }
     /// Path of a file that results name so.
     [[nodiscard]] std::filesystem::path path_of(const std::string& named) const { return states_.path_of(named); }
     /// Hash of a file's content, "absent" when there is none.
@@ -178,16 +182,16 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
 void look_at_all(Engine& engine);
 
 // The steps, in order. Each fills `engine.results`.
-void run_bodies(Engine& engine);        // step_bodies.cpp
-void run_loads(Engine& engine);         // step_loads.cpp
-void run_pictures(Engine& engine);      // step_pictures.cpp
-void run_meshes(Engine& engine);        // step_meshes.cpp
-void run_verifications(Engine& engine); // step_verify.cpp
-void run_tables(Engine& engine);        // step_tables.cpp
-void run_comparisons(Engine& engine);   // step_tables.cpp
-void run_regions(Engine& engine);       // step_regions.cpp
-void run_measurements(Engine& engine);  // step_measurements.cpp
-void run_thesis(Engine& engine);        // step_thesis.cpp
-void write_report(Engine& engine);      // report.cpp
+void run_bodies(Engine& engine);         // step_bodies.cpp
+void run_loads(Engine& engine);          // step_loads.cpp
+void run_pictures(Engine& engine);       // step_pictures.cpp
+void run_meshes(Engine& engine);         // step_meshes.cpp
+void run_verifications(Engine& engine);  // step_verify.cpp
+void run_tables(Engine& engine);         // step_tables.cpp
+void run_comparisons(Engine& engine);    // step_tables.cpp
+void run_regions(Engine& engine);        // step_regions.cpp
+void run_measurements(Engine& engine);   // step_measurements.cpp
+void run_thesis(Engine& engine);         // step_thesis.cpp
+void write_report(Engine& engine);       // report.cpp
 
 }  // namespace underbody::cases

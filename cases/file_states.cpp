@@ -55,21 +55,24 @@ std::string FileStates::stored_path(const fs::path& path) const {
     if (path == folder_ || fs::absolute(path).lexically_normal() == whole_folder_) {
         return ".";
     }
-    return path.is_absolute() ? path.string() : fs::absolute(path).lexically_normal().lexically_relative(whole_folder_).string();
+    return path.is_absolute() ? path.string()
+                              : fs::absolute(path).lexically_normal().lexically_relative(whole_folder_).string();
 }
 
 fs::path FileStates::path_of(const std::string& stored) const { return folder_ / stored; }
 
 std::string FileStates::state_of(const core::Input& input) {
     switch (input.kind) {
-        case core::Input::Kind::content: return content_of(input.path, stored_path(input.path));
+        case core::Input::Kind::content:
+            return content_of(input.path, stored_path(input.path));
         case core::Input::Kind::presence: {
             const auto kind = core::stamp_of(input.path).kind;
             return kind == core::FileStamp::Kind::absent   ? "absent"
                    : kind == core::FileStamp::Kind::folder ? "folder"
                                                            : "file";
         }
-        case core::Input::Kind::names: break;
+        case core::Input::Kind::names:
+            break;
     }
     core::Hasher hasher;
     for (const auto& name : core::names_in_folder(input.path, input.pattern)) {

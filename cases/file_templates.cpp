@@ -7,8 +7,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "geometry/shape_format.h"
-#include "surrogates/dynamics/file_formats.h"
+#include "geometry/body/shape_format.h"
+#include "surrogates/dynamics/model/file_formats.h"
 
 namespace underbody::cases {
 

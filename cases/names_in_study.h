@@ -2,8 +2,8 @@
 #pragma once
 
 #include "cases/engine.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::cases {
 

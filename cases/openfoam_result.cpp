@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "postproc/importers/byte_stream.h"
-#include "postproc/importers/openfoam_forces.h"
+#include "postproc/importers/reports/openfoam_forces.h"
 
 namespace underbody::cases {
 

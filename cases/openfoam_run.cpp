@@ -26,7 +26,8 @@ fs::path newest_log(const fs::path& folder) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
-        if (name.starts_with("log.") && name != script_log && entry.is_regular_file(ignored) && (newest.empty() || entry.last_write_time(ignored) > when)) {
+        if (name.starts_with("log.") && name != script_log && entry.is_regular_file(ignored) &&
+            (newest.empty() || entry.last_write_time(ignored) > when)) {
             newest = entry.path();
             when = entry.last_write_time(ignored);
         }
@@ -93,16 +94,20 @@ RunState run_state(const fs::path& folder) {
 void need_openfoam() {
     for (const char* program : {"blockMesh", "simpleFoam"}) {
         if (!find_program(program)) {
-            throw core::SystemError("missing", std::string("OpenFOAM is not here: there is no '") + program + "' on the PATH", {}, "install it: apt install openfoam");
+            throw core::SystemError("missing",
+                                    std::string("OpenFOAM is not here: there is no '") + program + "' on the PATH", {},
+                                    "install it: apt install openfoam");
         }
     }
 }
 
-OpenFoamRun::OpenFoamRun(fs::path folder, int lock) : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
+OpenFoamRun::OpenFoamRun(fs::path folder, int lock)
+    : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
     const fs::path script = folder_ / "Allrun";
     if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
-        throw core::InputError("missing", fs::exists(folder_) ? "there is no Allrun in this folder" : "there is no such folder", {folder_.string(), {}, {}, {}},
-                               "underbody body domain SHAPE.toml --gap 5mm --out FOLDER writes a case");
+        throw core::InputError(
+            "missing", fs::exists(folder_) ? "there is no Allrun in this folder" : "there is no such folder",
+            {folder_.string(), {}, {}, {}}, "underbody body domain SHAPE.toml --gap 5mm --out FOLDER writes a case");
     }
     if (!fs::is_regular_file(folder_ / "system" / "controlDict")) {
         throw core::InputError("missing", "the case has no system/controlDict", {folder_.string(), {}, {}, {}});
@@ -129,8 +134,7 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock) : folder_(std::move(folder))
     if (from_) {
         words.emplace_back("solve");
     }
-    child_.emplace("/bin/sh", words, at, at / script_log, environment,
-                   std::array<int, 2>{lock_->descriptor(), lock});
+    child_.emplace("/bin/sh", words, at, at / script_log, environment, std::array<int, 2>{lock_->descriptor(), lock});
 }
 
 bool OpenFoamRun::finished() {
@@ -150,11 +154,15 @@ bool OpenFoamRun::finished() {
         log = fs::is_regular_file(named) ? named : log;
     }
     if (*code > 128) {
-        throw core::InputError("killed", "the solver was ended by signal " + std::to_string(*code - 128), {log.string(), {}, {}, {}}, "the next solve goes on from its last checkpoint");
+        throw core::InputError("killed", "the solver was ended by signal " + std::to_string(*code - 128),
+                               {log.string(), {}, {}, {}}, "the next solve goes on from its last checkpoint");
     }
-    throw core::InputError("solver", "the solver ended with code " + std::to_string(*code) + ": " + last_words(log), {log.string(), {}, {}, {}});
+    throw core::InputError("solver", "the solver ended with code " + std::to_string(*code) + ": " + last_words(log),
+                           {log.string(), {}, {}, {}});
 }
 
-double OpenFoamRun::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+double OpenFoamRun::seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
 
 }  // namespace underbody::cases

@@ -16,9 +16,9 @@ void need_openfoam();
 
 /// How far a case is.
 struct RunState {
-    std::string step;     ///< "snappyHexMesh", "simpleFoam", ...: the newest log
-    int iteration = 0;    ///< of the solver; 0 while the mesh is made
-    int iterations = 0;   ///< as system/controlDict wants (endTime over deltaT); 0: not said
+    std::string step;                       ///< "snappyHexMesh", "simpleFoam", ...: the newest log
+    int iteration = 0;                      ///< of the solver; 0 while the mesh is made
+    int iterations = 0;                     ///< as system/controlDict wants (endTime over deltaT); 0: not said
     [[nodiscard]] double fraction() const;  ///< 0..1, the mesh being a tenth
 };
 RunState run_state(const std::filesystem::path& folder);

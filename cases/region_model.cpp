@@ -30,11 +30,13 @@ void remark_on_speeds(dynamics::Model& model, const Study& study, const RegionSp
         const auto speed = made_at(table);
         const double held = model.conditions.get(dynamics::Channel::speed, speed.value_or(0));
         if (speed && std::abs(held - *speed) > 1e-9 * *speed) {
-            model.remarks.push_back({core::Problem::Severity::warning,
-                                     "the table '" + name + "' was made at " + core::format_number(*speed, 6) + " m/s, the model holds " + core::format_number(held, 6) +
-                                         " m/s: the map takes the table's force times (" + core::format_number(held, 6) + "/" + core::format_number(*speed, 6) + ")^" +
-                                         core::format_number(table.speed_exponent, 4) + ", the table's own equilibria do not",
-                                     {model.name, {}, {}, {}}});
+            model.remarks.push_back(
+                {core::Problem::Severity::warning,
+                 "the table '" + name + "' was made at " + core::format_number(*speed, 6) + " m/s, the model holds " +
+                     core::format_number(held, 6) + " m/s: the map takes the table's force times (" +
+                     core::format_number(held, 6) + "/" + core::format_number(*speed, 6) + ")^" +
+                     core::format_number(table.speed_exponent, 4) + ", the table's own equilibria do not",
+                 {model.name, {}, {}, {}}});
         }
     }
 }
@@ -44,38 +46,42 @@ std::string composed_text(const Study& study, const RegionSpec& spec, const std:
     std::string text = core::read_file(spec.model);
     for (std::size_t i = 0; i < spec.forces.size(); ++i) {
         const TableSpec& table = *study.find_table(spec.forces[i]);
-        text += "\n[[force]]                        # the study's table '" + spec.forces[i] + "'\nquantity = " +
-                core::toml_string(table.quantity) + "\ntable = " +
-                core::toml_string(place + table.quantity + "-" + std::to_string(i + 1) + ".csv") + "\n";
+        text += "\n[[force]]                        # the study's table '" + spec.forces[i] +
+                "'\nquantity = " + core::toml_string(table.quantity) +
+                "\ntable = " + core::toml_string(place + table.quantity + "-" + std::to_string(i + 1) + ".csv") + "\n";
         text += "axes = [";
         for (const auto& axis : table.axes) {
             text += (&axis == &table.axes.front() ? "" : ", ") + core::toml_string(axis);
         }
         text += "]\nfit = " + core::toml_string(table.fit) + "\n";
         if (const auto speed = made_at(table); speed && table.speed_exponent != 0) {
-            text += "scale.speed = { reference = \"" + core::format_number(*speed) + " m/s\", exponent = " + core::format_number(table.speed_exponent) + " }\n";
+            text += "scale.speed = { reference = \"" + core::format_number(*speed) +
+                    " m/s\", exponent = " + core::format_number(table.speed_exponent) + " }\n";
         }
     }
     return text;
 }
 
 /// The declared model with the study's tables as its forces.
-dynamics::Model composed_model(const Study& study, const RegionSpec& spec, const StudyResults& results, const fs::path& scratch) {
+dynamics::Model composed_model(const Study& study, const RegionSpec& spec, const StudyResults& results,
+                               const fs::path& scratch) {
     for (std::size_t i = 0; i < spec.forces.size(); ++i) {
         const TableSpec& table = *study.find_table(spec.forces[i]);
         core::Table points = table_points(table, results);
         points.comments.push_back("table '" + table.name + "' of the study '" + study.title + "'; " + study.origin);
         core::write_csv(scratch / (table.quantity + "-" + std::to_string(i + 1) + ".csv"), points);
     }
-    dynamics::Model model = dynamics::read_model_text(composed_text(study, spec, scratch.string() + "/"), spec.model.string(),
-                                                      spec.model.has_parent_path() ? spec.model.parent_path() : fs::path("."));
+    dynamics::Model model =
+        dynamics::read_model_text(composed_text(study, spec, scratch.string() + "/"), spec.model.string(),
+                                  spec.model.has_parent_path() ? spec.model.parent_path() : fs::path("."));
     remark_on_speeds(model, study, spec);
     return model;
 }
 
 }  // namespace
 
-dynamics::Model region_model(const Study& study, const RegionSpec& spec, const StudyResults& results, const fs::path& tables) {
+dynamics::Model region_model(const Study& study, const RegionSpec& spec, const StudyResults& results,
+                             const fs::path& tables) {
     if (!tables.empty()) {
         return composed_model(study, spec, results, tables);
     }

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "cases/study.h"
-#include "surrogates/dynamics/model.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::cases {
 

@@ -88,7 +88,8 @@ private:
         }
         for (const auto& spec : engine_.study.verifications) {
             if (const auto check = document("verify/" + spec.name)) {
-                facts.push_back({percent(number_in(*check, "worst"), 2), "largest difference from the solver's own " + spec.name});
+                facts.push_back(
+                    {percent(number_in(*check, "worst"), 2), "largest difference from the solver's own " + spec.name});
             }
         }
         for (const auto& spec : engine_.study.tables) {
@@ -112,7 +113,8 @@ private:
                     names += (names.empty() ? "" : ", ") + text_in(effect, "name");
                 }
                 std::replace(names.begin(), names.end(), '_', ' ');
-                facts.push_back({names.empty() ? text_in(*found, "verdict") : names, "missing in the model of '" + spec.name + "'"});
+                facts.push_back({names.empty() ? text_in(*found, "verdict") : names,
+                                 "missing in the model of '" + spec.name + "'"});
             }
         }
         std::map<std::string, int> counts;
@@ -169,8 +171,10 @@ private:
         for (const auto& spec : engine_.study.bodies) {
             if (const auto body = document("body/" + spec.name)) {
                 const double volume = number_in(*body, "volume");
-                rows.push_back({spec.name, shown(volume, "m^3", "L", 4), shown(number_in(*body, "area"), "m^2", "cm^2", 4),
-                                shown(number_in(*body, "buoyancy"), "N", "N", 4), body->value("watertight", false) ? "yes" : "no"});
+                rows.push_back({spec.name, shown(volume, "m^3", "L", 4),
+                                shown(number_in(*body, "area"), "m^2", "cm^2", 4),
+                                shown(number_in(*body, "buoyancy"), "N", "N", 4),
+                                body->value("watertight", false) ? "yes" : "no"});
             }
             if (const auto* png = engine_.results.picture("body picture/" + spec.name)) {
                 pictures.push_back({*png, spec.name, "the body " + spec.name});
@@ -186,8 +190,10 @@ private:
             for (const auto& [key, png] : engine_.results.pictures) {
                 if (key.starts_with("picture/" + spec.name + "/")) {
                     const auto head = document(key);
-                    const std::string rest = key.substr(("picture/" + spec.name + "/").size()), name = rest.substr(0, rest.find('/'));
-                    pictures.push_back({png, name + ": " + (head ? text_in(*head, "caption") : ""), spec.name + ", " + name});
+                    const std::string rest = key.substr(("picture/" + spec.name + "/").size()),
+                                      name = rest.substr(0, rest.find('/'));
+                    pictures.push_back(
+                        {png, name + ": " + (head ? text_in(*head, "caption") : ""), spec.name + ", " + name});
                 }
             }
         }
@@ -202,7 +208,8 @@ private:
         for (const auto& point : table.value("equilibria", json::array())) {
             const double sigma = number_in(point, "sigma");
             const bool stable = point.value("stable", false);
-            rows.push_back({shown(number_in(point, "gap"), "m", "mm"), std::isfinite(sigma) && sigma > 0 ? shown(sigma, "m", "mm", 2) : "-",
+            rows.push_back({shown(number_in(point, "gap"), "m", "mm"),
+                            std::isfinite(sigma) && sigma > 0 ? shown(sigma, "m", "mm", 2) : "-",
                             stable ? "stable" : "unstable", shown(number_in(point, "stiffness"), "N/m", "N/m"),
                             stable ? shown(number_in(point, "frequency"), "Hz", "Hz") : "-",
                             stable ? shown(number_in(point, "kick_velocity"), "m/s", "mm/s") : "-"});
@@ -211,7 +218,8 @@ private:
             page_.paragraph("No equilibrium in the table at a net weight of " + shown(net_weight, "N", "N") + " N.");
             return;
         }
-        page_.table({"gap (mm)", "± (mm)", "", "stiffness (N/m)", "frequency (Hz)", "largest kick survived (mm/s)"}, rows,
+        page_.table({"gap (mm)", "± (mm)", "", "stiffness (N/m)", "frequency (Hz)", "largest kick survived (mm/s)"},
+                    rows,
                     "Where lift balances a net weight of " + shown(net_weight, "N", "N") +
                         " N. The kick is the upward or downward velocity from which the body still comes back.");
     }
@@ -243,7 +251,8 @@ private:
                 page_.list(remarks);
             }
             for (const auto& file : table->value("exports", json::array())) {
-                page_.link(file.at("file").get<std::string>(), "Controller table (" + text_in(file, "format") + "): " + text_in(file, "file"));
+                page_.link(file.at("file").get<std::string>(),
+                           "Controller table (" + text_in(file, "format") + "): " + text_in(file, "file"));
             }
         }
     }
@@ -278,12 +287,14 @@ private:
             if (const auto region = document("region/" + spec.name)) {
                 std::vector<std::vector<std::string>> rows;
                 for (const auto& entry : region->value("classes", json::array())) {
-                    rows.push_back({text_in(entry, "name"), text_in(entry, "kind"), percent(number_in(entry, "fraction"))});
+                    rows.push_back(
+                        {text_in(entry, "name"), text_in(entry, "kind"), percent(number_in(entry, "fraction"))});
                 }
                 page_.table({"end of the motion", "kind", "share of the starts"}, rows,
                             std::to_string(spec.columns) + " x " + std::to_string(spec.rows) + " starts, " +
                                 core::format_number(spec.duration, 3) + " s of motion each.");
-                page_.link("models/" + spec.name + "/model.toml", "The model as a file for underbody simulate and region");
+                page_.link("models/" + spec.name + "/model.toml",
+                           "The model as a file for underbody simulate and region");
             }
         }
     }
@@ -309,7 +320,8 @@ private:
             page_.pictures(pictures);
             if (const auto found = document("discovery/" + spec.name)) {
                 discovery(*found);
-                page_.link("discovery/" + spec.name + "/report.html", "The whole discovery: residuals, alternatives, consequence, next experiment");
+                page_.link("discovery/" + spec.name + "/report.html",
+                           "The whole discovery: residuals, alternatives, consequence, next experiment");
             }
         }
     }
@@ -323,10 +335,12 @@ private:
             std::string parameters;
             const json values = effect.value("parameters", json::object());
             for (const auto& [name, value] : values.items()) {
-                parameters += (parameters.empty() ? "" : ", ") + name + " = " + core::format_number(number_in(value, "value"), 3) +
-                              " ± " + core::format_number(number_in(value, "sigma"), 2) + " " + text_in(value, "unit");
+                parameters += (parameters.empty() ? "" : ", ") + name + " = " +
+                              core::format_number(number_in(value, "value"), 3) + " ± " +
+                              core::format_number(number_in(value, "sigma"), 2) + " " + text_in(value, "unit");
             }
-            rows.push_back({text_in(effect, "name"), parameters, core::format_number(number_in(effect, "probability"), 2)});
+            rows.push_back(
+                {text_in(effect, "name"), parameters, core::format_number(number_in(effect, "probability"), 2)});
         }
         if (!rows.empty()) {
             page_.table({"effect the model lacks", "parameters", "probability"}, rows);
@@ -336,12 +350,15 @@ private:
             const auto& after = error->at("after");
             page_.table({"", "error", "95 % interval", "unit"},
                         {{"before", core::format_number(number_in(before, "rmse"), 3),
-                          core::format_number(number_in(before, "low"), 3) + " to " + core::format_number(number_in(before, "high"), 3),
+                          core::format_number(number_in(before, "low"), 3) + " to " +
+                              core::format_number(number_in(before, "high"), 3),
                           text_in(*error, "unit")},
                          {"after", core::format_number(number_in(after, "rmse"), 3),
-                          core::format_number(number_in(after, "low"), 3) + " to " + core::format_number(number_in(after, "high"), 3),
+                          core::format_number(number_in(after, "low"), 3) + " to " +
+                              core::format_number(number_in(after, "high"), 3),
                           text_in(*error, "unit")}},
-                        "Error of the prediction of the " + text_in(*error, "channel") + " on runs that nothing was fitted to.");
+                        "Error of the prediction of the " + text_in(*error, "channel") +
+                            " on runs that nothing was fitted to.");
         }
     }
 
@@ -353,7 +370,8 @@ private:
         page_.section("The thesis, claim by claim");
         std::vector<std::vector<std::string>> rows;
         for (const auto& claim : found->value("claims", json::array())) {
-            rows.push_back({text_in(claim, "where"), text_in(claim, "statement"), text_in(claim, "computed"), text_in(claim, "verdict")});
+            rows.push_back({text_in(claim, "where"), text_in(claim, "statement"), text_in(claim, "computed"),
+                            text_in(claim, "verdict")});
         }
         page_.table({"where", "the thesis says", "we compute", "verdict"}, rows);
         page_.section("Its figures, drawn from our own runs");
@@ -380,11 +398,14 @@ private:
         }
         for (const auto& spec : engine_.study.verifications) {
             if (const auto check = document("verify/" + spec.name)) {
-                page_.paragraph("Our loads against the solver's own " + spec.name + " (" + spec.table.filename().string() + "): " +
-                                std::to_string(check->at("rows").size()) + " values compared; beyond twice what the run itself swings by, the worst differs by " +
-                                percent(number_in(*check, "worst")) + " of the force's size (" + text_in(*check, "worst_case") +
-                                "); allowed " + percent(number_in(*check, "tolerance")) + ", beyond it " +
-                                std::to_string(check->value("failed", 0)) + ". The files hold node values; face values would agree to rounding.");
+                page_.paragraph("Our loads against the solver's own " + spec.name + " (" +
+                                spec.table.filename().string() + "): " + std::to_string(check->at("rows").size()) +
+                                " values compared; beyond twice what the run itself swings by, the worst differs by " +
+                                percent(number_in(*check, "worst")) + " of the force's size (" +
+                                text_in(*check, "worst_case") + "); allowed " +
+                                percent(number_in(*check, "tolerance")) + ", beyond it " +
+                                std::to_string(check->value("failed", 0)) +
+                                ". The files hold node values; face values would agree to rounding.");
             }
         }
         std::vector<std::vector<std::string>> rows;
@@ -403,14 +424,16 @@ private:
             }
         }
         if (!rows.empty()) {
-            page_.table({"cases", "quantity", "coarse to fine", "convergence", "standard uncertainty"}, rows,
-                        "Mesh uncertainty, by the grid convergence index (Celik et al. 2008). Forces in N, moments in N m.");
+            page_.table(
+                {"cases", "quantity", "coarse to fine", "convergence", "standard uncertainty"}, rows,
+                "Mesh uncertainty, by the grid convergence index (Celik et al. 2008). Forces in N, moments in N m.");
             for (const auto& spec : engine_.study.mesh_uncertainties) {
                 show_figure("mesh/" + spec.name);
             }
         }
-        page_.paragraph("Lift is that of steady RANS on a moving ground. Film models below a millimetre, the jet's voltage law and "
-                        "separate estimates of lift and drag are uncertain in ways no mesh study shows.");
+        page_.paragraph(
+            "Lift is that of steady RANS on a moving ground. Film models below a millimetre, the jet's voltage law and "
+            "separate estimates of lift and drag are uncertain in ways no mesh study shows.");
     }
 
     void loads() {
@@ -421,10 +444,12 @@ private:
         page_.section("Loads of all cases");
         const ReportTable shown_loads = loads_of_all_cases(engine_.study, engine_.results);
         page_.folded_table(std::to_string(shown_loads.rows.size()) + " cases", shown_loads.header, shown_loads.rows);
-        page_.paragraph("Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
-                        "Errors are those that the force tables take for the case (mesh study and stated error); closure is the "
-                        "size of the summed area vector over the area, 0 for a closed surface. A solution is settled when the "
-                        "solver's own histories beside the file neither drift nor scatter by more than a twentieth of the force; unknown where there are none.");
+        page_.paragraph(
+            "Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
+            "Errors are those that the force tables take for the case (mesh study and stated error); closure is the "
+            "size of the summed area vector over the area, 0 for a closed surface. A solution is settled when the "
+            "solver's own histories beside the file neither drift nor scatter by more than a twentieth of the force; "
+            "unknown where there are none.");
     }
 
     void provenance() {
@@ -433,8 +458,10 @@ private:
         for (const auto& [room, version] : code_versions()) {
             rows.push_back({room, version.substr(0, 12)});
         }
-        page_.paragraph("By Underbody from study.toml. Every result is kept with the content of all files that were read for it, the options "
-                        "and the versions of the code that made it; one of them another, and it is computed again.");
+        page_.paragraph(
+            "By Underbody from study.toml. Every result is kept with the content of all files that were read for it, "
+            "the options "
+            "and the versions of the code that made it; one of them another, and it is computed again.");
         page_.folded_table("Source versions by module", {"module", "version"}, rows);
         std::vector<std::vector<std::string>> files;
         for (const auto& one : engine_.results.case_loads) {

@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
-#include "surrogates/dynamics/theory.h"
+#include "surrogates/dynamics/theory/theory.h"
 
 namespace underbody::cases {
 
@@ -22,7 +22,9 @@ struct Shown {
     std::string name, from, to, title;
 };
 
-std::string number(double value, int digits = 4) { return std::isfinite(value) ? core::format_number(value, digits) : "-"; }
+std::string number(double value, int digits = 4) {
+    return std::isfinite(value) ? core::format_number(value, digits) : "-";
+}
 
 std::optional<json> document(const StudyResults& results, const std::string& key) {
     const std::string* text = results.document(key);
@@ -86,7 +88,9 @@ std::vector<std::size_t> ordered_rows(const core::Table& loads, const std::vecto
 ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) {
     const core::Table& loads = results.loads;
     const std::vector<Shown> conditions = condition_columns(loads);
-    const std::vector<Shown> forces = {{"lift_force", "N", "N", "lift (N)"}, {"drag_force", "N", "N", "drag (N)"}, {"pitch_moment", "N m", "mN m", "pitch moment (mN m)"}};
+    const std::vector<Shown> forces = {{"lift_force", "N", "N", "lift (N)"},
+                                       {"drag_force", "N", "N", "drag (N)"},
+                                       {"pitch_moment", "N m", "mN m", "pitch moment (mN m)"}};
     std::vector<std::map<std::string, double>> errors;
     ReportTable table;
     table.header = {"case"};
@@ -126,15 +130,20 @@ ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) 
         for (std::size_t i = 0; i < forces.size(); ++i) {
             const core::Column* c = loads.find(forces[i].name);
             const double value = c == nullptr ? std::nan("") : c->numbers[row];
-            cells.push_back(std::abs(value) < 1e-9 * size ? "0" : number(core::convert(value, forces[i].from, forces[i].to)));
+            cells.push_back(std::abs(value) < 1e-9 * size ? "0"
+                                                          : number(core::convert(value, forces[i].from, forces[i].to)));
             if (!errors[i].empty()) {
                 const auto known = errors[i].find(name);
-                cells.push_back(known == errors[i].end() ? "-" : number(core::convert(known->second, forces[i].from, forces[i].to), 2));
+                cells.push_back(known == errors[i].end()
+                                    ? "-"
+                                    : number(core::convert(known->second, forces[i].from, forces[i].to), 2));
             }
         }
         const core::Column* closure = loads.find("closure");
         // Rounding is no opening.
-        cells.push_back(closure == nullptr ? "-" : std::abs(closure->numbers[row]) < 1e-9 ? "0" : number(closure->numbers[row], 3));
+        cells.push_back(closure == nullptr                       ? "-"
+                        : std::abs(closure->numbers[row]) < 1e-9 ? "0"
+                                                                 : number(closure->numbers[row], 3));
         const core::Column* settled = loads.find("settled");
         cells.push_back(settled != nullptr && settled->is_text() ? settled->text[row] : "unknown");
         if (!warned.empty()) {
@@ -168,20 +177,25 @@ ReportTable films_at_equilibria(const Study& study, const StudyResults& results,
     const core::ClosedForm& squeeze = core::find_closed_form(forms, "squeeze");
     for (const auto& point : found->value("equilibria", json::array())) {
         const auto text = [](double value) { return core::format_number(value, 17); };
-        std::vector<std::string> inputs = {"half_length=" + text(base->at("half_length")), "half_width=" + text(base->at("half_width")), "gap=" + text(point.at("gap"))};
+        std::vector<std::string> inputs = {"half_length=" + text(base->at("half_length")),
+                                           "half_width=" + text(base->at("half_width")),
+                                           "gap=" + text(point.at("gap"))};
         if (const auto density = study.reference.number("density")) {
             inputs.push_back("density=" + text(*density));
         }
         const auto values = core::closed_form_values(squeeze, inputs);
         const auto result = squeeze.evaluate(values);
         if (result.valid()) {
-            films.rows.push_back({number(1e3 * point.at("gap").get<double>(), 3), point.value("stable", false) ? "stable" : "unstable", number(result["damping"], 3), number(result["added_mass"], 3),
-                                  number(point.at("stiffness").get<double>(), 3)});
+            films.rows.push_back({number(1e3 * point.at("gap").get<double>(), 3),
+                                  point.value("stable", false) ? "stable" : "unstable", number(result["damping"], 3),
+                                  number(result["added_mass"], 3), number(point.at("stiffness").get<double>(), 3)});
         }
     }
-    films.header = {"gap (mm)", "", "squeeze damping (N s/m)", "added mass of the film (kg)", "stiffness out of CFD (N/m)"};
+    films.header = {"gap (mm)", "", "squeeze damping (N s/m)", "added mass of the film (kg)",
+                    "stiffness out of CFD (N/m)"};
     films.caption = "Thin-film theory for the base of '" + body + "' beside the CFD: " + squeeze.formula +
-                    ". Steady CFD has neither; both hold where the gap is below a tenth of the half width, other gaps are left out.";
+                    ". Steady CFD has neither; both hold where the gap is below a tenth of the half width, other gaps "
+                    "are left out.";
     return films;
 }
 

@@ -18,9 +18,9 @@ struct ReportTable {
 /// them, closure. By words, then by numbers.
 ReportTable loads_of_all_cases(const Study& study, const StudyResults& results);
 
-/// Thin-film theory at the gaps where the table's lift holds the weight: squeeze damping and added mass of the film under
-/// an elliptic base, beside the stiffness out of CFD. Only gaps where the film is thin; empty when the study has no
-/// elliptic body for the table.
+/// Thin-film theory at the gaps where the table's lift holds the weight: squeeze damping and added mass of the film
+/// under an elliptic base, beside the stiffness out of CFD. Only gaps where the film is thin; empty when the study has
+/// no elliptic body for the table.
 ReportTable films_at_equilibria(const Study& study, const StudyResults& results, const TableSpec& table);
 
 }  // namespace underbody::cases

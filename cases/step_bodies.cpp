@@ -2,12 +2,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
-#include "geometry/body_shape.h"
-#include "geometry/body_surface.h"
-#include "geometry/exact_body.h"
-#include "geometry/mass_properties.h"
-#include "geometry/placement.h"
-#include "postproc/views.h"
+#include "geometry/body/body_shape.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/exact_body.h"
+#include "geometry/body/mass_properties.h"
+#include "geometry/water/placement.h"
+#include "postproc/views/views.h"
 
 namespace underbody::cases {
 
@@ -19,7 +19,8 @@ std::string compute_body(Engine& engine, const BodySpec& spec) {
     const auto mass = geometry::mass_properties(geometry::ExactBody(shape), mesh);
     nlohmann::json document;
     geometry::to_json(document, mass);
-    document["buoyancy"] = mass.buoyancy(engine.study.reference.number("density").value_or(geometry::default_water_density));
+    document["buoyancy"] =
+        mass.buoyancy(engine.study.reference.number("density").value_or(geometry::default_water_density));
     document["watertight"] = geometry::is_watertight(mesh);
     if (shape.base == geometry::BaseKind::ellipse) {
         const auto base = shape.base_extent();
@@ -46,7 +47,8 @@ std::string draw_body(Engine& engine, const BodySpec& spec) {
     scene.title = spec.name;
     scene.subtitle = "seen from below";
     scene.camera.towards = {-1, 0.8, 0.9};
-    return nlohmann::json({{"caption", "The body '" + spec.name + "' from below."}}).dump() + "\n" + postproc::draw_png(scene);
+    return nlohmann::json({{"caption", "The body '" + spec.name + "' from below."}}).dump() + "\n" +
+           postproc::draw_png(scene);
 }
 
 }  // namespace

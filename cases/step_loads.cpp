@@ -8,10 +8,10 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "postproc/field.h"
-#include "postproc/loads.h"
-#include "postproc/problems_json.h"
-#include "postproc/settled.h"
+#include "postproc/field/field.h"
+#include "postproc/field/problems_json.h"
+#include "postproc/loads/loads.h"
+#include "postproc/loads/settled.h"
 
 namespace underbody::cases {
 
@@ -58,13 +58,15 @@ core::Problems findings(const Engine& engine, const postproc::Field& field, cons
 }
 
 std::string one_line(std::string text) {
-    std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
     return text;
 }
 
-/// What a list of cases shows, quick to read for ten thousand of them: a line for each value (name, unit, number) and for each
-/// warning ("!", file, message), and one for the verdict on the solution ("?", verdict, why), parted by tabs.
-std::string brief(const std::vector<postproc::LoadsColumn>& columns, const postproc::Settled& settled, const core::Problems& problems) {
+/// What a list of cases shows, quick to read for ten thousand of them: a line for each value (name, unit, number) and
+/// for each warning ("!", file, message), and one for the verdict on the solution ("?", verdict, why), parted by tabs.
+std::string brief(const std::vector<postproc::LoadsColumn>& columns, const postproc::Settled& settled,
+                  const core::Problems& problems) {
     std::string text;
     for (const auto& column : columns) {
         text += column.name + "\t" + column.unit + "\t" + core::format_number(column.value) + "\n";
@@ -90,12 +92,14 @@ void take_brief(std::string_view text, CaseLoads& loads) {
         const std::string_view unit = word('\t');
         const std::string_view rest = word('\n');
         if (name == "!") {
-            loads.warnings.push_back({core::Problem::Severity::warning, std::string(rest), {std::string(unit), {}, {}, {}}});
+            loads.warnings.push_back(
+                {core::Problem::Severity::warning, std::string(rest), {std::string(unit), {}, {}, {}}});
         } else if (name == "?") {
             loads.settled = std::string(unit);
             loads.settled_why = std::string(rest);
         } else {
-            loads.values.push_back({std::string(name), std::string(unit), core::parse_number(rest).value_or(std::nan(""))});
+            loads.values.push_back(
+                {std::string(name), std::string(unit), core::parse_number(rest).value_or(std::nan(""))});
         }
     }
 }
@@ -107,9 +111,12 @@ Value compute_loads(Engine& engine, const Case& entry) {
     const postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);
     core::Problems problems = findings(engine, field, result);
     core::Problems notes;
-    const postproc::Settled settled = postproc::settled_by(result, postproc::stated_beside(entry.file, result), entry.file, notes);
+    const postproc::Settled settled =
+        postproc::settled_by(result, postproc::stated_beside(entry.file, result), entry.file, notes);
     if (settled.verdict == postproc::SettledVerdict::not_settled) {
-        problems.push_back({core::Problem::Severity::warning, "the solution has not settled: " + settled.why, {engine.path_in_study(entry.file), {}, {}, {}}});
+        problems.push_back({core::Problem::Severity::warning,
+                            "the solution has not settled: " + settled.why,
+                            {engine.path_in_study(entry.file), {}, {}, {}}});
     }
     // What the loads scatter by from iteration to iteration is an error of theirs.
     auto columns = postproc::table_columns(result);
@@ -188,7 +195,8 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
     std::vector<LoadValue> columns;  // of all cases: some have errors that others do not
     for (const auto* one : done) {
         for (const auto& value : one->values) {
-            if (std::none_of(columns.begin(), columns.end(), [&](const LoadValue& known) { return known.name == value.name; })) {
+            if (std::none_of(columns.begin(), columns.end(),
+                             [&](const LoadValue& known) { return known.name == value.name; })) {
                 columns.push_back(value);
             }
         }
@@ -225,8 +233,9 @@ void run_loads(Engine& engine) {
             one.name = cases[i].name;
             one.file = engine.path_in_study(cases[i].file);
             StepResult step;
-            const auto made = engine.make("loads", one.file, loads_key(engine.study, cases[i]),
-                                          [&] { return compute_loads(engine, cases[i]); }, one.name, &step);
+            const auto made = engine.make(
+                "loads", one.file, loads_key(engine.study, cases[i]), [&] { return compute_loads(engine, cases[i]); },
+                one.name, &step);
             one.state = step.state;
             one.error = step.error;
             if (made) {

@@ -8,8 +8,8 @@
 #include "core/text.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/residual.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::cases {
 
@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> rooms = {"surrogates/tables", "surrogates/dynamics", "surrogates/estimator", "surrogates/discovery"};
+const std::vector<std::string> rooms = {"surrogates/tables", "surrogates/dynamics", "surrogates/estimator",
+                                        "surrogates/discovery"};
 
 /// The files of a discovery folder (all text), its first figures as PNG in base64: one value for the store.
 std::string compute_discovery(Engine& engine, const MeasurementSpec& spec) {
@@ -39,15 +40,17 @@ std::string compute_discovery(Engine& engine, const MeasurementSpec& spec) {
 }
 
 std::string residual_document(const std::vector<discovery::Residual>& residuals) {
-    nlohmann::json document = {{"residuals", nlohmann::json::array()}, {"sentences", nlohmann::json::array()}, {"figures", 0}};
+    nlohmann::json document = {
+        {"residuals", nlohmann::json::array()}, {"sentences", nlohmann::json::array()}, {"figures", 0}};
     std::size_t count = 0;
     for (const auto& residual : residuals) {
         document["residuals"].push_back(discovery::to_json(residual));
         count += residual.figures.size();
-        document["sentences"].push_back(
-            "Beyond the declared model, the data ask for a " + residual.quantity + " of " + core::format_number(1e3 * residual.mean, 2) +
-            " mN on average and " + core::format_number(1e3 * residual.root_mean_square, 2) +
-            " mN root mean square; measuring noise alone would leave about " + core::format_number(1e3 * residual.sigma, 2) + " mN.");
+        document["sentences"].push_back("Beyond the declared model, the data ask for a " + residual.quantity + " of " +
+                                        core::format_number(1e3 * residual.mean, 2) + " mN on average and " +
+                                        core::format_number(1e3 * residual.root_mean_square, 2) +
+                                        " mN root mean square; measuring noise alone would leave about " +
+                                        core::format_number(1e3 * residual.sigma, 2) + " mN.");
     }
     document["figures"] = count;
     return document.dump();
@@ -68,7 +71,8 @@ void run_residual(Engine& engine, const MeasurementSpec& spec) {
     const Key key("residual", rooms);
     Shared<std::vector<discovery::Residual>> residuals(engine.states(), [&] {
         return discovery::measured_residual(named_in_study(engine, dynamics::read_model(spec.model), spec.model),
-                                            named_in_study(engine, dynamics::read_measurements(spec.data)), engine.progress);
+                                            named_in_study(engine, dynamics::read_measurements(spec.data)),
+                                            engine.progress);
     });
     const auto made = engine.make("residual", spec.name, key, [&] { return residual_document(residuals.get()); });
     if (!made) {
@@ -80,7 +84,8 @@ void run_residual(Engine& engine, const MeasurementSpec& spec) {
     for (std::size_t i = 0; i < std::min<std::size_t>(figures, 8); ++i) {
         Key of_figure = key;
         of_figure.from(*made);
-        engine.figure("residual/" + spec.name + "/" + std::to_string(i), of_figure, [&] { return figure_of(residuals.get(), i); });
+        engine.figure("residual/" + spec.name + "/" + std::to_string(i), of_figure,
+                      [&] { return figure_of(residuals.get(), i); });
     }
 }
 

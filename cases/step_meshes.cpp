@@ -6,8 +6,8 @@
 
 #include "cases/engine.h"
 #include "core/text.h"
-#include "postproc/mesh_study.h"
-#include "postproc/uncertainty.h"
+#include "postproc/loads/mesh_study.h"
+#include "postproc/loads/uncertainty.h"
 
 namespace underbody::cases {
 
@@ -40,11 +40,13 @@ std::vector<MeshRow> rows_of(const Engine& engine, const MeshSpec& spec) {
 }
 
 /// In what the cases differ besides their mesh: then they are not one mesh study.
-std::vector<std::string> other_differences(const Engine& engine, const MeshSpec& spec, const std::vector<MeshRow>& rows) {
+std::vector<std::string> other_differences(const Engine& engine, const MeshSpec& spec,
+                                           const std::vector<MeshRow>& rows) {
     const auto& names = engine.results.loads.text("case");
     std::optional<postproc::SetPoint> first;
     for (const Case* entry : engine.study.select(spec.where)) {
-        const bool used = std::any_of(rows.begin(), rows.end(), [&](const MeshRow& row) { return names[row.row] == entry->name; });
+        const bool used =
+            std::any_of(rows.begin(), rows.end(), [&](const MeshRow& row) { return names[row.row] == entry->name; });
         if (!used) {
             continue;
         }
@@ -80,7 +82,8 @@ std::string compute_mesh(const Engine& engine, const MeshSpec& spec, const std::
             shown.push_back(column[row.row]);
         }
         nlohmann::json found;
-        postproc::to_json(found, postproc::mesh_uncertainty_of(values, quantity.ends_with("_moment"), scale_of(engine.results.loads, rows.back().row)));
+        postproc::to_json(found, postproc::mesh_uncertainty_of(values, quantity.ends_with("_moment"),
+                                                               scale_of(engine.results.loads, rows.back().row)));
         found["values"] = shown;
         document["quantities"][quantity] = std::move(found);
     }
@@ -97,7 +100,9 @@ void run_meshes(Engine& engine) {
             continue;
         }
         if (const auto others = other_differences(engine, spec, rows); !others.empty()) {
-            engine.fail("mesh", spec.name, "its cases differ in '" + others.front() + "' too, not in their mesh alone: choose those of one condition");
+            engine.fail("mesh", spec.name,
+                        "its cases differ in '" + others.front() +
+                            "' too, not in their mesh alone: choose those of one condition");
             continue;
         }
         const auto& files = engine.results.loads.text("case");

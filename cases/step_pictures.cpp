@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
-#include "postproc/field.h"
-#include "postproc/loads.h"
-#include "postproc/views.h"
+#include "postproc/field/field.h"
+#include "postproc/loads/loads.h"
+#include "postproc/views/views.h"
 
 namespace underbody::cases {
 
@@ -38,25 +38,29 @@ Key picture_key(const std::string& kind, const Engine& engine, const PictureSpec
 }
 
 /// The views that the spec names, or else all that the case allows, which is a result of its own.
-std::vector<std::string> views_of(Engine& engine, const PictureSpec& spec, const Case& entry, Shared<postproc::Field>& field,
-                                  const postproc::ViewOptions& options) {
+std::vector<std::string> views_of(Engine& engine, const PictureSpec& spec, const Case& entry,
+                                  Shared<postproc::Field>& field, const postproc::ViewOptions& options) {
     if (!spec.views.empty()) {
         return spec.views;
     }
-    const auto made = engine.make("views", spec.name + "/" + entry.name, picture_key("views", engine, spec, entry),
-                                  [&] { return nlohmann::json(postproc::possible_views(field.get(), options)).dump(); });
-    return made ? nlohmann::json::parse(engine.value(*made)).get<std::vector<std::string>>() : std::vector<std::string>();
+    const auto made =
+        engine.make("views", spec.name + "/" + entry.name, picture_key("views", engine, spec, entry),
+                    [&] { return nlohmann::json(postproc::possible_views(field.get(), options)).dump(); });
+    return made ? nlohmann::json::parse(engine.value(*made)).get<std::vector<std::string>>()
+                : std::vector<std::string>();
 }
 
 void draw_case(Engine& engine, const PictureSpec& spec, const Case& entry) {
-    Shared<postproc::Field> field(engine.states(), [&] { return postproc::read_field(entry.file, {}, engine.progress); });
+    Shared<postproc::Field> field(engine.states(),
+                                  [&] { return postproc::read_field(entry.file, {}, engine.progress); });
     const postproc::ViewOptions options = view_options(engine.study, spec, entry);
     for (const auto& name : views_of(engine, spec, entry, field, options)) {
         Key key = picture_key("picture", engine, spec, entry);
         key.add("view", name);
         engine.picture("picture", spec.name + "/" + entry.name + "/" + name, key, [&] {
             const postproc::View view = postproc::view(field.get(), name, options, engine.progress);
-            return nlohmann::json({{"title", view.title}, {"caption", spec.name + ": " + view.caption}}).dump() + "\n" + view.png;
+            return nlohmann::json({{"title", view.title}, {"caption", spec.name + ": " + view.caption}}).dump() + "\n" +
+                   view.png;
         });
     }
 }

@@ -5,8 +5,8 @@
 #include "cases/names_in_study.h"
 #include "cases/region_model.h"
 #include "core/file.h"
-#include "surrogates/dynamics/model.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::cases {
 
@@ -19,7 +19,8 @@ void write_model_files(Engine& engine, const RegionSpec& spec, const Key& key) {
     const auto made = engine.make("model", spec.name, key, [&] {
         const Scratch tables;
         const Scratch written;
-        dynamics::write_model(region_model(engine.study, spec, engine.results, tables.path()), written.path() / "model.toml");
+        dynamics::write_model(region_model(engine.study, spec, engine.results, tables.path()),
+                              written.path() / "model.toml");
         nlohmann::json files = nlohmann::json::object();
         for (const auto& entry : fs::recursive_directory_iterator(written.path())) {
             if (entry.is_regular_file()) {
@@ -42,7 +43,11 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
     Key key(kind, {"surrogates/tables", "surrogates/dynamics"});
     for (const auto& name : spec.forces) {
         const TableSpec& table = *engine.study.find_table(name);
-        key.add("force", table.quantity).add("speed", table.where.number("speed").value_or(0)).add("fit", table.fit).add("speed_exponent", table.speed_exponent).through("table", name);
+        key.add("force", table.quantity)
+            .add("speed", table.where.number("speed").value_or(0))
+            .add("fit", table.fit)
+            .add("speed_exponent", table.speed_exponent)
+            .through("table", name);
         for (const auto& axis : table.axes) {
             key.add("axis", axis);
         }
@@ -58,7 +63,8 @@ void run_one_region(Engine& engine, const RegionSpec& spec) {
     Shared<dynamics::StabilityRegion> region(engine.states(), [&] {
         const Scratch scratch;
         scratch_folder = scratch.path().string() + "/";
-        const auto model = named_in_study(engine, region_model(engine.study, spec, engine.results, scratch.path()), spec.model);
+        const auto model =
+            named_in_study(engine, region_model(engine.study, spec, engine.results, scratch.path()), spec.model);
         return dynamics::stability_region(model, region_options(spec), engine.progress);
     });
     const auto made = engine.make("region", spec.name, key, [&] {

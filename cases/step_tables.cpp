@@ -7,11 +7,11 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "surrogates/tables/compare.h"
-#include "surrogates/tables/equilibria.h"
+#include "surrogates/tables/analysis/compare.h"
+#include "surrogates/tables/analysis/equilibria.h"
+#include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/exports/export.h"
-#include "surrogates/tables/figures.h"
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::cases {
 
@@ -20,7 +20,9 @@ namespace {
 Key table_key(const std::string& kind, const TableSpec& spec, const core::Table& points) {
     Key key(kind, {"surrogates/tables"});
     key.add("quantity", spec.quantity).add("points", digest_of(points));
-    key.add("net_weight", spec.net_weight.value_or(std::nan(""))).add("virtual_mass", spec.virtual_mass).add("fit", spec.fit);
+    key.add("net_weight", spec.net_weight.value_or(std::nan("")))
+        .add("virtual_mass", spec.virtual_mass)
+        .add("fit", spec.fit);
     for (const auto& axis : spec.axes) {
         key.add("axis", axis);
     }
@@ -52,7 +54,8 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     document["quantity"] = spec.quantity;
     document["kind"] = table.kind();
     document["points"] = core::write_csv(points);
-    document["remarks"] = nlohmann::json::array({"Fitted by " + table.kind() + " through " + std::to_string(points.rows()) + " points."});
+    document["remarks"] =
+        nlohmann::json::array({"Fitted by " + table.kind() + " through " + std::to_string(points.rows()) + " points."});
     if (const auto names = not_settled(points); !names.empty()) {
         std::string list;
         for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 5); ++i) {
@@ -67,7 +70,8 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     }
     document["axes"] = nlohmann::json::array();
     for (const auto& axis : table.axes()) {
-        document["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"lower", axis.lower}, {"upper", axis.upper}});
+        document["axes"].push_back(
+            {{"name", axis.name}, {"unit", axis.unit}, {"lower", axis.lower}, {"upper", axis.upper}});
     }
     return document.dump();
 }
@@ -86,11 +90,13 @@ std::string ending_of(const std::string& format) {
 using SharedTable = Shared<tables::ForceTable>;
 
 /// Writes the exports beside the report and names them in the document.
-void write_exports(Engine& engine, const TableSpec& spec, SharedTable& table, const Key& key, nlohmann::json& document) {
+void write_exports(Engine& engine, const TableSpec& spec, SharedTable& table, const Key& key,
+                   nlohmann::json& document) {
     document["exports"] = nlohmann::json::array();
     for (const auto& format : spec.exports) {
         std::string file = spec.name;
-        std::replace_if(file.begin(), file.end(), [](char c) { return c == ' ' || c == ','; }, '_');
+        std::replace_if(
+            file.begin(), file.end(), [](char c) { return c == ' ' || c == ','; }, '_');
         const std::string ending = ending_of(format);
         Key export_key = key;
         export_key.add("format", format).add("name", file).through("table", spec.name);
@@ -167,40 +173,49 @@ std::string difference_text(const tables::ForceTable& table, const tables::Diffe
     }
     return "'" + d.second + "' less '" + d.first + "': at most " + core::format_number(d.largest, 3) + " ± " +
            core::format_number(d.sigma, 2) + " " + table.unit() + ", at " + shown_at(table, d.at) +
-           (where.empty() ? "; nowhere more than twice the joint error of the two." : "; more than twice the joint error of the two at " + where + ".");
+           (where.empty() ? "; nowhere more than twice the joint error of the two."
+                          : "; more than twice the joint error of the two at " + where + ".");
 }
 
 std::string compute_comparison(const std::vector<std::pair<std::string, tables::ForceTable>>& compared) {
     const tables::ForceTable& first = compared.front().second;
     const std::string& axis = first.axes().front().name;
     const std::string noun = tables::noun_of(first.quantity());
-    nlohmann::json document = {{"quantity", first.quantity()}, {"axis", axis}, {"rows", nlohmann::json::array()}, {"remarks", nlohmann::json::array()}};
+    nlohmann::json document = {{"quantity", first.quantity()},
+                               {"axis", axis},
+                               {"rows", nlohmann::json::array()},
+                               {"remarks", nlohmann::json::array()}};
     for (const auto measure : measures_of(first)) {
         tables::ComparisonOptions options;
         options.measure = measure;
         const auto result = tables::compare_tables(compared, options);
-        const auto best = result.winner.empty() ? result.names.begin() : std::find(result.names.begin(), result.names.end(), result.winner);
+        const auto best = result.winner.empty() ? result.names.begin()
+                                                : std::find(result.names.begin(), result.names.end(), result.winner);
         const auto i = static_cast<std::size_t>(best - result.names.begin());
-        const bool slope = measure == tables::Measure::restoring_slope, width = measure == tables::Measure::restoring_width;
+        const bool slope = measure == tables::Measure::restoring_slope,
+                   width = measure == tables::Measure::restoring_width;
         const bool restores = !(slope || width) || result.values[i] > 0;
-        const std::string value = width ? shown_at(first, result.values[i]) : core::format_number(result.values[i], 3) + " " + result.unit;
-        nlohmann::json row = {{"measure", slope || width ? result.measure : result.measure + " of the " + noun},
-                              {"table", restores ? nlohmann::json(*best) : nlohmann::json("none")},
-                              {"value", restores ? nlohmann::json(result.values[i]) : nlohmann::json()},
-                              {"sigma", result.errors[i]},
-                              {"unit", result.unit},
-                              {"beyond_error", result.beyond_error},
-                              {"text", !restores               ? "none restores"
-                                       : compared.size() == 1 ? value
-                                       : value + (result.beyond_error ? "" : ", within the errors")}};
+        const std::string value =
+            width ? shown_at(first, result.values[i]) : core::format_number(result.values[i], 3) + " " + result.unit;
+        nlohmann::json row = {
+            {"measure", slope || width ? result.measure : result.measure + " of the " + noun},
+            {"table", restores ? nlohmann::json(*best) : nlohmann::json("none")},
+            {"value", restores ? nlohmann::json(result.values[i]) : nlohmann::json()},
+            {"sigma", result.errors[i]},
+            {"unit", result.unit},
+            {"beyond_error", result.beyond_error},
+            {"text", !restores              ? "none restores"
+                     : compared.size() == 1 ? value
+                                            : value + (result.beyond_error ? "" : ", within the errors")}};
         for (std::size_t k = 0; k < result.names.size(); ++k) {
-            row["values"].push_back({{"table", result.names[k]}, {"value", result.values[k]}, {"sigma", result.errors[k]}});
+            row["values"].push_back(
+                {{"table", result.names[k]}, {"value", result.values[k]}, {"sigma", result.errors[k]}});
         }
         document["rows"].push_back(row);
         if (document["rows"].size() == 1) {
             document["range"] = {result.lower, result.upper};
-            document["remarks"].push_back("Compared over the " + axis + " that all of them have, " + shown_at(first, result.lower) + " to " +
-                                          shown_at(first, result.upper) + ".");
+            document["remarks"].push_back("Compared over the " + axis + " that all of them have, " +
+                                          shown_at(first, result.lower) + " to " + shown_at(first, result.upper) + ".");
             for (const auto& difference : result.differences) {
                 document["remarks"].push_back(difference_text(first, difference));
             }
@@ -217,7 +232,8 @@ Compared fitted_tables(const Engine& engine, const CompareSpec& spec) {
         const TableSpec& table = *engine.study.find_table(name);
         compared.emplace_back(name, fitted(table, table_points(table, engine.results)));
         if (compared.back().second.axes().size() != 1) {
-            throw core::InputError("range", "the table '" + name + "' has more than one axis: only curves can be laid over each other");
+            throw core::InputError(
+                "range", "the table '" + name + "' has more than one axis: only curves can be laid over each other");
         }
     }
     return compared;

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
-#include "surrogates/dynamics/thesis.h"
-#include "surrogates/estimator/thesis.h"
+#include "surrogates/dynamics/theory/thesis.h"
+#include "surrogates/estimator/thesis/thesis.h"
 
 namespace underbody::cases {
 

@@ -7,8 +7,8 @@
 #include <unordered_set>
 
 #include "cases/engine.h"
-#include "postproc/deviation.h"
-#include "postproc/loads_case.h"
+#include "postproc/loads/deviation.h"
+#include "postproc/loads/loads_case.h"
 
 namespace underbody::cases {
 
@@ -64,7 +64,8 @@ private:
     [[nodiscard]] bool fits(std::size_t mine, std::size_t theirs) const {
         return std::all_of(shared_.begin(), shared_.end(), [&](const Pair& pair) {
             return pair.first->is_text() ? pair.first->text[mine] == pair.second->text[theirs]
-                                         : std::abs(pair.first->numbers[mine] - pair.second->numbers[theirs]) <= slack(pair.second->numbers[theirs]);
+                                         : std::abs(pair.first->numbers[mine] - pair.second->numbers[theirs]) <=
+                                               slack(pair.second->numbers[theirs]);
         });
     }
 
@@ -75,10 +76,12 @@ private:
         }
         std::size_t most = 0;
         for (const auto& pair : shared_) {
-            if (pair.first->is_text() || std::any_of(pair.first->numbers.begin(), pair.first->numbers.end(), [](double x) { return std::isnan(x); })) {
+            if (pair.first->is_text() || std::any_of(pair.first->numbers.begin(), pair.first->numbers.end(),
+                                                     [](double x) { return std::isnan(x); })) {
                 continue;
             }
-            const std::size_t different = std::set<double>(pair.first->numbers.begin(), pair.first->numbers.end()).size();
+            const std::size_t different =
+                std::set<double>(pair.first->numbers.begin(), pair.first->numbers.end()).size();
             if (different > most) {
                 most = different;
                 sorted_ = &pair;
@@ -86,7 +89,8 @@ private:
         }
         if (sorted_ != nullptr) {
             const auto& values = sorted_->first->numbers;
-            std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+            std::stable_sort(order_.begin(), order_.end(),
+                             [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
         }
     }
 
@@ -127,7 +131,8 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
         if (!mine || !chosen.contains(loads.text("case")[*mine])) {
             continue;
         }
-        const double length = lengths != nullptr ? lengths->numbers[*mine] : engine.study.reference.number("length").value_or(1);
+        const double length =
+            lengths != nullptr ? lengths->numbers[*mine] : engine.study.reference.number("length").value_or(1);
         const postproc::LoadScale scale = postproc::load_scale(resultant(loads, *mine), resultant(report, row), length);
         for (const auto& quantity : spec.quantities) {
             const double theirs = report.numbers(quantity)[row];
@@ -137,9 +142,15 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
             const double size = postproc::load_measure(ours, theirs, moment, scale);
             // The field is the last iteration, the report the mean of many: what a run swings by is no error of ours.
             const auto* scatter = report.find(quantity + "_scatter");
-            const double swing = scatter != nullptr && std::isfinite(scatter->numbers[row]) ? 2 * scatter->numbers[row] / size : 0;
+            const double swing =
+                scatter != nullptr && std::isfinite(scatter->numbers[row]) ? 2 * scatter->numbers[row] / size : 0;
             const std::string name = loads.text("case")[*mine];
-            rows.push_back({{"case", name}, {"quantity", quantity}, {"ours", ours}, {"solver", theirs}, {"error", error}, {"swing", swing}});
+            rows.push_back({{"case", name},
+                            {"quantity", quantity},
+                            {"ours", ours},
+                            {"solver", theirs},
+                            {"error", error},
+                            {"swing", swing}});
             failed += error <= spec.tolerance + swing ? 0 : 1;  // NaN fails too
             if (!(error - swing <= worst)) {
                 worst = error - swing;
@@ -147,7 +158,11 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
             }
         }
     }
-    return {{"rows", rows}, {"worst", worst}, {"worst_case", worst_case}, {"failed", failed}, {"tolerance", spec.tolerance}};
+    return {{"rows", rows},
+            {"worst", worst},
+            {"worst_case", worst_case},
+            {"failed", failed},
+            {"tolerance", spec.tolerance}};
 }
 
 }  // namespace
@@ -166,7 +181,8 @@ void run_verifications(Engine& engine) {
         const auto made = engine.make("verify", spec.name, key, [&] {
             const nlohmann::json document = verify(engine, spec, core::read_csv(spec.table));
             if (document.at("rows").empty()) {
-                throw core::InputError("missing", "no row is about a case of this study", {spec.table.string(), {}, {}, {}});
+                throw core::InputError("missing", "no row is about a case of this study",
+                                       {spec.table.string(), {}, {}, {}});
             }
             return document.dump();
         });

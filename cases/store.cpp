@@ -22,7 +22,7 @@ public:
 
 namespace {
 
-constexpr int version = 2;  ///< of the tables; 0.1.0 had one table, `results`, and no number
+constexpr int version = 2;       ///< of the tables; 0.1.0 had one table, `results`, and no number
 constexpr int patience = 20000;  ///< ms that another process may keep the store locked
 
 [[noreturn]] void failed(const fs::path& file, const SQLite::Exception& error) {
@@ -147,7 +147,8 @@ void Store::open_for_writing() {
         }
     }
     try {
-        database_ = std::make_unique<SQLite::Database>(file_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, patience);
+        database_ =
+            std::make_unique<SQLite::Database>(file_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, patience);
         check_version();
         database_->exec("PRAGMA journal_mode=WAL");
         database_->exec("PRAGMA synchronous=NORMAL");
@@ -155,15 +156,16 @@ void Store::open_for_writing() {
         writable_ = sqlite3_db_readonly(database_->getHandle(), "main") == 0;
     } catch (const SQLite::Exception& problem) {
         const int code = problem.getErrorCode();
-        if (!there || (code != SQLITE_READONLY && code != SQLITE_CANTOPEN && code != SQLITE_PERM && code != SQLITE_IOERR)) {
+        if (!there ||
+            (code != SQLITE_READONLY && code != SQLITE_CANTOPEN && code != SQLITE_PERM && code != SQLITE_IOERR)) {
             throw;
         }
         open_for_reading();  // what is known can be shown all the same
     }
 }
 
-/// SQLite wants to write beside a store in WAL mode even to read it: where it may not, it is told that nobody writes, and
-/// where a killed run left its log, a copy of both is read.
+/// SQLite wants to write beside a store in WAL mode even to read it: where it may not, it is told that nobody writes,
+/// and where a killed run left its log, a copy of both is read.
 void Store::open_for_reading() {
     const auto usable = [&](const std::string& name, int flags) {
         try {
@@ -187,8 +189,9 @@ void Store::open_for_reading() {
     if (!fs::exists(log, error) || fs::file_size(log, error) == 0) {
         std::string name = "file:";
         for (const char c : fs::absolute(file_).string()) {
-            name += c == '?' || c == '#' || c == '%' ? "%" + std::string(1, "0123456789abcdef"[c >> 4]) + "0123456789abcdef"[c & 15]
-                                                     : std::string(1, c);
+            name += c == '?' || c == '#' || c == '%'
+                        ? "%" + std::string(1, "0123456789abcdef"[c >> 4]) + "0123456789abcdef"[c & 15]
+                        : std::string(1, c);
         }
         if (usable(name + "?immutable=1", SQLite::OPEN_URI)) {
             return;
@@ -211,8 +214,9 @@ void Store::check_version() {
         found_version_ = 1;
     }
     if (found_version_ > version) {
-        refuse(file_, "the store of results was written by a later version of Underbody (its tables are of version " +
-                          std::to_string(found_version_) + ", this program knows " + std::to_string(version) + ")",
+        refuse(file_,
+               "the store of results was written by a later version of Underbody (its tables are of version " +
+                   std::to_string(found_version_) + ", this program knows " + std::to_string(version) + ")",
                "use that version, or another file");
     }
 }
@@ -261,8 +265,9 @@ std::vector<StoredResult> Store::results(const std::string& kind, const std::str
     const std::lock_guard lock(mutex_);
     std::vector<StoredResult> found;
     try {
-        SQLite::Statement query(*database_, std::string("SELECT ") + columns +
-                                                " FROM result WHERE kind = ? AND name = ? AND key = ? ORDER BY id DESC");
+        SQLite::Statement query(
+            *database_,
+            std::string("SELECT ") + columns + " FROM result WHERE kind = ? AND name = ? AND key = ? ORDER BY id DESC");
         query.bind(1, kind);
         query.bind(2, name);
         query.bind(3, key);
@@ -312,13 +317,14 @@ std::optional<Store::Made> Store::made(std::int64_t id) {
 std::int64_t Store::put(const StoredResult& result, const std::string& about, const std::string& value) {
     const std::lock_guard lock(mutex_);
     if (!writable_) {
-        refuse(file_, "the store of results cannot be written, and '" + result.name + "' is not in it or no longer true",
+        refuse(file_,
+               "the store of results cannot be written, and '" + result.name + "' is not in it or no longer true",
                "a study in a read-only folder needs its store elsewhere");
     }
     try {
         SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-        SQLite::Statement insert(*database_,
-                                 "INSERT INTO result (kind, name, key, inputs, about, summary) VALUES (?, ?, ?, ?, ?, ?)");
+        SQLite::Statement insert(
+            *database_, "INSERT INTO result (kind, name, key, inputs, about, summary) VALUES (?, ?, ?, ?, ?, ?)");
         int at = 0;
         for (const auto& text : {result.kind, result.name, result.key, packed(result.inputs), about, result.summary}) {
             insert.bind(++at, text);
@@ -351,8 +357,8 @@ Store::FileHashes Store::file_hashes() {
         if (!database_->tableExists("file_hash")) {
             return hashes;
         }
-        SQLite::Statement query(*database_,
-                                "SELECT path, device, inode, size, modified, changed, hash FROM file_hash ORDER BY path");
+        SQLite::Statement query(
+            *database_, "SELECT path, device, inode, size, modified, changed, hash FROM file_hash ORDER BY path");
         while (query.executeStep()) {
             core::FileStamp stamp{core::FileStamp::Kind::file,
                                   static_cast<std::uint64_t>(query.getColumn(1).getInt64()),
@@ -360,7 +366,8 @@ Store::FileHashes Store::file_hashes() {
                                   query.getColumn(3).getInt64(),
                                   query.getColumn(4).getInt64(),
                                   query.getColumn(5).getInt64()};
-            hashes.emplace_hint(hashes.end(), text_of(query.getColumn(0)), std::pair(stamp, text_of(query.getColumn(6))));
+            hashes.emplace_hint(hashes.end(), text_of(query.getColumn(0)),
+                                std::pair(stamp, text_of(query.getColumn(6))));
         }
     } catch (const SQLite::Exception& problem) {
         failed(file_, problem);

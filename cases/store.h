@@ -16,7 +16,7 @@
 namespace SQLite {
 class Database;
 class Statement;
-}
+}  // namespace SQLite
 
 namespace underbody::cases {
 
@@ -35,7 +35,7 @@ struct StoredResult {
     std::int64_t id = 0;
     std::string kind;
     std::string name;
-    std::string key;      ///< digest over options, conditions and code
+    std::string key;  ///< digest over options, conditions and code
     std::vector<StoredInput> inputs;
     std::string summary;  ///< what a list of many results shows; may be empty
 

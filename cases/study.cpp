@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "cases/study_format.h"
 #include "cases/design_points.h"
+#include "cases/study_format.h"
 #include "cases/sweep.h"
 #include "core/file.h"
 #include "core/mistyped.h"
@@ -19,7 +19,7 @@
 #include "core/toml.h"
 #include "core/units.h"
 #include "postproc/importers/importer.h"
-#include "postproc/mirror_plane.h"
+#include "postproc/loads/mirror_plane.h"
 
 namespace underbody::cases {
 
@@ -93,8 +93,10 @@ Conditions read_conditions(const TomlTable& table) {
     for (const auto& key : table.keys()) {
         if (const auto* quantity = core::find_quantity(key)) {
             conditions.numbers.emplace_back(key, table.quantity(key, quantity->unit));
-        } else if (const std::string meant = core::mistyped_quantity(key); !meant.empty() && is_number_like(table, key)) {
-            throw core::InputError("name", "there is no condition '" + table.path_of(key) + "'", table.place(key), "did you mean '" + meant + "'?");
+        } else if (const std::string meant = core::mistyped_quantity(key);
+                   !meant.empty() && is_number_like(table, key)) {
+            throw core::InputError("name", "there is no condition '" + table.path_of(key) + "'", table.place(key),
+                                   "did you mean '" + meant + "'?");
         } else if (table.is_string(key)) {
             conditions.texts.emplace_back(key, table.string(key));
         } else {
@@ -104,7 +106,8 @@ Conditions read_conditions(const TomlTable& table) {
     return conditions;
 }
 
-/// The conditions under a key, as a table or as one text: `where = "variant=ellipse, gap=5mm"`, the way of the command line.
+/// The conditions under a key, as a table or as one text: `where = "variant=ellipse, gap=5mm"`, the way of the command
+/// line.
 Conditions read_where(const TomlTable& table, const char* key) {
     if (!table.is_string(key)) {
         return read_conditions(table.table_or_empty(key));
@@ -116,17 +119,21 @@ Conditions read_where(const TomlTable& table, const char* key) {
         const std::string name(core::trimmed(part.substr(0, equals)));
         const std::string value(equals == std::string_view::npos ? "" : core::trimmed(part.substr(equals + 1)));
         if (name.empty() || value.empty()) {
-            throw core::InputError("parse", table.path_of(key) + ": '" + std::string(core::trimmed(part)) + "' is not of the form name=value", table.place(key),
-                                   "such as " + std::string(key) + " = \"variant=A, pitch=0\"");
+            throw core::InputError(
+                "parse",
+                table.path_of(key) + ": '" + std::string(core::trimmed(part)) + "' is not of the form name=value",
+                table.place(key), "such as " + std::string(key) + " = \"variant=A, pitch=0\"");
         }
         if (conditions.number(name) || conditions.text(name)) {
-            throw core::InputError("duplicate", table.path_of(key) + ": '" + name + "' is given twice", table.place(key));
+            throw core::InputError("duplicate", table.path_of(key) + ": '" + name + "' is given twice",
+                                   table.place(key));
         }
         if (const auto* quantity = core::find_quantity(name)) {
             try {
                 conditions.numbers.emplace_back(name, core::parse_in(value, quantity->unit));
             } catch (const core::Error& error) {
-                throw core::InputError("parse", table.path_of(key) + ": " + error.message(), table.place(key), error.hint());
+                throw core::InputError("parse", table.path_of(key) + ": " + error.message(), table.place(key),
+                                       error.hint());
             }
         } else if (const auto number = core::parse_number(value)) {
             conditions.numbers.emplace_back(name, *number);
@@ -153,8 +160,8 @@ fs::path below(const fs::path& file, const fs::path& folder) {
     return rest.empty() || *rest.begin() == ".." ? file : rest;
 }
 
-/// What a case is called as long as no other is called so. OpenFOAM's "case.foam" and "system/controlDict" are called alike
-/// in every case: there it is the folder.
+/// What a case is called as long as no other is called so. OpenFOAM's "case.foam" and "system/controlDict" are called
+/// alike in every case: there it is the folder.
 std::string short_name(const fs::path& file, bool folder) {
     const fs::path parent = file.filename() == "controlDict" ? file.parent_path().parent_path() : file.parent_path();
     const std::string stem = folder ? file.filename().string() : stem_of(file);
@@ -186,7 +193,8 @@ void tell_names_apart(std::vector<Case>& cases, const fs::path& folder) {
     }
 }
 
-std::vector<core::NamePattern::Found> find_cases(const std::string& pattern, const fs::path& folder, const TomlTable& table) {
+std::vector<core::NamePattern::Found> find_cases(const std::string& pattern, const fs::path& folder,
+                                                 const TomlTable& table) {
     std::vector<core::NamePattern::Found> found;
     try {
         found = core::NamePattern(pattern).files_and_folders(folder);
@@ -234,8 +242,8 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
         const auto [same, fresh] = files.emplace(entry.file.string(), pattern);
         if (!fresh) {
             throw core::InputError("duplicate",
-                                   "the case '" + entry.name + "' occurs twice: " + entry.file.string() + " fits '" + same->second +
-                                       "' and '" + pattern + "'",
+                                   "the case '" + entry.name + "' occurs twice: " + entry.file.string() + " fits '" +
+                                       same->second + "' and '" + pattern + "'",
                                    table.place("files"), "make the patterns exclude each other");
         }
         study.cases.push_back(std::move(entry));
@@ -247,7 +255,8 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
 std::string unique_name(const TomlTable& table, std::set<std::string>& taken) {
     const std::string name = table.string("name");
     if (name.empty() || name.find_first_of("/\\\n\t\"<>") != std::string::npos || name.front() == '.') {
-        throw core::InputError("name", "'" + name + "' cannot be a name", table.place("name"), "use letters, digits, blanks, - and _");
+        throw core::InputError("name", "'" + name + "' cannot be a name", table.place("name"),
+                               "use letters, digits, blanks, - and _");
     }
     if (!taken.insert(name).second) {
         throw core::InputError("duplicate", "the name '" + name + "' occurs twice", table.place("name"));
@@ -311,7 +320,8 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const
     spec.where = read_where(table, "where");
     spec.fit = table.string_or("fit", spec.fit);
     if (!tables::fit_kind(spec.fit)) {
-        throw core::InputError("name", table.path_of("fit") + ": '" + spec.fit + "' is not known", table.place("fit"), core::did_you_mean(spec.fit, tables::fit_kinds()));
+        throw core::InputError("name", table.path_of("fit") + ": '" + spec.fit + "' is not known", table.place("fit"),
+                               core::did_you_mean(spec.fit, tables::fit_kinds()));
     }
     spec.speed_exponent = table.quantity_or("speed_exponent", "1", spec.speed_exponent);
     spec.relative_sigma = table.quantity_or("relative_sigma", "1", 0);
@@ -343,13 +353,14 @@ void check_tables(const Study& study, const TomlTable& table, const char* key, c
     }
     for (const auto& name : names) {
         if (study.find_table(name) == nullptr) {
-            throw core::InputError("name", table.path_of(key) + ": there is no [[table]] named '" + name + "'", table.place(key),
-                                   core::did_you_mean(name, known));
+            throw core::InputError("name", table.path_of(key) + ": there is no [[table]] named '" + name + "'",
+                                   table.place(key), core::did_you_mean(name, known));
         }
     }
 }
 
-/// Half a body has its mirror plane along its middle: one across the vertical or the way forward makes every lift or drag zero.
+/// Half a body has its mirror plane along its middle: one across the vertical or the way forward makes every lift or
+/// drag zero.
 void check_symmetry(const Study& study, const TomlTable& frame) {
     if (study.symmetry.empty()) {
         return;
@@ -366,7 +377,8 @@ void check_symmetry(const Study& study, const TomlTable& frame) {
             throw core::InputError("range",
                                    "a symmetry plane across '" + std::string(1, axis.back()) + "' mirrors the " + name +
                                        " axis: every " + load + " would be zero",
-                                   frame.place("symmetry"), "the plane of a half model lies along the vehicle: symmetry = \"" + side + "\"");
+                                   frame.place("symmetry"),
+                                   "the plane of a half model lies along the vehicle: symmetry = \"" + side + "\"");
         }
     }
 }
@@ -392,7 +404,8 @@ void read_frame(Study& study, const TomlTable& root) {
     }
     check_symmetry(study, frame);
     const TomlTable reference = root.table_or_empty("reference");
-    for (const auto& [name, unit] : {std::pair{"length", "m"}, {"width", "m"}, {"height", "m"}, {"density", "kg/m^3"}, {"speed", "m/s"}}) {
+    for (const auto& [name, unit] :
+         {std::pair{"length", "m"}, {"width", "m"}, {"height", "m"}, {"density", "kg/m^3"}, {"speed", "m/s"}}) {
         if (const auto value = reference.find_quantity(name, unit)) {
             study.reference.numbers.emplace_back(name, *value);
         }
@@ -460,9 +473,11 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
         known.push_back(body.name);
     }
     for (const auto& name : table.has("bodies") ? table.strings("bodies") : known) {
-        const auto body = std::find_if(study.bodies.begin(), study.bodies.end(), [&](const BodySpec& b) { return b.name == name; });
+        const auto body =
+            std::find_if(study.bodies.begin(), study.bodies.end(), [&](const BodySpec& b) { return b.name == name; });
         if (body == study.bodies.end()) {
-            throw core::InputError("name", table.path_of("bodies") + ": there is no [[body]] named '" + name + "'", table.place("bodies"), core::did_you_mean(name, known));
+            throw core::InputError("name", table.path_of("bodies") + ": there is no [[body]] named '" + name + "'",
+                                   table.place("bodies"), core::did_you_mean(name, known));
         }
         sweep.bodies.push_back(*body);
     }
@@ -483,7 +498,8 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     sweep.iterations = static_cast<int>(table.integer_or("iterations", sweep.iterations));
     sweep.slurm = read_slurm(table.table_or_empty("slurm"));
     if (sweep.bodies.empty() || sweep.gaps.empty() || sweep.pitches.empty() || sweep.speeds.empty()) {
-        throw core::InputError("missing", "a sweep needs a [[body]], a gap and a speed", table.place(), "bodies = [\"ellipse\"], gap = [\"2 mm\", \"5 mm\"], speed = \"0.5 m/s\"");
+        throw core::InputError("missing", "a sweep needs a [[body]], a gap and a speed", table.place(),
+                               "bodies = [\"ellipse\"], gap = [\"2 mm\", \"5 mm\"], speed = \"0.5 m/s\"");
     }
     return sweep;
 }
@@ -493,14 +509,17 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
 Study Study::open(const fs::path& path) {
     const fs::path file = fs::is_directory(path) ? path / "study.toml" : path;
     if (!fs::exists(file)) {
-        throw core::InputError("missing", fs::exists(path) ? "there is no study.toml in this folder" : "there is no such folder",
+        throw core::InputError("missing",
+                               fs::exists(path) ? "there is no study.toml in this folder" : "there is no such folder",
                                {path.string(), {}, {}, {}}, "a study is a folder with a study.toml; see cases/evie");
     }
     return read(core::read_toml(file, study_format()), file);
 }
 
 Study Study::from_text(const std::string& text, const fs::path& file) {
-    return read(core::read_toml_text(text, file.string(), file.has_parent_path() ? file.parent_path() : fs::path("."), study_format()), file);
+    return read(core::read_toml_text(text, file.string(), file.has_parent_path() ? file.parent_path() : fs::path("."),
+                                     study_format()),
+                file);
 }
 
 Study Study::read(const TomlTable& root, const fs::path& file) {
@@ -520,7 +539,8 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     }
     study.sweep = read_sweep(study, root);
     for (auto& solved : solved_cases(study, study.notes)) {
-        if (files.emplace(solved.file.lexically_normal().string(), "[sweep]").second) {  // a [[case]] may name them itself
+        if (files.emplace(solved.file.lexically_normal().string(), "[sweep]")
+                .second) {  // a [[case]] may name them itself
             study.cases.push_back(std::move(solved));
         }
     }
@@ -535,8 +555,8 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
         if (table.has("range")) {
             const auto range = table.quantities("range", "Pa");
             if (range.size() != 2 || !(range[0] < range[1])) {
-                throw core::InputError("range", table.path_of("range") + " needs two pressures, the lower one first", table.place("range"),
-                                       "range = [\"-60 Pa\", \"20 Pa\"]");
+                throw core::InputError("range", table.path_of("range") + " needs two pressures, the lower one first",
+                                       table.place("range"), "range = [\"-60 Pa\", \"20 Pa\"]");
             }
             spec.range = {range[0], range[1]};
         }

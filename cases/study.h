@@ -15,7 +15,7 @@
 #include "core/figure.h"
 #include "core/progress.h"
 #include "core/table.h"
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::core {
 class TomlTable;
@@ -38,8 +38,8 @@ struct Conditions {
 
 /// One CFD case of the study.
 struct Case {
-    /// File name without folder and ending, of an OpenFOAM case its folder's; where several would be called so, with as many
-    /// folders before it as tell them apart. Unique in the study.
+    /// File name without folder and ending, of an OpenFOAM case its folder's; where several would be called so, with as
+    /// many folders before it as tell them apart. Unique in the study.
     std::string name;
     std::filesystem::path file;  ///< or the folder of an OpenFOAM case
     Conditions conditions;
@@ -57,14 +57,15 @@ struct PictureSpec {
     std::string name;
     Conditions where;
     std::vector<std::string> views;  ///< as postproc::possible_views names them: "pressure-underbody", ...; empty: all
-    std::optional<std::pair<double, double>> range;  ///< Pa, of the colours of pressure, so that pictures can be compared
+    std::optional<std::pair<double, double>>
+        range;  ///< Pa, of the colours of pressure, so that pictures can be compared
 };
 
 /// [[mesh_uncertainty]]: cases that differ in their mesh only.
 struct MeshSpec {
     std::string name;
-    Conditions where;                 ///< selects the group
-    std::string column = "mesh";      ///< the word that tells the meshes apart
+    Conditions where;                                   ///< selects the group
+    std::string column = "mesh";                        ///< the word that tells the meshes apart
     std::vector<std::pair<std::string, double>> cells;  ///< cells of each mesh
     std::vector<std::string> quantities;
 };
@@ -72,13 +73,15 @@ struct MeshSpec {
 /// [[table]]: a force table made of cases.
 struct TableSpec {
     std::string name;
-    std::string quantity;            ///< lift_force, ...
-    std::vector<std::string> axes;   ///< gap, pitch, ...
+    std::string quantity;           ///< lift_force, ...
+    std::vector<std::string> axes;  ///< gap, pitch, ...
     Conditions where;
-    std::string fit = "automatic";   ///< how the table is fitted (tables::fit_kind), here, in its exports and in the maps of [[region]]
-    double speed_exponent = 2;       ///< of the force in a [[region]], when `where` holds the speed: (speed / that speed)^exponent
-    double relative_sigma = 0;       ///< of the value, added in squares
-    std::string mesh_uncertainty;    ///< name of the [[mesh_uncertainty]] whose standard uncertainty the points carry
+    std::string fit = "automatic";  ///< how the table is fitted (tables::fit_kind), here, in its exports and in the
+                                    ///< maps of [[region]]
+    double speed_exponent =
+        2;  ///< of the force in a [[region]], when `where` holds the speed: (speed / that speed)^exponent
+    double relative_sigma = 0;         ///< of the value, added in squares
+    std::string mesh_uncertainty;      ///< name of the [[mesh_uncertainty]] whose standard uncertainty the points carry
     std::optional<double> net_weight;  ///< N: equilibria are found for it
     double virtual_mass = 0;           ///< kg, for frequency and kick
     std::vector<std::string> exports;  ///< formats
@@ -88,9 +91,10 @@ struct TableSpec {
 struct RegionSpec {
     std::string name;
     std::filesystem::path model;
-    std::vector<std::string> forces;  ///< names of [[table]]: added to the model as force sources with their axes, fit and speed_exponent
-    std::string axes;       ///< as on the command line: "gap=1mm:100mm,heave_velocity=-0.1:0.1"
-    double duration = 60;   ///< s
+    std::vector<std::string>
+        forces;  ///< names of [[table]]: added to the model as force sources with their axes, fit and speed_exponent
+    std::string axes;      ///< as on the command line: "gap=1mm:100mm,heave_velocity=-0.1:0.1"
+    double duration = 60;  ///< s
     int columns = 400;
     int rows = 400;
 };
@@ -113,9 +117,10 @@ struct CompareSpec {
 struct VerifySpec {
     std::string name;
     std::filesystem::path table;
-    Conditions where;                 ///< only cases that fit
+    Conditions where;  ///< only cases that fit
     std::vector<std::string> quantities;
-    double tolerance = 0.01;  ///< of the force's size; a column QUANTITY_scatter of the report widens it by twice itself
+    double tolerance =
+        0.01;  ///< of the force's size; a column QUANTITY_scatter of the report widens it by twice itself
 };
 
 /// [sweep.slurm]: how the site wants its jobs. Texts are Slurm's own, empty ones leave it to the site.
@@ -131,15 +136,15 @@ struct SlurmSpec {
 
 /// [sweep]: cases to be made by CFD, every body at every gap, pitch and speed.
 struct SweepSpec {
-    std::string folder;               ///< of the cases, relative to the study
-    std::vector<BodySpec> bodies;     ///< those of [[body]] that are named, or all
-    std::vector<double> gaps;         ///< m
-    std::vector<double> pitches;      ///< rad
-    std::vector<double> speeds;       ///< m/s
-    Conditions conditions;            ///< further conditions of these cases (mesh = "coarse")
+    std::string folder;            ///< of the cases, relative to the study
+    std::vector<BodySpec> bodies;  ///< those of [[body]] that are named, or all
+    std::vector<double> gaps;      ///< m
+    std::vector<double> pitches;   ///< rad
+    std::vector<double> speeds;    ///< m/s
+    Conditions conditions;         ///< further conditions of these cases (mesh = "coarse")
     double kinematic_viscosity = 1e-6;
-    double cell = 0.125;              ///< of the background mesh, in body lengths
-    int surface_level = 3;            ///< halvings of the cell at the body
+    double cell = 0.125;    ///< of the background mesh, in body lengths
+    int surface_level = 3;  ///< halvings of the cell at the body
     int layers = 3;
     int iterations = 400;
     SlurmSpec slurm;
@@ -159,8 +164,8 @@ public:
     std::string origin;  ///< where the data come from, printed in the report
     std::string forward = "+x";
     std::string up = "+z";
-    std::string symmetry;        ///< "" or an axis: half models
-    Conditions reference;        ///< density, length, width, height, speed for coefficients
+    std::string symmetry;                                ///< "" or an axis: half models
+    Conditions reference;                                ///< density, length, width, height, speed for coefficients
     std::optional<std::array<double, 3>> moments_about;  ///< m, file axes; none: the centre of the base
     std::vector<Case> cases;
     std::vector<BodySpec> bodies;
@@ -170,8 +175,8 @@ public:
     std::vector<RegionSpec> regions;
     std::vector<MeasurementSpec> measurements;
     std::vector<VerifySpec> verifications;
-    bool thesis = false;              ///< redraw the thesis's figures of chapters 7 and 8 and check its statements
-    bool thesis_dynamics = false;     ///< check its statements on springs, sizes, voltages, releases and heading
+    bool thesis = false;           ///< redraw the thesis's figures of chapters 7 and 8 and check its statements
+    bool thesis_dynamics = false;  ///< check its statements on springs, sizes, voltages, releases and heading
     std::vector<CompareSpec> comparisons;
     std::optional<SweepSpec> sweep;
     core::Problems notes;  ///< what was left out on opening: cases of the sweep that are stale
@@ -199,15 +204,15 @@ enum class StepState {
     computed,
     unchanged,  ///< out of the store: what it rests on is as it was
     failed,
-    changed,    ///< the store has an earlier one; what it rests on has changed since (stored_results only)
-    missing,    ///< never made (stored_results only)
+    changed,  ///< the store has an earlier one; what it rests on has changed since (stored_results only)
+    missing,  ///< never made (stored_results only)
 };
 /// "computed", "unchanged", "failed", "changed", "not run"
 std::string to_string(StepState state);
 
 /// How far a step came.
 struct StepResult {
-    std::string kind;   ///< "loads", "table", "region", ...
+    std::string kind;  ///< "loads", "table", "region", ...
     std::string name;
     StepState state = StepState::computed;
     std::string error;  ///< empty: done
@@ -215,24 +220,24 @@ struct StepResult {
 
 /// A load, a moment or what goes with them, SI.
 struct LoadValue {
-    std::string name;   ///< "lift_force", "closure", ...
+    std::string name;  ///< "lift_force", "closure", ...
     std::string unit;
     double value = 0;
 };
 
 /// What is known of the loads of one case.
 struct CaseLoads {
-    std::size_t entry = 0;        ///< in Study::cases
-    std::string name;             ///< of the case
-    std::string file;             ///< relative to the study
+    std::size_t entry = 0;  ///< in Study::cases
+    std::string name;       ///< of the case
+    std::string file;       ///< relative to the study
     StepState state = StepState::missing;
-    std::string error;            ///< of a failed one
-    std::vector<LoadValue> values;  ///< empty unless computed or unchanged
+    std::string error;                ///< of a failed one
+    std::vector<LoadValue> values;    ///< empty unless computed or unchanged
     std::string settled = "unknown";  ///< "settled", "not settled", "unknown": postproc::Settled
     std::string settled_why;
-    core::Problems warnings;      ///< what makes the numbers less than they seem: an open surface, no wall shear, ...
-    std::int64_t id = 0;          ///< in the store
-    std::string origin;           ///< digest over all that it was made from
+    core::Problems warnings;  ///< what makes the numbers less than they seem: an open surface, no wall shear, ...
+    std::int64_t id = 0;      ///< in the store
+    std::string origin;       ///< digest over all that it was made from
 
     /// NaN when it is not known.
     [[nodiscard]] double value(const std::string& quantity) const;
@@ -243,8 +248,8 @@ class Store;
 /// Everything a run made, for the report, the desktop and JSON.
 struct StudyResults {
     std::vector<StepResult> steps;
-    std::vector<CaseLoads> case_loads;       ///< one a case, in the order of the study
-    core::Table loads;                       ///< one row a case that has loads: conditions, forces, moments, closure
+    std::vector<CaseLoads> case_loads;  ///< one a case, in the order of the study
+    core::Table loads;                  ///< one row a case that has loads: conditions, forces, moments, closure
     std::vector<std::pair<std::string, std::string>> documents;  ///< "table/NAME" -> JSON text, "region/NAME" -> ...
     std::vector<std::pair<std::string, std::string>> pictures;   ///< "picture/NAME" -> PNG bytes
     std::filesystem::path report;
@@ -253,8 +258,8 @@ struct StudyResults {
     std::size_t failed = 0;
     std::size_t changed = 0;
     std::size_t missing = 0;
-    std::vector<std::string> notes;          ///< about the run as a whole: why all was computed again, ...
-    std::shared_ptr<Store> store;            ///< nullptr when there is none
+    std::vector<std::string> notes;  ///< about the run as a whole: why all was computed again, ...
+    std::shared_ptr<Store> store;    ///< nullptr when there is none
 
     [[nodiscard]] const std::string* document(const std::string& key) const;
     [[nodiscard]] const std::string* picture(const std::string& key) const;
@@ -265,7 +270,8 @@ struct StudyResults {
 };
 
 /// Runs what changed, reuses the rest, writes the report. A failed case does not stop the others: it is in `steps`.
-StudyResults run_study(const Study& study, const RunOptions& options, core::Progress& progress = core::Progress::none());
+StudyResults run_study(const Study& study, const RunOptions& options,
+                       core::Progress& progress = core::Progress::none());
 
 /// Only what the store holds already and what is still true (nothing is computed, nothing written): for opening a study
 /// in the desktop.

@@ -58,14 +58,15 @@ FileTable top() {
 
 FileTable frame() {
     const std::string directions = "+x | -x | +y | -y | +z | -z";
-    return {"frame",
-            "how the axes of the CFD files lie",
-            {{"forward", directions, "\"+x\"", "+x", "direction in which the body moves"},
-             {"up", directions, "\"+z\"", "+z", "direction away from the ground"},
-             {"symmetry", "text", "\"y\"", "none: whole models",
-              "the files hold half a body; its plane of symmetry is normal to this axis, with its place if not 0: y=0.1"},
-             {"moments_about", "base_centre | list of m", "\"base_centre\"", "base_centre",
-              "point of the moments: the centre of the base, or x, y, z in the files' axes"}}};
+    return {
+        "frame",
+        "how the axes of the CFD files lie",
+        {{"forward", directions, "\"+x\"", "+x", "direction in which the body moves"},
+         {"up", directions, "\"+z\"", "+z", "direction away from the ground"},
+         {"symmetry", "text", "\"y\"", "none: whole models",
+          "the files hold half a body; its plane of symmetry is normal to this axis, with its place if not 0: y=0.1"},
+         {"moments_about", "base_centre | list of m", "\"base_centre\"", "base_centre",
+          "point of the moments: the centre of the base, or x, y, z in the files' axes"}}};
 }
 
 FileTable reference() {
@@ -89,7 +90,8 @@ std::vector<FileTable> inputs() {
            "Workbench's table of design points: the conditions of the files, whose pattern says {design_point}"}}},
         {"case[].parameters",
          "which quantity a parameter of that table is, where its name does not say it",
-         {{"*", "text", "P1 = \"gap [mm]\"", "by its name", "a condition, with a unit that the table does not say; \"\": none"}},
+         {{"*", "text", "P1 = \"gap [mm]\"", "by its name",
+           "a condition, with a unit that the table does not say; \"\": none"}},
          false,
          "parameters = { P1 = \"gap [mm]\" }"},
         conditions("case[].conditions", "conditions that the file names do not say",

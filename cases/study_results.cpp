@@ -49,11 +49,16 @@ core::Problems StudyResults::gathered_warnings(bool each) const {
 
 std::string to_string(StepState state) {
     switch (state) {
-        case StepState::computed: return "computed";
-        case StepState::unchanged: return "unchanged";
-        case StepState::failed: return "failed";
-        case StepState::changed: return "changed";
-        case StepState::missing: break;
+        case StepState::computed:
+            return "computed";
+        case StepState::unchanged:
+            return "unchanged";
+        case StepState::failed:
+            return "failed";
+        case StepState::changed:
+            return "changed";
+        case StepState::missing:
+            break;
     }
     return "not run";
 }

@@ -63,7 +63,8 @@ nlohmann::json sizes_of_result(const fs::path& folder) {
 
 class Sweep {
 public:
-    Sweep(const Study& study, const SweepOptions& options, core::Progress& progress) : study_(study), options_(options), progress_(progress) {
+    Sweep(const Study& study, const SweepOptions& options, core::Progress& progress)
+        : study_(study), options_(options), progress_(progress) {
         for (auto& wanted : wanted_cases(study, options, progress)) {
             Job job;
             job.outcome.name = wanted.name;
@@ -78,7 +79,8 @@ public:
         }
         while (true) {
             progress_.check();  // children end with their jobs
-            const auto running = std::count_if(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.started && !job.over; });
+            const auto running =
+                std::count_if(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.started && !job.over; });
             const auto next = std::find_if(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.started; });
             if (running == 0 && next == jobs_.end()) {
                 break;
@@ -187,7 +189,9 @@ private:
             if (!job.over) {
                 const RunState state = run_state(job.run->folder());
                 done += state.fraction();
-                what += (what.empty() ? "" : ", ") + job.wanted.name + " " + (state.iteration > 0 ? std::to_string(state.iteration) + "/" + std::to_string(state.iterations) : state.step);
+                what += (what.empty() ? "" : ", ") + job.wanted.name + " " +
+                        (state.iteration > 0 ? std::to_string(state.iteration) + "/" + std::to_string(state.iterations)
+                                             : state.step);
             } else {
                 done += 1;
             }
@@ -227,7 +231,8 @@ private:
         job.outcome.seconds = job.run->seconds();
         const SolveEnd ended = solve_end(folder);
         if (!ended.solved) {
-            throw core::InputError(ended.diverged ? "solver" : "cut", "the script ended without a whole solution: " + ended.why,
+            throw core::InputError(ended.diverged ? "solver" : "cut",
+                                   "the script ended without a whole solution: " + ended.why,
                                    {(folder / "log.Allrun").string(), {}, {}, {}});
         }
         nlohmann::json marker = {{"walls", job.record.walls},
@@ -267,6 +272,8 @@ private:
 
 }  // namespace
 
-std::vector<SweepOutcome> sweep_locally(const Study& study, const SweepOptions& options, core::Progress& progress) { return Sweep(study, options, progress).run(); }
+std::vector<SweepOutcome> sweep_locally(const Study& study, const SweepOptions& options, core::Progress& progress) {
+    return Sweep(study, options, progress).run();
+}
 
 }  // namespace underbody::cases

@@ -24,9 +24,9 @@ std::string to_string(SweepState state);
 
 /// A case that the sweep wants.
 struct SweepCase {
-    std::string name;            ///< "ellipse-h5-p0-u0.5": its folder under SweepSpec::folder, and its name in the study
+    std::string name;  ///< "ellipse-h5-p0-u0.5": its folder under SweepSpec::folder, and its name in the study
     std::filesystem::path shape;
-    Conditions conditions;       ///< variant, gap, pitch, speed, and the conditions that the sweep holds
+    Conditions conditions;  ///< variant, gap, pitch, speed, and the conditions that the sweep holds
     std::filesystem::path folder;
     SweepState state = SweepState::missing;
     std::string reason;
@@ -56,8 +56,8 @@ enum class StaleCases {
 };
 
 struct SweepOptions {
-    int jobs = 1;                    ///< cases at a time; each runs on one core
-    std::optional<std::string> only; ///< this case alone, by name
+    int jobs = 1;                     ///< cases at a time; each runs on one core
+    std::optional<std::string> only;  ///< this case alone, by name
     StaleCases stale = StaleCases::redo;
     std::string submission;  ///< of the Slurm job whose task this is: its own cases are not somebody else's
 };
@@ -72,10 +72,12 @@ struct SweepOutcome {
 
 /// Makes and solves the missing cases with OpenFOAM on this machine. A case is written and run in NAME.unfinished and
 /// renamed when it is solved to its end (see solve_end): a killed sweep goes on where it was, a killed solve from its
-/// last whole checkpoint. A case that fails does not stop the others; its folder NAME.failed keeps the logs. A solver that was killed, or left its last time half-written, goes on the next time. NAME.lock
-/// keeps two sweeps from one case. Throws core::SystemError when OpenFOAM is not here, core::Cancelled (children
-/// ended), core::InputError: no [sweep] in the study, no case of that name, a shape that cannot be placed.
-std::vector<SweepOutcome> sweep_locally(const Study& study, const SweepOptions& options, core::Progress& progress = core::Progress::none());
+/// last whole checkpoint. A case that fails does not stop the others; its folder NAME.failed keeps the logs. A solver
+/// that was killed, or left its last time half-written, goes on the next time. NAME.lock keeps two sweeps from one
+/// case. Throws core::SystemError when OpenFOAM is not here, core::Cancelled (children ended), core::InputError: no
+/// [sweep] in the study, no case of that name, a shape that cannot be placed.
+std::vector<SweepOutcome> sweep_locally(const Study& study, const SweepOptions& options,
+                                        core::Progress& progress = core::Progress::none());
 
 /// The cases to make: missing, failed and (unless they are kept) stale ones, or the one that is named; also those that
 /// another process makes or Slurm has, as their state says. Cases that another version of the program solved with the

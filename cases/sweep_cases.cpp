@@ -13,7 +13,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "geometry/body_surface.h"
+#include "geometry/body/body_surface.h"
 
 namespace underbody::cases {
 
@@ -233,7 +233,8 @@ private:
         try {
             differs = different_files(there, written_now(one));
         } catch (const core::InputError& error) {
-            return std::string("solved by another version of the program; this one cannot write the case: ") + error.what();
+            return std::string("solved by another version of the program; this one cannot write the case: ") +
+                   error.what();
         }
         if (differs.empty()) {
             const auto now = record_of(bodies_.shape(one.shape), flow_of(study_, one.conditions));
@@ -246,8 +247,8 @@ private:
                " other case files: " + joined(differs, ", ");
     }
 
-    /// Files that were there and are other ones now; what the mesher adds is no part of it. Files that are older than the
-    /// marker, which was written when all was over, need not be read.
+    /// Files that were there and are other ones now; what the mesher adds is no part of it. Files that are older than
+    /// the marker, which was written when all was over, need not be read.
     static std::vector<std::string> changed_since_solved(const fs::path& folder, const CaseRecord& record) {
         std::error_code error;
         const auto solved = fs::last_write_time(folder / solved_marker, error);

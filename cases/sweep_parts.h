@@ -9,8 +9,8 @@
 
 #include "cases/sweep.h"
 #include "cases/sweep_record.h"
-#include "geometry/body_shape.h"
-#include "geometry/flow_domain.h"
+#include "geometry/body/body_shape.h"
+#include "geometry/cases/flow_domain.h"
 
 namespace underbody::cases {
 

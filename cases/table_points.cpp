@@ -17,13 +17,16 @@ double mesh_sigma(const TableSpec& spec, const StudyResults& results) {
     }
     const std::string* document = results.document("mesh/" + spec.mesh_uncertainty);
     if (document == nullptr) {
-        throw core::InputError("missing", "the mesh uncertainty '" + spec.mesh_uncertainty + "' that the table '" + spec.name +
-                                              "' names was not found", {}, "see why its step failed");
+        throw core::InputError("missing",
+                               "the mesh uncertainty '" + spec.mesh_uncertainty + "' that the table '" + spec.name +
+                                   "' names was not found",
+                               {}, "see why its step failed");
     }
     const auto json = nlohmann::json::parse(*document);
     const auto& quantities = json.at("quantities");
     if (!quantities.contains(spec.quantity)) {
-        throw core::InputError("missing", "the mesh uncertainty '" + spec.mesh_uncertainty + "' does not cover " + spec.quantity,
+        throw core::InputError("missing",
+                               "the mesh uncertainty '" + spec.mesh_uncertainty + "' does not cover " + spec.quantity,
                                {}, "add it to its list of quantities");
     }
     return quantities.at(spec.quantity).at("standard_uncertainty").get<double>();

@@ -20,13 +20,16 @@ namespace {
 using Name = std::pair<std::string, std::string>;  ///< kind and name, as a person knows them
 
 std::string in_words(const json& value, const std::string& unit = {}) {
-    const std::string text = value.is_string() ? value.get<std::string>() : value.is_number() ? core::format_number(value.get<double>(), 6) : value.dump();
+    const std::string text = value.is_string()   ? value.get<std::string>()
+                             : value.is_number() ? core::format_number(value.get<double>(), 6)
+                                                 : value.dump();
     return unit.empty() || unit == "1" ? text : text + " " + unit;
 }
 
 void facts_of_loads(const json& document, Origin& origin) {
     for (const auto& column : document.value("columns", json::array())) {
-        origin.facts.emplace_back(column.at("name").get<std::string>(), in_words(column.at("value"), column.at("unit").get<std::string>()));
+        origin.facts.emplace_back(column.at("name").get<std::string>(),
+                                  in_words(column.at("value"), column.at("unit").get<std::string>()));
     }
     for (const auto& zone : document.value("zones", json::array())) {
         origin.facts.emplace_back("zone '" + zone.at("name").get<std::string>() + "'",
@@ -58,12 +61,16 @@ void facts_of_table(const json& document, Origin& origin) {
         }
     }
     for (const auto& point : document.value("equilibria", json::array())) {
-        origin.facts.emplace_back(point.value("stable", false) ? "stable gap" : "unstable gap", in_words(point.value("gap", json()), "m"));
+        origin.facts.emplace_back(point.value("stable", false) ? "stable gap" : "unstable gap",
+                                  in_words(point.value("gap", json()), "m"));
     }
 }
 
 void take_facts(const std::string& value, Origin& origin) {
-    const json document = json::parse(value.substr(0, value.find('\n') == std::string::npos || value.front() != '{' ? value.size() : value.find('\n')), nullptr, false);
+    const json document =
+        json::parse(value.substr(0, value.find('\n') == std::string::npos || value.front() != '{' ? value.size()
+                                                                                                  : value.find('\n')),
+                    nullptr, false);
     if (!document.is_object()) {
         return;
     }
@@ -73,12 +80,15 @@ void take_facts(const std::string& value, Origin& origin) {
         facts_of_table(document, origin);
     }
     for (const auto& entry : origin.kind == "region" ? document.value("classes", json::array()) : json::array()) {
-        origin.facts.emplace_back(in_words(entry.at("name")), core::format_number(100 * entry.at("fraction").get<double>(), 4) + " % of the starts");
+        origin.facts.emplace_back(
+            in_words(entry.at("name")),
+            core::format_number(100 * entry.at("fraction").get<double>(), 4) + " % of the starts");
     }
     if (origin.kind == "mesh") {
         const json quantities = document.value("quantities", json::object());
         for (const auto& [quantity, found] : quantities.items()) {
-            origin.facts.emplace_back(quantity, in_words(found.value("verdict", json())) + ", standard uncertainty " + in_words(found.value("standard_uncertainty", json())));
+            origin.facts.emplace_back(quantity, in_words(found.value("verdict", json())) + ", standard uncertainty " +
+                                                    in_words(found.value("standard_uncertainty", json())));
         }
     }
 }
@@ -118,7 +128,8 @@ std::string file_of(const Name& name) {
         return {};
     }
     std::string file = of.substr(0, as);
-    std::replace_if(file.begin(), file.end(), [](char c) { return c == ' ' || c == ','; }, '_');
+    std::replace_if(
+        file.begin(), file.end(), [](char c) { return c == ' ' || c == ','; }, '_');
     for (const auto& format : tables::export_formats()) {
         file += format.name == of.substr(as + 4) ? format.ending : "";
     }
@@ -156,7 +167,8 @@ Name result_called(const Known& known, const std::string& asked, const Study& st
             found.push_back(name);
         }
     }
-    const auto whole = std::find_if(found.begin(), found.end(), [&](const Name& name) { return name.first + "/" + name.second == what; });
+    const auto whole = std::find_if(found.begin(), found.end(),
+                                    [&](const Name& name) { return name.first + "/" + name.second == what; });
     if (whole != found.end()) {
         return *whole;
     }
@@ -170,7 +182,8 @@ Name result_called(const Known& known, const std::string& asked, const Study& st
         for (const auto& [kind, name] : found) {
             list += (list.empty() ? "" : ", ") + kind + "/" + name;
         }
-        throw core::InputError("name", "several results are called '" + what + "': " + list, place, "name it with its kind");
+        throw core::InputError("name", "several results are called '" + what + "': " + list, place,
+                               "name it with its kind");
     }
     return found.front();
 }
@@ -180,7 +193,9 @@ Name result_called(const Known& known, const std::string& asked, const Study& st
 std::vector<Origin> origins(const Study& study, const RunOptions& options, const std::string& what) {
     std::map<Name, StoredResult> known;
     Engine engine(study, options, Engine::Mode::look, core::Progress::none());
-    engine.watch([&](const std::string& shown_name, const StoredResult& result) { known.insert_or_assign({result.kind, shown_name}, result); });
+    engine.watch([&](const std::string& shown_name, const StoredResult& result) {
+        known.insert_or_assign({result.kind, shown_name}, result);
+    });
     look_at_all(engine);
     std::vector<Origin> all;
     std::deque<Name> next = {result_called(known, what, study)};
@@ -222,7 +237,9 @@ void to_json(json& all, const Origin& origin) {
     all["code"] = object(origin.code);
     all["files"] = json::array();
     for (const auto& file : origin.files) {
-        const char* kind = file.kind == core::Input::Kind::content ? "content" : file.kind == core::Input::Kind::names ? "names" : "presence";
+        const char* kind = file.kind == core::Input::Kind::content ? "content"
+                           : file.kind == core::Input::Kind::names ? "names"
+                                                                   : "presence";
         all["files"].push_back({{"path", file.path}, {"kind", kind}, {"state", file.state}});
         if (!file.pattern.empty()) {
             all["files"].back()["pattern"] = file.pattern;

@@ -12,14 +12,17 @@ namespace {
 std::string without_numbers(const std::string& text) {
     std::string words;
     for (std::size_t i = 0; i < text.size();) {
-        const auto digit = [&](std::size_t at) { return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0; };
+        const auto digit = [&](std::size_t at) {
+            return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
+        };
         if (!digit(i) && !((text[i] == '-' || text[i] == '.') && digit(i + 1))) {
             words += text[i++];
             continue;
         }
         words += '#';
         ++i;
-        while (digit(i) || (i < text.size() && text[i] == '.' && digit(i + 1)) || (i < text.size() && text[i] == 'e' && (digit(i + 1) || (i + 1 < text.size() && digit(i + 2))))) {
+        while (digit(i) || (i < text.size() && text[i] == '.' && digit(i + 1)) ||
+               (i < text.size() && text[i] == 'e' && (digit(i + 1) || (i + 1 < text.size() && digit(i + 2))))) {
             i += text[i] == 'e' ? 2 : 1;
         }
     }
@@ -55,7 +58,8 @@ Problems BatchProblems::gathered(bool each) const {
         }
         all.push_back(kind.problems.front());
         if (files.size() > 1) {
-            all.back().message += " (and alike in " + std::to_string(files.size() - 1) + (files.size() == 2 ? " other file)" : " other files)");
+            all.back().message += " (and alike in " + std::to_string(files.size() - 1) +
+                                  (files.size() == 2 ? " other file)" : " other files)");
         }
     }
     return all;

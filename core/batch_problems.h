@@ -14,8 +14,8 @@ class BatchProblems {
 public:
     void add(const std::string& file, const Problems& problems);
 
-    /// One of each kind, in the order they came: the words of the first file that has it, with its name, and in how many
-    /// others it is alike. `each`: all of them.
+    /// One of each kind, in the order they came: the words of the first file that has it, with its name, and in how
+    /// many others it is alike. `each`: all of them.
     [[nodiscard]] Problems gathered(bool each) const;
 
 private:

@@ -12,7 +12,8 @@ namespace underbody::core {
 namespace {
 
 const ClosedForm::Input* find_input(const ClosedForm& form, const std::string& name) {
-    const auto found = std::find_if(form.inputs.begin(), form.inputs.end(), [&](const auto& input) { return input.name == name; });
+    const auto found =
+        std::find_if(form.inputs.begin(), form.inputs.end(), [&](const auto& input) { return input.name == name; });
     return found == form.inputs.end() ? nullptr : &*found;
 }
 
@@ -24,7 +25,8 @@ std::string with_unit(double value, const std::string& unit, int digits) {
 std::pair<std::string, double> read_input(const ClosedForm& form, std::string_view text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos) {
-        throw UsageError("parse", "'" + std::string(text) + "' is not of the form name=value", {}, "such as " + form.inputs.front().name + "=1");
+        throw UsageError("parse", "'" + std::string(text) + "' is not of the form name=value", {},
+                         "such as " + form.inputs.front().name + "=1");
     }
     const std::string name(trimmed(text.substr(0, equals)));
     const ClosedForm::Input* input = find_input(form, name);
@@ -82,10 +84,12 @@ ClosedForm::Values closed_form_values(const ClosedForm& form, const std::vector<
     }
     ClosedForm::Values values;
     for (const auto& input : form.inputs) {
-        const auto found = std::find_if(read.begin(), read.end(), [&](const auto& value) { return value.first == input.name; });
+        const auto found =
+            std::find_if(read.begin(), read.end(), [&](const auto& value) { return value.first == input.name; });
         if (found == read.end() && !input.usual) {
-            throw UsageError("missing", form.name + " needs " + input.name + ": " + input.meaning, {},
-                             "add " + input.name + "=..." + (input.unit == "1" ? "" : " in " + input.unit + " or a unit like it"));
+            throw UsageError(
+                "missing", form.name + " needs " + input.name + ": " + input.meaning, {},
+                "add " + input.name + "=..." + (input.unit == "1" ? "" : " in " + input.unit + " or a unit like it"));
         }
         values.set(input.name, found == read.end() ? *input.usual : found->second);
     }
@@ -103,17 +107,20 @@ const ClosedForm& find_closed_form(const std::vector<ClosedForm>& all, const std
     throw UsageError("name", "there is no theory '" + name + "'", {}, did_you_mean(name, known));
 }
 
-std::string closed_form_text(const ClosedForm& form, const ClosedForm::Values& values, const ClosedForm::Result& result) {
+std::string closed_form_text(const ClosedForm& form, const ClosedForm::Values& values,
+                             const ClosedForm::Result& result) {
     std::size_t width = 0;
     for (const auto& output : result.outputs) {
         width = std::max(width, output.name.size());
     }
     std::string text = form.summary + "\n" + form.formula + "   (" + form.source + ")\nwith";
     for (std::size_t i = 0; i < form.inputs.size(); ++i) {
-        text += std::string(i == 0 ? " " : ", ") + form.inputs[i].name + " " + with_unit(values(form.inputs[i].name), form.inputs[i].unit, 6);
+        text += std::string(i == 0 ? " " : ", ") + form.inputs[i].name + " " +
+                with_unit(values(form.inputs[i].name), form.inputs[i].unit, 6);
     }
     for (const auto& output : result.outputs) {
-        text += "\n  " + output.name + std::string(width - output.name.size() + 2, ' ') + with_unit(output.value, output.unit, 7) + "   " + output.meaning;
+        text += "\n  " + output.name + std::string(width - output.name.size() + 2, ' ') +
+                with_unit(output.value, output.unit, 7) + "   " + output.meaning;
     }
     for (const auto& limit : result.limits) {
         text += std::string("\n") + (limit.holds ? "holds: " : "OUTSIDE ITS RANGE: ") + limit.text;
@@ -121,8 +128,13 @@ std::string closed_form_text(const ClosedForm& form, const ClosedForm::Values& v
     return text;
 }
 
-nlohmann::json closed_form_json(const ClosedForm& form, const ClosedForm::Values& values, const ClosedForm::Result& result) {
-    nlohmann::json json = {{"theory", form.name}, {"summary", form.summary}, {"formula", form.formula}, {"source", form.source}, {"valid", result.valid()}};
+nlohmann::json closed_form_json(const ClosedForm& form, const ClosedForm::Values& values,
+                                const ClosedForm::Result& result) {
+    nlohmann::json json = {{"theory", form.name},
+                           {"summary", form.summary},
+                           {"formula", form.formula},
+                           {"source", form.source},
+                           {"valid", result.valid()}};
     json["inputs"] = nlohmann::json::object();
     for (const auto& value : values.all()) {
         json["inputs"][value.name] = value.value;
@@ -131,7 +143,8 @@ nlohmann::json closed_form_json(const ClosedForm& form, const ClosedForm::Values
     json["results"] = nlohmann::json::array();
     for (const auto& output : result.outputs) {
         json["values"][output.name] = output.value;
-        json["results"].push_back({{"name", output.name}, {"value", output.value}, {"unit", output.unit}, {"meaning", output.meaning}});
+        json["results"].push_back(
+            {{"name", output.name}, {"value", output.value}, {"unit", output.unit}, {"meaning", output.meaning}});
     }
     json["limits"] = nlohmann::json::array();
     for (const auto& limit : result.limits) {

@@ -67,10 +67,12 @@ ClosedForm::Values closed_form_values(const ClosedForm& form, const std::vector<
 const ClosedForm& find_closed_form(const std::vector<ClosedForm>& all, const std::string& name);
 
 /// Inputs, results, formula, source and limits, a line each.
-std::string closed_form_text(const ClosedForm& form, const ClosedForm::Values& values, const ClosedForm::Result& result);
+std::string closed_form_text(const ClosedForm& form, const ClosedForm::Values& values,
+                             const ClosedForm::Result& result);
 
 /// Keys `theory`, `summary`, `formula`, `source`, `inputs` {NAME: value}, `values` {NAME: value}, `results` [{`name`,
 /// `value`, `unit`, `meaning`}], `limits` [{`text`, `holds`}], `valid`. SI.
-nlohmann::json closed_form_json(const ClosedForm& form, const ClosedForm::Values& values, const ClosedForm::Result& result);
+nlohmann::json closed_form_json(const ClosedForm& form, const ClosedForm::Values& values,
+                                const ClosedForm::Result& result);
 
 }  // namespace underbody::core

@@ -69,7 +69,8 @@ struct FigureNote {
     std::string text;
 };
 
-/// A grid of classes over the axes' box (a stability map). `index[j * columns + i]`: i along x, j along y, cell-centred.
+/// A grid of classes over the axes' box (a stability map). `index[j * columns + i]`: i along x, j along y,
+/// cell-centred.
 struct FigureClasses {
     std::size_t columns = 0;
     std::size_t rows = 0;
@@ -87,7 +88,7 @@ struct FigureMap {
     std::vector<double> values;
     std::string label;
     std::string unit;
-    bool diverging = false;  ///< centred on zero
+    bool diverging = false;       ///< centred on zero
     double lower = 0, upper = 0;  ///< colour range; equal: from the data
 };
 

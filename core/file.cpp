@@ -67,7 +67,8 @@ void make_parent(const fs::path& path) {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     if (error) {
-        throw SystemError("write", "the folder cannot be made: " + error.message(), {path.parent_path().string(), {}, {}, {}});
+        throw SystemError("write", "the folder cannot be made: " + error.message(),
+                          {path.parent_path().string(), {}, {}, {}});
     }
 }
 

@@ -7,7 +7,6 @@
 
 namespace underbody::core {
 
-
 namespace {
 
 std::string anchor(std::size_t index) { return "s" + std::to_string(index); }
@@ -20,13 +19,14 @@ bool is_numeric(const std::string& cell) {
 
 std::string figure_of(const HtmlPage::Picture& picture) {
     return "<figure><img alt=\"" + escape_html(picture.alt.empty() ? picture.caption : picture.alt) +
-           "\" src=\"data:image/png;base64," + base64(picture.png) + "\"><figcaption>" +
-           escape_html(picture.caption) + "</figcaption></figure>\n";
+           "\" src=\"data:image/png;base64," + base64(picture.png) + "\"><figcaption>" + escape_html(picture.caption) +
+           "</figcaption></figure>\n";
 }
 
 }  // namespace
 
-HtmlPage::HtmlPage(std::string title, std::string subtitle) : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
+HtmlPage::HtmlPage(std::string title, std::string subtitle)
+    : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
 void HtmlPage::section(const std::string& title) {
     body_ += "<h2 id=\"" + anchor(sections_.size()) + "\">" + escape_html(title) + "</h2>\n";
@@ -42,8 +42,8 @@ void HtmlPage::warning(const std::string& text) { body_ += "<p class=\"warning\"
 void HtmlPage::facts(const std::vector<Fact>& facts) {
     body_ += "<div class=\"facts\">";
     for (const auto& fact : facts) {
-        body_ += "<div class=\"fact\"><span class=\"value\">" + escape_html(fact.value) + "</span><span class=\"label\">" +
-                 escape_html(fact.label) + "</span></div>";
+        body_ += "<div class=\"fact\"><span class=\"value\">" + escape_html(fact.value) +
+                 "</span><span class=\"label\">" + escape_html(fact.label) + "</span></div>";
     }
     body_ += "</div>\n";
 }
@@ -76,7 +76,8 @@ void HtmlPage::table_body(const std::vector<std::string>& header, const std::vec
     for (const auto& row : rows) {
         body_ += "<tr>";
         for (std::size_t i = 0; i < row.size(); ++i) {
-            body_ += std::string("<td") + (i < numeric.size() && numeric[i] ? " class=\"num\"" : "") + ">" + escape_html(row[i]) + "</td>";
+            body_ += std::string("<td") + (i < numeric.size() && numeric[i] ? " class=\"num\"" : "") + ">" +
+                     escape_html(row[i]) + "</td>";
         }
         body_ += "</tr>\n";
     }
@@ -110,10 +111,12 @@ void HtmlPage::link(const std::string& target, const std::string& text) {
 }
 
 std::string HtmlPage::text() const {
-    std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
-                       escape_html(title_) + "</title>\n<style>\n" + std::string(report_style) + "</style></head>\n<body><main>\n<header><h1>" +
-                       escape_html(title_) + "</h1><p class=\"subtitle\">" + escape_html(subtitle_) + "</p></header>\n";
+    std::string page =
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
+        escape_html(title_) + "</title>\n<style>\n" + std::string(report_style) +
+        "</style></head>\n<body><main>\n<header><h1>" + escape_html(title_) + "</h1><p class=\"subtitle\">" +
+        escape_html(subtitle_) + "</p></header>\n";
     page += "<nav class=\"contents\"><ol>";
     for (std::size_t i = 0; i < sections_.size(); ++i) {
         page += "<li><a href=\"#" + anchor(i) + "\">" + escape_html(sections_[i]) + "</a></li>";

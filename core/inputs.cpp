@@ -108,7 +108,8 @@ void note(const Input& input) {
     for (const RecordInputs* scope = current_scope; scope != nullptr; scope = scope->outer_) {
         if (scope->record_ != nullptr) {
             scope->record_->add(input);
-        } else if (input.path.native().starts_with(scope->own_folder_.native() + "/") || input.path == scope->own_folder_) {
+        } else if (input.path.native().starts_with(scope->own_folder_.native() + "/") ||
+                   input.path == scope->own_folder_) {
             return;
         }
     }

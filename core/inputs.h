@@ -20,9 +20,9 @@ struct FileStamp {
     Kind kind = Kind::absent;
     std::uint64_t device = 0;
     std::uint64_t inode = 0;
-    std::int64_t size = 0;          ///< bytes
-    std::int64_t modified = 0;      ///< ns since 1970, of the content
-    std::int64_t changed = 0;       ///< ns since 1970, of the content or of what is stated about it; no user sets it
+    std::int64_t size = 0;      ///< bytes
+    std::int64_t modified = 0;  ///< ns since 1970, of the content
+    std::int64_t changed = 0;   ///< ns since 1970, of the content or of what is stated about it; no user sets it
 
     bool operator==(const FileStamp&) const = default;
 };

@@ -53,7 +53,9 @@ bool same_words(const std::vector<std::string>& given, std::vector<std::string> 
         return false;
     }
     for (const auto& word : given) {
-        const auto at = std::find_if(wanted.begin(), wanted.end(), [&](const std::string& other) { return other.starts_with(word) && word.size() >= 2; });
+        const auto at = std::find_if(wanted.begin(), wanted.end(), [&](const std::string& other) {
+            return other.starts_with(word) && word.size() >= 2;
+        });
         if (at == wanted.end()) {
             return false;
         }
@@ -65,17 +67,45 @@ bool same_words(const std::vector<std::string>& given, std::vector<std::string> 
 /// What loggers and post-processors call them.
 const std::map<std::string, std::string>& other_names() {
     static const std::map<std::string, std::string> names = {
-        {"t", "time"}, {"seconds", "time"}, {"timestamp", "time"},
-        {"h", "gap"}, {"clearance", "gap"}, {"ride_height", "gap"}, {"ground_clearance", "gap"},
-        {"theta", "pitch"}, {"trim", "pitch"}, {"trim_angle", "pitch"}, {"pitch_angle", "pitch"}, {"alpha", "pitch"}, {"aoa", "pitch"},
-        {"velocity", "speed"}, {"flow_speed", "speed"}, {"u_inf", "speed"}, {"v_inf", "speed"},
-        {"vz", "heave_velocity"}, {"w", "heave_velocity"}, {"dhdt", "heave_velocity"}, {"gap_rate", "heave_velocity"}, {"heave_rate", "heave_velocity"},
-        {"vertical_velocity", "heave_velocity"}, {"velocity_z", "heave_velocity"},
-        {"q", "pitch_rate"}, {"theta_dot", "pitch_rate"},
-        {"voltage", "jet_voltage"}, {"volts", "jet_voltage"},
-        {"u", "input_force"}, {"control_force", "input_force"}, {"force_command", "input_force"}, {"actuator_force", "input_force"},
-        {"lift", "lift_force"}, {"fz", "lift_force"}, {"drag", "drag_force"}, {"fx", "drag_force"}, {"my", "pitch_moment"},
-        {"temp", "temperature"}, {"water_temperature", "temperature"},
+        {"t", "time"},
+        {"seconds", "time"},
+        {"timestamp", "time"},
+        {"h", "gap"},
+        {"clearance", "gap"},
+        {"ride_height", "gap"},
+        {"ground_clearance", "gap"},
+        {"theta", "pitch"},
+        {"trim", "pitch"},
+        {"trim_angle", "pitch"},
+        {"pitch_angle", "pitch"},
+        {"alpha", "pitch"},
+        {"aoa", "pitch"},
+        {"velocity", "speed"},
+        {"flow_speed", "speed"},
+        {"u_inf", "speed"},
+        {"v_inf", "speed"},
+        {"vz", "heave_velocity"},
+        {"w", "heave_velocity"},
+        {"dhdt", "heave_velocity"},
+        {"gap_rate", "heave_velocity"},
+        {"heave_rate", "heave_velocity"},
+        {"vertical_velocity", "heave_velocity"},
+        {"velocity_z", "heave_velocity"},
+        {"q", "pitch_rate"},
+        {"theta_dot", "pitch_rate"},
+        {"voltage", "jet_voltage"},
+        {"volts", "jet_voltage"},
+        {"u", "input_force"},
+        {"control_force", "input_force"},
+        {"force_command", "input_force"},
+        {"actuator_force", "input_force"},
+        {"lift", "lift_force"},
+        {"fz", "lift_force"},
+        {"drag", "drag_force"},
+        {"fx", "drag_force"},
+        {"my", "pitch_moment"},
+        {"temp", "temperature"},
+        {"water_temperature", "temperature"},
     };
     return names;
 }
@@ -104,11 +134,14 @@ std::string meant_quantity(const Column& column) {
     if (find_quantity(column.name) != nullptr || column.name.ends_with("_sigma")) {
         return {};
     }
-    const bool numbers = !column.is_text() || std::all_of(column.text.begin(), column.text.end(), [](const std::string& field) {
-        return trimmed(field).empty() || parse_number(field).has_value();
-    });
+    const bool numbers =
+        !column.is_text() || std::all_of(column.text.begin(), column.text.end(), [](const std::string& field) {
+            return trimmed(field).empty() || parse_number(field).has_value();
+        });
     const std::string meant = numbers ? named_like(column.name) : std::string();
-    return meant.empty() || (!column.is_text() && !same_dimension(column.unit, find_quantity(meant)->unit)) ? std::string() : meant;
+    return meant.empty() || (!column.is_text() && !same_dimension(column.unit, find_quantity(meant)->unit))
+               ? std::string()
+               : meant;
 }
 
 std::string heading_for(const Column& column, const std::string& quantity) {

@@ -34,7 +34,8 @@ Part braced(const std::string& inside, const std::string& pattern) {
     }
     part.unit = std::string(trimmed(inside.substr(colon + 1)));
     if (const std::string meant = mistyped_quantity(part.value); !meant.empty()) {
-        throw UsageError("name", "{" + inside + "} in the pattern: there is no quantity '" + part.value + "'", {}, "did you mean '" + meant + "'?");
+        throw UsageError("name", "{" + inside + "} in the pattern: there is no quantity '" + part.value + "'", {},
+                         "did you mean '" + meant + "'?");
     }
     try {
         const QuantityName* quantity = find_quantity(part.value);
@@ -172,7 +173,8 @@ std::string NamePattern::why_not(const fs::path& path, const fs::path& root) con
         part.kind = part.kind == Part::Kind::number ? Part::Kind::text : part.kind;
     }
     const bool absolute = !pattern_.empty() && pattern_.front() == '/';
-    const auto found = match_all(loose, (absolute ? path : path.lexically_relative(root.lexically_normal())).generic_string());
+    const auto found =
+        match_all(loose, (absolute ? path : path.lexically_relative(root.lexically_normal())).generic_string());
     std::size_t text = 0;
     for (std::size_t i = 0; found && i < parts_.size(); ++i) {
         if (parts_[i].kind != Part::Kind::number && parts_[i].kind != Part::Kind::text) {
@@ -183,8 +185,10 @@ std::string NamePattern::why_not(const fs::path& path, const fs::path& root) con
             continue;
         }
         const std::string brace = "{" + parts_[i].value + ":" + parts_[i].unit + "}";
-        if (i + 1 < parts_.size() && parts_[i + 1].kind == Part::Kind::text && parse_number(word + found->texts[text].second)) {
-            return "nothing is left for {" + parts_[i + 1].value + "} behind the number " + word + found->texts[text].second;
+        if (i + 1 < parts_.size() && parts_[i + 1].kind == Part::Kind::text &&
+            parse_number(word + found->texts[text].second)) {
+            return "nothing is left for {" + parts_[i + 1].value + "} behind the number " + word +
+                   found->texts[text].second;
         }
         if (word.ends_with(parts_[i].unit) && parse_number(word.substr(0, word.size() - parts_[i].unit.size()))) {
             return "'" + word + "' carries its unit: write " + brace + parts_[i].unit;
@@ -194,7 +198,8 @@ std::string NamePattern::why_not(const fs::path& path, const fs::path& root) con
     return "it does not fit";
 }
 
-std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& parts, const fs::path& root, bool folders) const {
+std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& parts, const fs::path& root,
+                                                      bool folders) const {
     // Walk from the last folder that stands before the first brace or star.
     const std::size_t first = pattern_.find_first_of("{*?");
     const std::size_t slash = first == std::string::npos ? pattern_.rfind('/') : pattern_.rfind('/', first);
@@ -205,9 +210,11 @@ std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& p
     if (!absolute && !fs::exists(root, error)) {
         start = start.lexically_normal();  // "new/../fields" is there before "new" is
     }
-    const std::string before = start.native().ends_with('/') ? start.native() : start.native() + "/";  // of what the walk gives
-    const auto depth = std::count(pattern_.begin() + static_cast<std::ptrdiff_t>(slash == std::string::npos ? 0 : slash + 1),
-                                  pattern_.end(), '/');
+    const std::string before =
+        start.native().ends_with('/') ? start.native() : start.native() + "/";  // of what the walk gives
+    const auto depth =
+        std::count(pattern_.begin() + static_cast<std::ptrdiff_t>(slash == std::string::npos ? 0 : slash + 1),
+                   pattern_.end(), '/');
     std::vector<Found> found;
     for (auto entry = fs::recursive_directory_iterator(start, fs::directory_options::skip_permission_denied, error);
          !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {

@@ -20,7 +20,7 @@ public:
     explicit NamePattern(std::string pattern);
 
     struct Match {
-        std::vector<std::pair<std::string, double>> numbers;       ///< SI
+        std::vector<std::pair<std::string, double>> numbers;  ///< SI
         std::vector<std::pair<std::string, std::string>> texts;
     };
     /// Nothing when the whole text does not fit.
@@ -30,13 +30,14 @@ public:
         std::filesystem::path path;
         Match match;
     };
-    /// All files that fit, by their texts, then by their numbers, then by name; the pattern may have several folders. `root` is where a relative pattern starts.
+    /// All files that fit, by their texts, then by their numbers, then by name; the pattern may have several folders.
+    /// `root` is where a relative pattern starts.
     [[nodiscard]] std::vector<Found> files(const std::filesystem::path& root = ".") const;
     /// The same, with the folders that fit.
     [[nodiscard]] std::vector<Found> files_and_folders(const std::filesystem::path& root = ".") const;
 
-    /// Files that would fit if every `{name:unit}` took any text ("run-h5O.csv", "run-h10-old.csv"), by name: what `files` passes over is seldom
-    /// meant to be left out.
+    /// Files that would fit if every `{name:unit}` took any text ("run-h5O.csv", "run-h10-old.csv"), by name: what
+    /// `files` passes over is seldom meant to be left out.
     [[nodiscard]] std::vector<std::filesystem::path> near_misses(const std::filesystem::path& root = ".") const;
 
     /// Why a near miss does not fit: "'5mm' is no number: write {gap:mm}mm where the names carry the unit".
@@ -54,7 +55,8 @@ public:
     [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
 private:
-    std::vector<Found> files_of(const std::vector<Part>& parts, const std::filesystem::path& root, bool folders = false) const;
+    std::vector<Found> files_of(const std::vector<Part>& parts, const std::filesystem::path& root,
+                                bool folders = false) const;
 
     std::string pattern_;
     std::vector<Part> parts_;

@@ -22,7 +22,8 @@ constexpr const char* attribute = "user.underbody";
 std::atomic<bool> protecting{false};
 
 std::string stamp_of(const struct stat& status) {
-    return std::to_string(status.st_size) + " " + std::to_string(status.st_mtim.tv_sec) + "." + std::to_string(status.st_mtim.tv_nsec);
+    return std::to_string(status.st_size) + " " + std::to_string(status.st_mtim.tv_sec) + "." +
+           std::to_string(status.st_mtim.tv_nsec);
 }
 
 /// What a picture of that ending begins with; nothing for others.
@@ -56,8 +57,9 @@ void protect_other_files(bool on) { protecting = on; }
 
 void refuse_other_file(const fs::path& path) {
     if (protecting && !may_replace(path)) {
-        throw InputError("exists", "the file is there already, and was not written by this program or was changed since", {path.string(), {}, {}, {}},
-                         "choose another name");
+        throw InputError("exists",
+                         "the file is there already, and was not written by this program or was changed since",
+                         {path.string(), {}, {}, {}}, "choose another name");
     }
 }
 

@@ -1,16 +1,16 @@
 // Files of others are not overwritten: which files this program wrote, and the refusal to replace any other.
 //
-// A file written whole (`write_file`, `PendingFile`) carries an extended attribute `user.underbody` with its size and time
-// of change; a file that lacks it, or was changed since, is somebody else's. Where the file system keeps no attributes
-// nothing can be known of text files; pictures are then told by their first bytes.
+// A file written whole (`write_file`, `PendingFile`) carries an extended attribute `user.underbody` with its size and
+// time of change; a file that lacks it, or was changed since, is somebody else's. Where the file system keeps no
+// attributes nothing can be known of text files; pictures are then told by their first bytes.
 #pragma once
 
 #include <filesystem>
 
 namespace underbody::core {
 
-/// True when nothing of anybody else would be lost by replacing the file: it is missing or empty, is no regular file, or
-/// this program wrote it and nobody changed it since.
+/// True when nothing of anybody else would be lost by replacing the file: it is missing or empty, is no regular file,
+/// or this program wrote it and nobody changed it since.
 bool may_replace(const std::filesystem::path& path);
 
 /// From now on writing over a file of somebody else throws InputError (kind "exists"). Off at the start: a program that

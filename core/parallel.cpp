@@ -37,10 +37,10 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
     block = std::max<std::size_t>(1, block);
     const std::size_t blocks = (count + block - 1) / block;
     const RecordInputs* const scope = InputScope::current();
-    // Whoever waits for a loop within a loop does not take up a part of the outer one meanwhile: what a part holds, a lock or a
-    // claim, would be held while it waits for what another holds.
-    // A loop within a loop does all its parts or throws: without a context of its own it would end early, without a word, when
-    // another part of the outer loop throws, and its caller would go on with what is half done.
+    // Whoever waits for a loop within a loop does not take up a part of the outer one meanwhile: what a part holds, a
+    // lock or a claim, would be held while it waits for what another holds. A loop within a loop does all its parts or
+    // throws: without a context of its own it would end early, without a word, when another part of the outer loop
+    // throws, and its caller would go on with what is half done.
     tbb::task_group_context own(tbb::task_group_context::isolated);
     tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(
@@ -56,7 +56,8 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
 }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, Progress& progress) {
-    parallel_blocks(count, 1, [&](std::size_t begin, std::size_t) { body(begin); }, progress);
+    parallel_blocks(
+        count, 1, [&](std::size_t begin, std::size_t) { body(begin); }, progress);
 }
 
 }  // namespace underbody::core

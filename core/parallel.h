@@ -18,6 +18,7 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
                      Progress& progress = Progress::none());
 
 /// Calls body(i) for each i in [0, count).
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, Progress& progress = Progress::none());
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
+                  Progress& progress = Progress::none());
 
 }  // namespace underbody::core

@@ -34,7 +34,8 @@ std::optional<Type> type_of(std::string_view word) {
                                                                               {"float32", Type::float32},
                                                                               {"double", Type::float64},
                                                                               {"float64", Type::float64}}};
-    const auto* const found = std::find_if(words.begin(), words.end(), [&](const auto& known) { return known.first == word; });
+    const auto* const found =
+        std::find_if(words.begin(), words.end(), [&](const auto& known) { return known.first == word; });
     return found != words.end() ? std::optional(found->second) : std::nullopt;
 }
 
@@ -105,7 +106,8 @@ private:
     }
     [[noreturn]] void cut_short(const PlyElement& element, std::size_t item) const {
         throw InputError("truncated", "the file ends within " + element.item(item),
-                         {file_, {}, {}, static_cast<std::int64_t>(bytes_.size())}, "the file was cut short: write it again");
+                         {file_, {}, {}, static_cast<std::int64_t>(bytes_.size())},
+                         "the file was cut short: write it again");
     }
 
     std::optional<std::string_view> next_line() {
@@ -128,7 +130,8 @@ private:
         for (;;) {
             const auto line = next_line();
             if (!line) {
-                wrong("the file ends within its header: there is no 'end_header'", "the file was cut short: write it again");
+                wrong("the file ends within its header: there is no 'end_header'",
+                      "the file was cut short: write it again");
             }
             const auto words = words_of(*line);
             if (words.empty() || words[0] == "obj_info") {
@@ -168,7 +171,8 @@ private:
         } else if (first == "property" && words.size() > 2 && !layouts_.empty()) {
             read_property(words);
         } else {
-            wrong("a header line '" + first + "' that makes no sense here", "format, element, property, comment, end_header");
+            wrong("a header line '" + first + "' that makes no sense here",
+                  "format, element, property, comment, end_header");
         }
     }
 
@@ -208,9 +212,10 @@ private:
         const std::size_t left = bytes_.size() - at_ + (in_text_ ? 1 : 0);
         if (layouts.empty() ? element.count > left : element.count > left / least) {
             throw InputError("truncated",
-                             "the header states " + std::to_string(element.count) + " of '" + element.name + "', for which " +
-                                 std::to_string(bytes_.size() - at_) + " bytes are too few",
-                             {file_, {}, {}, static_cast<std::int64_t>(bytes_.size())}, "the file was cut short: write it again");
+                             "the header states " + std::to_string(element.count) + " of '" + element.name +
+                                 "', for which " + std::to_string(bytes_.size() - at_) + " bytes are too few",
+                             {file_, {}, {}, static_cast<std::int64_t>(bytes_.size())},
+                             "the file was cut short: write it again");
         }
         for (auto& property : element.properties) {
             property.values.reserve(element.count);
@@ -253,7 +258,8 @@ private:
                 if (!(length >= 0) || length != std::floor(length)) {
                     wrong("a list of " + format_number(length) + " values");
                 }
-                values = length > static_cast<double>(words.size()) ? words.size() + 1 : static_cast<std::size_t>(length);
+                values =
+                    length > static_cast<double>(words.size()) ? words.size() + 1 : static_cast<std::size_t>(length);
             }
             for (std::size_t k = 0; k < values; ++k) {
                 property.values.push_back(number());
@@ -344,7 +350,8 @@ private:
 }  // namespace
 
 const PlyProperty* PlyElement::find(std::string_view property) const {
-    const auto found = std::find_if(properties.begin(), properties.end(), [&](const auto& p) { return p.name == property; });
+    const auto found =
+        std::find_if(properties.begin(), properties.end(), [&](const auto& p) { return p.name == property; });
     return found != properties.end() ? &*found : nullptr;
 }
 
@@ -365,13 +372,14 @@ PlyPoints ply_points(const PlyFile& ply, const std::string& file) {
     for (std::size_t k = 0; k < 3; ++k) {
         axes[k] = vertices != nullptr ? vertices->find(std::array{"x", "y", "z"}[k]) : nullptr;
         if (axes[k] == nullptr || axes[k]->list) {
-            throw InputError("format", vertices == nullptr ? "the PLY has no element 'vertex'" : "its vertices have no x, y and z",
-                             {file, {}, {}, {}});
+            throw InputError(
+                "format", vertices == nullptr ? "the PLY has no element 'vertex'" : "its vertices have no x, y and z",
+                {file, {}, {}, {}});
         }
         for (std::size_t i = 0; i < vertices->count; ++i) {
             if (!std::isfinite(axes[k]->values[i])) {
-                throw InputError("number", vertices->item(i) + " has a coordinate that is not a finite number", {file, {}, {}, {}},
-                                 "a mesh of finite coordinates");
+                throw InputError("number", vertices->item(i) + " has a coordinate that is not a finite number",
+                                 {file, {}, {}, {}}, "a mesh of finite coordinates");
             }
         }
     }
@@ -393,7 +401,8 @@ const PlyProperty* ply_corners(const PlyFile& ply, const std::string& file) {
     for (std::size_t i = 0; i < faces->count; ++i) {
         const std::size_t end = corners->list_begin[i + 1];
         if (end < corners->list_begin[i] + 3) {
-            throw InputError("index", faces->item(i) + " has " + std::to_string(end - corners->list_begin[i]) + " corners",
+            throw InputError("index",
+                             faces->item(i) + " has " + std::to_string(end - corners->list_begin[i]) + " corners",
                              {file, {}, {}, {}}, "three are the fewest");
         }
         for (std::size_t k = corners->list_begin[i]; k < end; ++k) {

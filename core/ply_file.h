@@ -13,8 +13,9 @@ namespace underbody::core {
 struct PlyProperty {
     std::string name;
     bool list = false;
-    std::vector<double> values;           ///< a number an item; of a list all items' values one after the other
-    std::vector<std::size_t> list_begin;  ///< of a list: item i holds values[list_begin[i]] to before values[list_begin[i + 1]]
+    std::vector<double> values;  ///< a number an item; of a list all items' values one after the other
+    std::vector<std::size_t>
+        list_begin;  ///< of a list: item i holds values[list_begin[i]] to before values[list_begin[i + 1]]
 };
 
 struct PlyElement {

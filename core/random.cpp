@@ -61,6 +61,8 @@ double Random::normal() {
     return u * factor;
 }
 
-std::size_t Random::below(std::size_t count) { return static_cast<std::size_t>(uniform() * static_cast<double>(count)); }
+std::size_t Random::below(std::size_t count) {
+    return static_cast<std::size_t>(uniform() * static_cast<double>(count));
+}
 
 }  // namespace underbody::core

@@ -38,7 +38,8 @@ const std::vector<double>& Table::numbers(std::string_view name) const {
                          did_you_mean(std::string(name), names_of(columns_)));
     }
     if (column->is_text()) {
-        throw InputError("unit", "column '" + std::string(name) + "' has no unit, so it holds text", {source, {}, {}, {}},
+        throw InputError("unit", "column '" + std::string(name) + "' has no unit, so it holds text",
+                         {source, {}, {}, {}},
                          "write its unit in the header: '" + std::string(name) + " [unit]', [1] for a pure number");
     }
     return column->numbers;
@@ -54,7 +55,8 @@ const std::vector<std::string>& Table::text(std::string_view name) const {
             }
         }
         throw InputError("missing", "there is no text column '" + std::string(name) + "'", {source, {}, {}, {}},
-                         texts.empty() ? "no column holds text: its header has no unit in brackets" : did_you_mean(std::string(name), texts));
+                         texts.empty() ? "no column holds text: its header has no unit in brackets"
+                                       : did_you_mean(std::string(name), texts));
     }
     return column->text;
 }
@@ -228,8 +230,12 @@ Table read_csv(std::string_view bytes, const std::string& source) {
         const auto cells = split(line, ',');
         if (headings.empty()) {
             if (cells.size() == 1 && line.find_first_of(";\t") != std::string_view::npos) {
-                throw InputError("parse", std::string("the columns are separated by ") + (line.find(';') != std::string_view::npos ? "';'" : "tabulators") + ", not by commas",
-                                 {source, line_number, {}, {}}, "separate them by commas, and write numbers with '.' as decimal point");
+                throw InputError("parse",
+                                 std::string("the columns are separated by ") +
+                                     (line.find(';') != std::string_view::npos ? "';'" : "tabulators") +
+                                     ", not by commas",
+                                 {source, line_number, {}, {}},
+                                 "separate them by commas, and write numbers with '.' as decimal point");
             }
             for (std::size_t i = 0; i < cells.size(); ++i) {
                 const Place place{source, line_number, static_cast<std::int64_t>(i) + 1, {}};
@@ -244,13 +250,15 @@ Table read_csv(std::string_view bytes, const std::string& source) {
         }
         if (cells.size() != headings.size()) {
             if (const std::string quoted = quoted_decimal_comma(line); !quoted.empty()) {
-                throw InputError("parse", quoted + " is a number with a decimal comma", {source, line_number, {}, {}}, "write it with '.' as decimal point, without quotes");
+                throw InputError("parse", quoted + " is a number with a decimal comma", {source, line_number, {}, {}},
+                                 "write it with '.' as decimal point, without quotes");
             }
-            throw InputError("ragged",
-                             "this line has " + std::to_string(cells.size()) + " fields, the header " +
-                                 std::to_string(headings.size()),
-                             {source, line_number, static_cast<std::int64_t>(std::min(cells.size(), headings.size())) + 1, {}},
-                             "numbers use '.' as decimal point; a missing value is an empty field");
+            throw InputError(
+                "ragged",
+                "this line has " + std::to_string(cells.size()) + " fields, the header " +
+                    std::to_string(headings.size()),
+                {source, line_number, static_cast<std::int64_t>(std::min(cells.size(), headings.size())) + 1, {}},
+                "numbers use '.' as decimal point; a missing value is an empty field");
         }
         for (std::size_t i = 0; i < cells.size(); ++i) {
             Column& column = table.columns_[i];
@@ -266,11 +274,12 @@ Table read_csv(std::string_view bytes, const std::string& source) {
             const auto value = parse_number(cell);
             const Place place{source, line_number, static_cast<std::int64_t>(i) + 1, {}};
             if (!value) {
-                throw InputError("parse", "column '" + column.name + "': '" + std::string(cell) + "' is not a number", place);
+                throw InputError("parse", "column '" + column.name + "': '" + std::string(cell) + "' is not a number",
+                                 place);
             }
             if (!std::isfinite(*value)) {
-                throw InputError("range", "column '" + column.name + "': '" + std::string(cell) + "' is not finite", place,
-                                 "leave the field empty for a missing value");
+                throw InputError("range", "column '" + column.name + "': '" + std::string(cell) + "' is not finite",
+                                 place, "leave the field empty for a missing value");
             }
             column.numbers.push_back(headings[i].to_si(*value));
         }

@@ -13,8 +13,8 @@ namespace underbody::core {
 /// One column. Numbers are SI whatever unit the file had; a missing value is NaN; text columns have `text` only.
 struct Column {
     std::string name;
-    std::string unit;               ///< SI unit of `numbers` ("" for text, "1" for pure numbers)
-    std::string written_unit;       ///< the unit of the file it came from, or the one to write in
+    std::string unit;          ///< SI unit of `numbers` ("" for text, "1" for pure numbers)
+    std::string written_unit;  ///< the unit of the file it came from, or the one to write in
     std::vector<double> numbers;
     std::vector<std::string> text;
 
@@ -37,7 +37,8 @@ public:
     [[nodiscard]] const std::vector<double>& numbers(std::string_view name) const;
     [[nodiscard]] const std::vector<std::string>& text(std::string_view name) const;
 
-    /// `values` in SI. `written_unit` (default: the SI unit) is used by the writer. Sizes must agree with the rows there are.
+    /// `values` in SI. `written_unit` (default: the SI unit) is used by the writer. Sizes must agree with the rows
+    /// there are.
     void add_numbers(std::string name, std::string si_unit, std::vector<double> values, std::string written_unit = {});
     void add_text(std::string name, std::vector<std::string> values);
 

@@ -207,7 +207,8 @@ std::string TomlTable::choice(std::string_view key, const std::vector<std::strin
             return chosen;
         }
     }
-    throw InputError("name", path_of(key) + ": '" + chosen + "' is not known", place(key), did_you_mean(chosen, choices));
+    throw InputError("name", path_of(key) + ": '" + chosen + "' is not known", place(key),
+                     did_you_mean(chosen, choices));
 }
 
 std::vector<std::string> TomlTable::strings(std::string_view key) const {
@@ -436,12 +437,23 @@ std::string toml_string(std::string_view text) {
     std::string result = "\"";
     for (const char c : text) {
         switch (c) {
-            case '"': result += "\\\""; break;
-            case '\\': result += "\\\\"; break;
-            case '\n': result += "\\n"; break;
-            case '\t': result += "\\t"; break;
-            case '\r': result += "\\r"; break;
-            default: result += c;
+            case '"':
+                result += "\\\"";
+                break;
+            case '\\':
+                result += "\\\\";
+                break;
+            case '\n':
+                result += "\\n";
+                break;
+            case '\t':
+                result += "\\t";
+                break;
+            case '\r':
+                result += "\\r";
+                break;
+            default:
+                result += c;
         }
     }
     return result + "\"";

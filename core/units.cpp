@@ -67,9 +67,9 @@ public:
     /// Names of units near to a mistyped one, for the hint of an error.
     static const std::vector<std::string>& common() {
         static const std::vector<std::string> names = {
-            "m",   "mm",  "cm",  "km",  "inch", "ft",   "kg",  "g",    "s",   "ms",    "min", "h",  "N",   "mN",
-            "kN",  "gf",  "Pa",  "kPa", "MPa",  "bar",  "atm", "psi",  "deg", "rad",   "Hz",  "K",  "degC", "V",
-            "m/s", "mm/s", "km/h", "kg/m^3", "m^2/s", "Pa s", "N m", "N s/m", "m^3/s", "mL/s", "1", "%", "J", "W"};
+            "m",   "mm",   "cm",   "km",     "inch",  "ft",   "kg",  "g",     "s",     "ms",   "min", "h", "N",    "mN",
+            "kN",  "gf",   "Pa",   "kPa",    "MPa",   "bar",  "atm", "psi",   "deg",   "rad",  "Hz",  "K", "degC", "V",
+            "m/s", "mm/s", "km/h", "kg/m^3", "m^2/s", "Pa s", "N m", "N s/m", "m^3/s", "mL/s", "1",   "%", "J",    "W"};
         return names;
     }
 
@@ -91,7 +91,9 @@ private:
 
     /// UDUNITS reads "m 3" as three metres; in a file that is a slip of the pen. Exponents and "1/s" stay allowed.
     static bool has_factor(const std::string& key) {
-        const auto digit = [&key](std::size_t i) { return i < key.size() && std::isdigit(static_cast<unsigned char>(key[i])) != 0; };
+        const auto digit = [&key](std::size_t i) {
+            return i < key.size() && std::isdigit(static_cast<unsigned char>(key[i])) != 0;
+        };
         if (digit(0) && !(key[0] == '1' && !digit(1) && (key.size() == 1 || key[1] != '.'))) {
             return true;
         }
@@ -178,7 +180,8 @@ Conversion conversion(std::string_view from, std::string_view to, const Place& p
             throw InputError("unit",
                              none(to) ? "'" + std::string(from) + "' is a unit, but a plain number is wanted here"
                                       : "a plain number, but a unit like '" + std::string(to) + "' is wanted here",
-                             place, none(to) ? "write the number without a unit" : "give the value in " + std::string(to));
+                             place,
+                             none(to) ? "write the number without a unit" : "give the value in " + std::string(to));
         }
         // A word that happens to be another unit ("degr") is often meant for one of the right dimension.
         std::vector<std::string> fitting;
@@ -190,8 +193,9 @@ Conversion conversion(std::string_view from, std::string_view to, const Place& p
         }
         const std::string near = nearest_name(std::string(from), fitting);
         throw InputError("unit",
-                         "unit '" + std::string(from) + "' has another dimension than '" + std::string(to) + "'",
-                         place, near.empty() ? "give the value in " + std::string(to) + " or a unit of the same dimension" : "did you mean '" + near + "'?");
+                         "unit '" + std::string(from) + "' has another dimension than '" + std::string(to) + "'", place,
+                         near.empty() ? "give the value in " + std::string(to) + " or a unit of the same dimension"
+                                      : "did you mean '" + near + "'?");
     }
     const double at_zero = cv_convert_double(converter.get(), 0.0);
     const double at_one = cv_convert_double(converter.get(), 1.0);
@@ -208,10 +212,9 @@ double convert(double value, std::string_view from, std::string_view to, const P
 
 std::string si_unit(std::string_view unit, const Place& place) {
     static const std::vector<std::string> named = {
-        "1",       "m",       "m^2",     "m^3",   "kg",      "s",       "K",        "V",       "A",
-        "m/s",     "m/s^2",   "Hz",    "N",       "Pa",      "N m",         "W",        "kg/m^3",  "m^2/s",
-        "Pa s",    "m^3/s",   "kg/s",    "N/m",   "N s/m",   "N s^2/m^2", "kg m^2",    "N m s",   "W/m^2",
-        "m^2/s^2", "m^2/s^3", "J/kg",    "J/kg/K", "W/m/K",  "1/m"};
+        "1",     "m",         "m^2",    "m^3",   "kg",    "s",       "K",       "V",    "A",      "m/s",   "m/s^2",
+        "Hz",    "N",         "Pa",     "N m",   "W",     "kg/m^3",  "m^2/s",   "Pa s", "m^3/s",  "kg/s",  "N/m",
+        "N s/m", "N s^2/m^2", "kg m^2", "N m s", "W/m^2", "m^2/s^2", "m^2/s^3", "J/kg", "J/kg/K", "W/m/K", "1/m"};
     if (!is_unit(unit)) {
         unknown_unit(unit, place);
     }
@@ -252,10 +255,12 @@ Quantity parse_quantity(std::string_view text, const Place& place) {
     std::size_t end = 0;
     while (end < whole.size()) {
         const char c = whole[end];
-        const bool exponent_sign = (c == '+' || c == '-') && end > 0 && (whole[end - 1] == 'e' || whole[end - 1] == 'E');
+        const bool exponent_sign =
+            (c == '+' || c == '-') && end > 0 && (whole[end - 1] == 'e' || whole[end - 1] == 'E');
         const bool leading_sign = (c == '+' || c == '-') && end == 0;
-        const bool exponent = (c == 'e' || c == 'E') && end > 0 && end + 1 < whole.size() &&
-                              (whole[end + 1] == '+' || whole[end + 1] == '-' || (whole[end + 1] >= '0' && whole[end + 1] <= '9'));
+        const bool exponent =
+            (c == 'e' || c == 'E') && end > 0 && end + 1 < whole.size() &&
+            (whole[end + 1] == '+' || whole[end + 1] == '-' || (whole[end + 1] >= '0' && whole[end + 1] <= '9'));
         if ((c >= '0' && c <= '9') || c == '.' || exponent_sign || leading_sign || exponent) {
             ++end;
         } else {

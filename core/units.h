@@ -28,8 +28,8 @@ struct Conversion {
 };
 Conversion conversion(std::string_view from, std::string_view to, const Place& place = {});
 
-/// The coherent SI unit of the same dimension: "mm" -> "m", "bar" -> "Pa", "km/h" -> "m/s", "deg" -> "rad", "degC" -> "K".
-/// Common derived units come out under their own names (N, Pa, N m, N s/m ...), others as products of base units.
+/// The coherent SI unit of the same dimension: "mm" -> "m", "bar" -> "Pa", "km/h" -> "m/s", "deg" -> "rad", "degC" ->
+/// "K". Common derived units come out under their own names (N, Pa, N m, N s/m ...), others as products of base units.
 std::string si_unit(std::string_view unit, const Place& place = {});
 
 /// A number with its unit, as it stands in files and on the command line.

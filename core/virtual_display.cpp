@@ -86,8 +86,11 @@ VirtualDisplay::VirtualDisplay(int width, int height) {
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
         throw SystemError("display", std::string("no pipe: ") + std::strerror(errno));
     }
-    std::vector<std::string> words = {"Xvfb",      "-displayfd", "3",          "-screen", "0", std::to_string(width) + "x" + std::to_string(height) + "x24",
-                                      "-nolisten", "tcp",        "+extension", "GLX",     "-noreset"};
+    std::vector<std::string> words = {
+        "Xvfb",      "-displayfd", "3",
+        "-screen",   "0",          std::to_string(width) + "x" + std::to_string(height) + "x24",
+        "-nolisten", "tcp",        "+extension",
+        "GLX",       "-noreset"};
     std::vector<char*> argv;
     for (auto& word : words) {
         argv.push_back(word.data());

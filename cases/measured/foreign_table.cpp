@@ -11,7 +11,8 @@ namespace underbody::cases {
 std::size_t ForeignTable::column(const std::string& name) const {
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end()) {
-        throw core::InputError("name", "no column '" + name + "'", core::Place{source, 1, {}, {}}, core::did_you_mean(name, header));
+        throw core::InputError("name", "no column '" + name + "'", core::Place{source, 1, {}, {}},
+                               core::did_you_mean(name, header));
     }
     return static_cast<std::size_t>(found - header.begin());
 }
@@ -19,8 +20,9 @@ std::size_t ForeignTable::column(const std::string& name) const {
 double ForeignTable::number(std::size_t row, std::size_t column_index) const {
     const auto value = core::parse_number(rows[row][column_index]);
     if (!value) {
-        throw core::InputError("parse", "'" + rows[row][column_index] + "' is not a number",
-                               core::Place{source, static_cast<std::int64_t>(row) + 2, static_cast<std::int64_t>(column_index) + 1, {}});
+        throw core::InputError(
+            "parse", "'" + rows[row][column_index] + "' is not a number",
+            core::Place{source, static_cast<std::int64_t>(row) + 2, static_cast<std::int64_t>(column_index) + 1, {}});
     }
     return *value;
 }

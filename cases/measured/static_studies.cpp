@@ -26,23 +26,29 @@ double factor_of(const std::vector<double>& shape, const std::vector<double>& me
 struct StaticSet {
     std::string title;
     std::string quantity, unit;
-    std::string table;                                          ///< of the declared model, as CSV
-    std::string scale;                                          ///< of its force source, as TOML
+    std::string table;  ///< of the declared model, as CSV
+    std::string scale;  ///< of its force source, as TOML
     std::vector<std::pair<std::string, std::vector<double>>> channels;
     std::vector<double> values;
-    double noise = 0;                                           ///< 0: not known
+    double noise = 0;  ///< 0: not known
 };
 
 const char* unit_of(const std::string& channel) {
-    return channel == "speed" ? "m/s" : channel == "time" ? "s" : channel == "gap" ? "m" : channel == "jet_voltage" ? "V" : channel == "jet_flow" ? "m^3/s" : "1";
+    return channel == "speed"         ? "m/s"
+           : channel == "time"        ? "s"
+           : channel == "gap"         ? "m"
+           : channel == "jet_voltage" ? "V"
+           : channel == "jet_flow"    ? "m^3/s"
+                                      : "1";
 }
 
-MeasuredStudy close_the_loop(MeasuredStudy study, const StaticSet& set, const std::filesystem::path& source, core::Progress& progress) {
+MeasuredStudy close_the_loop(MeasuredStudy study, const StaticSet& set, const std::filesystem::path& source,
+                             core::Progress& progress) {
     study.scratch = std::make_shared<core::TemporaryFolder>("measured");
     const std::filesystem::path here = study.scratch->path();
     core::write_file(here / "table.csv", set.table);
-    core::write_file(here / "model.toml",
-                     "[vehicle]\nmass = 1\n[[force]]\nquantity = \"" + set.quantity + "\"\ntable = \"table.csv\"\n" + set.scale);
+    core::write_file(here / "model.toml", "[vehicle]\nmass = 1\n[[force]]\nquantity = \"" + set.quantity +
+                                              "\"\ntable = \"table.csv\"\n" + set.scale);
     study.model = dynamics::read_model(here / "model.toml");
     study.model.name = study.name + ", declared: " + study.declared;
     study.measured.kind = dynamics::MeasurementKind::steady;
@@ -125,7 +131,8 @@ MeasuredStudy strut_study(const std::filesystem::path& folder, core::Progress& p
 std::vector<MeasuredStudy> bank_studies(const std::filesystem::path& folder, core::Progress& progress) {
     const std::filesystem::path source = folder / "mashcon2009_bank" / "subset1_sinkage.csv";
     const ForeignTable bank = read_foreign(source);
-    const std::vector<double> speed = bank.numbers("U_mps"), fore = bank.numbers("sinkage_fore_mm"), aft = bank.numbers("sinkage_aft_mm");
+    const std::vector<double> speed = bank.numbers("U_mps"), fore = bank.numbers("sinkage_fore_mm"),
+                              aft = bank.numbers("sinkage_aft_mm");
     std::vector<double> away = bank.numbers("y_m");
     for (double& y : away) {
         y = 1 - y;  // gap: the way to a line one metre off the middle, on the bank's side
@@ -133,7 +140,8 @@ std::vector<MeasuredStudy> bank_studies(const std::filesystem::path& folder, cor
     std::vector<MeasuredStudy> studies;
     for (const bool trim : {false, true}) {
         StaticSet set;
-        set.title = trim ? "trim of a ship model along a bank (N m: mm of sinkage aft less fore)" : "mean sinkage of a ship model along a bank (N: mm)";
+        set.title = trim ? "trim of a ship model along a bank (N m: mm of sinkage aft less fore)"
+                         : "mean sinkage of a ship model along a bank (N: mm)";
         set.quantity = trim ? "pitch_moment" : "lift_force";
         set.unit = trim ? "N m" : "N";
         for (std::size_t i = 0; i < speed.size(); ++i) {
@@ -148,8 +156,9 @@ std::vector<MeasuredStudy> bank_studies(const std::filesystem::path& folder, cor
         study.name = trim ? "ship along a bank: trim" : "ship along a bank: sinkage";
         study.data = "subset1_sinkage.csv, Lataire, Vantorre and Eloot, Antwerp 2009, open data";
         study.declared = trim ? "trim as the square of the speed" : "sinkage as the square of the speed";
-        study.known = trim ? "no simple law explains the trim at the highest speed"
-                           : "growth near the critical speed and nearness of the bank, both: leave-one-out error 1.19 to 0.34 mm";
+        study.known =
+            trim ? "no simple law explains the trim at the highest speed"
+                 : "growth near the critical speed and nearness of the bank, both: leave-one-out error 1.19 to 0.34 mm";
         studies.push_back(close_the_loop(std::move(study), set, source, progress));
     }
     return studies;
@@ -158,7 +167,8 @@ std::vector<MeasuredStudy> bank_studies(const std::filesystem::path& folder, cor
 MeasuredStudy thrust_stand_study(const std::filesystem::path& folder, core::Progress& progress) {
     const std::filesystem::path source = folder / "cf21_thrust_stand" / "cf2.1-stock-prop.csv";
     const ForeignTable stand = read_foreign(source);
-    const std::vector<double> weight = stand.numbers("weight[g]"), command = stand.numbers("pwm"), battery = stand.numbers("vbat[V]");
+    const std::vector<double> weight = stand.numbers("weight[g]"), command = stand.numbers("pwm"),
+                              battery = stand.numbers("vbat[V]");
     StaticSet set;
     set.title = "thrust stand (jet_flow: motor command, 0 to 1; jet_voltage: the battery's)";
     set.quantity = "lift_force";
@@ -182,7 +192,7 @@ MeasuredStudy thrust_stand_study(const std::filesystem::path& folder, core::Prog
             r[k] += std::pow(duty[i], k) * set.values[i];
         }
     }
-    const auto determinant = [](const double (&a)[3][3]) {
+    const auto determinant = [](const double(&a)[3][3]) {
         return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
                a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
     };
@@ -218,8 +228,9 @@ MeasuredStudy ceiling_study(const std::filesystem::path& folder, core::Progress&
         double asked;
     };
     // heights asked for: mocap_data_description.md of the data's owner
-    static constexpr Flight flights[] = {{"20240822_21_32_29.csv", 0.057}, {"20240822_21_35_34.csv", 0.057}, {"20240822_21_43_50.csv", 0.057},
-                                         {"20240822_22_02_30.csv", 0.042}, {"20240822_22_14_56.csv", 0.042}, {"20240822_22_17_21.csv", 0.042}};
+    static constexpr Flight flights[] = {{"20240822_21_32_29.csv", 0.057}, {"20240822_21_35_34.csv", 0.057},
+                                         {"20240822_21_43_50.csv", 0.057}, {"20240822_22_02_30.csv", 0.042},
+                                         {"20240822_22_14_56.csv", 0.042}, {"20240822_22_17_21.csv", 0.042}};
     StaticSet set;
     set.title = "hover under a plate (gap: height asked for; lift_force: height held, 1 N for 1 mm)";
     set.quantity = "lift_force";
@@ -228,7 +239,8 @@ MeasuredStudy ceiling_study(const std::filesystem::path& folder, core::Progress&
     for (const Flight& flight : flights) {
         const ForeignTable log = read_foreign(folder / "air_garage_ceiling" / flight.file);
         const std::vector<double> time = log.numbers("t"), height = log.numbers("z");
-        // the logs begin on the ground; the climb and its overshoot end nineteen seconds later; then means of a second each
+        // the logs begin on the ground; the climb and its overshoot end nineteen seconds later; then means of a second
+        // each
         double sum = 0, count = 0, end = time.front() + 20;
         for (std::size_t i = 0; i < time.size(); ++i) {
             if (time[i] < time.front() + 19) {

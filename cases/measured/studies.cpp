@@ -25,12 +25,20 @@ discovery::DiscoverOptions quick() {
 
 constexpr double kilogram_per_ounce = 0.0283495;
 
-/// Masses by the name of the drops, kg, from balls.txt of the data's owner (ounces; '??' where a ball was not weighed: left out).
+/// Masses by the name of the drops, kg, from balls.txt of the data's owner (ounces; '??' where a ball was not weighed:
+/// left out).
 std::map<std::string, double> ball_masses(const std::filesystem::path& file) {
-    static const std::map<std::string, std::string> listed_as{
-        {"Baseball", "baseball"},       {"Golf Ball", "golfball"},           {"Bowling Ball", "bowlingball"},           {"Tennis Ball", "tennisball"},
-        {"Volleyball", "volleyball"},   {"Blue Basketball", "bluebasketball"}, {"Green Basketball", "greenbasketball"}, {"Whiffle Ball 1", "wiffleball1"},
-        {"Whiffle Ball 2", "wiffleball2"}, {"Yellow Whiffle Ball", "yellowWiffle"}, {"Orange Whiffle Ball", "orangeWiffle"}};
+    static const std::map<std::string, std::string> listed_as{{"Baseball", "baseball"},
+                                                              {"Golf Ball", "golfball"},
+                                                              {"Bowling Ball", "bowlingball"},
+                                                              {"Tennis Ball", "tennisball"},
+                                                              {"Volleyball", "volleyball"},
+                                                              {"Blue Basketball", "bluebasketball"},
+                                                              {"Green Basketball", "greenbasketball"},
+                                                              {"Whiffle Ball 1", "wiffleball1"},
+                                                              {"Whiffle Ball 2", "wiffleball2"},
+                                                              {"Yellow Whiffle Ball", "yellowWiffle"},
+                                                              {"Orange Whiffle Ball", "orangeWiffle"}};
     std::map<std::string, double> ounces;
     const std::string text = core::read_file(file);
     for (const std::string_view line : core::split(text, '\n')) {
@@ -57,7 +65,8 @@ std::map<std::string, double> ball_masses(const std::filesystem::path& file) {
 
 std::filesystem::path measured_folder(const std::filesystem::path& beside) {
     const char* named = std::getenv("UNDERBODY_SHARED");
-    for (const std::filesystem::path& root : {std::filesystem::path(named != nullptr ? named : ""), beside, std::filesystem::path("../shared")}) {
+    for (const std::filesystem::path& root :
+         {std::filesystem::path(named != nullptr ? named : ""), beside, std::filesystem::path("../shared")}) {
         if (!root.empty() && std::filesystem::is_directory(root / "measured")) {
             return root / "measured";
         }
@@ -67,7 +76,8 @@ std::filesystem::path measured_folder(const std::filesystem::path& beside) {
 
 std::vector<MeasuredStudy> ball_drop_studies(const std::filesystem::path& folder, core::Progress& progress) {
     const ForeignTable drops = read_foreign(folder / "ball_drops" / "ball_drops.csv");
-    const std::size_t ball = drops.column("ball"), drop = drops.column("drop"), time = drops.column("t_s"), height = drops.column("h_m");
+    const std::size_t ball = drops.column("ball"), drop = drops.column("drop"), time = drops.column("t_s"),
+                      height = drops.column("h_m");
     std::map<std::string, std::map<std::string, std::pair<std::vector<double>, std::vector<double>>>> runs;
     for (std::size_t row = 0; row < drops.rows.size(); ++row) {
         auto& [t, h] = runs[drops.rows[row][ball]][drops.rows[row][drop]];
@@ -84,10 +94,11 @@ std::vector<MeasuredStudy> ball_drop_studies(const std::filesystem::path& folder
         // a fall knows only forces by mass: a ball that was not weighed falls as one of a kilogram
         const bool weighed = masses.count(name) > 0;
         const double mass = weighed ? masses.at(name) : 1;
-        const dynamics::Model model = dynamics::read_model_text("[vehicle]\nmass = " + core::format_number(mass) + "\nnet_weight = " +
-                                                                    core::format_number(mass * 9.80665) + "\n[environment]\ndensity = 1.2\n"
-                                                                    "kinematic_viscosity = 1.5e-5\n",
-                                                                "ball", ".");
+        const dynamics::Model model = dynamics::read_model_text(
+            "[vehicle]\nmass = " + core::format_number(mass) + "\nnet_weight = " + core::format_number(mass * 9.80665) +
+                "\n[environment]\ndensity = 1.2\n"
+                "kinematic_viscosity = 1.5e-5\n",
+            "ball", ".");
         dynamics::Measurements data;
         data.title = "ball drops, " + name;
         for (const auto& [number, run] : both) {
@@ -101,8 +112,10 @@ std::vector<MeasuredStudy> ball_drop_studies(const std::filesystem::path& folder
         MeasuredStudy study;
         study.name = "ball drops: " + name;
         study.data = "ball_drops.csv, B. de Silva et al. 2020, MIT";
-        study.declared = weighed ? "weight alone, no drag" : "weight alone, no drag; not weighed: forces for a mass of 1 kg";
-        study.known = name == "Bowling Ball" || name == "Golf Ball" ? "drag is next to nothing" : "drag, its order undecided";
+        study.declared =
+            weighed ? "weight alone, no drag" : "weight alone, no drag; not weighed: forces for a mass of 1 kg";
+        study.known =
+            name == "Bowling Ball" || name == "Golf Ball" ? "drag is next to nothing" : "drag, its order undecided";
         study.found = discovery::discover(model, data, quick(), progress);
         study.model = model;
         study.measured = std::move(data);
@@ -136,21 +149,27 @@ std::vector<MeasuredStudy> measured_studies(const std::filesystem::path& folder,
     return all;
 }
 
-void write_measured_reports(const std::vector<MeasuredStudy>& studies, const std::filesystem::path& folder, const discovery::FigureRenderer& renderer) {
+void write_measured_reports(const std::vector<MeasuredStudy>& studies, const std::filesystem::path& folder,
+                            const discovery::FigureRenderer& renderer) {
     std::filesystem::create_directories(folder);
-    core::HtmlPage page("What simple models lack", "measurements of others, each against the simplest model that somebody would declare");
+    core::HtmlPage page("What simple models lack",
+                        "measurements of others, each against the simplest model that somebody would declare");
     page.section("Overview");
     std::vector<std::vector<std::string>> rows;
     for (const MeasuredStudy& study : studies) {
         const discovery::ErrorChange& error = study.found.error.front();
         rows.push_back({study.name, study.declared, discovery::verdict_names(study.found),
-                        core::format_number(error.before.rmse, 3) + " to " + core::format_number(error.after.rmse, 3) + " " + error.unit, study.known});
+                        core::format_number(error.before.rmse, 3) + " to " + core::format_number(error.after.rmse, 3) +
+                            " " + error.unit,
+                        study.known});
     }
     page.table({"study", "declared", "verdict", "held-out error", "what is known"}, rows);
     for (const MeasuredStudy& study : studies) {
         std::string slug;
         for (const char letter : study.name) {
-            slug += std::isalnum(static_cast<unsigned char>(letter)) != 0 ? static_cast<char>(std::tolower(static_cast<unsigned char>(letter))) : '-';
+            slug += std::isalnum(static_cast<unsigned char>(letter)) != 0
+                        ? static_cast<char>(std::tolower(static_cast<unsigned char>(letter)))
+                        : '-';
         }
         discovery::write_discovery(study.found, study.model, study.measured, folder / slug, renderer);
         page.section(study.name);

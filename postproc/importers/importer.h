@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/field.h"
+#include "postproc/field/field.h"
 
 namespace underbody::postproc {
 

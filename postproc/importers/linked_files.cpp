@@ -40,8 +40,9 @@ std::string text_of_collection(const fs::path& path) {
     text.resize(static_cast<std::size_t>(in.gcount()));
     const std::size_t type = text.find("type=");
     const std::string kind = type == std::string::npos ? std::string() : text.substr(type + 6, 24);
-    const bool collection = kind.starts_with("P") ? !kind.starts_with("PolyData") : kind.find("MultiBlock") < 8 || kind.starts_with("Collection") ||
-                                                                                        kind.find("Hierarchical") < 8 || kind.find("AMR") < 16;
+    const bool collection = kind.starts_with("P") ? !kind.starts_with("PolyData")
+                                                  : kind.find("MultiBlock") < 8 || kind.starts_with("Collection") ||
+                                                        kind.find("Hierarchical") < 8 || kind.find("AMR") < 16;
     if (!collection) {
         return {};
     }
@@ -130,7 +131,8 @@ void note_vtk_pieces(const fs::path& path) {
 void note_cgns_links(int file, const fs::path& path) {
     int nodes = -1;
     double root = 0;
-    if (core::InputScope::current() != nullptr && cg_get_cgio(file, &nodes) == CG_OK && cg_root_id(file, &root) == CG_OK) {
+    if (core::InputScope::current() != nullptr && cg_get_cgio(file, &nodes) == CG_OK &&
+        cg_root_id(file, &root) == CG_OK) {
         CgnsWalk(nodes, path).visit(root, 0);
     }
 }

@@ -25,7 +25,8 @@ void check_units(Field& field, const ReadOptions& options, const core::Place& pl
     const bool all = options.arrays.empty() && options.zones.empty();
     for (const auto& [variable, unit] : options.units) {
         const std::string key = core::lower_case(variable);
-        if (std::any_of(asked.begin(), asked.end(), [&](const std::string& name) { return core::lower_case(name) == key; })) {
+        if (std::any_of(asked.begin(), asked.end(),
+                        [&](const std::string& name) { return core::lower_case(name) == key; })) {
             continue;
         }
         std::erase_if(asked, [](const std::string& name) { return name.empty(); });
@@ -36,7 +37,9 @@ void check_units(Field& field, const ReadOptions& options, const core::Place& pl
             for (std::size_t i = 0; i < std::min<std::size_t>(asked.size(), 12); ++i) {
                 list += (i > 0 ? ", '" : "'") + asked[i] + "'";
             }
-            throw core::InputError("missing", what, place, !near.empty() ? "did you mean '" + near + "'?" : "the file has " + (list.empty() ? "none" : list));
+            throw core::InputError(
+                "missing", what, place,
+                !near.empty() ? "did you mean '" + near + "'?" : "the file has " + (list.empty() ? "none" : list));
         }
         // It may be in a zone that nobody asked for.
         field.problems.push_back({core::Problem::Severity::warning, what + " in what was read of the file", place});
@@ -44,13 +47,17 @@ void check_units(Field& field, const ReadOptions& options, const core::Place& pl
 }
 
 void check_length_unit(Field& field, const ReadOptions& options, const core::Place& place) {
-    const auto stated = std::find_if(field.metadata.begin(), field.metadata.end(), [](const auto& entry) { return entry.first == "length unit"; });
+    const auto stated = std::find_if(field.metadata.begin(), field.metadata.end(),
+                                     [](const auto& entry) { return entry.first == "length unit"; });
     if (options.length_unit.empty() || stated == field.metadata.end() || !core::is_unit(stated->second)) {
         return;
     }
-    if (std::abs(core::conversion(options.length_unit, "m").scale / core::conversion(stated->second, "m").scale - 1) > 1e-9) {
+    if (std::abs(core::conversion(options.length_unit, "m").scale / core::conversion(stated->second, "m").scale - 1) >
+        1e-9) {
         field.problems.push_back({core::Problem::Severity::warning,
-                                  "its lengths are in " + stated->second + ", as it says: a length unit (" + options.length_unit + ") is for files that state none, and not used", place});
+                                  "its lengths are in " + stated->second + ", as it says: a length unit (" +
+                                      options.length_unit + ") is for files that state none, and not used",
+                                  place});
     }
 }
 

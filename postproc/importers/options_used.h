@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "postproc/field.h"
+#include "postproc/field/field.h"
 
 namespace underbody::postproc {
 
@@ -30,8 +30,8 @@ private:
 /// Before reading: throws core::InputError for a time or a companion where files of this format have none.
 void refuse_useless_options(const std::string& format, const ReadOptions& options, const core::Place& place);
 
-/// After reading: throws core::InputError for a unit stated for a variable that nothing was found like; a unit of length
-/// that the file contradicts becomes a warning of the field.
+/// After reading: throws core::InputError for a unit stated for a variable that nothing was found like; a unit of
+/// length that the file contradicts becomes a warning of the field.
 void check_options_used(Field& field, const ReadOptions& options, const core::Place& place);
 
 }  // namespace underbody::postproc

@@ -1,6 +1,6 @@
 // The list of formats. A new one is one file beside this and one line here; the most specific come first.
+#include "postproc/field/lists.h"
 #include "postproc/importers/importer.h"
-#include "postproc/lists.h"
 
 #define UNDERBODY_IMPORTERS(X)                                                        \
     X(cfd_post_csv, ".csv exported by CFD-Post or CFX, blocks [Name] [Data] [Faces]") \

@@ -26,8 +26,9 @@ inline bool eight_digits(const char* p, std::uint64_t& value) {
     return true;
 }
 
-inline constexpr std::array<double, 23> powers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                           1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+inline constexpr std::array<double, 23> powers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 /// Numbers as solvers write them (at most 53 bits of digits, small exponents) are exact in one operation
 /// (Clinger 1990); everything else goes to fast_float. Returns the end of the number, nullptr if there is none.
@@ -66,7 +67,7 @@ inline const char* parse_number(const char* start, const char* end, double& out)
     if (count == 0) {
         return nullptr;
     }
-    bool simple = count <= 18 && static_cast<unsigned char>(*p - '0') >= 10 ;
+    bool simple = count <= 18 && static_cast<unsigned char>(*p - '0') >= 10;
     if (simple && (*p | 0x20) == 'e') {
         const char* q = p + 1;
         const bool minus = *q == '-';

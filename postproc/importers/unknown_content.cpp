@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "postproc/importers/byte_stream.h"
-#include "postproc/importers/reports.h"
+#include "postproc/importers/reports/reports.h"
 
 namespace underbody::postproc {
 
@@ -49,7 +49,8 @@ constexpr std::array known = {
 bool is_series(std::string_view text) { return text.find("file-series-version") != std::string_view::npos; }
 
 std::string of_text(std::string_view text) {
-    const auto found = std::find_if(known.begin(), known.end(), [&](const Known& kind) { return text.starts_with(kind.begins); });
+    const auto found =
+        std::find_if(known.begin(), known.end(), [&](const Known& kind) { return text.starts_with(kind.begins); });
     if (found != known.end()) {
         return std::string(found->means);
     }
@@ -102,12 +103,14 @@ std::string of_folder(const fs::path& path) {
         for (const auto& region : regions) {
             names += (names.empty() ? "" : ", ") + region;
         }
-        return "an OpenFOAM case of the regions " + names + ", which are not read: write them with foamToVTK -region " + regions.front();
+        return "an OpenFOAM case of the regions " + names + ", which are not read: write them with foamToVTK -region " +
+               regions.front();
     }
     for (const auto& entry : fs::directory_iterator(path, error)) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with("processors") && entry.is_directory(error)) {
-            return "an OpenFOAM case with the files of all processors in one (" + name + "): put it together with reconstructPar";
+            return "an OpenFOAM case with the files of all processors in one (" + name +
+                   "): put it together with reconstructPar";
         }
     }
     return without_mesh(path);
@@ -117,7 +120,8 @@ std::string of_folder(const fs::path& path) {
 
 bool has_lone_returns(const fs::path& path) {
     const std::string head = head_of(path);
-    return head.find('\r') != std::string::npos && head.find('\n') == std::string::npos && head.find('\0') == std::string::npos;
+    return head.find('\r') != std::string::npos && head.find('\n') == std::string::npos &&
+           head.find('\0') == std::string::npos;
 }
 
 std::string what_it_is(const fs::path& path) {
@@ -133,7 +137,8 @@ std::string what_it_is(const fs::path& path) {
     }
     if (head.starts_with("\x1F\x8B")) {
         const std::string inside = of_text(inflated_head(head));
-        return "gzip: unpack it (gunzip -k " + path.filename().string() + ")" + (inside.empty() ? "" : "; inside is " + inside);
+        return "gzip: unpack it (gunzip -k " + path.filename().string() + ")" +
+               (inside.empty() ? "" : "; inside is " + inside);
     }
     if (const std::string text = of_text(head); !text.empty()) {
         return text;
@@ -142,7 +147,9 @@ std::string what_it_is(const fs::path& path) {
         return "a report of the solver, no field: its summary is shown by 'info', and loads are compared with it as a "
                "report or a monitor";
     }
-    return has_lone_returns(path) ? "text whose lines end in carriage returns alone: make them line feeds (tr '\\r' '\\n' < FILE > NEW)" : "";
+    return has_lone_returns(path)
+               ? "text whose lines end in carriage returns alone: make them line feeds (tr '\\r' '\\n' < FILE > NEW)"
+               : "";
 }
 
 }  // namespace underbody::postproc

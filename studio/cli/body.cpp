@@ -7,9 +7,9 @@
 #include "core/file.h"
 #include "core/table.h"
 #include "core/units.h"
-#include "geometry/body_figures.h"
-#include "geometry/mesh_file.h"
-#include "postproc/views.h"
+#include "geometry/body/body_figures.h"
+#include "geometry/mesh/mesh_file.h"
+#include "postproc/views/views.h"
 #include "studio/cli/body_parts.h"
 #include "studio/cli/commands.h"
 #include "studio/figures/render.h"
@@ -22,7 +22,9 @@ using core::format_number;
 
 // m as mm; the rounding errors of symmetric bodies (1e-13 mm) are shown as 0.
 std::string mm(double metres) { return rounded(std::abs(metres) < 1e-12 ? 0.0 : 1e3 * metres, 5); }
-std::string degrees(double radians) { return rounded(std::abs(radians) < 1e-12 ? 0.0 : 57.29577951308232 * radians, 4); }
+std::string degrees(double radians) {
+    return rounded(std::abs(radians) < 1e-12 ? 0.0 : 57.29577951308232 * radians, 4);
+}
 
 double positive(const std::string& text, const char* unit, const char* option) {
     const double value = core::parse_in(text, unit);
@@ -160,8 +162,9 @@ void print_body(const geometry::Body& body, Shell& shell) {
                 (body.shape ? " (body.height, " + mm(body.shape->height) +
                                   " mm, is that of the whole ellipsoid before its base is cut)"
                             : ""));
-    shell.print("volume      " + rounded(mass.volume * 1e6) + " cm^3, buoyancy " + rounded(mass.buoyancy(body.density)) +
-                " N" + (body.shape ? ", of the exact shape" : facet_error(body)));
+    shell.print("volume      " + rounded(mass.volume * 1e6) + " cm^3, buoyancy " +
+                rounded(mass.buoyancy(body.density)) + " N" +
+                (body.shape ? ", of the exact shape" : facet_error(body)));
     shell.print("area        " + rounded(mass.area * 1e4) + " cm^2");
     shell.print("centroid    " + mm(mass.centroid.x) + ", " + mm(mass.centroid.y) + ", " + mm(mass.centroid.z) +
                 " mm from the centre of the base (x forward, y to port, z up)");
@@ -238,8 +241,8 @@ int make_body(const MakeOptions& o, Shell& shell) {
         options.underside_up_to = positive(o.area_up_to, "m", "--area-up-to");
     }
     if (!o.ballast.empty()) {
-        options.ballast = geometry::BallastWish{o.ballast, core::parse_in(o.trim_pitch, "rad"),
-                                                core::parse_in(o.trim_roll, "rad")};
+        options.ballast =
+            geometry::BallastWish{o.ballast, core::parse_in(o.trim_pitch, "rad"), core::parse_in(o.trim_roll, "rad")};
     }
     geometry::Body body = geometry::read_body(o.input.shape, options, shell.progress());
     if (const std::string doubt = options.placement ? o.input.doubt(body.mesh) : std::string(); !doubt.empty()) {

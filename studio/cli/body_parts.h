@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "core/water.h"
-#include "geometry/body_report.h"
+#include "geometry/body/body_report.h"
 #include "studio/cli/shell.h"
 
 namespace underbody::studio {

@@ -4,9 +4,9 @@
 
 #include "core/file.h"
 #include "core/table.h"
-#include "geometry/body_figures.h"
-#include "geometry/mesh_file.h"
-#include "geometry/variants.h"
+#include "geometry/body/body_figures.h"
+#include "geometry/body/variants.h"
+#include "geometry/mesh/mesh_file.h"
 #include "studio/cli/body_parts.h"
 #include "studio/figures/render.h"
 

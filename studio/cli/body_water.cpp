@@ -5,8 +5,8 @@
 
 #include "core/table.h"
 #include "core/units.h"
-#include "geometry/added_mass.h"
-#include "geometry/flow_domain.h"
+#include "geometry/cases/flow_domain.h"
+#include "geometry/water/added_mass.h"
 #include "studio/cli/body_parts.h"
 #include "studio/figures/render.h"
 

@@ -12,8 +12,8 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/model.h"
-#include "surrogates/estimator/loop_region.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/estimator/control/loop_region.h"
 
 namespace underbody::studio {
 
@@ -22,8 +22,9 @@ namespace {
 using namespace estimator;
 
 struct ControlArguments {
-    std::string model, hold, from, observer = "disturbance", conditions, out, plot, region, axes, limit, lag, step = "0.02 s", duration = "60 s",
-                       gap_noise, velocity_noise, disturbance, feedback = "measured";
+    std::string model, hold, from, observer = "disturbance", conditions, out, plot, region, axes, limit, lag,
+                                   step = "0.02 s", duration = "60 s", gap_noise, velocity_noise, disturbance,
+                                   feedback = "measured";
     double pole1 = -1, pole2 = -1, observer_rate = 4;
     std::size_t columns = 60, rows = 40;
     std::uint64_t seed = 1;
@@ -45,7 +46,8 @@ LoopDesign design_for(const ControlArguments& a, const LoopOptions& o) {
 }
 
 /// Every estimator in the same loop.
-nlohmann::json compare_estimators(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, LoopOptions o, std::string& text) {
+nlohmann::json compare_estimators(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law,
+                                  LoopOptions o, std::string& text) {
     nlohmann::json list = nlohmann::json::array();
     text += "estimator      held, mm  spread, mm  error of F_T, mN  at the limit, %\n";
     for (const std::string& name : loop_estimators()) {
@@ -53,7 +55,8 @@ nlohmann::json compare_estimators(const ControlArguments& a, const SeparatedPlan
         std::string remark;
         try {
             const LoopEstimator e = design_loop_estimator(name, plant, design_for(a, o));
-            const bool gives = e.source == ForceSource::extended || name == "full" || name == "latent" || name == "kalman";
+            const bool gives =
+                e.source == ForceSource::extended || name == "full" || name == "latent" || name == "kalman";
             if (!o.velocity_measured) {
                 own.feedback = gives ? Feedback::estimated : own.feedback;
             }
@@ -62,9 +65,12 @@ nlohmann::json compare_estimators(const ControlArguments& a, const SeparatedPlan
             item["estimator"] = name;
             list.push_back(item);
             char line[160];
-            std::snprintf(line, sizeof line, "%-12s %10.4f  %10.4f  %16.4f  %15.2f%s\n", name.c_str(), 1e3 * (law.reference_gap + run.hold_error),
-                          1e3 * run.hold_sigma, 1e3 * run.total_force_error, 100 * run.saturated,
-                          run.touched ? "  touched the ground" : run.finite ? "" : "  escaped");
+            std::snprintf(line, sizeof line, "%-12s %10.4f  %10.4f  %16.4f  %15.2f%s\n", name.c_str(),
+                          1e3 * (law.reference_gap + run.hold_error), 1e3 * run.hold_sigma, 1e3 * run.total_force_error,
+                          100 * run.saturated,
+                          run.touched  ? "  touched the ground"
+                          : run.finite ? ""
+                                       : "  escaped");
             text += line;
         } catch (const core::InputError& error) {
             list.push_back({{"estimator", name}, {"refused", error.what()}});
@@ -92,12 +98,13 @@ core::Figure figure_of(const LoopRun& run, double hold) {
     return f;
 }
 
-nlohmann::json draw_region(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
-                           const LoopOptions& o, Shell& shell, std::string& text) {
+nlohmann::json draw_region(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law,
+                           const LoopEstimator& estimator, const LoopOptions& o, Shell& shell, std::string& text) {
     LoopRegionOptions options;
     const double lower = std::max(plant.lower, plant.contact_gap);
-    options.axes = a.axes.empty() ? std::vector<core::NamedRange>{{"gap", lower, plant.upper}, {"heave_velocity", -0.1, 0.1}}
-                                  : core::parse_ranges(a.axes);
+    options.axes = a.axes.empty()
+                       ? std::vector<core::NamedRange>{{"gap", lower, plant.upper}, {"heave_velocity", -0.1, 0.1}}
+                       : core::parse_ranges(a.axes);
     options.columns = a.columns;
     options.rows = a.rows;
     const dynamics::StabilityRegion region = loop_region(plant, law, estimator, o, options, shell.progress());
@@ -114,7 +121,8 @@ int run_control(const ControlArguments& a, Shell& shell) {
     }
     const dynamics::Model model = dynamics::read_model(a.model);
     dynamics::Conditions held;
-    for (const auto& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
+    for (const auto& v :
+         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         held.set(v.name, v.value);
     }
     const SeparatedPlant plant = separate(model, held);
@@ -153,14 +161,16 @@ int run_control(const ControlArguments& a, Shell& shell) {
     double slope = 0;
     const double needed = std::abs(plant.ground_force(law.reference_gap, slope) + plant.bias);
     if (needed > law.limit) {
-        shell.show({{core::Problem::Severity::warning,
-                     "the limit of " + core::format_number(1e3 * law.limit, 4) + " mN cannot hold this gap: the balance there needs " +
-                         core::format_number(1e3 * needed, 4) + " mN",
-                     {}}});
+        shell.show(
+            {{core::Problem::Severity::warning,
+              "the limit of " + core::format_number(1e3 * law.limit, 4) +
+                  " mN cannot hold this gap: the balance there needs " + core::format_number(1e3 * needed, 4) + " mN",
+              {}}});
     }
     const auto& known = loop_estimators();
     if (std::find(known.begin(), known.end(), a.observer) == known.end()) {
-        throw core::UsageError("name", "--observer does not know '" + a.observer + "'", {}, core::did_you_mean(a.observer, known));
+        throw core::UsageError("name", "--observer does not know '" + a.observer + "'", {},
+                               core::did_you_mean(a.observer, known));
     }
     if (a.compare) {
         std::string text;
@@ -195,8 +205,9 @@ int run_control(const ControlArguments& a, Shell& shell) {
     if (shell.json) {
         shell.print_json(json);
     }
-    shell.print("gap at the end " + core::format_number(1e3 * loop.gap.back(), 6) + " mm, " + core::format_number(1e3 * law.reference_gap, 6) +
-                " mm asked for; error of the total force " + core::format_number(1e3 * loop.total_force_error, 3) + " mN rms; at the limit " +
+    shell.print("gap at the end " + core::format_number(1e3 * loop.gap.back(), 6) + " mm, " +
+                core::format_number(1e3 * law.reference_gap, 6) + " mm asked for; error of the total force " +
+                core::format_number(1e3 * loop.total_force_error, 3) + " mN rms; at the limit " +
                 core::format_number(100 * loop.saturated, 3) + " % of the time\n" + region_text);
     return ExitCode::done;
 }
@@ -209,7 +220,9 @@ void add_control_command(CLI::App& app, Shell& shell) {
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--hold", a->hold, "the gap to hold, for instance 20mm")->required();
     command->add_option("--from", a->from, "start: gap=..., heave_velocity=...")->required();
-    command->add_option("--observer", a->observer, "disturbance (default), reduced, full, latent, kalman, extended, truth, or none: no cancellation");
+    command->add_option(
+        "--observer", a->observer,
+        "disturbance (default), reduced, full, latent, kalman, extended, truth, or none: no cancellation");
     command->add_option("--pole1", a->pole1, "of the loop, 1/s (default -1)");
     command->add_option("--pole2", a->pole2, "of the loop, 1/s (default -1)");
     command->add_option("--rate", a->observer_rate, "of the observer, 1/s (default 4)");
@@ -228,16 +241,20 @@ void add_control_command(CLI::App& app, Shell& shell) {
     command->add_option("--out", a->out, "the motion as a table (CSV)");
     command->add_option("--plot", a->plot, "the gap against time (.png, .pdf)");
     command->add_option("--region", a->region, "where starts end with the loop closed (.png, .pdf)");
-    command->add_option("--axes", a->axes, "of the region: gap=0:0.5,heave_velocity=-0.1:0.1 (default: the force table, 100 mm/s)");
+    command->add_option("--axes", a->axes,
+                        "of the region: gap=0:0.5,heave_velocity=-0.1:0.1 (default: the force table, 100 mm/s)");
     command->add_option("--columns", a->columns, "of the region (default 60)");
     command->add_option("--rows", a->rows, "of the region (default 40)");
     command->footer(
         "Examples:\n"
         "  underbody control model.toml --hold 20mm --from gap=0.25 --out loop.csv\n"
         "  underbody control model.toml --hold 20mm --from gap=0.25 --observer none --json\n"
-        "  underbody control model.toml --hold 20mm --from gap=0.25 --gap-noise 0.2mm --velocity-noise 0.2mm/s --compare\n"
-        "  underbody control model.toml --hold 50mm --from gap=0.1 --observer extended --no-velocity --disturbance 3mN\n"
-        "  underbody control model.toml --hold 50mm --from gap=0.1 --limit 30mN --lag 0.2s --gap-noise 0.2mm --region loop.png\n"
+        "  underbody control model.toml --hold 20mm --from gap=0.25 --gap-noise 0.2mm --velocity-noise 0.2mm/s "
+        "--compare\n"
+        "  underbody control model.toml --hold 50mm --from gap=0.1 --observer extended --no-velocity --disturbance "
+        "3mN\n"
+        "  underbody control model.toml --hold 50mm --from gap=0.1 --limit 30mN --lag 0.2s --gap-noise 0.2mm --region "
+        "loop.png\n"
         "u = -k_w w - k_h (gap - hold) - total_force_estimate - bias, gains from the two poles and the virtual mass.");
     shell.on(command, [a, &shell] { return run_control(*a, shell); });
 }

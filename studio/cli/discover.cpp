@@ -12,7 +12,7 @@
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/discovery/discovery.h"
-#include "surrogates/discovery/load_cell.h"
+#include "surrogates/discovery/static/load_cell.h"
 #include "surrogates/discovery/wording.h"
 
 namespace underbody::studio {
@@ -35,7 +35,9 @@ struct DiscoverArguments {
 
 /// "", " over 2 s", " in free run".
 std::string horizon_text(const discovery::ErrorChange& change) {
-    return change.horizon <= 0 ? "" : std::isinf(change.horizon) ? " in free run" : " over " + core::format_number(change.horizon, 3) + " s";
+    return change.horizon <= 0          ? ""
+           : std::isinf(change.horizon) ? " in free run"
+                                        : " over " + core::format_number(change.horizon, 3) + " s";
 }
 
 /// The smallest effects that would have been seen, one a line.
@@ -45,10 +47,14 @@ std::string limits_text(const discovery::Discovery& found) {
     std::size_t lines = 0;
     for (const discovery::DetectionLimit& limit : found.limits) {
         if (std::isfinite(limit.value) && lines++ < most) {
-            text += "  " + limit.name + ": " + limit.parameter + " " + discovery::value_text({limit.parameter, limit.value, 0, limit.unit}) + "\n";
+            text += "  " + limit.name + ": " + limit.parameter + " " +
+                    discovery::value_text({limit.parameter, limit.value, 0, limit.unit}) + "\n";
         }
     }
-    return text.empty() ? "" : "\nSmallest effects that these data would have shown, nine times in ten (all of them in the report):\n" + text;
+    return text.empty() ? ""
+                        : "\nSmallest effects that these data would have shown, nine times in ten (all of them in the "
+                          "report):\n" +
+                              text;
 }
 
 void print(Shell& shell, const discovery::Discovery& found, const std::filesystem::path& folder) {
@@ -69,12 +75,15 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     }
     text += missing ? "" : limits_text(found);
     for (const discovery::ErrorChange& change : found.error) {
-        text += "\nError of " + change.channel + horizon_text(change) + " on held-out data: " + core::format_number(change.before.rmse, 3) +
+        text += "\nError of " + change.channel + horizon_text(change) +
+                " on held-out data: " + core::format_number(change.before.rmse, 3) +
                 (missing ? " -> " + core::format_number(change.after.rmse, 3) : "") + " " + change.unit + " (noise " +
                 core::format_number(change.noise, 3) + ")";
     }
     text += "\n\nNext experiment: " + found.next_experiment + "\n";
-    text += missing ? "New model: " + (folder / "model.toml").string() + " (simulate, predict, region and export take it)\n" : "";
+    text += missing
+                ? "New model: " + (folder / "model.toml").string() + " (simulate, predict, region and export take it)\n"
+                : "";
     text += "Report: " + (folder / "report.html").string() + "\n";
     shell.print(text);
 }
@@ -83,8 +92,8 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
 int study_measurements(Shell& shell, const DiscoverArguments& arguments, const discovery::FigureRenderer& renderer) {
     const std::vector<cases::MeasuredStudy> studies = cases::measured_studies(arguments.measured, shell.progress());
     if (studies.empty()) {
-        throw core::InputError("missing", "none of the measurements of cases/measured is in this folder", core::Place{arguments.measured, {}, {}, {}},
-                               "cases/measured/README.md names them");
+        throw core::InputError("missing", "none of the measurements of cases/measured is in this folder",
+                               core::Place{arguments.measured, {}, {}, {}}, "cases/measured/README.md names them");
     }
     cases::write_measured_reports(studies, arguments.out, renderer);
     nlohmann::json all = nlohmann::json::array();
@@ -107,11 +116,17 @@ int reduce(Shell& shell, const DiscoverArguments& arguments) {
     discovery::LoadCellOptions options;
     options.settle = core::parse_in(arguments.settle, "s");
     options.without_thrust = arguments.without_thrust;
-    const discovery::LoadCellReduction reduction = discovery::reduce_load_cell(core::read_csv(std::filesystem::path(arguments.log)), options);
+    const discovery::LoadCellReduction reduction =
+        discovery::reduce_load_cell(core::read_csv(std::filesystem::path(arguments.log)), options);
     shell.show(reduction.problems);
     core::write_csv(arguments.out, reduction.table);
     if (shell.json) {
-        shell.print_json({{"rows", reduction.table.rows()}, {"drift_rate", std::isfinite(reduction.drift_rate) ? nlohmann::json(reduction.drift_rate) : nlohmann::json(nullptr)}, {"hysteresis", reduction.hysteresis}, {"friction", reduction.friction}, {"noise", reduction.noise}});
+        shell.print_json({{"rows", reduction.table.rows()},
+                          {"drift_rate", std::isfinite(reduction.drift_rate) ? nlohmann::json(reduction.drift_rate)
+                                                                             : nlohmann::json(nullptr)},
+                          {"hysteresis", reduction.hysteresis},
+                          {"friction", reduction.friction},
+                          {"noise", reduction.noise}});
     }
     shell.print(arguments.out + ": " + discovery::reduction_text(reduction));
     return static_cast<int>(ExitCode::done);
@@ -120,31 +135,42 @@ int reduce(Shell& shell, const DiscoverArguments& arguments) {
 }  // namespace
 
 void add_discover_command(CLI::App& app, Shell& shell) {
-    CLI::App* command = app.add_subcommand("discover", "find what the model lacks: from measured data to the effect, and the error before and after");
+    CLI::App* command = app.add_subcommand(
+        "discover", "find what the model lacks: from measured data to the effect, and the error before and after");
     auto arguments = std::make_shared<DiscoverArguments>();
     command->add_option("model", arguments->model, "the declared model (model.toml)");
     command->add_option("--data", arguments->data, "folder of measurements (with dataset.toml)");
     command->add_option("--out", arguments->out, "folder for model.toml, report.html and discovery.json")->required();
     command->add_option("--horizon", arguments->horizon, "length of the prediction windows of a time series");
     command->add_option("--seed", arguments->seed, "seed of all random draws");
-    command->add_option("--placebo", arguments->placebo, "simulated twins with nothing missing that go through the same procedure (0: none)");
+    command->add_option("--placebo", arguments->placebo,
+                        "simulated twins with nothing missing that go through the same procedure (0: none)");
     command->add_option("--measured-studies", arguments->measured,
-                        "instead of a model and data: the folder of third-party measurements that the shipped studies (cases/measured) read");
+                        "instead of a model and data: the folder of third-party measurements that the shipped studies "
+                        "(cases/measured) read");
     command->add_option("--reduce", arguments->log,
-                        "instead of a model and data: the raw log of a load cell (time, gap, jet_voltage, one force); --out is then the table of forces");
+                        "instead of a model and data: the raw log of a load cell (time, gap, jet_voltage, one force); "
+                        "--out is then the table of forces");
     command->add_option("--settle", arguments->settle, "with --reduce: left out at the beginning of each block");
-    command->add_flag("--without-thrust", arguments->without_thrust, "with --reduce: take the force at the largest gap of each voltage off");
-    command->add_option("--candidates", arguments->candidates, "effects to consider, by name, comma separated (default: all that such data can show)")
+    command->add_flag("--without-thrust", arguments->without_thrust,
+                      "with --reduce: take the force at the largest gap of each voltage off");
+    command
+        ->add_option("--candidates", arguments->candidates,
+                     "effects to consider, by name, comma separated (default: all that such data can show)")
         ->delimiter(',');
     command->footer(
         "Examples:\n"
-        "  underbody discover model.toml --data runs --out found        report, new model and discovery.json in found/\n"
+        "  underbody discover model.toml --data runs --out found        report, new model and discovery.json in "
+        "found/\n"
         "  underbody discover model.toml --data runs --out found --json   the same, discovery.json on stdout as well\n"
         "  underbody discover model.toml --data runs --out found --candidates coulomb_friction,linear_damping\n"
         "  underbody predict found/model.toml --data other-runs         the new model on data it has not seen\n"
-        "  underbody discover --reduce log.csv --out bench.csv          raw log of a load cell to forces, by its pump-off blocks\n"
-        "  underbody discover --measured-studies ../shared/measured --out studies   the shipped studies of measurements by others\n"
-        "The verdict is 'none', 'effect' (named, with its numbers) or 'unknown' (a smooth correction takes its place).");
+        "  underbody discover --reduce log.csv --out bench.csv          raw log of a load cell to forces, by its "
+        "pump-off blocks\n"
+        "  underbody discover --measured-studies ../shared/measured --out studies   the shipped studies of "
+        "measurements by others\n"
+        "The verdict is 'none', 'effect' (named, with its numbers) or 'unknown' (a smooth correction takes its "
+        "place).");
     shell.on(command, [arguments, &shell] {
         const auto renderer = [](const core::Figure& figure) { return render_png(figure); };
         if (!arguments->measured.empty()) {
@@ -154,7 +180,8 @@ void add_discover_command(CLI::App& app, Shell& shell) {
             return reduce(shell, *arguments);
         }
         if (arguments->model.empty() || arguments->data.empty()) {
-            throw core::UsageError("missing", "discover needs the declared model and --data FOLDER", {}, "underbody discover model.toml --data runs --out found");
+            throw core::UsageError("missing", "discover needs the declared model and --data FOLDER", {},
+                                   "underbody discover model.toml --data runs --out found");
         }
         for (const char* file : {"model.toml", "report.html", "discovery.json", "next-experiment.csv"}) {
             Shell::will_write((std::filesystem::path(arguments->out) / file).string());
@@ -167,7 +194,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         options.placebo_twins = arguments->placebo;
         options.candidates = arguments->candidates;
         for (const std::string& name : options.candidates) {
-            (void)dynamics::effect(name);   // says the nearest name where there is none
+            (void)dynamics::effect(name);  // says the nearest name where there is none
         }
         const discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
         shell.remark(found.problems);

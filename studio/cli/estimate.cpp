@@ -1,5 +1,5 @@
 // underbody estimate: separate forces from gap and velocity.
-#include "surrogates/estimator/estimate.h"
+#include "surrogates/estimator/observe/estimate.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,11 +15,11 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
-#include "surrogates/dynamics/predict.h"
-#include "surrogates/estimator/information.h"
-#include "surrogates/estimator/surface_bank.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/estimator/observe/information.h"
+#include "surrogates/estimator/observe/surface_bank.h"
 
 namespace underbody::studio {
 
@@ -51,7 +51,8 @@ estimator::Poles parse_poles(const std::string& text) {
             }
         }
         if (result.ec != std::errc() || result.ptr != end) {
-            throw core::UsageError("parse", "'" + item + "' is no pole", {}, "for instance --poles -3,-4 or --poles -3+1i,-3-1i");
+            throw core::UsageError("parse", "'" + item + "' is no pole", {},
+                                   "for instance --poles -3,-4 or --poles -3+1i,-3-1i");
         }
         poles.emplace_back(real, imaginary);
         at = comma + 1;
@@ -59,8 +60,8 @@ estimator::Poles parse_poles(const std::string& text) {
     return poles;
 }
 
-nlohmann::json identify(const EstimateArguments& a, const dynamics::Measurements& data, const estimator::FilterNoise& noise, std::string& text,
-                        core::Figure& figure) {
+nlohmann::json identify(const EstimateArguments& a, const dynamics::Measurements& data,
+                        const estimator::FilterNoise& noise, std::string& text, core::Figure& figure) {
     std::vector<std::pair<std::string, dynamics::Model>> models;
     for (const auto& item : a.surfaces) {
         const std::size_t sign = item.find('=');
@@ -93,10 +94,12 @@ nlohmann::json along_gap(const EstimateArguments& a, const dynamics::Model& mode
         write_picture(consistency.figure(), a.consistency);
     }
     const auto observability = estimator::observability_along_gap(plant, map.gaps);
-    const auto one = static_cast<std::size_t>(std::count(observability.separate_rank.begin(), observability.separate_rank.end(), 1U));
+    const auto one = static_cast<std::size_t>(
+        std::count(observability.separate_rank.begin(), observability.separate_rank.end(), 1U));
     text += "along the gap: the ground force is blind on " + core::format_number(100 * map.blind_share, 3) +
-            " % of gaps and speeds; " + core::format_number(100 * consistency.inside, 3) + " % of mean NEES lie within " +
-            core::format_number(consistency.lower, 3) + " to " + core::format_number(consistency.upper, 3) +
+            " % of gaps and speeds; " + core::format_number(100 * consistency.inside, 3) +
+            " % of mean NEES lie within " + core::format_number(consistency.lower, 3) + " to " +
+            core::format_number(consistency.upper, 3) +
             " (95 % are right); the analytic model sees one of two forces apart at " + std::to_string(one) + " of " +
             std::to_string(map.gaps.size()) + " gaps\n";
     return {{"information", map}, {"consistency", consistency}, {"observability", observability}};
@@ -159,16 +162,19 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
         text += "  " + name + ": " + label + "\n";
     }
     if (std::isfinite(result.separability.b_eff)) {
-        text += "drag law that the model holds at slow drift: b_eff = " + core::format_number(result.separability.b_eff, 4) +
-                " N s/m; observability determinant " + core::format_number(result.separability.determinant, 4) + "\n";
+        text += "drag law that the model holds at slow drift: b_eff = " +
+                core::format_number(result.separability.b_eff, 4) + " N s/m; observability determinant " +
+                core::format_number(result.separability.determinant, 4) + "\n";
     }
     for (const auto& r : result.runs) {
         text += r.name + ": " + std::to_string(r.samples) + " samples";
-        for (const auto& [count, what] : {std::pair(r.missing, " gaps missing"), std::pair(r.outliers, " outliers"), std::pair(r.gaps_in_time, " holes in time")}) {
+        for (const auto& [count, what] : {std::pair(r.missing, " gaps missing"), std::pair(r.outliers, " outliers"),
+                                          std::pair(r.gaps_in_time, " holes in time")}) {
             text += count > 0 ? ", " + std::to_string(count) + what : "";
         }
         if (std::isfinite(r.mean_squared_innovation)) {
-            text += ", innovations " + core::format_number(std::sqrt(r.mean_squared_innovation), 3) + " of what the filter states";
+            text += ", innovations " + core::format_number(std::sqrt(r.mean_squared_innovation), 3) +
+                    " of what the filter states";
         }
         text += "\n";
     }
@@ -188,25 +194,32 @@ void add_estimate_command(CLI::App& app, Shell& shell) {
     command->add_option("--observer", a->options.observer,
                         "extended (default), kalman, reduced, full, latent or disturbance");
     command->add_option("--poles", a->poles, "poles of the error, 1/s (default -3,-4)");
-    command->add_option("--order", a->options.order, "order of the learned linear model (default: least squares with known rows)");
-    command->add_option("--gap-noise", a->gap_noise, "one standard deviation of the gap sensor (default: declared, else from the data)");
+    command->add_option("--order", a->options.order,
+                        "order of the learned linear model (default: least squares with known rows)");
+    command->add_option("--gap-noise", a->gap_noise,
+                        "one standard deviation of the gap sensor (default: declared, else from the data)");
     command->add_option("--velocity-noise", a->velocity_noise, "likewise of measured heave velocity");
     command->add_option("--force-density", a->options.force_density,
                         "how fast the force may depart from its table, N^2/s (default: the likeliest)");
-    command->add_option("--drag-error", a->options.drag_relative, "relative deviation of the declared drag law (default 0.2)");
+    command->add_option("--drag-error", a->options.drag_relative,
+                        "relative deviation of the declared drag law (default 0.2)");
     command->add_flag("--smooth", a->options.smooth, "use the whole run for each moment");
     command->add_option("--surface", a->surfaces, "NAME=MODEL.toml, twice or more: which surface is under the vehicle");
     command->add_option("--surface-plot", a->surface_plot, "probability of each surface over the runs (.png, .pdf)");
-    command->add_option("--switching", a->switching, "chance per second that the surface changes within a run (default 0)");
-    command->add_option("--blind-zones", a->blind, "picture of what the sensors can know against gap and speed (.png, .pdf)");
-    command->add_option("--consistency", a->consistency, "picture of the filter's own statements tried on simulated runs: NEES against gap and speed");
+    command->add_option("--switching", a->switching,
+                        "chance per second that the surface changes within a run (default 0)");
+    command->add_option("--blind-zones", a->blind,
+                        "picture of what the sensors can know against gap and speed (.png, .pdf)");
+    command->add_option("--consistency", a->consistency,
+                        "picture of the filter's own statements tried on simulated runs: NEES against gap and speed");
     command->add_option("--export-c", a->export_c, "the linear observer as a C99 header");
     command->footer(
         "Examples:\n"
         "  underbody estimate model.toml --data runs --out est.csv\n"
         "  underbody estimate model.toml --data runs --observer kalman --export-c observer.h --json\n"
         "  underbody estimate model.toml --data runs --surface smooth=model.toml --surface rough=rough.toml\n"
-        "What can be separated is said: the total force is observed; ground and drag force are told apart by the drag law\n"
+        "What can be separated is said: the total force is observed; ground and drag force are told apart by the drag "
+        "law\n"
         "that the model holds, and are labelled model-dependent.");
     shell.on(command, [a, &shell] { return run_estimate(*a, shell); });
 }

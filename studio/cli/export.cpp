@@ -18,7 +18,7 @@
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/cli/table_options.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::studio {
 
@@ -59,12 +59,15 @@ tables::ExportOptions options_of(const ExportCommand& command) {
             continue;
         }
         const std::size_t equals = part.find('=');
-        const auto count = equals == std::string_view::npos ? std::nullopt : core::parse_integer(part.substr(equals + 1));
+        const auto count =
+            equals == std::string_view::npos ? std::nullopt : core::parse_integer(part.substr(equals + 1));
         if (!count || *count < 2) {
-            throw core::UsageError("parse", "'" + std::string(core::trimmed(part)) + "' is not of the form axis=COUNT", {}, "such as --points gap=40,pitch=9");
+            throw core::UsageError("parse", "'" + std::string(core::trimmed(part)) + "' is not of the form axis=COUNT",
+                                   {}, "such as --points gap=40,pitch=9");
         }
         const std::string axis(core::trimmed(part.substr(0, equals)));
-        if (std::any_of(options.points.begin(), options.points.end(), [&](const auto& other) { return other.first == axis; })) {
+        if (std::any_of(options.points.begin(), options.points.end(),
+                        [&](const auto& other) { return other.first == axis; })) {
             throw core::UsageError("parse", "--points: '" + axis + "' is given twice");
         }
         options.points.emplace_back(axis, static_cast<std::size_t>(*count));
@@ -84,7 +87,8 @@ std::string format_of(const ExportCommand& command) {
         }
         endings += (endings.empty() ? "" : ", ") + format.ending;
     }
-    throw core::UsageError("format", "'" + command.out + "' ends like no export", {}, "say --format, or end it in " + endings);
+    throw core::UsageError("format", "'" + command.out + "' ends like no export", {},
+                           "say --format, or end it in " + endings);
 }
 
 /// "x,y,z"
@@ -169,7 +173,8 @@ void add_export_command(CLI::App& app, Shell& shell) {
     sub->add_option("--out", command->out, "file to write")->required();
     sub->add_option("--name", command->name, "prefix of identifiers, model name (default: that of the file)");
     sub->add_option("--frame", command->frame, "up: lift positive up | ned: body axes, z down")->capture_default_str();
-    sub->add_option("--max-error", command->max_error, "thins the grid to the smallest that stays within this share of the force's range, such as 0.5%");
+    sub->add_option("--max-error", command->max_error,
+                    "thins the grid to the smallest that stays within this share of the force's range, such as 0.5%");
     sub->add_option("--points", command->points, "evenly spaced points an axis, such as gap=40,pitch=9");
     sub->add_option("--number", command->number, "double | float (C)")->capture_default_str();
     sub->add_option("--base-centre", command->base_centre,
@@ -181,7 +186,8 @@ void add_export_command(CLI::App& app, Shell& shell) {
     sub->add_flag("--overwrite", command->overwrite, "replace a file that this program did not write");
     std::string text = "Formats:\n";
     for (const auto& format : tables::export_formats()) {
-        text += "  " + format.name + std::string(format.name.size() < 10 ? 10 - format.name.size() : 1, ' ') + format.description + "\n";
+        text += "  " + format.name + std::string(format.name.size() < 10 ? 10 - format.name.size() : 1, ' ') +
+                format.description + "\n";
     }
     sub->footer(text +
                 "Examples:\n"

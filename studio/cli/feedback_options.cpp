@@ -4,7 +4,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
-#include "surrogates/dynamics/surroundings.h"
+#include "surrogates/dynamics/plant/environment.h"
 
 namespace underbody::studio {
 
@@ -131,8 +131,8 @@ std::optional<dynamics::PitchFeedback> pitch_feedback_of(const std::string& feed
     if (std::isnan(reference)) {
         throw core::UsageError("missing", "--lqr needs the gap to hold: reference=20mm");
     }
-    check_weights({weights.state[0], weights.state[1], weights.state[2], weights.state[3], weights.force,
-                   weights.moment});
+    check_weights(
+        {weights.state[0], weights.state[1], weights.state[2], weights.state[3], weights.force, weights.moment});
     gains = dynamics::pitch_lqr(plant, reference, pitch, weights);
     gains.force_limit = limit;
     gains.moment_limit = moment_limit;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "surrogates/dynamics/feedback.h"
-#include "surrogates/dynamics/hold.h"
+#include "surrogates/dynamics/simulate/feedback.h"
+#include "surrogates/dynamics/simulate/hold_with_jets.h"
 
 namespace underbody::studio {
 

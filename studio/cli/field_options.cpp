@@ -26,10 +26,13 @@ void FieldOptions::add_to(CLI::App& command, bool with_zones) {
     }
     command.add_option("--length-unit", length_unit, "unit of coordinates that the file does not say (mm, inch ...)");
     command.add_option("--unit", units, "unit of a variable that the file does not say: \"Pressure=Pa\"");
-    command.add_option("--mesh", mesh, "the mesh or case file that a results file belongs to")->check(CLI::ExistingFile);
+    command.add_option("--mesh", mesh, "the mesh or case file that a results file belongs to")
+        ->check(CLI::ExistingFile);
     command.add_option("--cgns-base", base,
                        "which base of a CGNS file with several: its name, or its number from 1; default: the last");
-    command.add_option("--time", time, "which time of a file with several (CGNS, EnSight, OpenFOAM): a time that it states; default: the last");
+    command.add_option(
+        "--time", time,
+        "which time of a file with several (CGNS, EnSight, OpenFOAM): a time that it states; default: the last");
 }
 
 postproc::ReadOptions FieldOptions::read_options() const {
@@ -43,7 +46,8 @@ postproc::ReadOptions FieldOptions::read_options() const {
     for (const auto& text : units) {
         const auto equals = text.rfind('=');
         if (equals == std::string::npos || equals == 0) {
-            throw core::UsageError("usage", "--unit '" + text + "' is no NAME=UNIT", {}, "for instance --unit \"Pressure=Pa\"");
+            throw core::UsageError("usage", "--unit '" + text + "' is no NAME=UNIT", {},
+                                   "for instance --unit \"Pressure=Pa\"");
         }
         options.units.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     }
@@ -68,12 +72,14 @@ void add_pattern(const std::string& text, Batch& batch) {
     const auto found = pattern.files();
     const std::string missed = near_misses(pattern);
     if (found.empty()) {
-        throw core::InputError("file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; these come near: " + missed), {},
-                               "patterns may hold *, ?, {name} and {name:unit}");
+        throw core::InputError(
+            "file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; these come near: " + missed),
+            {}, "patterns may hold *, ?, {name} and {name:unit}");
     }
     if (!missed.empty()) {
-        batch.problems.push_back(
-            {core::Problem::Severity::warning, "left out, for their names do not fit the pattern '" + text + "': " + missed, {}});
+        batch.problems.push_back({core::Problem::Severity::warning,
+                                  "left out, for their names do not fit the pattern '" + text + "': " + missed,
+                                  {}});
     }
     for (const auto& [path, match] : found) {
         batch.files.push_back({path.string(), match.numbers, match.texts, {}});
@@ -115,7 +121,8 @@ void add_manifest(const std::string& path, Batch& batch) {
     }
     for (std::size_t row = 0; row < table.rows(); ++row) {
         if (names[row].empty()) {
-            throw core::InputError("missing", "row " + std::to_string(row + 1) + " of the manifest names no file", {path, {}, {}, {}});
+            throw core::InputError("missing", "row " + std::to_string(row + 1) + " of the manifest names no file",
+                                   {path, {}, {}, {}});
         }
         const fs::path listed = fs::path(path).parent_path() / names[row];
         if (all) {

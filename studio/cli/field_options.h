@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "postproc/field.h"
+#include "postproc/field/field.h"
 
 namespace CLI {
 class App;
@@ -34,14 +34,14 @@ struct FieldOptions {
 /// A file of a batch with the conditions that its name or the manifest gives.
 struct ConditionedFile {
     std::string path;
-    std::vector<std::pair<std::string, double>> numbers;      ///< SI
+    std::vector<std::pair<std::string, double>> numbers;  ///< SI
     std::vector<std::pair<std::string, std::string>> texts;
-    core::Place row{};                                        ///< its row of the manifest; without a file when it is in none
+    core::Place row{};  ///< its row of the manifest; without a file when it is in none
 };
 struct Batch {
     std::vector<ConditionedFile> files;
     std::vector<std::pair<std::string, std::string>> number_units;  ///< condition -> unit it was written in
-    core::Problems problems;  ///< files that a pattern only just passes over
+    core::Problems problems;                                        ///< files that a pattern only just passes over
 };
 
 /// Files, shell patterns and name patterns ('{variant}-h{gap:mm}.csv'); `manifest` is a table with a column `file`

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studio/cli/shell.h"
-#include "surrogates/dynamics/table_notes.h"
+#include "surrogates/dynamics/model/table_notes.h"
 
 namespace underbody::studio {
 

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/text.h"
-#include "postproc/summary.h"
-#include "postproc/vtk_files.h"
+#include "postproc/field/summary.h"
+#include "postproc/field/vtk_files.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
@@ -38,7 +38,8 @@ std::string name_from(const std::string& file, std::size_t depth, bool whole) {
     return name;
 }
 
-/// Several inputs go into several outputs: OUT-NAME.ending, with folders or endings before and behind NAME where files share it.
+/// Several inputs go into several outputs: OUT-NAME.ending, with folders or endings before and behind NAME where files
+/// share it.
 std::vector<fs::path> outputs_for(const std::string& out, const std::vector<ConditionedFile>& files) {
     const fs::path path(out);
     if (files.size() == 1) {
@@ -49,7 +50,9 @@ std::vector<fs::path> outputs_for(const std::string& out, const std::vector<Cond
             std::vector<fs::path> outputs;
             std::set<fs::path> different;
             for (const auto& file : files) {
-                outputs.push_back(path.parent_path() / (path.stem().string() + "-" + name_from(file.path, depth, whole) + path.extension().string()));
+                outputs.push_back(
+                    path.parent_path() /
+                    (path.stem().string() + "-" + name_from(file.path, depth, whole) + path.extension().string()));
                 different.insert(outputs.back());
             }
             if (different.size() == files.size()) {
@@ -57,7 +60,8 @@ std::vector<fs::path> outputs_for(const std::string& out, const std::vector<Cond
             }
         }
     }
-    throw core::UsageError("usage", "a file is named twice, or several have one name: their outputs would be one", {}, "name each file once, or import them apart");
+    throw core::UsageError("usage", "a file is named twice, or several have one name: their outputs would be one", {},
+                           "name each file once, or import them apart");
 }
 
 /// Before anything is written: no input may be lost.
@@ -67,20 +71,26 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<Condi
         for (const auto& file : files) {
             std::error_code error;
             const fs::path input = fs::weakly_canonical(file.path, error);
-            const bool in_blocks = output.extension() == ".vtm" && input.parent_path() == fs::weakly_canonical(fs::path(output).replace_extension(""), error);
+            const bool in_blocks =
+                output.extension() == ".vtm" &&
+                input.parent_path() == fs::weakly_canonical(fs::path(output).replace_extension(""), error);
             if (fs::equivalent(output, file.path, error) || in_blocks) {
-                throw core::UsageError("usage", "'" + output.string() + "' would be written over '" + file.path + "', which is to be read", {}, "name another --out");
+                throw core::UsageError(
+                    "usage", "'" + output.string() + "' would be written over '" + file.path + "', which is to be read",
+                    {}, "name another --out");
             }
         }
     }
 }
 
-/// Names of --arrays that fit nothing: a list for several files may name more than each has, but a slip of the pen loses an array.
+/// Names of --arrays that fit nothing: a list for several files may name more than each has, but a slip of the pen
+/// loses an array.
 void show_missing_arrays(Shell& shell, const postproc::Field& field, const std::vector<std::string>& wanted) {
     for (const auto& name : wanted) {
         const bool found = std::any_of(field.zones.begin(), field.zones.end(), [&](const postproc::Zone& zone) {
             return std::any_of(zone.arrays.begin(), zone.arrays.end(), [&](const postproc::ArrayInfo& info) {
-                return postproc::matches(name, info.name) || core::lower_case(info.original_name).find(core::lower_case(name)) != std::string::npos;
+                return postproc::matches(name, info.name) ||
+                       core::lower_case(info.original_name).find(core::lower_case(name)) != std::string::npos;
             });
         });
         if (!found && name.find_first_of("*?") == std::string::npos) {
@@ -128,7 +138,8 @@ void add_import_command(CLI::App& app, Shell& shell) {
     };
     auto options = std::make_shared<Options>();
     command->add_option("files", options->files, "CFD files, or patterns of names")->required();
-    command->add_option("-o,--out", options->out, "what to write: .vtp surfaces, .vtu volumes, .vtm every zone a block")->required();
+    command->add_option("-o,--out", options->out, "what to write: .vtp surfaces, .vtu volumes, .vtm every zone a block")
+        ->required();
     command->add_option("--arrays", options->arrays, "arrays to keep, by their canonical or own names")
         ->delimiter(',')
         ->transform(trimmed_name);

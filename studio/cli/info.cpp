@@ -11,9 +11,9 @@
 
 #include "core/text.h"
 #include "core/utf8.h"
+#include "postproc/field/summary.h"
 #include "postproc/importers/importer.h"
-#include "postproc/report_summary.h"
-#include "postproc/summary.h"
+#include "postproc/loads/report_summary.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
@@ -45,41 +45,53 @@ void print_columns(Shell& shell, const Rows& rows) {
 }
 
 void print(Shell& shell, const postproc::FieldSummary& summary) {
-    shell.print(summary.file + ": " + summary.format + (summary.writer.empty() ? "" : ", written by " + summary.writer) +
+    shell.print(summary.file + ": " + summary.format +
+                (summary.writer.empty() ? "" : ", written by " + summary.writer) +
                 (summary.dimension == 2 ? ", two-dimensional" : ""));
     Rows zones = {{"zone", "kind", "points", "faces", "cells", "extent [m]"}};
     for (const auto& zone : summary.zones) {
         std::string extent;
         for (std::size_t k = 0; k < 3; ++k) {
-            extent += std::string(k == 0 ? "" : "  ") + "xyz"[k] + " " + short_number(zone.lower[k]) + " .. " + short_number(zone.upper[k]);
+            extent += std::string(k == 0 ? "" : "  ") + "xyz"[k] + " " + short_number(zone.lower[k]) + " .. " +
+                      short_number(zone.upper[k]);
         }
-        zones.push_back({zone.name, zone.kind, std::to_string(zone.points), std::to_string(zone.faces), std::to_string(zone.cells), extent});
+        zones.push_back({zone.name, zone.kind, std::to_string(zone.points), std::to_string(zone.faces),
+                         std::to_string(zone.cells), extent});
     }
     print_columns(shell, zones);
     if (summary.zones.size() > 1) {
-        shell.print("\n" + std::to_string(summary.points) + " points zone by zone: those that zones share count in each");
+        shell.print("\n" + std::to_string(summary.points) +
+                    " points zone by zone: those that zones share count in each");
     }
     Rows arrays = {{"array", "unit", "on", "min", "max", "in the file"}};
     for (const auto& array : summary.arrays) {
-        arrays.push_back({array.name + (array.components > 1 ? " (" + std::to_string(array.components) + ")" : ""), array.unit.empty() ? "?" : array.unit, array.on, short_number(array.min),
+        arrays.push_back({array.name + (array.components > 1 ? " (" + std::to_string(array.components) + ")" : ""),
+                          array.unit.empty() ? "?" : array.unit, array.on, short_number(array.min),
                           short_number(array.max),
-                          array.original_name + (array.original_unit.empty() ? "" : " [" + array.original_unit + "]") + (array.missing > 0 ? ", " + std::to_string(array.missing) + " missing" : "")});
+                          array.original_name + (array.original_unit.empty() ? "" : " [" + array.original_unit + "]") +
+                              (array.missing > 0 ? ", " + std::to_string(array.missing) + " missing" : "")});
     }
     print_columns(shell, arrays);
-    shell.print("\npressure is " + (summary.pressure_reference == "unknown" ? std::string("gauge or absolute: the file does not say") : summary.pressure_reference) +
-                (summary.operating_pressure != 0 ? ", operating pressure " + short_number(summary.operating_pressure) + " Pa" : ""));
+    shell.print("\npressure is " +
+                (summary.pressure_reference == "unknown" ? std::string("gauge or absolute: the file does not say")
+                                                         : summary.pressure_reference) +
+                (summary.operating_pressure != 0
+                     ? ", operating pressure " + short_number(summary.operating_pressure) + " Pa"
+                     : ""));
     for (const auto& [key, value] : summary.metadata) {
         shell.print(key + ": " + value);
     }
 }
 
-void print(Shell& shell, const postproc::Monitor& monitor, const std::vector<std::optional<postproc::IterationScatter>>& scatter) {
+void print(Shell& shell, const postproc::Monitor& monitor,
+           const std::vector<std::optional<postproc::IterationScatter>>& scatter) {
     const auto& steps = monitor.values.front();
-    shell.print("\n" + (monitor.title.empty() ? "" : monitor.title + ": ") + std::to_string(steps.size()) + " rows, " + monitor.columns.front() + " " +
-                short_number(steps.front()) + " to " + short_number(steps.back()));
+    shell.print("\n" + (monitor.title.empty() ? "" : monitor.title + ": ") + std::to_string(steps.size()) + " rows, " +
+                monitor.columns.front() + " " + short_number(steps.front()) + " to " + short_number(steps.back()));
     Rows rows = {{"column", "last", "the last rows"}};
     for (std::size_t c = 1; c < monitor.columns.size(); ++c) {
-        rows.push_back({core::as_utf8(monitor.columns[c]), short_number(monitor.values[c].back()), scatter[c] ? scatter[c]->text : "too few to judge, or not all finite"});
+        rows.push_back({core::as_utf8(monitor.columns[c]), short_number(monitor.values[c].back()),
+                        scatter[c] ? scatter[c]->text : "too few to judge, or not all finite"});
     }
     print_columns(shell, rows);
 }
@@ -98,11 +110,16 @@ void print(Shell& shell, const postproc::Plot& plot) {
 }
 
 void print(Shell& shell, const postproc::ForceReport& report) {
-    const auto triple = [](const std::array<double, 3>& v) { return "(" + short_number(v[0]) + " " + short_number(v[1]) + " " + short_number(v[2]) + ")"; };
-    shell.print(std::string("\n") + (report.moments ? "moments [N m] about " + triple(report.centre) + ", axis " : "forces [N] along ") + triple(report.direction));
+    const auto triple = [](const std::array<double, 3>& v) {
+        return "(" + short_number(v[0]) + " " + short_number(v[1]) + " " + short_number(v[2]) + ")";
+    };
+    shell.print(std::string("\n") +
+                (report.moments ? "moments [N m] about " + triple(report.centre) + ", axis " : "forces [N] along ") +
+                triple(report.direction));
     Rows rows = {{"zone", "pressure", "viscous", "total"}};
     for (const auto& row : report.rows) {
-        rows.push_back({core::as_utf8(row.zone), short_number(row.pressure), short_number(row.viscous), short_number(row.total)});
+        rows.push_back(
+            {core::as_utf8(row.zone), short_number(row.pressure), short_number(row.viscous), short_number(row.total)});
     }
     print_columns(shell, rows);
 }
@@ -142,7 +159,9 @@ bool show_report(Shell& shell, const std::string& file) {
 }  // namespace
 
 void add_info_command(CLI::App& app, Shell& shell) {
-    auto* command = app.add_subcommand("info", "what a CFD file or a report of its solver holds: format, zones, arrays with units and ranges, histories, forces");
+    auto* command = app.add_subcommand("info",
+                                       "what a CFD file or a report of its solver holds: format, zones, arrays with "
+                                       "units and ranges, histories, forces");
     struct Options {
         std::string file;
         FieldOptions field;

@@ -13,13 +13,13 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
-#include "surrogates/dynamics/predict.h"
-#include "surrogates/estimator/bounds.h"
-#include "surrogates/estimator/observer.h"
-#include "surrogates/estimator/run_data.h"
-#include "surrogates/estimator/training.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/estimator/control/bounds.h"
+#include "surrogates/estimator/model/run_data.h"
+#include "surrogates/estimator/model/training.h"
+#include "surrogates/estimator/observe/observer.h"
 
 namespace underbody::studio {
 
@@ -28,8 +28,9 @@ namespace {
 using namespace estimator;
 
 struct LearnArguments {
-    std::string model, method = "grid", fit, offset = "mean", correction = "p1", excitation = "pink", region, mesh, input_sigma, duration,
-                interval, auxiliaries, conditions, data, moments_of, samples_out, out, focus, step = "0.1 s", horizon = "10 s", plot;
+    std::string model, method = "grid", fit, offset = "mean", correction = "p1", excitation = "pink", region, mesh,
+                       input_sigma, duration, interval, auxiliaries, conditions, data, moments_of, samples_out, out,
+                       focus, step = "0.1 s", horizon = "10 s", plot;
     std::size_t order = 0, samples = 50000;
     std::uint64_t seed = 1;
     bool scan = false, at_rest = false, compare = false;
@@ -52,7 +53,8 @@ std::size_t count_of(const std::string& text) {
     std::size_t value = 0;
     const auto r = std::from_chars(text.data(), text.data() + text.size(), value);
     if (r.ec != std::errc() || r.ptr != text.data() + text.size() || value == 0) {
-        throw core::UsageError("parse", "'" + text + "' is no count", {}, "for instance --mesh 5x41x61: inputs, velocities, gaps");
+        throw core::UsageError("parse", "'" + text + "' is no count", {},
+                               "for instance --mesh 5x41x61: inputs, velocities, gaps");
     }
     return value;
 }
@@ -66,28 +68,31 @@ Value choose(const std::string& text, const std::vector<std::pair<std::string, V
         }
         names.push_back(name);
     }
-    throw core::UsageError("name", std::string(option) + " does not know '" + text + "'", {}, core::did_you_mean(text, names));
+    throw core::UsageError("name", std::string(option) + " does not know '" + text + "'", {},
+                           core::did_you_mean(text, names));
 }
 
 TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& plant) {
     TrainingOptions o;
-    o.method = choose<TrainingOptions::Method>(
-        a.method,
-        {{"grid", TrainingOptions::Method::grid},
-         {"time", TrainingOptions::Method::time},
-         {"dmdc", TrainingOptions::Method::grid},
-         {"edmd", TrainingOptions::Method::grid}},
-        "--method");
+    o.method = choose<TrainingOptions::Method>(a.method,
+                                               {{"grid", TrainingOptions::Method::grid},
+                                                {"time", TrainingOptions::Method::time},
+                                                {"dmdc", TrainingOptions::Method::grid},
+                                                {"edmd", TrainingOptions::Method::grid}},
+                                               "--method");
     o.samples = a.samples;
     o.seed = a.seed;
     o.start_at_rest = a.at_rest;
-    o.excitation = choose<Excitation>(
-        a.excitation,
-        {{"none", Excitation::none}, {"white", Excitation::white}, {"pink", Excitation::pink}, {"pulses", Excitation::pulses}},
-        "--excitation");
+    o.excitation = choose<Excitation>(a.excitation,
+                                      {{"none", Excitation::none},
+                                       {"white", Excitation::white},
+                                       {"pink", Excitation::pink},
+                                       {"pulses", Excitation::pulses}},
+                                      "--excitation");
     o.gap_lower = std::max(plant.lower, plant.contact_gap);
     o.gap_upper = plant.upper;
-    for (const core::NamedRange& r : a.region.empty() ? std::vector<core::NamedRange>{} : core::parse_ranges(a.region)) {
+    for (const core::NamedRange& r :
+         a.region.empty() ? std::vector<core::NamedRange>{} : core::parse_ranges(a.region)) {
         if (r.name == "gap") {
             o.gap_lower = r.lower;
             o.gap_upper = r.upper;
@@ -100,18 +105,21 @@ TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& 
     }
     constexpr double no_end = 1e6;  // m: no table bounds the gaps
     if (a.data.empty() && a.moments_of.empty() && !(o.gap_upper - o.gap_lower < no_end)) {
-        throw core::UsageError("range", "the model has no force table whose gaps could be sampled", {}, "say them: --region gap=0:0.1");
+        throw core::UsageError("range", "the model has no force table whose gaps could be sampled", {},
+                               "say them: --region gap=0:0.1");
     }
     double largest = 0, slope = 0;
     for (int i = 0; i <= 400; ++i) {
-        largest = std::max(largest, std::abs(plant.ground_force(o.gap_lower + (o.gap_upper - o.gap_lower) * i / 400, slope)));
+        largest =
+            std::max(largest, std::abs(plant.ground_force(o.gap_lower + (o.gap_upper - o.gap_lower) * i / 400, slope)));
     }
     o.input_sigma = a.input_sigma.empty() ? std::max(0.5 * largest, 1e-4) : core::parse_in(a.input_sigma, "N");
     o.duration = a.duration.empty() ? o.duration : core::parse_in(a.duration, "s");
     o.interval = a.interval.empty() ? o.interval : core::parse_in(a.interval, "s");
     if (!a.auxiliaries.empty()) {
         if (a.method == "dmdc") {
-            throw core::UsageError("range", "--method dmdc has no auxiliary variables", {}, "take --method edmd for a dictionary");
+            throw core::UsageError("range", "--method dmdc has no auxiliary variables", {},
+                                   "take --method edmd for a dictionary");
         }
         o.auxiliaries = split(a.auxiliaries, ',');
     } else if (a.method == "dmdc") {
@@ -122,7 +130,8 @@ TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& 
     if (!a.mesh.empty()) {
         const auto parts = split(a.mesh, 'x');
         if (parts.size() != 3) {
-            throw core::UsageError("parse", "--mesh wants three counts", {}, "for instance --mesh 5x41x61: inputs, velocities, gaps");
+            throw core::UsageError("parse", "--mesh wants three counts", {},
+                                   "for instance --mesh 5x41x61: inputs, velocities, gaps");
         }
         o.mesh_inputs = count_of(parts[0]);
         o.mesh_velocities = count_of(parts[1]);
@@ -161,7 +170,11 @@ nlohmann::json scan_json(const Moments& moments, const Layout& layout, const Lea
         for (const auto& p : estimator::eigenvalues(m.A)) {
             poles.push_back({{"real", p.real()}, {"imaginary", p.imag()}});
         }
-        list.push_back({{"order", m.order}, {"above_rank", m.order > m.rank}, {"rms", e.rms}, {"relative", e.relative}, {"poles", poles}});
+        list.push_back({{"order", m.order},
+                        {"above_rank", m.order > m.rank},
+                        {"rms", e.rms},
+                        {"relative", e.relative},
+                        {"poles", poles}});
     }
     return list;
 }
@@ -183,8 +196,8 @@ bool has_forces(const Layout& layout) {
 }
 
 /// The model and its peers on motions that none of them has seen.
-void compare(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
-             const RunSplit& split, Learned& out, Shell& shell) {
+void compare(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant,
+             const TrainingOptions& training, const RunSplit& split, Learned& out, Shell& shell) {
     const double step = core::parse_in(a.step, "s"), horizon = core::parse_in(a.horizon, "s");
     NamedModels models;
     std::vector<TestMotion> motions;
@@ -199,12 +212,13 @@ void compare(const LearnArguments& a, const dynamics::Model& declared, const Sep
         test.input_sigma = training.input_sigma;
         test.seed = a.seed + 98;
         motions = test_motions(plant, test);
-        out.tested_on = std::to_string(test.runs) + " simulated motions of " + core::format_number(horizon, 4) + " s, none in the training set";
+        out.tested_on = std::to_string(test.runs) + " simulated motions of " + core::format_number(horizon, 4) +
+                        " s, none in the training set";
     } else {
         const std::vector<std::string> forces{"ground_force", "drag_force"};
         const auto train = motions_from_runs(declared, split.train, horizon, {}, shell.progress());
-        models = usual_peers(plant, training_from_runs(declared, split.train, forces, {}, shell.progress()), snapshot_pairs(train, {}, step),
-                             snapshot_pairs(train, usual_dictionary(), step));
+        models = usual_peers(plant, training_from_runs(declared, split.train, forces, {}, shell.progress()),
+                             snapshot_pairs(train, {}, step), snapshot_pairs(train, usual_dictionary(), step));
         motions = motions_from_runs(declared, split.test, horizon, {}, shell.progress());
         out.tested_on = std::to_string(motions.size()) + " windows of measured runs; " + split.how;
     }
@@ -215,32 +229,36 @@ void compare(const LearnArguments& a, const dynamics::Model& declared, const Sep
     }
 }
 
-TrainingSet samples_for(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant, const TrainingOptions& training,
-                        const RunSplit& split, Shell& shell) {
+TrainingSet samples_for(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant,
+                        const TrainingOptions& training, const RunSplit& split, Shell& shell) {
     return a.data.empty() ? training_set(plant, training, shell.progress())
                           : training_from_runs(declared, split.train, training.auxiliaries, {}, shell.progress());
 }
 
-void learn_from_samples(const LearnArguments& a, const SeparatedPlant& plant, const TrainingOptions& training, const Layout& layout,
-                        LearnOptions options, Learned& out) {
+void learn_from_samples(const LearnArguments& a, const SeparatedPlant& plant, const TrainingOptions& training,
+                        const Layout& layout, LearnOptions options, Learned& out) {
     options.virtual_mass = plant.virtual_mass;
     if (options.offset == OffsetMode::equilibrium) {
         options.point = equilibrium_point(plant, layout, training.gap_lower, training.gap_upper);
     }
     out.model = learn(out.moments, layout, options);
     const auto correction = choose<Correction>(
-        a.correction, {{"p1", Correction::p1}, {"p2", Correction::p2}, {"p3", Correction::p3}, {"p4", Correction::p4}}, "--correction");
+        a.correction, {{"p1", Correction::p1}, {"p2", Correction::p2}, {"p3", Correction::p3}, {"p4", Correction::p4}},
+        "--correction");
     if (correction != Correction::p1) {
         if (out.rows.empty()) {
-            throw core::UsageError("missing", "corrections need ground_force and drag_force, or total_force, among the auxiliaries");
+            throw core::UsageError(
+                "missing", "corrections need ground_force and drag_force, or total_force, among the auxiliaries");
         }
         out.model = corrected(out.model, correction, out.rows);
     }
 }
 
-Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, const LearnOptions& options, Shell& shell) {
+Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, const LearnOptions& options,
+                    Shell& shell) {
     dynamics::Conditions held;
-    for (const core::NamedValue& v : a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
+    for (const core::NamedValue& v :
+         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         held.set(v.name, v.value);
     }
     RunSplit split;
@@ -261,7 +279,8 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
     }
     if (!a.moments_of.empty()) {
         if (by_snapshots(a) || !a.data.empty()) {
-            throw core::UsageError("range", "--moments-of is a training set of its own: no --data, and --method grid or time");
+            throw core::UsageError("range",
+                                   "--moments-of is a training set of its own: no --data, and --method grid or time");
         }
         out.moments = moments_of_file(a.moments_of, layout.names(), shell.progress());
     } else {
@@ -274,11 +293,12 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
     }
     if (by_snapshots(a)) {
         const double step = core::parse_in(a.step, "s");
-        out.model = learn_dmd(a.data.empty() ? snapshot_pairs(plant, training, step, shell.progress())
-                                             : snapshot_pairs(motions_from_runs(declared, split.train, core::parse_in(a.horizon, "s"), {},
-                                                                                shell.progress()),
-                                                              training.auxiliaries, step),
-                              a.order);
+        out.model = learn_dmd(
+            a.data.empty() ? snapshot_pairs(plant, training, step, shell.progress())
+                           : snapshot_pairs(motions_from_runs(declared, split.train, core::parse_in(a.horizon, "s"), {},
+                                                              shell.progress()),
+                                            training.auxiliaries, step),
+            a.order);
     } else {
         learn_from_samples(a, plant, training, layout, options, out);
     }
@@ -294,7 +314,8 @@ nlohmann::json describe(const Learned& l, const LearnOptions& options, bool scan
         json["separability"] = separability(l.model);
         json["robustness"] = {{"j_zeta", bounds_json(l.model.j_zeta())},
                               {"symmetric_part", symmetric_part_abscissa(l.model.j_zeta())},
-                              {"performance_ratio", l.model.j_x().largest() > 0 ? performance_ratio(l.model.j_zeta(), l.model.j_x()) : 0}};
+                              {"performance_ratio",
+                               l.model.j_x().largest() > 0 ? performance_ratio(l.model.j_zeta(), l.model.j_x()) : 0}};
     }
     const DerivativeError e = derivative_error(l.model, l.moments);
     json["derivative_error"] = {{"rms", e.rms}, {"relative", e.relative}};
@@ -324,8 +345,8 @@ nlohmann::json describe(const Learned& l, const LearnOptions& options, bool scan
 
 std::string text_of(const Learned& l) {
     const AugmentedModel& m = l.model;
-    std::string text = "order " + std::to_string(m.order) + " of rank " + std::to_string(m.rank) + " from " + std::to_string(m.samples) +
-                       " samples, " + m.method + "\n";
+    std::string text = "order " + std::to_string(m.order) + " of rank " + std::to_string(m.rank) + " from " +
+                       std::to_string(m.samples) + " samples, " + m.method + "\n";
     for (std::size_t i = 0; i < m.layout.states.size(); ++i) {
         text += "  d " + m.layout.states[i] + " =";
         for (std::size_t j = 0; j < m.layout.states.size(); ++j) {
@@ -362,7 +383,8 @@ int run_learn(const LearnArguments& a, Shell& shell) {
                                {"method2", Fit::method2}},
                               "--fit");
     options.offset = choose<OffsetMode>(
-        a.offset, {{"mean", OffsetMode::mean}, {"none", OffsetMode::none}, {"equilibrium", OffsetMode::equilibrium}}, "--offset");
+        a.offset, {{"mean", OffsetMode::mean}, {"none", OffsetMode::none}, {"equilibrium", OffsetMode::equilibrium}},
+        "--offset");
     const Learned learned = learn_model(a, declared, options, shell);
     shell.show(learned.remarks);
     shell.show(learned.model.remarks);
@@ -383,30 +405,37 @@ void add_learn_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("learn", "the data-driven linear model of velocity, gap and forces");
     auto a = std::make_shared<LearnArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
-    command->add_option("--method", a->method, "grid: samples of the region (default); time: along trajectories; dmdc, edmd: dynamic mode "
-                                                       "decomposition with control from snapshots, plain or over the auxiliaries as a dictionary");
+    command->add_option("--method", a->method,
+                        "grid: samples of the region (default); time: along trajectories; dmdc, edmd: dynamic mode "
+                        "decomposition with control from snapshots, plain or over the auxiliaries as a dictionary");
     command->add_option("--order", a->order, "latent variables kept (default: the rank, by least squares)");
     command->add_option("--fit", a->fit, "least_squares, weighted_latent, method1, method2 (default with --order)");
     command->add_option("--offset", a->offset, "mean (default), none, equilibrium");
-    command->add_option("--correction", a->correction, "p1 as fitted (default), p2 known rows, p3 no gap column, p4 every structural zero");
-    command->add_option("--region", a->region, "gap=0:1.2,heave_velocity=-0.03:0.03 (default: the force table, 30 mm/s)");
+    command->add_option("--correction", a->correction,
+                        "p1 as fitted (default), p2 known rows, p3 no gap column, p4 every structural zero");
+    command->add_option("--region", a->region,
+                        "gap=0:1.2,heave_velocity=-0.03:0.03 (default: the force table, 30 mm/s)");
     command->add_option("--samples", a->samples, "how many (default 50000, at most 4000000)");
     command->add_option("--mesh", a->mesh, "a deterministic grid instead: inputs x velocities x gaps, 5x41x61");
     command->add_option("--focus", a->focus, "lower:upper:share: this share of samples from a band of gaps");
     command->add_option("--excitation", a->excitation, "pink (default), white, pulses, none");
-    command->add_option("--input-sigma", a->input_sigma, "deviation of the input (default: half the largest ground force)");
+    command->add_option("--input-sigma", a->input_sigma,
+                        "deviation of the input (default: half the largest ground force)");
     command->add_option("--for", a->duration, "time: length of each trajectory (default 10 s)");
     command->add_option("--every", a->interval, "time: interval of samples (default 0.1 s)");
     command->add_flag("--at-rest", a->at_rest, "time: start each trajectory at rest");
     command->add_option("--auxiliaries", a->auxiliaries,
-                        "ground_force,drag_force (default), total_force, ground_slope, drag_slope, gap_squared, gap_cubed, velocity_squared");
+                        "ground_force,drag_force (default), total_force, ground_slope, drag_slope, gap_squared, "
+                        "gap_cubed, velocity_squared");
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V");
     command->add_option("--data", a->data, "train on measured runs (folder with dataset.toml), smoothed by the model");
-    command->add_option("--moments-of", a->moments_of, "train on samples of a NumPy file, streamed (input, states, derivatives)");
+    command->add_option("--moments-of", a->moments_of,
+                        "train on samples of a NumPy file, streamed (input, states, derivatives)");
     command->add_option("--samples-out", a->samples_out, "write the training samples as a NumPy file");
     command->add_option("--step", a->step, "between the snapshots of dmdc and edmd (default 0.1 s)");
-    command->add_flag("--compare", a->compare, "errors of derivatives and of long predictions on test motions (or test runs of --data), "
-                                               "beside tangent, equivalent-linear, dmdc, edmd and nonlinear models");
+    command->add_flag("--compare", a->compare,
+                      "errors of derivatives and of long predictions on test motions (or test runs of --data), "
+                      "beside tangent, equivalent-linear, dmdc, edmd and nonlinear models");
     command->add_option("--horizon", a->horizon, "of the predictions (default 10 s)");
     command->add_option("--plot", a->plot, "--compare: errors of the predicted gap (.png, .pdf)");
     command->add_option("--seed", a->seed, "seed of the samples (default 1)");

@@ -1,5 +1,5 @@
 // underbody linear: the small motion about an equilibrium, its modes and its control.
-#include "surrogates/dynamics/linear.h"
+#include "surrogates/dynamics/linear/linear.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -14,9 +14,9 @@
 #include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/feedback.h"
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/dynamics/surface_motion.h"
+#include "surrogates/dynamics/simulate/feedback.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/dynamics/simulate/surface_motion.h"
 
 namespace underbody::studio {
 
@@ -126,7 +126,8 @@ std::string free_in_pitch(const dynamics::Model& model, const dynamics::Conditio
         if (e.stable) {
             stable += (stable.empty() ? "" : "; ") + where;
         } else {
-            unstable += (unstable.empty() ? "" : "; ") + where + ", growing with " + core::format_number(e.growth, 4) + " 1/s";
+            unstable +=
+                (unstable.empty() ? "" : "; ") + where + ", growing with " + core::format_number(e.growth, 4) + " 1/s";
         }
     }
     json["stable_in_heave_and_pitch"] = !stable.empty();
@@ -222,10 +223,10 @@ void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficie
     std::string pole_text;
     for (const std::complex<double>& pole : transfer.poles) {
         poles.push_back(complex_json(pole));
-        pole_text += (pole_text.empty() ? "" : ", ") + core::format_number(pole.real(), 5) +
-                     (pole.imag() != 0 ? (pole.imag() > 0 ? " + " : " - ") +
-                                             core::format_number(std::abs(pole.imag()), 5) + " i"
-                                       : "");
+        pole_text +=
+            (pole_text.empty() ? "" : ", ") + core::format_number(pole.real(), 5) +
+            (pole.imag() != 0 ? (pole.imag() > 0 ? " + " : " - ") + core::format_number(std::abs(pole.imag()), 5) + " i"
+                              : "");
     }
     double offset = a.friction_offset.empty() ? model.vehicle.base_half_width : core::parse_in(a.friction_offset, "m");
     offset = std::isnan(offset) ? 0 : offset;
@@ -234,27 +235,25 @@ void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficie
     if (!a.gamma_chart.empty()) {
         write_picture(dynamics::gamma_figure(chart), a.gamma_chart);
     }
-    json["turning_jets"] = {{"gamma", layout->gamma},
-                            {"beta", layout->beta},
-                            {"beta_without_pitch", beta},
-                            {"yaw_per_difference", {{"poles", poles}, {"zero", transfer.zero}}},
-                            {"needed_torque", chart.needed},
-                            {"best_gamma", chart.best_gamma},
-                            {"least_gamma", chart.least_gamma}};
+    json["turning_jets"] = {
+        {"gamma", layout->gamma},          {"beta", layout->beta},
+        {"beta_without_pitch", beta},      {"yaw_per_difference", {{"poles", poles}, {"zero", transfer.zero}}},
+        {"needed_torque", chart.needed},   {"best_gamma", chart.best_gamma},
+        {"least_gamma", chart.least_gamma}};
     text += "  turning jets: gamma " + core::format_number(degrees * layout->gamma, 4) + " deg, beta " +
-            core::format_number(degrees * layout->beta, 4) + " deg (thrust without pitch moment: " +
-            core::format_number(degrees * beta, 5) + " deg)\n  yaw rate per thrust difference: poles " + pole_text +
-            " 1/s, zero " + core::format_number(transfer.zero, 5) + " 1/s" +
-            (transfer.zero > 0 ? " (non-minimum phase)" : "") + "\n  yaw torque needed " +
-            core::format_number(chart.needed, 4) + " N m" +
+            core::format_number(degrees * layout->beta, 4) +
+            " deg (thrust without pitch moment: " + core::format_number(degrees * beta, 5) +
+            " deg)\n  yaw rate per thrust difference: poles " + pole_text + " 1/s, zero " +
+            core::format_number(transfer.zero, 5) + " 1/s" + (transfer.zero > 0 ? " (non-minimum phase)" : "") +
+            "\n  yaw torque needed " + core::format_number(chart.needed, 4) + " N m" +
             (std::isnan(chart.least_gamma)
                  ? ": more than a pair gives at any angle\n"
                  : ": gamma at least " + core::format_number(degrees * chart.least_gamma, 4) + " deg, most torque at " +
                        core::format_number(degrees * chart.best_gamma, 4) + " deg\n");
 }
 
-void surface(const dynamics::Model& model, const dynamics::Conditions& held, const LinearArguments& a, nlohmann::json& json,
-             std::string& text) {
+void surface(const dynamics::Model& model, const dynamics::Conditions& held, const LinearArguments& a,
+             nlohmann::json& json, std::string& text) {
     const double speed = held.get(dynamics::Channel::speed, 0.35);
     if (!(speed > 0)) {
         return;
@@ -273,8 +272,8 @@ void surface(const dynamics::Model& model, const dynamics::Conditions& held, con
     const dynamics::SurfaceState run{speed, 0, 0, 0, 0, 0};
     const double normal = motion.contact(run, thrust).normal;
     if (normal < 0) {
-        text += "on the ground at " + core::format_number(speed, 4) +
-                " m/s: the body leaves it, no run on the ground\n";
+        text +=
+            "on the ground at " + core::format_number(speed, 4) + " m/s: the body leaves it, no run on the ground\n";
         nlohmann::json lifted = {{"speed", speed}, {"normal_force", normal}};
         turning_jets(model, dynamics::surface_coefficients(model), speed, 0, a, lifted, text);
         json["surface"] = lifted;
@@ -347,7 +346,8 @@ bool whole_body(const dynamics::Model& model) {
            !std::isnan(v.base_depth) && !std::isnan(v.base_half_length);
 }
 
-void sweep(const dynamics::Model& model, const dynamics::Conditions& held, const LinearArguments& a, nlohmann::json& json) {
+void sweep(const dynamics::Model& model, const dynamics::Conditions& held, const LinearArguments& a,
+           nlohmann::json& json) {
     const std::vector<core::NamedRange> ranges = core::parse_ranges(a.sweep);
     dynamics::Channel channel{};
     if (!dynamics::find_channel(ranges.at(0).name, channel)) {
@@ -380,8 +380,9 @@ int run_linear(const LinearArguments& a, Shell& shell) {
         at->name = "trim";
         at->gap = std::nan("");
         for (const core::NamedValue& value : core::parse_assignments(a.at)) {
-            (value.name == "gap" ? at->gap : value.name == "pitch" ? at->pitch : given[dynamics::Channel::speed]) =
-                value.value;
+            (value.name == "gap"     ? at->gap
+             : value.name == "pitch" ? at->pitch
+                                     : given[dynamics::Channel::speed]) = value.value;
             if (value.name != "gap" && value.name != "pitch" && value.name != "speed") {
                 throw core::UsageError("name", "--at takes gap, pitch and speed, not '" + value.name + "'");
             }

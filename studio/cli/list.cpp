@@ -9,10 +9,10 @@
 #include "cases/file_templates.h"
 #include "core/file_format.h"
 #include "core/units.h"
-#include "postproc/lists.h"
+#include "postproc/field/lists.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
-#include "surrogates/dynamics/effects/effect.h"
+#include "surrogates/dynamics/model/effect.h"
 #include "surrogates/tables/exports/export.h"
 
 namespace underbody::studio {

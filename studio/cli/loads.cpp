@@ -1,5 +1,5 @@
 // underbody loads FILE...: forces and moments, and a table of many files.
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,14 +11,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/batch_problems.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "postproc/loads_table.h"
-#include "postproc/mesh_study.h"
-#include "postproc/stated_loads.h"
-#include "core/batch_problems.h"
-#include "postproc/transient.h"
+#include "postproc/loads/loads_table.h"
+#include "postproc/loads/mesh_study.h"
+#include "postproc/loads/stated_loads.h"
+#include "postproc/loads/transient.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/option_value.h"
@@ -40,25 +40,30 @@ struct LoadsArguments {
     FieldOptions field;
 };
 
-/// Nothing when the option was not given. Throws core::UsageError when it is not positive: lengths and flow that coefficients refer to.
+/// Nothing when the option was not given. Throws core::UsageError when it is not positive: lengths and flow that
+/// coefficients refer to.
 std::optional<double> positive(const char* option, const std::string& text, const char* unit) {
     if (text.empty()) {
         return {};
     }
     const double value = option_value(option, text, unit);
     if (!(value > 0)) {
-        throw core::UsageError("range", std::string(option) + " is " + core::format_number(value) + " " + unit + ": it has to be positive");
+        throw core::UsageError("range", std::string(option) + " is " + core::format_number(value) + " " + unit +
+                                            ": it has to be positive");
     }
     return value;
 }
 
 /// A condition of a file, SI; nothing when it has none of that name or a missing value.
 std::optional<double> condition_of(const ConditionedFile& file, const std::string& name) {
-    const auto found = std::find_if(file.numbers.begin(), file.numbers.end(), [&](const auto& entry) { return entry.first == name; });
-    return found == file.numbers.end() || std::isnan(found->second) ? std::nullopt : std::optional<double>(found->second);
+    const auto found =
+        std::find_if(file.numbers.begin(), file.numbers.end(), [&](const auto& entry) { return entry.first == name; });
+    return found == file.numbers.end() || std::isnan(found->second) ? std::nullopt
+                                                                    : std::optional<double>(found->second);
 }
 
-/// The point of the moments: "x,y,z" with lengths or names of conditions ("0,0,gap"), else the manifest's columns reference_x, _y, _z.
+/// The point of the moments: "x,y,z" with lengths or names of conditions ("0,0,gap"), else the manifest's columns
+/// reference_x, _y, _z.
 std::optional<postproc::Vector> reference_of(const std::string& text, const ConditionedFile& file) {
     const auto condition = [&](const std::string& name) { return condition_of(file, name); };
     if (text.empty()) {
@@ -69,13 +74,15 @@ std::optional<postproc::Vector> reference_of(const std::string& text, const Cond
             return std::nullopt;
         }
         if (!x || !y || !z) {
-            throw core::InputError("missing", "a reference point needs reference_x, reference_y and reference_z", {file.path, {}, {}, {}});
+            throw core::InputError("missing", "a reference point needs reference_x, reference_y and reference_z",
+                                   {file.path, {}, {}, {}});
         }
         return postproc::Vector{*x, *y, *z};
     }
     const auto parts = core::split(text, ',');
     if (parts.size() != 3) {
-        throw core::UsageError("usage", "'" + text + "' is no point", {}, "give x,y,z in m, or with units: \"0,0,5 mm\", or conditions: \"0,0,gap\"");
+        throw core::UsageError("usage", "'" + text + "' is no point", {},
+                               "give x,y,z in m, or with units: \"0,0,5 mm\", or conditions: \"0,0,gap\"");
     }
     postproc::Vector point{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -87,10 +94,12 @@ std::optional<postproc::Vector> reference_of(const std::string& text, const Cond
                 names.push_back(entry.first);
             }
             if (std::find(names.begin(), names.end(), part) != names.end()) {
-                throw core::InputError("missing", "this case has no value of '" + part + "', which --reference takes", {file.path, {}, {}, {}});
+                throw core::InputError("missing", "this case has no value of '" + part + "', which --reference takes",
+                                       {file.path, {}, {}, {}});
             }
-            throw core::UsageError("usage", "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'", {},
-                                   core::did_you_mean(part, names));
+            throw core::UsageError(
+                "usage", "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'", {},
+                core::did_you_mean(part, names));
         }
         point[k] = known ? *known : core::parse_in(part, "m");
     }
@@ -110,8 +119,10 @@ void check_conditions(const Batch& batch, const LoadsArguments& given) {
     for (const auto& [name, unit] : batch.number_units) {
         for (const auto& [known, si] : units) {
             if (name == known && !core::same_dimension(unit, si)) {
-                throw core::InputError("unit", "the condition '" + name + "' is in " + unit + ", not in " + (si == "1" ? "pure numbers" : si),
-                                       {given.manifest, {}, {}, {}});
+                throw core::InputError(
+                    "unit",
+                    "the condition '" + name + "' is in " + unit + ", not in " + (si == "1" ? "pure numbers" : si),
+                    {given.manifest, {}, {}, {}});
             }
         }
     }
@@ -134,9 +145,11 @@ postproc::LoadsOptions loads_options(const LoadsArguments& given) {
     options.fluid = given.fluid == "automatic" ? postproc::FluidSide::automatic
                     : given.fluid == "file"    ? postproc::FluidSide::as_in_file
                                                : postproc::FluidSide::reversed;
-    options.reference_pressure = given.reference_pressure.empty() ? 0 : option_value("--reference-pressure", given.reference_pressure, "Pa");
-    options.references = {positive("--density", given.density, "kg/m^3"), positive("--speed", given.speed, "m/s"), positive("--length", given.length, "m"),
-                          positive("--width", given.width, "m"), positive("--height", given.height, "m")};
+    options.reference_pressure =
+        given.reference_pressure.empty() ? 0 : option_value("--reference-pressure", given.reference_pressure, "Pa");
+    options.references = {positive("--density", given.density, "kg/m^3"), positive("--speed", given.speed, "m/s"),
+                          positive("--length", given.length, "m"), positive("--width", given.width, "m"),
+                          positive("--height", given.height, "m")};
     options.stations = given.stations;
     options.accept_problems = given.accept_problems;
     options.axisymmetric = given.axisymmetric;
@@ -154,12 +167,18 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     const postproc::LoadsResult& result = one.loads;
     const auto& [total, pressure, viscous] = std::tie(result.named, result.named_pressure, result.named_viscous);
     const auto line = [&](const std::string& name, double postproc::NamedLoads::*which, const char* unit) {
-        const auto sigma = std::find_if(one.sigmas.begin(), one.sigmas.end(), [&](const auto& entry) { return entry.first == name; });
-        shell.print(name + std::string(16 - name.size(), ' ') + cell(total.*which) + cell(pressure.*which) + cell(viscous.*which) +
-                    (one.sigmas.empty() ? "" : sigma == one.sigmas.end() ? "            -" : cell(sigma->second)) + "  " + unit);
+        const auto sigma =
+            std::find_if(one.sigmas.begin(), one.sigmas.end(), [&](const auto& entry) { return entry.first == name; });
+        shell.print(name + std::string(16 - name.size(), ' ') + cell(total.*which) + cell(pressure.*which) +
+                    cell(viscous.*which) +
+                    (one.sigmas.empty()          ? ""
+                     : sigma == one.sigmas.end() ? "            -"
+                                                 : cell(sigma->second)) +
+                    "  " + unit);
     };
     shell.print(result.file + (result.depth.empty() ? "" : ", " + result.depth));
-    shell.print(std::string("                        total     pressure      viscous") + (one.sigmas.empty() ? "" : "        sigma"));
+    shell.print(std::string("                        total     pressure      viscous") +
+                (one.sigmas.empty() ? "" : "        sigma"));
     line("lift_force", &postproc::NamedLoads::lift_force, "N, up");
     line("drag_force", &postproc::NamedLoads::drag_force, "N, against the motion");
     line("side_force", &postproc::NamedLoads::side_force, "N, to starboard");
@@ -167,16 +186,21 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     line("roll_moment", &postproc::NamedLoads::roll_moment, "N m, starboard down");
     line("yaw_moment", &postproc::NamedLoads::yaw_moment, "N m, bow to starboard");
     const auto number = [](double value) { return core::format_number(value, 6); };
-    const auto vector = [&](const postproc::Vector& v) { return number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]); };
+    const auto vector = [&](const postproc::Vector& v) {
+        return number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]);
+    };
     shell.print("force           " + vector(result.total.force) + " N, in the file's axes");
-    shell.print("moment          " + vector(result.total.moment) + " N m, about " + vector(result.reference) + " m: " + result.reference_from);
+    shell.print("moment          " + vector(result.total.moment) + " N m, about " + vector(result.reference) +
+                " m: " + result.reference_from);
     if (result.centre_of_pressure) {
-        shell.print("acts at         " + vector(*result.centre_of_pressure) + " m: the lift, on the line forward through that point");
+        shell.print("acts at         " + vector(*result.centre_of_pressure) +
+                    " m: the lift, on the line forward through that point");
     }
     for (const auto& zone : result.zones) {
         const auto& p = zone.pressure.force;
         const auto& v = zone.viscous.force;
-        shell.print("zone '" + zone.name + "': " + std::to_string(zone.faces) + " faces, " + core::format_number(zone.area, 5) + " m^2, force " +
+        shell.print("zone '" + zone.name + "': " + std::to_string(zone.faces) + " faces, " +
+                    core::format_number(zone.area, 5) + " m^2, force " +
                     vector({p[0] + v[0], p[1] + v[1], p[2] + v[2]}) + " N");
     }
     for (const auto& zone : result.left_out) {
@@ -185,28 +209,32 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     if (result.coefficients) {
         const auto& c = *result.coefficients;
         const auto brief = [](double value, int digits) { return core::format_number(value, digits); };
-        shell.print("C_L " + brief(c.lift, 5) + ", C_D " + brief(c.drag, 5) + ", C_M " + brief(c.pitch_moment, 5) + " on " + brief(c.length, 4) + " x " +
-                    brief(c.width, 4) + " x " + brief(c.height, 4) + " m (" + c.lengths_from + "), " + brief(c.density, 5) + " kg/m^3, " + brief(c.speed, 4) +
-                    " m/s");
+        shell.print("C_L " + brief(c.lift, 5) + ", C_D " + brief(c.drag, 5) + ", C_M " + brief(c.pitch_moment, 5) +
+                    " on " + brief(c.length, 4) + " x " + brief(c.width, 4) + " x " + brief(c.height, 4) + " m (" +
+                    c.lengths_from + "), " + brief(c.density, 5) + " kg/m^3, " + brief(c.speed, 4) + " m/s");
     }
-    shell.print("from values on " + result.values_from + "; closure " + core::format_number(result.closure, 3) + "; 1 kPa of reference pressure would add " +
+    shell.print("from values on " + result.values_from + "; closure " + core::format_number(result.closure, 3) +
+                "; 1 kPa of reference pressure would add " +
                 vector(postproc::plus({}, result.force_per_reference_pascal, 1000)) + " N");
     shell.print("sides: " + result.orientation);
     const std::string verdict = to_string(one.settled.verdict);
     shell.print((one.settled.verdict == postproc::SettledVerdict::unknown ? "settled: unknown: " : verdict + ": ") +
                 one.settled.why);
     if (!result.stations.empty()) {
-        shell.print("what the part behind each place carries (along forward from the reference point):\n"
-                    "     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
+        shell.print(
+            "what the part behind each place carries (along forward from the reference point):\n"
+            "     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
         for (const auto& station : result.stations) {
-            shell.print("   " + cell(station.position) + "    " + cell(station.behind.lift_force) + "    " + cell(station.behind.drag_force) + "       " +
-                        cell(station.behind.pitch_moment));
+            shell.print("   " + cell(station.position) + "    " + cell(station.behind.lift_force) + "    " +
+                        cell(station.behind.drag_force) + "       " + cell(station.behind.pitch_moment));
         }
     }
     print(shell, one.comparisons);
 }
 
-std::string of_force(const postproc::Comparison& one) { return core::format_number(100 * one.of_force, 3) + " % of the force apart"; }
+std::string of_force(const postproc::Comparison& one) {
+    return core::format_number(100 * one.of_force, 3) + " % of the force apart";
+}
 
 /// What the solver states beside what was integrated; rows of single zones and parts only with --verbose.
 void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
@@ -216,7 +244,8 @@ void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
             file = one.stated_in;
             shell.print("the solver's own, in " + file + ":");
         }
-        const bool zone = one.quantity.find(" on '") != std::string::npos && std::count(one.quantity.begin(), one.quantity.end(), '\'') == 2;
+        const bool zone = one.quantity.find(" on '") != std::string::npos &&
+                          std::count(one.quantity.begin(), one.quantity.end(), '\'') == 2;
         const bool part = zone || one.quantity.find(" part of ") != std::string::npos;
         if (!part || shell.verbose) {
             const std::string blanks(one.quantity.size() < 14 ? 14 - one.quantity.size() : 1, ' ');
@@ -225,8 +254,10 @@ void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
         }
     }
     if (!comparisons.empty()) {
-        const auto worst = std::max_element(comparisons.begin(), comparisons.end(), [](const auto& a, const auto& b) { return a.of_force < b.of_force; });
-        shell.print("  " + std::to_string(comparisons.size()) + " numbers compared, furthest: " + worst->quantity + ", " + of_force(*worst));
+        const auto worst = std::max_element(comparisons.begin(), comparisons.end(),
+                                            [](const auto& a, const auto& b) { return a.of_force < b.of_force; });
+        shell.print("  " + std::to_string(comparisons.size()) + " numbers compared, furthest: " + worst->quantity +
+                    ", " + of_force(*worst));
     }
 }
 
@@ -249,8 +280,10 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
         comparisons.insert(comparisons.end(), one.comparisons.begin(), one.comparisons.end());
     }
     if (comparisons.empty()) {
-        throw core::InputError("missing", "nothing to check against: no report beside the file and no loads in a manifest", {},
-                               "give a force report with --report, a monitor with --monitor, or a manifest with columns such as lift_force, "
+        throw core::InputError("missing",
+                               "nothing to check against: no report beside the file and no loads in a manifest", {},
+                               "give a force report with --report, a monitor with --monitor, or a manifest with "
+                               "columns such as lift_force, "
                                "drag_force, pitch_moment");
     }
     for (const auto& file : unchecked) {
@@ -267,12 +300,14 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
                        ": " + of_force(one) + (one.hint.empty() ? "" : "; " + one.hint));
         }
     }
-    shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " + core::format_number(100 * worst, 3) +
-               " % of the force apart, " + std::to_string(failed) + " beyond " + core::format_number(100 * allowed, 3) + " %");
+    shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " +
+               core::format_number(100 * worst, 3) + " % of the force apart, " + std::to_string(failed) + " beyond " +
+               core::format_number(100 * allowed, 3) + " %");
     return failed > 0 ? check_failed : done;
 }
 
-/// "{stem}" in a report's name is the name of the CFD file without its ending; the report then lies relative to that file.
+/// "{stem}" in a report's name is the name of the CFD file without its ending; the report then lies relative to that
+/// file.
 std::string beside(const std::string& report, const std::string& file) {
     const auto at = report.find("{stem}");
     if (at == std::string::npos) {
@@ -289,7 +324,8 @@ std::string monitor_beside(const std::string& monitor, const std::string& file) 
     return monitor.substr(0, name) + beside(std::string(core::trimmed(monitor.substr(name))), file);
 }
 
-/// Adds what no file states that was there before: a report that lies beside the CFD file and is named as well counts once.
+/// Adds what no file states that was there before: a report that lies beside the CFD file and is named as well counts
+/// once.
 void add_new(std::vector<postproc::StatedLoad>& stated, const std::vector<postproc::StatedLoad>& more) {
     std::vector<std::string> before;
     for (const auto& load : stated) {
@@ -299,7 +335,9 @@ void add_new(std::vector<postproc::StatedLoad>& stated, const std::vector<postpr
     }
     for (const auto& load : more) {
         std::error_code ignored;
-        const auto same = [&](const std::string& file) { return file == load.file || std::filesystem::equivalent(file, load.file, ignored); };
+        const auto same = [&](const std::string& file) {
+            return file == load.file || std::filesystem::equivalent(file, load.file, ignored);
+        };
         if (std::none_of(before.begin(), before.end(), same)) {
             stated.push_back(load);
         }
@@ -311,14 +349,17 @@ void take_stated(Shell& shell, const LoadsArguments& given, postproc::LoadsCase&
     auto stated = postproc::stated_beside(one.file, one.loads);
     for (const auto& report : given.reports) {
         const std::string path = beside(report, one.file);
-        const auto more = std::filesystem::is_directory(path) ? postproc::stated_by_openfoam(path, one.loads) : postproc::stated_in_report(path);
+        const auto more = std::filesystem::is_directory(path) ? postproc::stated_by_openfoam(path, one.loads)
+                                                              : postproc::stated_in_report(path);
         if (more.empty()) {
-            throw core::InputError("missing", "no forces in '" + path + "'", {}, "an OpenFOAM case keeps them under postProcessing");
+            throw core::InputError("missing", "no forces in '" + path + "'", {},
+                                   "an OpenFOAM case keeps them under postProcessing");
         }
         add_new(stated, more);
     }
     for (const auto& text : given.monitors) {
-        stated.push_back(postproc::stated_by_monitor(postproc::monitor_source(monitor_beside(text, one.file)), one.loads));
+        stated.push_back(
+            postproc::stated_by_monitor(postproc::monitor_source(monitor_beside(text, one.file)), one.loads));
     }
     for (const auto& load : stated) {
         if (load.history && load.part == postproc::LoadPart::total) {
@@ -348,7 +389,8 @@ postproc::Field field_of(Shell& shell, const LoadsArguments& given, const std::s
     read.surfaces_only = true;
     postproc::Field field = postproc::read_field(path, read, shell.progress());
     const bool all_there = std::all_of(read.zones.begin(), read.zones.end(), [&](const std::string& pattern) {
-        return std::any_of(field.zones.begin(), field.zones.end(), [&](const postproc::Zone& zone) { return postproc::matches(pattern, zone.name); });
+        return std::any_of(field.zones.begin(), field.zones.end(),
+                           [&](const postproc::Zone& zone) { return postproc::matches(pattern, zone.name); });
     });
     if (!all_there) {
         read.zones.clear();
@@ -400,7 +442,8 @@ postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const Con
     if (!options.references.density) {
         options.references.density = condition_of(file, "density");
     }
-    postproc::LoadsCase one{file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {}, {}};
+    postproc::LoadsCase one{file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {},
+                            {}};
     std::erase_if(one.numbers, [](const auto& entry) {
         return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z" ||
                entry.first == "reference_length";
@@ -426,7 +469,8 @@ struct Failure {
 
 /// The loads of every file that can be used. All files are tried, so that one run names all that is wrong; unless
 /// asked to keep going, one that is wrong is an error then.
-std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& given, const Batch& batch, std::vector<Failure>& failures) {
+std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& given, const Batch& batch,
+                                          std::vector<Failure>& failures) {
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
     core::BatchProblems said;
@@ -447,7 +491,9 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
             said.add(batch.files[i].path, problems);
         } catch (const core::InputError& error) {
             if (batch.files.size() == 1) {
-                std::erase_if(problems, [](const core::Problem& problem) { return problem.severity == core::Problem::Severity::error; });  // that is what it says
+                std::erase_if(problems, [](const core::Problem& problem) {
+                    return problem.severity == core::Problem::Severity::error;
+                });  // that is what it says
                 shell.show(problems);
                 throw;
             }
@@ -464,8 +510,9 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
     }
     if (!failures.empty() && (cases.empty() || !given.keep_going)) {
         throw core::InputError("file",
-                               std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) + " files cannot be used (the first: '" +
-                                   failures.front().file + "'); nothing was written",
+                               std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) +
+                                   " files cannot be used (the first: '" + failures.front().file +
+                                   "'); nothing was written",
                                {}, cases.empty() ? "" : "mend them, or take the others alone with --keep-going");
     }
     return cases;
@@ -480,7 +527,8 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     for (const auto& file : batch.files) {
         std::error_code ignored;
         if (!given.out.empty() && std::filesystem::equivalent(file.path, given.out, ignored)) {
-            throw core::UsageError("usage", "--out '" + given.out + "' is one of the files to read, and would be lost", {}, "write the table to a file of its own");
+            throw core::UsageError("usage", "--out '" + given.out + "' is one of the files to read, and would be lost",
+                                   {}, "write the table to a file of its own");
         }
     }
     check_conditions(batch, given);
@@ -491,7 +539,8 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     if (given.mean) {
         cases = postproc::means_in_time(cases, notes);
     }
-    cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases) : postproc::mesh_studies(cases, given.mesh_study, notes);
+    cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases)
+                                     : postproc::mesh_studies(cases, given.mesh_study, notes);
     shell.show(notes);
     show_studies(shell, cases);
     const bool several = cases.size() + failures.size() > 1 || (given.files.empty() && !given.manifest.empty());
@@ -514,7 +563,8 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
         shell.print(text);
     }
     if (!failures.empty()) {
-        shell.warn("without " + std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) + " files, which cannot be used");
+        shell.warn("without " + std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) +
+                   " files, which cannot be used");
         verdict = wrong_input;
     }
     return verdict;
@@ -525,42 +575,58 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
 void add_loads_command(CLI::App& app, Shell& shell) {
     auto* command = app.add_subcommand("loads", "forces and moments on a body, pressure and viscous part, per zone");
     auto o = std::make_shared<LoadsArguments>();
-    command->add_option("files", o->files, "CFD files, or patterns such as 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv'");
-    command->add_option("--manifest", o->manifest, "table with a column `file`; its other columns are the conditions")->check(CLI::ExistingFile);
+    command->add_option("files", o->files,
+                        "CFD files, or patterns such as 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv'");
+    command->add_option("--manifest", o->manifest, "table with a column `file`; its other columns are the conditions")
+        ->check(CLI::ExistingFile);
     command->add_option("-o,--out", o->out, "write a table (CSV) with one row a file");
     command->add_option("--reference", o->reference,
-                        "point of the moments \"x,y,z\" in the file's axes, also by conditions: \"0,0,gap\" (default: the centre of the base)");
+                        "point of the moments \"x,y,z\" in the file's axes, also by conditions: \"0,0,gap\" (default: "
+                        "the centre of the base)");
     command->add_option("--base", o->base, "zone whose centre is the default reference")->capture_default_str();
-    command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane, with its place if not 0: y, or y=0.1");
+    command->add_option("--symmetry", o->symmetry,
+                        "half model: normal axis of its plane, with its place if not 0: y, or y=0.1");
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
     command->add_option("--fluid", o->fluid, "where normals point: automatic, file (into the fluid), reversed")
         ->check(CLI::IsMember({"automatic", "file", "reversed"}))
         ->capture_default_str();
     command->add_option("--reference-pressure", o->reference_pressure, "taken from all pressures (\"101325 Pa\")");
-    command->add_option("--density", o->density, "for coefficients, and for files that hold p/rho (default: the file's, or the condition of that name)");
+    command->add_option(
+        "--density", o->density,
+        "for coefficients, and for files that hold p/rho (default: the file's, or the condition of that name)");
     command->add_option("--speed", o->speed, "for coefficients (default: the condition of that name)");
     command->add_option("--length", o->length, "for coefficients (default: of the bounding box)");
     command->add_option("--width", o->width, "for coefficients");
     command->add_option("--height", o->height, "for coefficients");
-    command->add_option("--mesh-study", o->mesh_study,
-                        "condition with the number of cells, or faces: cases that differ in it alone become one, with NAME_sigma")
+    command
+        ->add_option(
+            "--mesh-study", o->mesh_study,
+            "condition with the number of cells, or faces: cases that differ in it alone become one, with NAME_sigma")
         ->type_name("COLUMN");
     command->add_flag("--mean", o->mean,
                       "files of one run at several times become one: means in time, NAME_sigma by their correlation "
                       "(the time is the field's own, or {time:s} of the name)");
     command->add_option("--report", o->reports,
-                        "the solver's force report (Fluent's text, CFX's .out), or the OpenFOAM case, to compare with ({stem}: the file's name "
+                        "the solver's force report (Fluent's text, CFX's .out), or the OpenFOAM case, to compare with "
+                        "({stem}: the file's name "
                         "without ending, beside that file); found by itself when it lies beside the file");
     command->add_option("--monitor", o->monitors,
-                        "history of a load, QUANTITY=FILE:COLUMN or \"QUANTITY [UNIT]=FILE\" ({stem} in FILE: as for --report): its value at the "
+                        "history of a load, QUANTITY=FILE:COLUMN or \"QUANTITY [UNIT]=FILE\" ({stem} in FILE: as for "
+                        "--report): its value at the "
                         "field's time, or its last, is compared, its scatter becomes NAME_sigma");
     command->add_option("--check", o->check,
-                        "exit code 4 when the loads are further from those stated (report, monitor, manifest) than this share of the force (0.01, \"1 %\")");
-    command->add_flag("--axisymmetric", o->axisymmetric, "a plane case is half the section of a body of revolution about x (Fluent cases say so themselves)");
-    command->add_option("--stations", o->stations, "running integral along the body in so many steps")->check(CLI::Range(0, 10000));
-    command->add_flag("--accept-problems", o->accept_problems, "go on although the file has errors such as faces without area");
-    command->add_flag("--keep-going", o->keep_going, "of several files, give the table of those that can be used; exit code 3 all the same");
+                        "exit code 4 when the loads are further from those stated (report, monitor, manifest) than "
+                        "this share of the force (0.01, \"1 %\")");
+    command->add_flag(
+        "--axisymmetric", o->axisymmetric,
+        "a plane case is half the section of a body of revolution about x (Fluent cases say so themselves)");
+    command->add_option("--stations", o->stations, "running integral along the body in so many steps")
+        ->check(CLI::Range(0, 10000));
+    command->add_flag("--accept-problems", o->accept_problems,
+                      "go on although the file has errors such as faces without area");
+    command->add_flag("--keep-going", o->keep_going,
+                      "of several files, give the table of those that can be used; exit code 3 all the same");
     o->field.add_to(*command);
     command->footer(
         "Without --zones the walls of the body are summed. A wall that cannot be part of it (a ground, a tunnel) is "

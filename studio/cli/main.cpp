@@ -9,7 +9,8 @@ namespace {
 void mention_common_options(CLI::App& app) {
     for (auto* command : app.get_subcommands([](CLI::App*) { return true; })) {
         const std::string footer = command->get_footer();
-        command->footer(footer + (footer.empty() ? "" : "\n") + "With every command: --json, --quiet, --verbose, --threads N, --force (underbody --help)");
+        command->footer(footer + (footer.empty() ? "" : "\n") +
+                        "With every command: --json, --quiet, --verbose, --threads N, --force (underbody --help)");
         mention_common_options(*command);
     }
 }

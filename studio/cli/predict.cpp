@@ -1,5 +1,5 @@
 // underbody predict: the model against measured runs.
-#include "surrogates/dynamics/predict.h"
+#include "surrogates/dynamics/simulate/predict.h"
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -62,7 +62,9 @@ int run_predict(const PredictArguments& a, Shell& shell) {
     }
     if (prediction.input_between == "linear") {
         text += "input_force read as linear between its samples (" +
-                std::string(prediction.input_between_from == "data" ? "the measured motion fits that better" : "the model says so") + ")\n";
+                std::string(prediction.input_between_from == "data" ? "the measured motion fits that better"
+                                                                    : "the model says so") +
+                ")\n";
     }
     shell.print(text);
     return ExitCode::done;

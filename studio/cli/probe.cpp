@@ -1,5 +1,5 @@
 // underbody probe FILE: values at points, on a line or a plane, the flow through the gap.
-#include "postproc/probe.h"
+#include "postproc/probe/probe.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "postproc/field.h"
-#include "postproc/kinematic.h"
-#include "postproc/loads.h"
+#include "postproc/field/field.h"
+#include "postproc/field/kinematic.h"
+#include "postproc/loads/loads.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
@@ -31,7 +31,8 @@ struct ProbeArguments {
 postproc::Vector point_from(std::string_view text) {
     const auto parts = core::split(text, ',');
     if (parts.size() != 3) {
-        throw core::UsageError("usage", "'" + std::string(text) + "' is no point", {}, "give x,y,z in m, or with units: \"0,0,5 mm\"");
+        throw core::UsageError("usage", "'" + std::string(text) + "' is no point", {},
+                               "give x,y,z in m, or with units: \"0,0,5 mm\"");
     }
     return {core::parse_in(parts[0], "m"), core::parse_in(parts[1], "m"), core::parse_in(parts[2], "m")};
 }
@@ -52,9 +53,11 @@ core::Table look(const postproc::Field& field, const ProbeArguments& given, Shel
     options.arrays = given.arrays;
     options.zones = given.field.zones;
     options.on_surface = given.on_surface;
-    const int ways = (given.points.empty() ? 0 : 1) + (given.points_file.empty() ? 0 : 1) + (given.line.empty() ? 0 : 1) + (given.plane.empty() ? 0 : 1) + (given.gap > 0 ? 1 : 0);
+    const int ways = (given.points.empty() ? 0 : 1) + (given.points_file.empty() ? 0 : 1) +
+                     (given.line.empty() ? 0 : 1) + (given.plane.empty() ? 0 : 1) + (given.gap > 0 ? 1 : 0);
     if (ways != 1) {
-        throw core::UsageError("usage", "say where to look, in one way", {}, "--point, --points, --line, --plane or --gap");
+        throw core::UsageError("usage", "say where to look, in one way", {},
+                               "--point, --points, --line, --plane or --gap");
     }
     if (given.gap > 0) {
         postproc::GapOptions gap;
@@ -75,8 +78,11 @@ core::Table look(const postproc::Field& field, const ProbeArguments& given, Shel
     }
     if (!given.plane.empty()) {
         const auto corners = points_from(given.plane, 3, "three corners");
-        const auto edge = [&](const postproc::Vector& to) { return postproc::Vector{to[0] - corners[0][0], to[1] - corners[0][1], to[2] - corners[0][2]}; };
-        return postproc::probe_plane(field, corners[0], edge(corners[1]), edge(corners[2]), given.count, given.rows > 0 ? given.rows : given.count, options, shell.progress());
+        const auto edge = [&](const postproc::Vector& to) {
+            return postproc::Vector{to[0] - corners[0][0], to[1] - corners[0][1], to[2] - corners[0][2]};
+        };
+        return postproc::probe_plane(field, corners[0], edge(corners[1]), edge(corners[2]), given.count,
+                                     given.rows > 0 ? given.rows : given.count, options, shell.progress());
     }
     std::vector<postproc::Vector> points;
     for (const auto& text : given.points) {
@@ -117,12 +123,20 @@ void add_probe_command(CLI::App& app, Shell& shell) {
     command->add_option("--points", o->points_file, "a table with columns x, y, z")->check(CLI::ExistingFile);
     command->add_option("--line", o->line, "two ends: \"x,y,z:x,y,z\"");
     command->add_option("--plane", o->plane, "three corners: the first, the end across, the end along");
-    command->add_option("--count", o->count, "points on the line, or across the plane")->check(CLI::Range(2, 1000000))->capture_default_str();
-    command->add_option("--rows", o->rows, "points along the plane (default: as across)")->check(CLI::Range(2, 1000000));
-    command->add_option("--gap", o->gap, "flow through the gap at so many stations along the base")->check(CLI::Range(1, 1000));
-    command->add_option("--arrays", o->arrays, "arrays to look at; default all")->delimiter(',')->transform(trimmed_name);
+    command->add_option("--count", o->count, "points on the line, or across the plane")
+        ->check(CLI::Range(2, 1000000))
+        ->capture_default_str();
+    command->add_option("--rows", o->rows, "points along the plane (default: as across)")
+        ->check(CLI::Range(2, 1000000));
+    command->add_option("--gap", o->gap, "flow through the gap at so many stations along the base")
+        ->check(CLI::Range(1, 1000));
+    command->add_option("--arrays", o->arrays, "arrays to look at; default all")
+        ->delimiter(',')
+        ->transform(trimmed_name);
     command->add_flag("--on-surface", o->on_surface, "the nearest place of the surfaces, though there is a volume");
-    command->add_option("--symmetry", o->symmetry, "half model: flows count both halves; normal axis of its plane, with its place if that is not where the body is open: y, or y=0.1");
+    command->add_option("--symmetry", o->symmetry,
+                        "half model: flows count both halves; normal axis of its plane, with its place if that is not "
+                        "where the body is open: y, or y=0.1");
     command->add_option("--base", o->base, "zone above the gap")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
@@ -138,7 +152,8 @@ void add_probe_command(CLI::App& app, Shell& shell) {
         postproc::ReadOptions read = o->field.read_options();
         auto field = postproc::read_field(o->file, read, shell.progress());
         shell.show(field.problems);
-        const auto density = o->density.empty() ? std::nullopt : std::optional<double>(core::parse_in(o->density, "kg/m^3"));
+        const auto density =
+            o->density.empty() ? std::nullopt : std::optional<double>(core::parse_in(o->density, "kg/m^3"));
         if (!postproc::bring_to_pascal(field, density) && o->gap > 0) {
             shell.warn(o->file + ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");
         }

@@ -1,5 +1,5 @@
 // underbody region: where each start ends.
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,11 +11,11 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
-#include "studio/cli/force_notes.h"
 #include "studio/cli/feedback_options.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/feedback.h"
+#include "surrogates/dynamics/simulate/feedback.h"
 
 namespace underbody::studio {
 
@@ -107,7 +107,8 @@ void print_classes(Shell& shell, const std::vector<dynamics::EndClass>& classes)
     shell.print(text);
 }
 
-int run_starts(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
+int run_starts(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
+               Shell& shell) {
     const core::Table starts = core::read_csv(std::filesystem::path(a.starts));
     std::vector<dynamics::EndClass> classes;
     const core::Table ends = dynamics::ends_of_starts(model, starts, options, classes, shell.progress());
@@ -160,13 +161,13 @@ int run_probability(const RegionArguments& a, const dynamics::Model& model, cons
     return ExitCode::done;
 }
 
-int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options, Shell& shell) {
+int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
+              Shell& shell) {
     const std::vector<core::NamedRange> ranges = core::parse_ranges(a.sweep);
     if (ranges.size() != 1) {
         throw core::UsageError("range", "--sweep takes one range, such as jet_voltage=4V:12V");
     }
-    const dynamics::RegionSweep sweep =
-        dynamics::swept_regions(model, options, ranges[0], a.steps, shell.progress());
+    const dynamics::RegionSweep sweep = dynamics::swept_regions(model, options, ranges[0], a.steps, shell.progress());
     shell.show(sweep.regions.front().remarks);
     dynamics::Channel channel{};
     dynamics::find_channel(sweep.name, channel);
@@ -176,8 +177,8 @@ int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dyna
     show_forces(shell, model, options.held, json);
     for (std::size_t i = 0; i < sweep.value.size(); ++i) {
         const std::string unit = angle ? "deg" : dynamics::channel_unit(channel);
-        names.push_back(sweep.name + " " +
-                        core::format_number(sweep.value[i] * (angle ? 57.29577951308232 : 1), 4) + " " + unit);
+        names.push_back(sweep.name + " " + core::format_number(sweep.value[i] * (angle ? 57.29577951308232 : 1), 4) +
+                        " " + unit);
         nlohmann::json one;
         dynamics::to_json(one, sweep.regions[i]);
         one["value"] = sweep.value[i];
@@ -226,18 +227,25 @@ int run_variants(const RegionArguments& a, const dynamics::Model& model, const d
 /// Each map is of one kind; what that kind would pass over in silence is refused.
 void check_kind(const RegionArguments& a) {
     std::vector<std::string> kinds;
-    for (const auto& [option, given] : {std::pair{"--starts", !a.starts.empty()}, {"--draws", a.draws > 0}, {"--sweep", !a.sweep.empty()}, {"--with", !a.variants.empty()}}) {
+    for (const auto& [option, given] : {std::pair{"--starts", !a.starts.empty()},
+                                        {"--draws", a.draws > 0},
+                                        {"--sweep", !a.sweep.empty()},
+                                        {"--with", !a.variants.empty()}}) {
         if (given) {
             kinds.emplace_back(option);
         }
     }
     if (kinds.size() > 1) {
-        throw core::UsageError("conflict", kinds[0] + " and " + kinds[1] + " ask for two different maps", {}, "run region once for each of them");
+        throw core::UsageError("conflict", kinds[0] + " and " + kinds[1] + " ask for two different maps", {},
+                               "run region once for each of them");
     }
     const std::string kind = kinds.empty() ? "" : kinds.front();
     const auto refuse = [&](const char* option, bool given, bool used) {
         if (given && !used) {
-            throw core::UsageError("conflict", std::string(option) + " has nothing to do " + (kind.empty() ? "without --sweep" : "with " + kind), {}, "leave it out");
+            throw core::UsageError(
+                "conflict",
+                std::string(option) + " has nothing to do " + (kind.empty() ? "without --sweep" : "with " + kind), {},
+                "leave it out");
         }
     };
     refuse("--out", !a.out.empty(), kind != "--starts");
@@ -288,7 +296,8 @@ int run_region(const RegionArguments& a, Shell& shell) {
                 const auto half = [&](std::size_t axis) {
                     const bool angle = set.axes[axis].starts_with("pitch");
                     return core::format_number((angle ? 57.29577951308232 : 1e3) * set.ellipse[axis], 4) +
-                           (angle ? " deg" : " mm") + (set.axes[axis] == "gap" || set.axes[axis] == "pitch" ? "" : "/s");
+                           (angle ? " deg" : " mm") +
+                           (set.axes[axis] == "gap" || set.axes[axis] == "pitch" ? "" : "/s");
                 };
                 shell.print("safe about " + end.name + ": ellipse +-" + half(0) + ", +-" + half(1) + "\n");
             }
@@ -312,7 +321,8 @@ void add_region_command(CLI::App& app, Shell& shell) {
     command->add_option("--for", a->duration, "time of motion given to each start (default 60 s)");
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
     command->add_option("--escape", a->escape,
-                        "gap above which the body counts as gone (default: end of the table or of the axis; the highest of given starts)");
+                        "gap above which the body counts as gone (default: end of the table or of the axis; the "
+                        "highest of given starts)");
     command->add_option("--feedback", a->feedback, feedback_help());
     command->add_option("--lqr", a->lqr, lqr_help());
     command

@@ -15,7 +15,7 @@
 
 #include "core/own_files.h"
 #include "core/parallel.h"
-#include "postproc/import_error.h"
+#include "postproc/field/import_error.h"
 #include "studio/cli/option_words.h"
 #include "studio/cli/usage.h"
 
@@ -119,7 +119,8 @@ void Shell::remark(const core::Problems& problems) {
         return;
     }
     for (const auto& problem : problems) {
-        problem.severity == core::Problem::Severity::note ? detail(text_of(problem)) : print("warning: " + text_of(problem));
+        problem.severity == core::Problem::Severity::note ? detail(text_of(problem))
+                                                          : print("warning: " + text_of(problem));
     }
 }
 
@@ -174,7 +175,9 @@ int Shell::run_action() {
     } catch (const core::InputError& error) {
         // A value with a unit that stands in no file stood on the command line.
         if (error.kind() == "exists") {
-            report(core::InputError(error.kind(), error.message(), error.place(), error.hint() + ", or say --force to replace it"), "error");
+            report(core::InputError(error.kind(), error.message(), error.place(),
+                                    error.hint() + ", or say --force to replace it"),
+                   "error");
             return wrong_input;
         }
         const bool option = error.place().file.empty() && (error.kind() == "unit" || error.kind() == "parse");
@@ -208,7 +211,8 @@ int Shell::run(CLI::App& app, int argc, const char* const* argv) {
             return app.exit(error, std::cout, std::cerr);  // --help, --version
         }
         // The parser may have stopped before it set its flags.
-        json = json || std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
+        json =
+            json || std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
         report(usage_error(app, error), "wrong use");
         return wrong_usage;
     }

@@ -39,10 +39,11 @@ public:
     void detail(const std::string& text);
     /// Problems of a reader, as warnings.
     void show(const core::Problems& problems);
-    /// Refuses, before the work is done, to write over a file that is somebody else's (core/own_files.h). Empty: nothing.
+    /// Refuses, before the work is done, to write over a file that is somebody else's (core/own_files.h). Empty:
+    /// nothing.
     static void will_write(const std::string& path);
-    /// Problems that change what the numbers mean: in the text on stdout, above the numbers (with --json, whose document
-    /// must hold them itself, on stderr).
+    /// Problems that change what the numbers mean: in the text on stdout, above the numbers (with --json, whose
+    /// document must hold them itself, on stderr).
     void remark(const core::Problems& problems);
 
     /// Draws a bar on stderr when it is a terminal and nobody asked for quiet; Ctrl-C cancels it.

@@ -10,13 +10,13 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
-#include "studio/cli/force_notes.h"
 #include "studio/cli/feedback_options.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/hold.h"
-#include "surrogates/dynamics/surface_motion.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/hold_with_jets.h"
+#include "surrogates/dynamics/simulate/surface_motion.h"
 
 namespace underbody::studio {
 
@@ -46,8 +46,10 @@ struct SimulateArguments {
 
 /// States of the body that have no place among the quantities that files share.
 const std::vector<core::QuantityName>& body_names() {
-    static const std::vector<core::QuantityName> names{{"sway_velocity", "m/s", "", ""}, {"yaw_rate", "rad/s", "", ""},
-                                                       {"heading", "rad", "", ""},       {"north", "m", "", ""},
+    static const std::vector<core::QuantityName> names{{"sway_velocity", "m/s", "", ""},
+                                                       {"yaw_rate", "rad/s", "", ""},
+                                                       {"heading", "rad", "", ""},
+                                                       {"north", "m", "", ""},
                                                        {"east", "m", "", ""}};
     return names;
 }
@@ -61,12 +63,15 @@ struct Start {
 
 Start start_of(const std::string& text, dynamics::Conditions& held) {
     Start start;
-    const std::pair<const char*, std::optional<double> Start::*> states[] = {
-        {"gap", &Start::gap},           {"heave_velocity", &Start::heave_velocity},
-        {"pitch", &Start::pitch},       {"pitch_rate", &Start::pitch_rate},
-        {"sway_velocity", &Start::sway_velocity}, {"yaw_rate", &Start::yaw_rate},
-        {"heading", &Start::heading},   {"north", &Start::north},
-        {"east", &Start::east}};
+    const std::pair<const char*, std::optional<double> Start::*> states[] = {{"gap", &Start::gap},
+                                                                             {"heave_velocity", &Start::heave_velocity},
+                                                                             {"pitch", &Start::pitch},
+                                                                             {"pitch_rate", &Start::pitch_rate},
+                                                                             {"sway_velocity", &Start::sway_velocity},
+                                                                             {"yaw_rate", &Start::yaw_rate},
+                                                                             {"heading", &Start::heading},
+                                                                             {"north", &Start::north},
+                                                                             {"east", &Start::east}};
     for (const core::NamedValue& value : core::parse_assignments(text, body_names())) {
         bool is_state = false;
         for (const auto& [name, member] : states) {
@@ -102,8 +107,7 @@ struct Inputs {
             const std::size_t j = std::min(i + 1, time.empty() ? 0 : time.size() - 1);
             for (std::size_t k = 0; k < thrust.size(); ++k) {
                 if (!thrust[k].empty()) {
-                    const double part =
-                        j > i ? std::clamp((t - time[i]) / (time[j] - time[i]), 0.0, 1.0) : 0.0;
+                    const double part = j > i ? std::clamp((t - time[i]) / (time[j] - time[i]), 0.0, 1.0) : 0.0;
                     now[k] = thrust[k][i] + part * (thrust[k][j] - thrust[k][i]);
                 }
             }
@@ -238,7 +242,8 @@ double needed_gap(const Start& start) {
 }
 
 template <class Motion>
-void write_motion(const Motion& motion, const core::Figure& figure, const SimulateArguments& a, const Job& job, Shell& shell) {
+void write_motion(const Motion& motion, const core::Figure& figure, const SimulateArguments& a, const Job& job,
+                  Shell& shell) {
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), motion.table());
     }
@@ -261,16 +266,16 @@ std::string angle_in_degrees(double radians) { return core::format_number(57.295
 std::string event_text(const std::vector<dynamics::TrajectoryEvent>& events) {
     std::string text;
     for (const dynamics::TrajectoryEvent& event : events) {
-        text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s, gap " + millimetres(event.gap, 5) + ", " +
-                core::format_number(1e3 * event.velocity, 4) + " mm/s\n";
+        text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s, gap " +
+                millimetres(event.gap, 5) + ", " + core::format_number(1e3 * event.velocity, 4) + " mm/s\n";
     }
     return text;
 }
 
 void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
-    const dynamics::Trajectory motion =
-        dynamics::simulate(job.model, needed_gap(job.start), job.start.heave_velocity.value_or(0), job.inputs.signals,
-                           job.options, shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
+    const dynamics::Trajectory motion = dynamics::simulate(
+        job.model, needed_gap(job.start), job.start.heave_velocity.value_or(0), job.inputs.signals, job.options,
+        shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
     shell.show(motion.remarks);
     const dynamics::HeavePlant plant = dynamics::plant_for(job.model, job.inputs.signals);
     write_motion(motion, dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a, job, shell);
@@ -321,8 +326,7 @@ void run_surface(const SimulateArguments& a, Job& job, Shell& shell) {
 }
 
 void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
-    const dynamics::RigidBody body(job.model, job.inputs.signals.held,
-                                   dynamics::varying_channels(job.inputs.signals));
+    const dynamics::RigidBody body(job.model, job.inputs.signals.held, dynamics::varying_channels(job.inputs.signals));
     const double pitch = job.start.pitch.value_or(0);
     dynamics::BodyState start{};
     start[dynamics::state_u] =
@@ -336,8 +340,8 @@ void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
     start[dynamics::state_x] = job.start.north.value_or(0);
     start[dynamics::state_y] = job.start.east.value_or(0);
     start[dynamics::state_z] = body.height_for_gap(needed_gap(job.start), pitch);
-    dynamics::BodyTrajectory motion = dynamics::simulate_body(body, start, job.command(), job.body_options(),
-                                                              shell.progress(), job.inputs.signals);
+    dynamics::BodyTrajectory motion =
+        dynamics::simulate_body(body, start, job.command(), job.body_options(), shell.progress(), job.inputs.signals);
     add_remarks(motion.remarks, job.model);
     shell.show(motion.remarks);
     write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
@@ -402,9 +406,10 @@ void add_simulate_command(CLI::App& app, Shell& shell) {
     auto a = std::make_shared<SimulateArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command
-        ->add_option("--from", a->from,
-                     "where it starts: gap, heave_velocity, pitch, pitch_rate, speed, sway_velocity, yaw_rate, heading, "
-                     "north, east (default 0)")
+        ->add_option(
+            "--from", a->from,
+            "where it starts: gap, heave_velocity, pitch, pitch_rate, speed, sway_velocity, yaw_rate, heading, "
+            "north, east (default 0)")
         ->required();
     command->add_option("--for", a->duration, "how long (default 60 s)");
     command
@@ -418,9 +423,10 @@ void add_simulate_command(CLI::App& app, Shell& shell) {
                         "a table with time and inputs (input_force, jet_voltage, ..., or thrusts by the jets' names), "
                         "linear between its rows");
     command->add_option("--thrust", a->thrust, "steady thrusts of jets: J1=0.05N,J2=0.05N (surface and body)");
-    command->add_option("--hold", a->hold,
-                        "hold with the jets: heading=20deg,speed=0.35m/s,gap=20mm,pitch=0; gains heading_gain, "
-                        "yaw_rate_gain, speed_gain, gap_gain, heave_gain, pitch_gain, pitch_rate_gain (SI); sampled every 20 ms");
+    command->add_option(
+        "--hold", a->hold,
+        "hold with the jets: heading=20deg,speed=0.35m/s,gap=20mm,pitch=0; gains heading_gain, "
+        "yaw_rate_gain, speed_gain, gap_gain, heave_gain, pitch_gain, pitch_rate_gain (SI); sampled every 20 ms");
     command->add_option("--feedback", a->feedback, feedback_help());
     command->add_option("--lqr", a->lqr, lqr_help());
     command->add_option("--escape", a->escape, "stop above this gap");

@@ -14,7 +14,7 @@
 #include "core/own_files.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "postproc/importers/openfoam_forces.h"
+#include "postproc/importers/reports/openfoam_forces.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 
@@ -57,7 +57,10 @@ int solve(Shell& shell, const std::string& folder, bool again) {
         while (!run.finished()) {
             shell.progress().check();
             const auto state = cases::run_state(folder);
-            shell.progress().report(state.fraction(), state.step + (state.iteration > 0 ? " " + std::to_string(state.iteration) + " of " + std::to_string(state.iterations) : ""));
+            shell.progress().report(state.fraction(),
+                                    state.step + (state.iteration > 0 ? " " + std::to_string(state.iteration) + " of " +
+                                                                            std::to_string(state.iterations)
+                                                                      : ""));
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         }
         needed = run.seconds();
@@ -78,13 +81,16 @@ int solve(Shell& shell, const std::string& folder, bool again) {
                           {"forces", forces}});
         return done;
     }
-    shell.print(folder + (before ? ": solved before, nothing was run (--again runs it)" : ": solved in " + seconds(needed) + ", " + std::to_string(state.iteration) + " iterations"));
+    shell.print(folder +
+                (before ? ": solved before, nothing was run (--again runs it)"
+                        : ": solved in " + seconds(needed) + ", " + std::to_string(state.iteration) + " iterations"));
     for (const auto& entry : forces) {
         std::string numbers;
         for (const auto& number : entry["force"]) {
             numbers += (numbers.empty() ? "" : ", ") + core::format_number(number.get<double>(), 5);
         }
-        shell.print("force of '" + entry["name"].get<std::string>() + "', in the case's axes and of the mesh: " + numbers + " N");
+        shell.print("force of '" + entry["name"].get<std::string>() +
+                    "', in the case's axes and of the mesh: " + numbers + " N");
     }
     return done;
 }
@@ -226,7 +232,8 @@ void add_solve_command(CLI::App& app, Shell& shell) {
         bool again = false;
     };
     auto o = std::make_shared<Arguments>();
-    command->add_option("case", o->folder, "folder of the case, with an Allrun, as `underbody body domain` writes it")->required();
+    command->add_option("case", o->folder, "folder of the case, with an Allrun, as `underbody body domain` writes it")
+        ->required();
     command->add_flag("--again", o->again, "also when it is solved already");
     command->footer(
         "Examples:\n"
@@ -246,10 +253,14 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
     auto* command = app.add_subcommand("sweep", "CFD of the cases that a study wants and does not have");
     auto o = std::make_shared<SweepArguments>();
     command->add_option("study", o->study, "folder with study.toml, which has a [sweep]")->required();
-    command->add_option("--engine", o->engine, "local: OpenFOAM on this machine; slurm: a job array")->check(CLI::IsMember({"local", "slurm"}))->capture_default_str();
-    command->add_option("--jobs", o->jobs, "local: cases at a time, each on one core (default: all cores)")->check(CLI::Range(1, 1024));
+    command->add_option("--engine", o->engine, "local: OpenFOAM on this machine; slurm: a job array")
+        ->check(CLI::IsMember({"local", "slurm"}))
+        ->capture_default_str();
+    command->add_option("--jobs", o->jobs, "local: cases at a time, each on one core (default: all cores)")
+        ->check(CLI::Range(1, 1024));
     command->add_option("--only", o->only, "local: this case alone, by name");
-    command->add_option("--script", o->script, "slurm: where the batch script goes (default: sweep.sh beside the cases)");
+    command->add_option("--script", o->script,
+                        "slurm: where the batch script goes (default: sweep.sh beside the cases)");
     command
         ->add_option("--stale", o->stale,
                      "cases solved for another shape, mesh, flow or number of iterations: redo (solved again, the old "

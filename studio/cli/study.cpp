@@ -1,8 +1,9 @@
 // underbody study run | list | compare | report | verify | add
+#include "cases/study.h"
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cases/study.h"
 #include "cases/why.h"
 #include "core/file.h"
 #include "core/name_pattern.h"
@@ -119,10 +120,11 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
     show_notes(shell, study);
     print_warnings(shell, results);
     if (const auto names = cases::not_settled(results.loads); !names.empty()) {
-        shell.print(std::to_string(names.size()) + " of " + std::to_string(results.loads.rows()) + " solutions have not settled, the first '" + names.front() + "'");
+        shell.print(std::to_string(names.size()) + " of " + std::to_string(results.loads.rows()) +
+                    " solutions have not settled, the first '" + names.front() + "'");
     }
-    shell.print(std::to_string(results.computed) + " results computed, " + std::to_string(results.reused) + " unchanged, " +
-                std::to_string(results.failed) + " failed");
+    shell.print(std::to_string(results.computed) + " results computed, " + std::to_string(results.reused) +
+                " unchanged, " + std::to_string(results.failed) + " failed");
     return results.failed == 0 ? done : wrong_input;
 }
 
@@ -135,8 +137,9 @@ auto with_store_hint(const Work& work) {
         if (error.kind() != "store") {
             throw;
         }
-        throw core::SystemError(error.kind(), error.message(), error.place(),
-                                error.hint() + (error.hint().empty() ? "" : "; ") + "--store FILE puts the store elsewhere");
+        throw core::SystemError(
+            error.kind(), error.message(), error.place(),
+            error.hint() + (error.hint().empty() ? "" : "; ") + "--store FILE puts the store elsewhere");
     }
 }
 
@@ -195,8 +198,10 @@ int list(Shell& shell, const StudyArguments& arguments) {
         }
         const bool known = !loads.values.empty();
         const std::string remark = !known ? to_string(loads.state) : loads.warnings.empty() ? "" : "warning";
-        rows.push_back({entry.name, entry.conditions.label(), known ? in_unit(loads.value("lift_force"), "N", "N") + " N" : "-",
-                        known ? in_unit(loads.value("drag_force"), "N", "N") + " N" : "-", known ? loads.settled : "-", remark, entry.file.string()});
+        rows.push_back({entry.name, entry.conditions.label(),
+                        known ? in_unit(loads.value("lift_force"), "N", "N") + " N" : "-",
+                        known ? in_unit(loads.value("drag_force"), "N", "N") + " N" : "-", known ? loads.settled : "-",
+                        remark, entry.file.string()});
     }
     if (shell.json) {
         shell.print_json({{"title", study.title}, {"cases", json}, {"notes", json_of_notes(study, results.notes)}});
@@ -206,7 +211,9 @@ int list(Shell& shell, const StudyArguments& arguments) {
     show_notes(shell, study);
     print_warnings(shell, results);
     if (changed > 0) {
-        shell.print("changed: for " + std::to_string(changed) + " cases, files, options or code are no longer those of the stored loads; underbody study run computes them again");
+        shell.print("changed: for " + std::to_string(changed) +
+                    " cases, files, options or code are no longer those of the stored loads; underbody study run "
+                    "computes them again");
     }
     return done;
 }
@@ -242,7 +249,8 @@ int compare(Shell& shell, const StudyArguments& arguments) {
 int verify(Shell& shell, const StudyArguments& arguments) {
     const auto study = cases::Study::open(arguments.folder);
     if (study.verifications.empty()) {
-        throw core::InputError("missing", "the study has no [[verify]]", {(study.folder() / "study.toml").string(), {}, {}, {}},
+        throw core::InputError("missing", "the study has no [[verify]]",
+                               {(study.folder() / "study.toml").string(), {}, {}, {}},
                                "name a table of the solver's own forces: [[verify]] table = \"forces.csv\"");
     }
     cases::RunOptions options = run_options(arguments);
@@ -278,7 +286,9 @@ nlohmann::json left_out(const StudyArguments& arguments, Shell& shell) {
     const core::NamePattern pattern(arguments.files);
     const auto missed = pattern.near_misses(arguments.folder);
     nlohmann::json list = nlohmann::json::array();
-    std::string text = missed.empty() ? "" : std::to_string(missed.size()) + (missed.size() == 1 ? " file is" : " files are") + " left out:";
+    std::string text = missed.empty() ? ""
+                                      : std::to_string(missed.size()) +
+                                            (missed.size() == 1 ? " file is" : " files are") + " left out:";
     for (std::size_t i = 0; i < missed.size(); ++i) {
         const std::string why = pattern.why_not(missed[i], arguments.folder);
         list.push_back({{"file", missed[i].string()}, {"why", why}});
@@ -294,7 +304,8 @@ nlohmann::json left_out(const StudyArguments& arguments, Shell& shell) {
 std::string lines_of(const char* title, const std::vector<std::pair<std::string, std::string>>& pairs) {
     std::string text;
     for (const auto& [key, value] : pairs) {
-        text += (text.empty() ? std::string("  ") + title + "\n" : "") + "    " + key + (value.empty() ? "" : ": " + value) + "\n";
+        text += (text.empty() ? std::string("  ") + title + "\n" : "") + "    " + key +
+                (value.empty() ? "" : ": " + value) + "\n";
     }
     return text;
 }
@@ -307,20 +318,24 @@ int why(Shell& shell, const StudyArguments& arguments) {
         return done;
     }
     for (const auto& origin : all) {
-        std::string text = origin.kind + " '" + origin.name + "'" + (origin.made.empty() ? ": " + to_string(origin.state) : ", made " + origin.made + " UTC") + "\n";
+        std::string text = origin.kind + " '" + origin.name + "'" +
+                           (origin.made.empty() ? ": " + to_string(origin.state) : ", made " + origin.made + " UTC") +
+                           "\n";
         text += lines_of("says", origin.facts) + lines_of("made with", origin.options);
         std::vector<std::pair<std::string, std::string>> read;
         for (const auto& file : origin.files) {
             const bool missing = file.state == "absent";
             if (!missing || shell.verbose) {
-                read.emplace_back(file.path + (file.pattern.empty() ? "" : " (names like " + file.pattern + ")"), file.state);
+                read.emplace_back(file.path + (file.pattern.empty() ? "" : " (names like " + file.pattern + ")"),
+                                  file.state);
             }
         }
         std::vector<std::pair<std::string, std::string>> from;
         for (const auto& [kind, name] : origin.from) {
             from.emplace_back(kind + " '" + name + "'", "");
         }
-        text += lines_of("read, with the hash of the content", read) + lines_of("made of", from) + lines_of("by code", origin.code);
+        text += lines_of("read, with the hash of the content", read) + lines_of("made of", from) +
+                lines_of("by code", origin.code);
         shell.print(text);
     }
     return done;
@@ -332,12 +347,17 @@ std::string with_symmetry(std::string text, const std::string& symmetry, const c
         return text;
     }
     if (before != nullptr && !before->symmetry.empty()) {
-        throw core::UsageError("range", "the study's half models have their plane across " + before->symmetry + " already", {},
+        throw core::UsageError("range",
+                               "the study's half models have their plane across " + before->symmetry + " already", {},
                                "all cases of a study have one; a study of its own for the others");
     }
     if (before != nullptr && !before->cases.empty()) {
-        throw core::UsageError("range", "the cases that the study has already are whole bodies: with a symmetry plane they would be taken for halves", {},
-                               "a study of its own for the half models, or symmetry = " + core::toml_string(symmetry) + " under [frame] by hand");
+        throw core::UsageError("range",
+                               "the cases that the study has already are whole bodies: with a symmetry plane they "
+                               "would be taken for halves",
+                               {},
+                               "a study of its own for the half models, or symmetry = " + core::toml_string(symmetry) +
+                                   " under [frame] by hand");
     }
     const std::string line = "symmetry = " + core::toml_string(symmetry) + "\n";
     const std::size_t frame = ("\n" + text).find("\n[frame]");
@@ -383,15 +403,18 @@ std::string case_text(const StudyArguments& arguments) {
     for (const auto& condition : arguments.conditions) {
         const std::size_t equal = condition.find('=');
         if (equal == std::string::npos) {
-            throw core::UsageError("parse", "'" + condition + "' is not of the form name=value", {}, "--condition speed=0.5m/s");
+            throw core::UsageError("parse", "'" + condition + "' is not of the form name=value", {},
+                                   "--condition speed=0.5m/s");
         }
-        text += "conditions." + condition.substr(0, equal) + " = " + core::toml_string(condition.substr(equal + 1)) + "\n";
+        text +=
+            "conditions." + condition.substr(0, equal) + " = " + core::toml_string(condition.substr(equal + 1)) + "\n";
     }
     return text + design_points_of(arguments);
 }
 
 /// What is wrong stands in the lines to be added, which nobody has seen yet: says it without their place.
-void say_of_new_lines(const core::InputError& error, const StudyArguments& arguments, const std::filesystem::path& file, std::ptrdiff_t old_lines) {
+void say_of_new_lines(const core::InputError& error, const StudyArguments& arguments, const std::filesystem::path& file,
+                      std::ptrdiff_t old_lines) {
     if (error.place().file != file.string() || error.place().line.value_or(0) <= old_lines) {
         return;
     }
@@ -399,7 +422,8 @@ void say_of_new_lines(const core::InputError& error, const StudyArguments& argum
     if (error.kind() == "missing") {
         const core::NamePattern pattern(arguments.files);
         if (const auto missed = pattern.near_misses(arguments.folder); !missed.empty()) {
-            hint = std::to_string(missed.size()) + " come near, such as " + missed.front().string() + ": " + pattern.why_not(missed.front(), arguments.folder);
+            hint = std::to_string(missed.size()) + " come near, such as " + missed.front().string() + ": " +
+                   pattern.why_not(missed.front(), arguments.folder);
         }
     }
     const std::string message = error.message() + "; nothing was added to " + file.string();
@@ -414,7 +438,11 @@ int add(Shell& shell, const StudyArguments& arguments) {
     const std::filesystem::path folder = arguments.folder;
     const std::filesystem::path file = folder / "study.toml";
     std::optional<cases::Study> before;
-    std::string text = "title = " + core::toml_string(std::filesystem::absolute(folder / ".").lexically_normal().parent_path().filename().string()) + "\n";
+    std::string text =
+        "title = " +
+        core::toml_string(
+            std::filesystem::absolute(folder / ".").lexically_normal().parent_path().filename().string()) +
+        "\n";
     if (std::filesystem::exists(file)) {
         text = core::read_file(file);
         before = cases::Study::from_text(text, file);
@@ -446,18 +474,22 @@ int add(Shell& shell, const StudyArguments& arguments) {
 
 void add_study_command(CLI::App& app, Shell& shell) {
     auto arguments = std::make_shared<StudyArguments>();
-    auto* study = app.add_subcommand("study", "a folder of cases: import, loads, tables, stability, comparison, report");
+    auto* study =
+        app.add_subcommand("study", "a folder of cases: import, loads, tables, stability, comparison, report");
     study->require_subcommand(1);
     study->footer(
         "Examples:\n"
         "  underbody study run cases/evie                       what changed is computed, the report written\n"
         "  underbody study run cases/evie --report out/r.html   the report elsewhere\n"
         "  underbody study list cases/evie                      the cases with their conditions and loads\n"
-        "  underbody study verify cases/evie                    our loads against the solver's own (exit 4 when beyond)\n"
-        "  underbody study why cases/evie region/glide          from a number back to the files, settings and code that made it\n"
+        "  underbody study verify cases/evie                    our loads against the solver's own (exit 4 when "
+        "beyond)\n"
+        "  underbody study why cases/evie region/glide          from a number back to the files, settings and code "
+        "that made it\n"
         "  underbody study add mystudy --files 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --condition speed=0.5m/s\n"
         "  underbody study add mystudy --files 'runs/{variant}-h{gap:mm}/case.foam' --symmetry y --zones hull,base\n"
-        "  underbody study add mystudy --files 'hull_files/dp{design_point}/FFF/Fluent/*.dat.h5' --design-points points.csv --parameter P3=gap");
+        "  underbody study add mystudy --files 'hull_files/dp{design_point}/FFF/Fluent/*.dat.h5' --design-points "
+        "points.csv --parameter P3=gap");
 
     auto* run_command = study->add_subcommand("run", "compute what changed, write the report");
     add_common(run_command, *arguments);
@@ -483,20 +515,31 @@ void add_study_command(CLI::App& app, Shell& shell) {
     add_common(verify_command, *arguments);
     shell.on(verify_command, [arguments, &shell] { return verify(shell, *arguments); });
 
-    auto* why_command = study->add_subcommand("why", "where a number comes from: loads, faces, files with their hashes, settings and code");
+    auto* why_command = study->add_subcommand(
+        "why", "where a number comes from: loads, faces, files with their hashes, settings and code");
     add_common(why_command, *arguments);
-    why_command->add_option("result", arguments->what, "of the report, a table or an exported file: table/lift, \"lift_force of cube-h2\", exports/lift.h")->required();
+    why_command
+        ->add_option(
+            "result", arguments->what,
+            "of the report, a table or an exported file: table/lift, \"lift_force of cube-h2\", exports/lift.h")
+        ->required();
     shell.on(why_command, [arguments, &shell] { return why(shell, *arguments); });
 
     auto* add_command = study->add_subcommand("add", "add cases to a study, or start one");
     add_command->add_option("study", arguments->folder, "folder of the study")->required();
     add_command->add_option("--files", arguments->files, "pattern of the files, relative to the study")->required();
     add_command->add_option("--condition", arguments->conditions, "name=value held for all of them (repeatable)");
-    add_command->add_option("--symmetry", arguments->symmetry, "half models: normal axis of their plane (y), written to [frame]");
-    add_command->add_option("--zones", arguments->zones, "zones that are the body: names, * and ? allowed; several with commas")->delimiter(',');
+    add_command->add_option("--symmetry", arguments->symmetry,
+                            "half models: normal axis of their plane (y), written to [frame]");
+    add_command
+        ->add_option("--zones", arguments->zones,
+                     "zones that are the body: names, * and ? allowed; several with commas")
+        ->delimiter(',');
     add_command->add_option("--design-points", arguments->design_points,
-                            "Workbench's table of design points (CSV): the conditions of the files; {design_point} in --files is the number behind dp");
-    add_command->add_option("--parameter", arguments->parameters, "of that table: P1=gap, \"P1=gap [mm]\", or P2= for no condition (repeatable)");
+                            "Workbench's table of design points (CSV): the conditions of the files; {design_point} in "
+                            "--files is the number behind dp");
+    add_command->add_option("--parameter", arguments->parameters,
+                            "of that table: P1=gap, \"P1=gap [mm]\", or P2= for no condition (repeatable)");
     shell.on(add_command, [arguments, &shell] { return add(shell, *arguments); });
 }
 

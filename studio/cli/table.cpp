@@ -14,10 +14,10 @@
 #include "studio/cli/table_analysis.h"
 #include "studio/cli/table_options.h"
 #include "studio/figures/render.h"
-#include "surrogates/tables/equilibria.h"
-#include "surrogates/tables/figures.h"
-#include "surrogates/tables/line.h"
-#include "surrogates/tables/many_points.h"
+#include "surrogates/tables/analysis/equilibria.h"
+#include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/fit/line.h"
+#include "surrogates/tables/fit/table_batch.h"
 
 namespace underbody::studio {
 
@@ -36,10 +36,12 @@ int run_fit(Shell& shell, const FitCommand& command) {
     document["tables"] = nlohmann::json::array();
     for (const auto& table : all) {
         nlohmann::json entry = table;
-        std::string text = table.quantity() + ": " + table.kind() + " through " + std::to_string(table.points().rows()) + " points";
+        std::string text =
+            table.quantity() + ": " + table.kind() + " through " + std::to_string(table.points().rows()) + " points";
         for (const auto& axis : table.axes()) {
-            text += "\n  " + axis.name + " " + shown(table, axis.name, axis.unit, axis.lower) + " to " + shown(table, axis.name, axis.unit, axis.upper) + ", " +
-                    std::to_string(axis.points.size()) + " set points";
+            text += "\n  " + axis.name + " " + shown(table, axis.name, axis.unit, axis.lower) + " to " +
+                    shown(table, axis.name, axis.unit, axis.upper) + ", " + std::to_string(axis.points.size()) +
+                    " set points";
         }
         for (const auto& remark : table.remarks()) {
             text += "\n  " + remark.message;
@@ -87,14 +89,17 @@ int run_at(Shell& shell, const AtCommand& command) {
             }
             for (std::size_t k = 0; k < point.size(); ++k) {
                 const auto& axis = table.axes()[k];
-                line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " + tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
+                line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " +
+                        tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
             }
             if (e.no_data && !e.outside) {
                 line += "   no points around";
             }
             if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
-                shell.warn("no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
-                           " % of the axes' ranges outside them): the value is an extrapolation, its error says how far to trust it");
+                shell.warn("no points of " + table.quantity() + " lie around this place (" +
+                           core::format_number(100 * beyond, 2) +
+                           " % of the axes' ranges outside them): the value is an extrapolation, its error says how "
+                           "far to trust it");
             }
             shell.print(line);
             document["values"].push_back(std::move(entry));
@@ -166,7 +171,8 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
     }
     if (found.all.empty()) {
         shell.print("no equilibrium: the net force is " + core::format_number(found.force_at_lower, 4) + " N at " +
-                    shown(table, found.axis, found.axis_unit, found.lower) + " and " + core::format_number(found.force_at_upper, 4) + " N at " +
+                    shown(table, found.axis, found.axis_unit, found.lower) + " and " +
+                    core::format_number(found.force_at_upper, 4) + " N at " +
                     shown(table, found.axis, found.axis_unit, found.upper));
     }
     nlohmann::json document = found;
@@ -209,18 +215,23 @@ void add_table_command(CLI::App& app, Shell& shell) {
     CLI::App* at_command = table->add_subcommand("at", "values, slopes and errors at points");
     at->table.add_to(*at_command);
     at_command->add_option("points", at->points, "gap=5mm,pitch=1deg (a bare number is SI)")->required()->expected(-1);
-    at_command->footer("Examples:\n  underbody table at lift.csv gap=5mm\n  underbody table at loads.csv gap=5mm,pitch=2deg gap=8mm,pitch=2deg --json");
+    at_command->footer(
+        "Examples:\n  underbody table at lift.csv gap=5mm\n  underbody table at loads.csv gap=5mm,pitch=2deg "
+        "gap=8mm,pitch=2deg --json");
     shell.on(at_command, [&shell, at] { return run_at(shell, *at); });
 
     auto eq = std::make_shared<EquilibriaCommand>();
     CLI::App* eq_command = table->add_subcommand("equilibria", "where lift and net weight balance, and how firmly");
     eq->table.add_to(*eq_command);
     eq_command->add_option("--weight", eq->weight, "net weight: weight less buoyancy, positive sinks (default 0 N)");
-    eq_command->add_option("--mass", eq->mass, "virtual mass in heave, mass + added mass; gives frequency and kick velocity");
+    eq_command->add_option("--mass", eq->mass,
+                           "virtual mass in heave, mass + added mass; gives frequency and kick velocity");
     eq_command->add_option("--damping", eq->damping, "linear damping in heave, such as \"0.4 N s/m\"");
     eq_command->add_option("--held", eq->held, "values of the other axes, such as pitch=1deg,speed=0.5");
     eq_command->add_option("--scale", eq->scale, "factor on the table's force, such as (speed/reference)^2");
-    eq_command->add_option("--draws", eq->draws, "tables drawn from the error for the probabilities")->check(CLI::Range(0, 100000))->capture_default_str();
+    eq_command->add_option("--draws", eq->draws, "tables drawn from the error for the probabilities")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
     eq_command->add_option("--picture", eq->picture, "writes the curve with its equilibria (.png, .pdf)");
     eq_command->footer(
         "Examples:\n"

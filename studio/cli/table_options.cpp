@@ -9,10 +9,10 @@
 #include "core/units.h"
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
-#include "surrogates/dynamics/force_points.h"
-#include "surrogates/dynamics/force_tables.h"
-#include "surrogates/tables/figures.h"
-#include "surrogates/tables/select.h"
+#include "surrogates/dynamics/model/force_points.h"
+#include "surrogates/dynamics/model/force_tables.h"
+#include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/points/select.h"
 
 namespace underbody::studio {
 
@@ -26,19 +26,25 @@ void TableOptions::add_to(CLI::App& command) {
     command.add_option("--quantity", quantity,
                        "column to use (default: lift_force, or the first force of the table); export, fit, at: "
                        "several, lift_force,pitch_moment, or all");
-    command.add_option("--where", where, "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either; of a model: what is held, such as speed=0.5m/s");
+    command.add_option("--where", where,
+                       "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either; of a "
+                       "model: what is held, such as speed=0.5m/s");
     command.add_option("--axes", axes,
                        "columns that are axes, such as gap,pitch (default: all known ones that vary); of a model also "
                        "what scales its forces: gap,pitch,speed=0:0.8,jet_voltage=0:12V");
-    command.add_option("--kind", kind, "automatic | interpolation | gaussian_process | spline (auto, gp for short)")->capture_default_str();
-    command.add_option("--range", range, "outside the points: clamp | refuse | extrapolate, for all axes or one by one: gap=refuse,pitch=clamp (default clamp, or what an exported table says)");
+    command.add_option("--kind", kind, "automatic | interpolation | gaussian_process | spline (auto, gp for short)")
+        ->capture_default_str();
+    command.add_option("--range", range,
+                       "outside the points: clamp | refuse | extrapolate, for all axes or one by one: "
+                       "gap=refuse,pitch=clamp (default clamp, or what an exported table says)");
 }
 
 tables::FitOptions TableOptions::fit_options() const {
     tables::FitOptions options;
     const auto known = tables::fit_kind(kind);
     if (!known) {
-        throw core::UsageError("kind", "there is no kind of table '" + kind + "'", {}, core::did_you_mean(kind, tables::fit_kinds()));
+        throw core::UsageError("kind", "there is no kind of table '" + kind + "'", {},
+                               core::did_you_mean(kind, tables::fit_kinds()));
     }
     options.kind = *known;
     options.range = tables::parse_range_policies(range);
@@ -68,7 +74,8 @@ std::vector<std::string> quantities_of(const core::Table& table, const std::stri
         names = tables::force_columns(table);
     }
     if (names.empty()) {
-        throw core::InputError("missing", "the table has no force and no other column to fit", {table.source, {}, {}, {}},
+        throw core::InputError("missing", "the table has no force and no other column to fit",
+                               {table.source, {}, {}, {}},
                                "a force column is named lift_force [N], drag_force [N], pitch_moment [N m], ...");
     }
     return names;
@@ -172,7 +179,8 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
     return all;
 }
 
-std::string shown(const tables::ForceTable& table, const std::string& quantity, const std::string& si, double value, int digits) {
+std::string shown(const tables::ForceTable& table, const std::string& quantity, const std::string& si, double value,
+                  int digits) {
     const std::string unit = tables::shown_unit(table, quantity);
     return core::format_number(core::convert(value, si, unit), digits) + " " + unit;
 }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/fit/force_table.h"
 
 namespace CLI {
 class App;
@@ -42,7 +42,8 @@ private:
 };
 
 /// A value in the unit that the user's file has for the quantity.
-std::string shown(const tables::ForceTable& table, const std::string& quantity, const std::string& si, double value, int digits = 5);
+std::string shown(const tables::ForceTable& table, const std::string& quantity, const std::string& si, double value,
+                  int digits = 5);
 
 /// "gap=5mm,pitch=1deg" as name and SI value.
 std::vector<std::pair<std::string, double>> read_assignments(const std::string& text);

@@ -1,14 +1,15 @@
 // underbody theory: closed forms with units, their limits and their sources.
+#include "geometry/water/theory.h"
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/closed_form.h"
 #include "core/text.h"
-#include "geometry/theory.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
-#include "surrogates/dynamics/theory.h"
+#include "surrogates/dynamics/theory/theory.h"
 
 namespace underbody::studio {
 
@@ -33,11 +34,19 @@ int list(Shell& shell, const std::vector<core::ClosedForm>& forms) {
         nlohmann::json inputs = nlohmann::json::array();
         text += form.name + ": " + form.summary + "\n  " + form.formula + "   (" + form.source + ")\n";
         for (const auto& input : form.inputs) {
-            inputs.push_back({{"name", input.name}, {"unit", input.unit}, {"meaning", input.meaning}, {"default", input.usual ? nlohmann::json(*input.usual) : nlohmann::json()}});
-            text += "  " + input.name + (input.unit == "1" ? "" : " [" + input.unit + "]") + (input.meaning.empty() ? "" : ": " + input.meaning) +
+            inputs.push_back({{"name", input.name},
+                              {"unit", input.unit},
+                              {"meaning", input.meaning},
+                              {"default", input.usual ? nlohmann::json(*input.usual) : nlohmann::json()}});
+            text += "  " + input.name + (input.unit == "1" ? "" : " [" + input.unit + "]") +
+                    (input.meaning.empty() ? "" : ": " + input.meaning) +
                     (input.usual ? " (default " + core::format_number(*input.usual, 6) + ")" : "") + "\n";
         }
-        json.push_back({{"name", form.name}, {"summary", form.summary}, {"formula", form.formula}, {"source", form.source}, {"inputs", inputs}});
+        json.push_back({{"name", form.name},
+                        {"summary", form.summary},
+                        {"formula", form.formula},
+                        {"source", form.source},
+                        {"inputs", inputs}});
     }
     if (shell.json) {
         shell.print_json({{"theories", json}});
@@ -67,14 +76,16 @@ int run(const Arguments& a, Shell& shell) {
 }  // namespace
 
 void add_theory_command(CLI::App& app, Shell& shell) {
-    CLI::App* command = app.add_subcommand("theory", "closed forms: thin films, squeeze damping, jets, added mass, scaling, with their limits");
+    CLI::App* command = app.add_subcommand(
+        "theory", "closed forms: thin films, squeeze damping, jets, added mass, scaling, with their limits");
     auto a = std::make_shared<Arguments>();
     std::string names;
     for (const auto& form : all_forms()) {
         names += (names.empty() ? "" : ", ") + form.name;
     }
     command->add_option("name", a->name, "which: " + names + "; or list, for all of them")->required();
-    command->add_option("inputs", a->inputs, "name=value with units, a bare number is SI; none: what this one takes")->expected(-1);
+    command->add_option("inputs", a->inputs, "name=value with units, a bare number is SI; none: what this one takes")
+        ->expected(-1);
     command->footer(
         "Examples:\n"
         "  underbody theory list\n"

@@ -57,7 +57,8 @@ std::vector<std::string> commands_of(const CLI::App& app) {
 std::string nearest(const std::string& word, const std::vector<std::string>& names) {
     std::string found = core::nearest_name(word, names);
     if (found.empty() && word.size() > 3) {
-        const auto longer = std::find_if(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(word); });
+        const auto longer =
+            std::find_if(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(word); });
         found = longer == names.end() ? std::string() : *longer;
     }
     return found;
@@ -70,16 +71,22 @@ core::UsageError usage_error(const CLI::App& app, const CLI::ParseError& complai
     const std::string command = name_of(chain);
     const std::string help = command + " --help";
     const auto left = app.remaining(true);
-    const auto option = std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.size() > 1 && word.front() == '-' && word != "--"; });
+    const auto option = std::find_if(left.begin(), left.end(), [](const std::string& word) {
+        return word.size() > 1 && word.front() == '-' && word != "--";
+    });
     if (option != left.end()) {
         const std::string word = option->substr(0, option->find('='));
         const std::string near = nearest(word, options_of(chain));
-        return {"usage", "'" + command + "' has no option " + word, {}, near.empty() ? help : "did you mean " + near + "?"};
+        return {
+            "usage", "'" + command + "' has no option " + word, {}, near.empty() ? help : "did you mean " + near + "?"};
     }
     const auto commands = commands_of(*chain.back());
     if (!left.empty() && !commands.empty()) {
         const std::string near = nearest(left.front(), commands);
-        return {"usage", "'" + command + "' has no command '" + left.front() + "'", {}, near.empty() ? help : "did you mean '" + command + " " + near + "'?"};
+        return {"usage",
+                "'" + command + "' has no command '" + left.front() + "'",
+                {},
+                near.empty() ? help : "did you mean '" + command + " " + near + "'?"};
     }
     return {"usage", complaint.what(), {}, help};
 }

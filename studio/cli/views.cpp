@@ -1,5 +1,5 @@
 // underbody views FILE... --out FOLDER: pictures of a case, or of several with one range and camera.
-#include "postproc/views.h"
+#include "postproc/views/views.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,11 +10,11 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "postproc/field.h"
-#include "postproc/kinematic.h"
-#include "postproc/loads.h"
-#include "postproc/probe.h"
-#include "postproc/stated_loads.h"
+#include "postproc/field/field.h"
+#include "postproc/field/kinematic.h"
+#include "postproc/loads/loads.h"
+#include "postproc/loads/stated_loads.h"
+#include "postproc/probe/probe.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
@@ -40,7 +40,8 @@ struct ViewsArguments {
 /// Unit of a range's ends; empty: any (a key that nobody knows is refused with the views).
 std::string range_unit(const std::string& key) {
     for (const auto& known : postproc::range_keys()) {
-        if (known.name == key || (key == "speed" && known.name == "velocity") || (key == "shear" && known.name == "wall_shear")) {
+        if (known.name == key || (key == "speed" && known.name == "velocity") ||
+            (key == "shear" && known.name == "wall_shear")) {
             return known.unit;
         }
     }
@@ -60,15 +61,19 @@ postproc::ViewOptions view_options(const ViewsArguments& given) {
         const auto equals = text.find('=');
         const auto colon = text.find(':', equals);
         if (equals == std::string::npos || colon == std::string::npos) {
-            throw core::UsageError("usage", "--range '" + text + "' is no NAME=LOW:HIGH", {}, "for instance --range pressure=-200:100");
+            throw core::UsageError("usage", "--range '" + text + "' is no NAME=LOW:HIGH", {},
+                                   "for instance --range pressure=-200:100");
         }
         const std::string key = text.substr(0, equals);
         const std::string unit = range_unit(key);
         const auto si = [&](const std::string& end) {
             const auto quantity = core::parse_quantity(end);
-            return quantity.unit.empty() ? quantity.value : core::convert(quantity.value, quantity.unit, unit.empty() ? core::si_unit(quantity.unit) : unit);
+            return quantity.unit.empty() ? quantity.value
+                                         : core::convert(quantity.value, quantity.unit,
+                                                         unit.empty() ? core::si_unit(quantity.unit) : unit);
         };
-        options.ranges.emplace_back(key, std::pair{si(text.substr(equals + 1, colon - equals - 1)), si(text.substr(colon + 1))});
+        options.ranges.emplace_back(
+            key, std::pair{si(text.substr(equals + 1, colon - equals - 1)), si(text.substr(colon + 1))});
     }
     return options;
 }
@@ -82,14 +87,19 @@ public:
         const fs::path path = fs::path(given_.out) / (prefix + view.name + ".png");
         core::write_file(path, view.png);
         shell_.print("wrote " + path.string() + ": " + view.caption);
-        written_.push_back({{"file", path.string()}, {"name", view.name}, {"title", view.title}, {"caption", view.caption}, {"range", {view.range.first, view.range.second}}});
+        written_.push_back({{"file", path.string()},
+                            {"name", view.name},
+                            {"title", view.title},
+                            {"caption", view.caption},
+                            {"range", {view.range.first, view.range.second}}});
     }
 
     void keep(const core::Figure& figure, const std::string& name, const std::string& prefix) {
         const fs::path path = fs::path(given_.out) / (prefix + name + ".png");
         write_picture(figure, path);
         shell_.print("wrote " + path.string() + ": " + figure.caption);
-        written_.push_back({{"file", path.string()}, {"name", name}, {"title", figure.title}, {"caption", figure.caption}});
+        written_.push_back(
+            {{"file", path.string()}, {"name", name}, {"title", figure.title}, {"caption", figure.caption}});
     }
 
     /// A view that could be drawn.
@@ -110,7 +120,8 @@ bool has_profile(const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), "streamlines-gap") != names.end();  // a volume, a velocity and a base
 }
 
-/// Names of the cases that no two share: that of the file, with as many of its folders before it as it takes ("a/case").
+/// Names of the cases that no two share: that of the file, with as many of its folders before it as it takes
+/// ("a/case").
 std::vector<std::string> names_of(const std::vector<ConditionedFile>& files) {
     struct Parts {
         std::vector<std::string> folders;
@@ -129,11 +140,18 @@ std::vector<std::string> names_of(const std::vector<ConditionedFile>& files) {
     const auto count = [&](auto&& same) { return std::count_if(all.begin(), all.end(), same); };
     std::vector<std::string> names;
     for (const auto& parts : all) {
-        const bool stem_is_shared = count([&](const Parts& other) { return other.folders == parts.folders && other.stem == parts.stem; }) > 1;
+        const bool stem_is_shared =
+            count([&](const Parts& other) { return other.folders == parts.folders && other.stem == parts.stem; }) > 1;
         std::string name = stem_is_shared ? parts.file : parts.stem;
         for (std::size_t depth = 1; depth <= parts.folders.size(); ++depth) {
-            const auto tail = [depth](const Parts& of) { return std::vector<std::string>(of.folders.end() - static_cast<std::ptrdiff_t>(std::min(depth - 1, of.folders.size())), of.folders.end()); };
-            if (count([&](const Parts& other) { return other.stem == parts.stem && other.folders != parts.folders && tail(other) == tail(parts); }) == 0) {
+            const auto tail = [depth](const Parts& of) {
+                return std::vector<std::string>(
+                    of.folders.end() - static_cast<std::ptrdiff_t>(std::min(depth - 1, of.folders.size())),
+                    of.folders.end());
+            };
+            if (count([&](const Parts& other) {
+                    return other.stem == parts.stem && other.folders != parts.folders && tail(other) == tail(parts);
+                }) == 0) {
                 break;
             }
             name.insert(0, parts.folders[parts.folders.size() - depth] + "/");
@@ -157,7 +175,9 @@ std::vector<std::string> prefixes_of(const std::vector<std::string>& names) {
     return prefixes;
 }
 
-void draw_case(Shell& shell, const ViewsArguments& given, const postproc::Field& field, const postproc::ViewOptions& shared, const std::string& case_name, const std::string& prefix, Album& album) {
+void draw_case(Shell& shell, const ViewsArguments& given, const postproc::Field& field,
+               const postproc::ViewOptions& shared, const std::string& case_name, const std::string& prefix,
+               Album& album) {
     postproc::ViewOptions options = shared;
     options.case_name = case_name;
     auto possible = postproc::possible_views(field, options);
@@ -165,11 +185,13 @@ void draw_case(Shell& shell, const ViewsArguments& given, const postproc::Field&
         possible.emplace_back("profile-gap");
     }
     if (possible.empty()) {
-        throw core::InputError("view", "the field has no surface with a pressure to draw", {field.files.front(), {}, {}, {}});
+        throw core::InputError("view", "the field has no surface with a pressure to draw",
+                               {field.files.front(), {}, {}, {}});
     }
     for (const auto& name : given.names) {
         if (std::find(possible.begin(), possible.end(), name) == possible.end()) {
-            throw core::InputError("view", "there is no view '" + name + "' of this field", {field.files.front(), {}, {}, {}}, core::did_you_mean(name, possible));
+            throw core::InputError("view", "there is no view '" + name + "' of this field",
+                                   {field.files.front(), {}, {}, {}}, core::did_you_mean(name, possible));
         }
     }
     for (const auto& name : given.names.empty() ? possible : given.names) {
@@ -194,7 +216,8 @@ void draw_case(Shell& shell, const ViewsArguments& given, const postproc::Field&
 
 /// Pictures show pascal: what a file has over density needs one.
 void use_density(Shell& shell, const ViewsArguments& given, postproc::Field& field) {
-    const auto density = given.density.empty() ? std::nullopt : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
+    const auto density =
+        given.density.empty() ? std::nullopt : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
     if (!postproc::bring_to_pascal(field, density)) {
         shell.warn(field.files.front() + ": pressure is over density here: --density \"998 kg/m^3\" draws it");
     }
@@ -213,10 +236,12 @@ void name_once(Batch& batch) {
 
 void check_difference(const ViewsArguments& given, std::size_t files) {
     if (files != 2) {
-        throw core::UsageError("usage", "--difference compares two files", {}, "underbody views A B --difference pressure");
+        throw core::UsageError("usage", "--difference compares two files", {},
+                               "underbody views A B --difference pressure");
     }
     if (given.list || !given.names.empty()) {
-        throw core::UsageError("usage", std::string("--difference draws one picture: ") + (given.list ? "--list" : "--view") + " means nothing with it");
+        throw core::UsageError("usage", std::string("--difference draws one picture: ") +
+                                            (given.list ? "--list" : "--view") + " means nothing with it");
     }
 }
 
@@ -262,15 +287,24 @@ int run_views(Shell& shell, const ViewsArguments& given) {
 }  // namespace
 
 void add_views_command(CLI::App& app, Shell& shell) {
-    auto* command = app.add_subcommand("views", "pictures of a field: underbody, hull, symmetry plane, gap; needs no display");
+    auto* command =
+        app.add_subcommand("views", "pictures of a field: underbody, hull, symmetry plane, gap; needs no display");
     auto o = std::make_shared<ViewsArguments>();
-    command->add_option("files", o->files, "CFD files, or patterns of names; several share colours and camera")->required();
+    command->add_option("files", o->files, "CFD files, or patterns of names; several share colours and camera")
+        ->required();
     command->add_option("-o,--out", o->out, "folder for the pictures")->capture_default_str();
-    command->add_option("--view", o->names, "only these, by name; several with commas")->delimiter(',')->transform(trimmed_name);
+    command->add_option("--view", o->names, "only these, by name; several with commas")
+        ->delimiter(',')
+        ->transform(trimmed_name);
     command->add_flag("--list", o->list, "only say which views each file allows");
-    command->add_option("--difference", o->difference, "draw the second file less the first one: pressure, wall_shear (of vectors the sizes)");
-    command->add_option("--range", o->ranges, "colour range, in SI or with units: pressure=-200:100, shear=\"0 Pa:5 Pa\", speed=0:1, speed-symmetry=0:0.7, difference=-20:20");
-    command->add_option("--symmetry", o->symmetry, "half model: normal axis of its plane, with its place if that is not where the body is open: y, or y=0.1");
+    command->add_option("--difference", o->difference,
+                        "draw the second file less the first one: pressure, wall_shear (of vectors the sizes)");
+    command->add_option("--range", o->ranges,
+                        "colour range, in SI or with units: pressure=-200:100, shear=\"0 Pa:5 Pa\", speed=0:1, "
+                        "speed-symmetry=0:0.7, difference=-20:20");
+    command->add_option(
+        "--symmetry", o->symmetry,
+        "half model: normal axis of its plane, with its place if that is not where the body is open: y, or y=0.1");
     command->add_option("--base", o->base, "zone that is the base")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();

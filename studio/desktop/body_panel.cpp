@@ -13,8 +13,8 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "postproc/body_zones.h"
-#include "postproc/field.h"
+#include "postproc/field/field.h"
+#include "postproc/loads/body_zones.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/scene.h"

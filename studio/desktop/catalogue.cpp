@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/effects/effect.h"
+#include "surrogates/dynamics/model/effect.h"
 
 namespace underbody::studio {
 

@@ -20,9 +20,9 @@
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
-#include "surrogates/tables/equilibria.h"
-#include "surrogates/tables/figures.h"
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/analysis/equilibria.h"
+#include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::studio {
 

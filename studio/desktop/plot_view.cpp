@@ -25,7 +25,7 @@ PlotView::PlotView(QWidget* parent) : QWidget(parent) {
                     .arg(QString::fromStdString(pretty_unit(axis.unit)));
             };
             Q_EMIT hovered(part(figure_.x, plot_->xAxis->pixelToCoord(event->pos().x())) + "   " +
-                         part(figure_.y, plot_->yAxis->pixelToCoord(event->pos().y())));
+                           part(figure_.y, plot_->yAxis->pixelToCoord(event->pos().y())));
         }
     });
     connect(plot_, &QCustomPlot::mousePress, this, [this](QMouseEvent* event) { pressed_ = event->pos(); });

@@ -1,8 +1,8 @@
 // First, because Qt makes `signals` a keyword and the dynamics room has a member of that name.
 // clang-format off
 #include "cases/region_model.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/basin/region.h"
 // clang-format on
 
 #include "studio/desktop/region_panel.h"
@@ -43,7 +43,8 @@ QString summary(const dynamics::StabilityRegion& region) {
         if (std::isfinite(end.gap)) {
             name += QString(" at %1 mm").arg(map_number(1000 * end.gap, 3));
         }
-        text += QString("<tr><td>%1</td><td align=right>&nbsp;%2 %</td></tr>").arg(name, map_number(100 * end.fraction, 3));
+        text +=
+            QString("<tr><td>%1</td><td align=right>&nbsp;%2 %</td></tr>").arg(name, map_number(100 * end.fraction, 3));
     }
     text += "</table>";
     if (region.outside_fraction > 0) {
@@ -261,7 +262,8 @@ void RegionPanel::choose_parameter() {
     }
     QString text;
     for (const auto& [changed, value] : changes_) {
-        text += QString("%1 = %2 (declared %3)\n").arg(qt(changed), map_number(value), map_number(model_->parameter(changed)));
+        text += QString("%1 = %2 (declared %3)\n")
+                    .arg(qt(changed), map_number(value), map_number(model_->parameter(changed)));
     }
     changes_label_->setText(text.trimmed());
 }
@@ -348,10 +350,10 @@ void RegionPanel::show_trajectory() {
     motion_->show_figure(dynamics::trajectory_figure(*trajectory_, region_->equilibria));
     const QString time = trajectory_->time.empty() ? QString("–") : map_number(trajectory_->time.back(), 3);
     Q_EMIT remark(QString("from %1 mm, %2 mm/s: %3 after %4 s")
-                    .arg(map_number(1000 * trajectory_->gap.front(), 3))
-                    .arg(map_number(1000 * trajectory_->heave_velocity.front(), 3))
-                    .arg(trajectory_->end == "time" ? QString("still moving") : qt(trajectory_->end))
-                    .arg(time));
+                      .arg(map_number(1000 * trajectory_->gap.front(), 3))
+                      .arg(map_number(1000 * trajectory_->heave_velocity.front(), 3))
+                      .arg(trajectory_->end == "time" ? QString("still moving") : qt(trajectory_->end))
+                      .arg(time));
 }
 
 bool RegionPanel::has_picture() const { return map_->has_figure(); }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "postproc/field.h"
+#include "postproc/field/field.h"
 
 namespace underbody::studio {
 

@@ -3,9 +3,9 @@
 #include <qcustomplot.h>
 
 #include <QApplication>
-#include <QHash>
 #include <QBuffer>
 #include <QFontDatabase>
+#include <QHash>
 #include <QLibraryInfo>
 #include <QPdfWriter>
 #include <QThread>

@@ -10,8 +10,9 @@ std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std
     std::size_t best = hypotheses.size();
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
         if (hypotheses[i].hypothesis.names.size() <= effects &&
-            (best == hypotheses.size() || hypotheses[i].score() - 2 * std::log(hypotheses[i].hypothesis.prior) <
-                                              hypotheses[best].score() - 2 * std::log(hypotheses[best].hypothesis.prior))) {
+            (best == hypotheses.size() ||
+             hypotheses[i].score() - 2 * std::log(hypotheses[i].hypothesis.prior) <
+                 hypotheses[best].score() - 2 * std::log(hypotheses[best].hypothesis.prior))) {
             best = i;
         }
     }
@@ -23,7 +24,8 @@ double structure_left(const SmoothFit& rest, double explained) {
     return left / std::max(left + std::max(explained, 0.0), 1e-12);
 }
 
-Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest, const Calibration& calibration) {
+Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest,
+                      const Calibration& calibration) {
     Attribution result;
     result.chosen = best_hypothesis(hypotheses, 2);
     if (result.chosen >= hypotheses.size()) {
@@ -35,7 +37,8 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     const FittedHypothesis& best = hypotheses[result.chosen];
     // laws of nature differ in form from the catalogue's: a share of what is explained counts as one unit of evidence
     const double temperature = 1 + calibration.form_share * std::max(0.0, best.explained);
-    // of the forms of a name the likeliest stands for it; as logarithms, so that the order holds where nothing else is left of a rival
+    // of the forms of a name the likeliest stands for it; as logarithms, so that the order holds where nothing else is
+    // left of a rival
     std::map<std::vector<std::string>, Attribution::Share> by_names;
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
         const FittedHypothesis& one = hypotheses[i];
@@ -53,7 +56,8 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     for (const auto& [names, share] : by_names) {
         result.shares.push_back(share);
     }
-    std::stable_sort(result.shares.begin(), result.shares.end(), [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    std::stable_sort(result.shares.begin(), result.shares.end(),
+                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
     const double largest = result.shares.front().probability;
     for (Attribution::Share& share : result.shares) {
         share.probability = std::exp(share.probability - largest);
@@ -66,7 +70,8 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     if (rest.p > calibration.unknown_p) {
         unknown = std::min(unknown, 0.5 * calibration.unknown_p / rest.p);
     }
-    result.none_probability = gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
+    result.none_probability =
+        gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
     result.unknown_probability = (1 - result.none_probability) * unknown;
     for (Attribution::Share& share : result.shares) {
         share.probability *= (1 - result.none_probability) * (1 - unknown) / total;

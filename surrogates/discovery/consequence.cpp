@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
 
 namespace underbody::discovery {
 
@@ -11,7 +11,9 @@ std::vector<EquilibriumPair> paired(const std::vector<Balance>& before, std::vec
     std::vector<EquilibriumPair> pairs;
     for (const Balance& one : before) {
         EquilibriumPair pair{one.name, one.stable, one.gap, std::nan("")};
-        const auto distance = [&](const Balance& other) { return std::abs(other.gap - one.gap) / std::max(other.gap + one.gap, 1e-300); };
+        const auto distance = [&](const Balance& other) {
+            return std::abs(other.gap - one.gap) / std::max(other.gap + one.gap, 1e-300);
+        };
         auto nearest = after.end();
         for (auto other = after.begin(); other != after.end(); ++other) {
             if (other->stable == one.stable && (nearest == after.end() || distance(*other) < distance(*nearest))) {
@@ -30,8 +32,9 @@ std::vector<EquilibriumPair> paired(const std::vector<Balance>& before, std::vec
     return pairs;
 }
 
-void compare_regions(const dynamics::Model& before, const dynamics::Model& after, double low, double high, const dynamics::Conditions& held,
-                     std::size_t cells, core::Progress& progress, Consequence& result) {
+void compare_regions(const dynamics::Model& before, const dynamics::Model& after, double low, double high,
+                     const dynamics::Conditions& held, std::size_t cells, core::Progress& progress,
+                     Consequence& result) {
     dynamics::RegionOptions options;
     options.axes = {{"gap", low, high}, {"heave_velocity", -0.1, 0.1}};
     options.columns = options.rows = cells;
@@ -55,7 +58,8 @@ void map_if_possible(Consequence& result, const std::function<void()>& map) {
     } catch (const core::Cancelled&) {
         throw;
     } catch (const core::Error& error) {
-        result.text += (result.text.empty() ? "" : " ") + std::string("The free motion could not be mapped: ") + error.message();
+        result.text +=
+            (result.text.empty() ? "" : " ") + std::string("The free motion could not be mapped: ") + error.message();
     }
 }
 

@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
-#include "surrogates/discovery/load_cell.h"
+#include "surrogates/discovery/static/load_cell.h"
 
 namespace underbody::discovery {
 
@@ -35,13 +35,15 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
                    core::Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
     const dynamics::Measurements data = reduced(measured);
-    Discovery result = data.kind == dynamics::MeasurementKind::steady ? discover_static(model, data, options, progress)
-                                                                      : discover_time_series(model, data, options, progress);
+    Discovery result = data.kind == dynamics::MeasurementKind::steady
+                           ? discover_static(model, data, options, progress)
+                           : discover_time_series(model, data, options, progress);
     if (result.verdict == "none") {
-        result.depends_on.clear();   // noise depends on nothing
+        result.depends_on.clear();  // noise depends on nothing
     }
-    result.model.lineage.made_from.push_back("made by underbody discover from " + model.name + " and the measurements '" +
-                                             (data.title.empty() ? std::filesystem::weakly_canonical(data.folder).filename().string() : data.title) + "'");
+    result.model.lineage.made_from.push_back(
+        "made by underbody discover from " + model.name + " and the measurements '" +
+        (data.title.empty() ? std::filesystem::weakly_canonical(data.folder).filename().string() : data.title) + "'");
     if (!model.file.empty() && std::filesystem::exists(model.file)) {
         result.model.lineage.made_from.push_back("declared model: " + model.file.filename().string() + ", content " +
                                                  core::content_hash_of_file(model.file));
@@ -73,7 +75,8 @@ nlohmann::json to_json(const FoundEffect& effect) {
                         {"evidence", effect.evidence}};
     nlohmann::json& parameters = json["parameters"] = nlohmann::json::object();
     for (const FoundParameter& parameter : effect.parameters) {
-        parameters[parameter.name] = {{"value", number(parameter.value)}, {"sigma", number(parameter.sigma)}, {"unit", parameter.unit}};
+        parameters[parameter.name] = {
+            {"value", number(parameter.value)}, {"sigma", number(parameter.sigma)}, {"unit", parameter.unit}};
     }
     if (!effect.told_apart_by.empty()) {
         json["told_apart_by"] = effect.told_apart_by;
@@ -118,7 +121,10 @@ nlohmann::json to_json(const Consequence& consequence) {
                         {"estimator", nullptr},
                         {"text", consequence.text}};
     if (consequence.estimator_before > 0) {
-        json["estimator"] = {{"quantity", "heave_velocity"}, {"unit", "m/s"}, {"rmse_before", consequence.estimator_before}, {"rmse_after", consequence.estimator_after}};
+        json["estimator"] = {{"quantity", "heave_velocity"},
+                             {"unit", "m/s"},
+                             {"rmse_before", consequence.estimator_before},
+                             {"rmse_after", consequence.estimator_after}};
     }
     return json;
 }
@@ -144,7 +150,8 @@ nlohmann::json to_json(const Discovery& d) {
     json["stability"] = d.stability;
     nlohmann::json& noise = json["noise"] = nlohmann::json::object();
     for (const auto& [channel, used] : d.noise) {
-        noise[channel] = {{"value", used.value}, {"unit", used.unit}, {"from", used.from}, {"estimated", number(used.estimated)}};
+        noise[channel] = {
+            {"value", used.value}, {"unit", used.unit}, {"from", used.from}, {"estimated", number(used.estimated)}};
     }
     if (!d.error.empty()) {
         json["error"] = to_json(d.error.front());
@@ -156,12 +163,16 @@ nlohmann::json to_json(const Discovery& d) {
     }
     json["detection_limits"] = nlohmann::json::array();
     for (const DetectionLimit& limit : d.limits) {
-        json["detection_limits"].push_back(
-            {{"name", limit.name}, {"parameter", limit.parameter}, {"value", number(limit.value)}, {"unit", limit.unit}});
+        json["detection_limits"].push_back({{"name", limit.name},
+                                            {"parameter", limit.parameter},
+                                            {"value", number(limit.value)},
+                                            {"unit", limit.unit}});
     }
     json["consequence"] = to_json(d.consequence);
     if (d.placebo.twins > 0) {
-        json["placebo"] = {{"twins", d.placebo.twins}, {"false_alarms", d.placebo.alarms}, {"error_after_over_before", d.placebo.error_ratio}};
+        json["placebo"] = {{"twins", d.placebo.twins},
+                           {"false_alarms", d.placebo.alarms},
+                           {"error_after_over_before", d.placebo.error_ratio}};
     }
     json["next_experiment"] = d.next_experiment;
     json["next_experiment_power"] = d.next_power;

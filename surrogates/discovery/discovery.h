@@ -1,4 +1,5 @@
-// Closing the loop: measured data and a declared model -> what the model lacks, the model with it, the error before and after.
+// Closing the loop: measured data and a declared model -> what the model lacks, the model with it, the error before and
+// after.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +15,21 @@
 #include "core/progress.h"
 #include "core/table.h"
 #include "surrogates/discovery/statistics.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::discovery {
 
 struct FoundParameter {
     std::string name;
     double value = 0;
-    double sigma = 0;   ///< one standard deviation; 0: held at its default
+    double sigma = 0;  ///< one standard deviation; 0: held at its default
     std::string unit;
 };
 
 /// One effect of the verdict, or one of its rivals.
 struct FoundEffect {
-    std::string name;                       ///< of the catalogue, "declared_parameter" or "unknown"
+    std::string name;  ///< of the catalogue, "declared_parameter" or "unknown"
     std::vector<FoundParameter> parameters;
     std::vector<std::string> depends_on;
     double probability = 0;
@@ -49,10 +50,10 @@ struct NoiseUsed {
 struct ErrorChange {
     std::string channel;
     std::string unit;
-    double horizon = 0;      ///< s; 0: static
+    double horizon = 0;  ///< s; 0: static
     ErrorEstimate before;
     ErrorEstimate after;
-    double noise = 0;        ///< one standard deviation of a reading
+    double noise = 0;  ///< one standard deviation of a reading
 };
 
 /// Smallest effect that would have been seen.
@@ -66,7 +67,7 @@ struct DetectionLimit {
 struct EquilibriumPair {
     std::string name;
     bool stable = false;
-    double gap_before = 0;   ///< NaN: not there
+    double gap_before = 0;  ///< NaN: not there
     double gap_after = 0;
 };
 
@@ -74,54 +75,57 @@ struct Consequence {
     std::vector<EquilibriumPair> equilibria;
     std::map<std::string, double> region_before;  ///< class -> area fraction
     std::map<std::string, double> region_after;
-    double estimator_before = 0;                  ///< m/s, error of the velocity that a state estimator with this model gives; 0: not computed
+    double estimator_before =
+        0;  ///< m/s, error of the velocity that a state estimator with this model gives; 0: not computed
     double estimator_after = 0;
     std::string text;
 };
 
-/// The same procedure on twins of the data in which nothing is missing: the declared model with noise at the same set points.
+/// The same procedure on twins of the data in which nothing is missing: the declared model with noise at the same set
+/// points.
 struct Placebo {
     std::size_t twins = 0;
-    std::size_t alarms = 0;       ///< twins in which something was found
-    double error_ratio = 1;       ///< their held-out error after over before, root mean square
+    std::size_t alarms = 0;  ///< twins in which something was found
+    double error_ratio = 1;  ///< their held-out error after over before, root mean square
 };
 
 struct Discovery {
-    std::string verdict;                       ///< none, effect, unknown
-    std::string sentence;                      ///< the verdict for people
+    std::string verdict;   ///< none, effect, unknown
+    std::string sentence;  ///< the verdict for people
     std::vector<FoundEffect> effects;
     std::vector<FoundEffect> alternatives;
     double none_probability = 0;
-    std::vector<std::string> depends_on;       ///< of the residual, found without any named effect
-    double gate = 1;                           ///< chance of as much structure when nothing is missing
-    double stability = 0;                      ///< share of resampled runs with the same verdict
+    std::vector<std::string> depends_on;  ///< of the residual, found without any named effect
+    double gate = 1;                      ///< chance of as much structure when nothing is missing
+    double stability = 0;                 ///< share of resampled runs with the same verdict
     std::map<std::string, NoiseUsed> noise;
-    std::vector<ErrorChange> error;            ///< the first is the chief one
-    std::string held_out;                      ///< which data the error is from
+    std::vector<ErrorChange> error;  ///< the first is the chief one
+    std::string held_out;            ///< which data the error is from
     std::vector<DetectionLimit> limits;
     Consequence consequence;
     Placebo placebo;
     std::string next_experiment;
-    core::Table next_set_points;               ///< as a file the rig can follow; empty: none
+    core::Table next_set_points;  ///< as a file the rig can follow; empty: none
     double next_power = 0;
     core::Problems problems;
-    dynamics::Model model;                     ///< with the effect added
+    dynamics::Model model;  ///< with the effect added
     std::vector<core::Figure> figures;
     double seconds = 0;
 };
 
 struct DiscoverOptions {
-    double horizon = 2;            ///< s, of the windows of the time-series error
+    double horizon = 2;  ///< s, of the windows of the time-series error
     std::uint64_t seed = 1;
-    std::vector<std::string> candidates;   ///< effects to consider; empty: all that such data can show
+    std::vector<std::string> candidates;  ///< effects to consider; empty: all that such data can show
     bool consequence = true;
     bool figures = true;
-    std::size_t placebo_twins = 0; ///< how many clean twins the placebo makes (static sets: whole procedure; time series: the gate)
+    std::size_t placebo_twins =
+        0;  ///< how many clean twins the placebo makes (static sets: whole procedure; time series: the gate)
 };
 
 /// The whole loop. Throws core::InputError where nothing can be said; what is doubtful but usable is in `problems`.
-Discovery discover(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options = {},
-                   core::Progress& progress = core::Progress::none());
+Discovery discover(const dynamics::Model& model, const dynamics::Measurements& data,
+                   const DiscoverOptions& options = {}, core::Progress& progress = core::Progress::none());
 
 /// `discovery.json` of docs/conventions.md section 6.
 nlohmann::json to_json(const Discovery& discovery);
@@ -138,9 +142,9 @@ void write_discovery(const Discovery& discovery, const dynamics::Model& before, 
                      const std::filesystem::path& folder, const FigureRenderer& renderer);
 
 // The two pipelines behind discover().
-Discovery discover_static(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
-                          core::Progress& progress);
-Discovery discover_time_series(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
-                               core::Progress& progress);
+Discovery discover_static(const dynamics::Model& model, const dynamics::Measurements& data,
+                          const DiscoverOptions& options, core::Progress& progress);
+Discovery discover_time_series(const dynamics::Model& model, const dynamics::Measurements& data,
+                               const DiscoverOptions& options, core::Progress& progress);
 
 }  // namespace underbody::discovery

@@ -12,8 +12,9 @@ SplineBasis::SplineBasis(const std::vector<double>& values, std::size_t columns)
     std::vector<double> distinct = values;
     std::sort(distinct.begin(), distinct.end());
     const double range = distinct.empty() ? 0 : distinct.back() - distinct.front();
-    distinct.erase(std::unique(distinct.begin(), distinct.end(), [&](double a, double b) { return b - a <= 1e-9 * range; }),
-                   distinct.end());
+    distinct.erase(
+        std::unique(distinct.begin(), distinct.end(), [&](double a, double b) { return b - a <= 1e-9 * range; }),
+        distinct.end());
     const std::size_t count = distinct.size() < 2 ? 0 : std::min(columns, distinct.size() - 1);
     if (count == 0) {
         return;
@@ -231,7 +232,8 @@ DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& m
     }
     using Map = Eigen::Map<const Eigen::MatrixXd>;
     const Map q(taken.values.data(), static_cast<Eigen::Index>(taken.rows), static_cast<Eigen::Index>(taken.columns));
-    Eigen::MatrixXd left = Map(matrix.values.data(), static_cast<Eigen::Index>(matrix.rows), static_cast<Eigen::Index>(matrix.columns));
+    Eigen::MatrixXd left =
+        Map(matrix.values.data(), static_cast<Eigen::Index>(matrix.rows), static_cast<Eigen::Index>(matrix.columns));
     DesignMatrix result = matrix;
     for (Eigen::Index k = 0; k < left.cols(); ++k) {
         const double size = left.col(k).norm();
@@ -244,8 +246,10 @@ DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& m
     return orthonormal(result);
 }
 
-std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobian, const std::vector<double>& residuals,
-                                                      const std::vector<std::size_t>& begin, const std::vector<double>& numbers, double ridge) {
+std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobian,
+                                                      const std::vector<double>& residuals,
+                                                      const std::vector<std::size_t>& begin,
+                                                      const std::vector<double>& numbers, double ridge) {
     const Eigen::Map<const Eigen::MatrixXd> j(jacobian.values.data(), static_cast<Eigen::Index>(jacobian.rows),
                                               static_cast<Eigen::Index>(jacobian.columns));
     const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));

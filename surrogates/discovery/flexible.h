@@ -7,20 +7,21 @@
 
 namespace underbody::discovery {
 
-/// Natural cubic splines of one variable (its linear part included, its constant not), each column of mean zero and mean square one
-/// over the values it was made from.
+/// Natural cubic splines of one variable (its linear part included, its constant not), each column of mean zero and
+/// mean square one over the values it was made from.
 class SplineBasis {
 public:
     /// `columns` at most the number of distinct values less one. Knots stand at quantiles of the distinct values.
     SplineBasis(const std::vector<double>& values, std::size_t columns);
     [[nodiscard]] std::size_t columns() const { return scale_.size(); }
-    /// Writes columns() numbers, and their slopes where asked for. Beyond the outermost knots the functions go on as straight lines.
+    /// Writes columns() numbers, and their slopes where asked for. Beyond the outermost knots the functions go on as
+    /// straight lines.
     void evaluate(double value, double* out, double* slope = nullptr) const;
 
 private:
     void raw(double value, double* out, double* slope) const;
     std::vector<double> knots_;
-    std::vector<double> per_span_;   ///< 1 over the distance from a knot to the last one, in widths
+    std::vector<double> per_span_;  ///< 1 over the distance from a knot to the last one, in widths
     double width_ = 1;
     std::vector<double> shift_;
     std::vector<double> scale_;
@@ -43,7 +44,7 @@ public:
     void evaluate(const double* point, double* out) const;
     /// Sum of coefficients times columns, and its slope along each variable.
     [[nodiscard]] double sum(const double* coefficients, const double* point, double* slopes) const;
-    static constexpr std::size_t most_columns = 16;   ///< of one variable
+    static constexpr std::size_t most_columns = 16;  ///< of one variable
 
 private:
     std::vector<SplineBasis> splines_;
@@ -60,8 +61,9 @@ struct DesignMatrix {
 
 /// An orthonormal basis of the columns (near-dependent ones dropped).
 DesignMatrix orthonormal(const DesignMatrix& matrix);
-/// Square matrix, column-major, that makes the columns orthonormal (mean square one, one after the other): columns * mix. Splines of one
-/// variable are nearly alike; as they stand a prior on their coefficients would forbid what bends often.
+/// Square matrix, column-major, that makes the columns orthonormal (mean square one, one after the other): columns *
+/// mix. Splines of one variable are nearly alike; as they stand a prior on their coefficients would forbid what bends
+/// often.
 std::vector<double> orthonormal_mix(const DesignMatrix& matrix);
 /// Sum of squares of `y` in the span of orthonormal columns.
 double explained_square(const DesignMatrix& orthonormal_columns, const std::vector<double>& y);
@@ -72,15 +74,16 @@ void take_out(const DesignMatrix& orthonormal_columns, std::vector<double>& y);
 /// Columns of `matrix` with their parts in the span of `taken` (orthonormal) removed, made orthonormal.
 DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& matrix);
 
-/// For each group of rows (begin[g] .. begin[g + 1]) how far the numbers behind the columns move when that group is left out of the fit, to
-/// first order about a fit of all groups whose residuals are `residuals`. With a ridge about zero of that weight on the numbers, which stand
-/// at `numbers` (empty: no ridge).
-std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobian, const std::vector<double>& residuals,
-                                                      const std::vector<std::size_t>& begin, const std::vector<double>& numbers = {},
-                                                      double ridge = 0);
+/// For each group of rows (begin[g] .. begin[g + 1]) how far the numbers behind the columns move when that group is
+/// left out of the fit, to first order about a fit of all groups whose residuals are `residuals`. With a ridge about
+/// zero of that weight on the numbers, which stand at `numbers` (empty: no ridge).
+std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobian,
+                                                      const std::vector<double>& residuals,
+                                                      const std::vector<std::size_t>& begin,
+                                                      const std::vector<double>& numbers = {}, double ridge = 0);
 
-/// Variances of the numbers behind the columns from how much groups of rows disagree (sandwich of Huber 1967, grouped), each at least
-/// that of white unit residuals; 0 for a column of zeros.
+/// Variances of the numbers behind the columns from how much groups of rows disagree (sandwich of Huber 1967, grouped),
+/// each at least that of white unit residuals; 0 for a column of zeros.
 std::vector<double> grouped_variances(const DesignMatrix& jacobian, const std::vector<double>& residuals,
                                       const std::vector<std::size_t>& begin);
 
@@ -88,7 +91,7 @@ std::vector<double> grouped_variances(const DesignMatrix& jacobian, const std::v
 struct RidgeFit {
     std::vector<double> coefficients;
     double residual_square = 0;
-    double degrees = 0;      ///< effective degrees of freedom
+    double degrees = 0;  ///< effective degrees of freedom
     std::vector<double> fitted;
 };
 RidgeFit ridge_fit(const DesignMatrix& matrix, const std::vector<double>& y);

@@ -67,18 +67,22 @@ Hypothesis make(const dynamics::EffectInfo& info, const std::vector<std::string>
     return hypothesis;
 }
 
-/// The catalogue speaks of lift; where something else was measured the hypothesis speaks of that. Numbers that are forces are moments
-/// where all that they act on are moments.
+/// The catalogue speaks of lift; where something else was measured the hypothesis speaks of that. Numbers that are
+/// forces are moments where all that they act on are moments.
 void speak_of(Hypothesis& hypothesis, const std::vector<std::string>& quantities) {
     const auto lift = std::find(hypothesis.depends_on.begin(), hypothesis.depends_on.end(), "lift_force");
-    if (lift != hypothesis.depends_on.end() && std::find(quantities.begin(), quantities.end(), "lift_force") == quantities.end()) {
+    if (lift != hypothesis.depends_on.end() &&
+        std::find(quantities.begin(), quantities.end(), "lift_force") == quantities.end()) {
         *lift = quantities.front();
     }
     for (std::size_t j = 0; j < hypothesis.parameters.size(); ++j) {
         const dynamics::EffectUse& use = hypothesis.uses[hypothesis.slots[j].use];
-        const std::vector<std::string> concerned = use.quantity.empty() ? quantities : std::vector<std::string>{use.quantity};
+        const std::vector<std::string> concerned =
+            use.quantity.empty() ? quantities : std::vector<std::string>{use.quantity};
         std::string& unit = hypothesis.parameters[j].unit;
-        if ((unit == "N" || unit == "N/s") && std::all_of(concerned.begin(), concerned.end(), [](const std::string& name) { return name.ends_with("moment"); })) {
+        if ((unit == "N" || unit == "N/s") &&
+            std::all_of(concerned.begin(), concerned.end(),
+                        [](const std::string& name) { return name.ends_with("moment"); })) {
             unit.insert(1, " m");
         }
     }
@@ -121,28 +125,36 @@ bool model_feels(const dynamics::Model& model, const std::string& effect, const 
         return std::find(source.axes.begin(), source.axes.end(), channel) != source.axes.end();
     };
     const auto any_source = [&](auto&& predicate) {
-        return std::any_of(model.forces.begin(), model.forces.end(),
-                           [&](const dynamics::ForceSource& source) { return measured(source.quantity) && predicate(source); });
+        return std::any_of(model.forces.begin(), model.forces.end(), [&](const dynamics::ForceSource& source) {
+            return measured(source.quantity) && predicate(source);
+        });
     };
     const auto scaled_by = [](const dynamics::ForceSource& source, Channel channel) {
-        return std::any_of(source.scales.begin(), source.scales.end(),
-                           [&](const dynamics::ForceScale& scale) { return scale.channel == channel && scale.exponent != 0; });
+        return std::any_of(source.scales.begin(), source.scales.end(), [&](const dynamics::ForceScale& scale) {
+            return scale.channel == channel && scale.exponent != 0;
+        });
     };
     if (effect == "pitch_misalignment") {
         // without a pitch axis the balance leans: that needs lift and drag, both in the model
         const std::vector<std::string> known = model.quantities();
-        const auto knows = [&](const char* quantity) { return std::find(known.begin(), known.end(), quantity) != known.end(); };
+        const auto knows = [&](const char* quantity) {
+            return std::find(known.begin(), known.end(), quantity) != known.end();
+        };
         return any_source([&](const auto& source) { return has_axis(source, Channel::pitch); }) ||
                (knows("lift_force") && knows("drag_force") && (measured("lift_force") || measured("drag_force")));
     }
     if (effect == "pump_curve") {
-        return any_source([&](const auto& source) { return has_axis(source, Channel::jet_voltage) || scaled_by(source, Channel::jet_voltage); });
+        return any_source([&](const auto& source) {
+            return has_axis(source, Channel::jet_voltage) || scaled_by(source, Channel::jet_voltage);
+        });
     }
     if (effect == "current") {
-        return any_source([&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
+        return any_source(
+            [&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
     }
     if (effect == "speed_exponent") {
-        return any_source([&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
+        return any_source(
+            [&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
     }
     if (effect == "gap_offset") {
         return any_source([&](const auto& source) { return has_axis(source, Channel::gap); });
@@ -151,14 +163,17 @@ bool model_feels(const dynamics::Model& model, const std::string& effect, const 
 }
 
 /// The effect is neutral at the exponent that the model declares, not at two.
-void start_at_declared_exponent(Hypothesis& hypothesis, const dynamics::Model& model, const std::vector<std::string>& quantities) {
+void start_at_declared_exponent(Hypothesis& hypothesis, const dynamics::Model& model,
+                                const std::vector<std::string>& quantities) {
     for (std::size_t j = 0; j < hypothesis.slots.size(); ++j) {
         const std::string& wanted = hypothesis.uses[hypothesis.slots[j].use].quantity;
         for (const dynamics::ForceSource& source : model.forces) {
-            const bool concerned = wanted.empty() ? std::find(quantities.begin(), quantities.end(), source.quantity) != quantities.end()
-                                                  : source.quantity == wanted;
-            const auto scale = std::find_if(source.scales.begin(), source.scales.end(),
-                                            [](const dynamics::ForceScale& one) { return one.channel == Channel::speed; });
+            const bool concerned =
+                wanted.empty() ? std::find(quantities.begin(), quantities.end(), source.quantity) != quantities.end()
+                               : source.quantity == wanted;
+            const auto scale =
+                std::find_if(source.scales.begin(), source.scales.end(),
+                             [](const dynamics::ForceScale& one) { return one.channel == Channel::speed; });
             if (concerned && scale != source.scales.end()) {
                 const double shift = scale->exponent - hypothesis.parameters[j].start;
                 hypothesis.parameters[j].start += shift;
@@ -182,8 +197,9 @@ void one_strength(Hypothesis& hypothesis) {
         }
     }
     for (Hypothesis::Copy& copy : hypothesis.copies) {
-        const auto near = std::find_if(hypothesis.slots.begin(), hypothesis.slots.end(),
-                                       [&](const Hypothesis::Slot& slot) { return slot.use == copy.to.use && slot.value + 1 == copy.to.value; });
+        const auto near = std::find_if(
+            hypothesis.slots.begin(), hypothesis.slots.end(),
+            [&](const Hypothesis::Slot& slot) { return slot.use == copy.to.use && slot.value + 1 == copy.to.value; });
         copy.parameter = static_cast<std::size_t>(near - hypothesis.slots.begin());
     }
     for (FitParameter& parameter : hypothesis.parameters) {
@@ -208,8 +224,8 @@ Hypothesis of_declared(const std::string& parameter, double declared, double low
     return hypothesis;
 }
 
-/// Declared numbers for which the catalogue has no name of its own: the factor of one of several sources of a quantity, and powers of
-/// channels other than the speed and the voltage of a declared jet.
+/// Declared numbers for which the catalogue has no name of its own: the factor of one of several sources of a quantity,
+/// and powers of channels other than the speed and the voltage of a declared jet.
 std::vector<Hypothesis> declared_numbers(const dynamics::Model& model, const std::vector<Channel>& varying,
                                          const std::vector<std::string>& quantities) {
     std::vector<Hypothesis> list;
@@ -223,19 +239,23 @@ std::vector<Hypothesis> declared_numbers(const dynamics::Model& model, const std
         for (const Channel axis : source.axes) {
             depends_on.emplace_back(dynamics::channel_name(axis));
         }
-        const auto sources = std::count_if(model.forces.begin(), model.forces.end(),
-                                           [&](const dynamics::ForceSource& other) { return other.quantity == source.quantity; });
+        const auto sources =
+            std::count_if(model.forces.begin(), model.forces.end(),
+                          [&](const dynamics::ForceSource& other) { return other.quantity == source.quantity; });
         for (const dynamics::ForceScale& scale : source.scales) {
             const std::string name = dynamics::channel_name(scale.channel);
             depends_on.push_back(name);
-            const bool named = scale.channel == Channel::speed || (scale.channel == Channel::jet_voltage && scale.exponent != 0);
+            const bool named =
+                scale.channel == Channel::speed || (scale.channel == Channel::jet_voltage && scale.exponent != 0);
             if ((!named || (scale.channel == Channel::speed && sources > 1)) && varies(varying, name)) {
-                list.push_back(of_declared(prefix + "scale." + name + ".exponent", scale.exponent, -10, 10, 0.2, {name}));
+                list.push_back(
+                    of_declared(prefix + "scale." + name + ".exponent", scale.exponent, -10, 10, 0.2, {name}));
                 list.back().prior = named ? 0.05 : 1;  // the power of the speed has a name of its own
             }
         }
         if (sources > 1) {
-            list.push_back(of_declared(prefix + "factor", source.factor, -1000, 1000, 0.1 * std::max(std::abs(source.factor), 1e-6), depends_on));
+            list.push_back(of_declared(prefix + "factor", source.factor, -1000, 1000,
+                                       0.1 * std::max(std::abs(source.factor), 1e-6), depends_on));
         }
     }
     return list;
@@ -279,15 +299,18 @@ std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const st
             continue;
         }
         const std::vector<std::string> needed = channels_needed(info.name);
-        if (!std::all_of(needed.begin(), needed.end(), [&](const std::string& name) { return varies(varying, name); }) ||
+        if (!std::all_of(needed.begin(), needed.end(),
+                         [&](const std::string& name) { return varies(varying, name); }) ||
             !model_feels(model, info.name, quantities)) {
             continue;
         }
-        if ((info.name == "cable_buoyancy" || info.name == "strut_buoyancy") && !varies(varying, "gap") && !varies(varying, "depth")) {
+        if ((info.name == "cable_buoyancy" || info.name == "strut_buoyancy") && !varies(varying, "gap") &&
+            !varies(varying, "depth")) {
             continue;
         }
         const std::size_t first = list.size();
-        const bool lift_only = info.name == "surface_roughness" || info.name == "cable_buoyancy" || info.name == "strut_buoyancy";
+        const bool lift_only =
+            info.name == "surface_roughness" || info.name == "cable_buoyancy" || info.name == "strut_buoyancy";
         list.push_back(make(info, {""}, quantities.size() > 1 && !lift_only ? "same for all measured quantities" : ""));
         if (info.takes_quantity && quantities.size() > 1) {
             for (const std::string& quantity : quantities) {
@@ -336,10 +359,11 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
         const auto start = [&](const std::vector<std::vector<double>>& values) { hypothesis.starts = values; };
         if (info.name == "gap_sensor_delay" || info.name == "input_delay" || info.name == "actuator_lag") {
             // a reading later than that is no reading; the filter's expansion in the delay ends there as well
-            hypothesis.parameters.front().upper = std::min(hypothesis.parameters.front().upper, info.name == "gap_sensor_delay" ? 0.5 : 5.0);
+            hypothesis.parameters.front().upper =
+                std::min(hypothesis.parameters.front().upper, info.name == "gap_sensor_delay" ? 0.5 : 5.0);
         }
         if (info.name == "linear_damping" && model.drag_heave.kind == dynamics::DragLaw::Kind::linear_quadratic) {
-            hypothesis.parameters.front().lower = -model.drag_heave.linear;   // water takes energy, it does not give any
+            hypothesis.parameters.front().lower = -model.drag_heave.linear;  // water takes energy, it does not give any
         }
         if (info.name == "quadratic_damping" && model.drag_heave.kind == dynamics::DragLaw::Kind::linear_quadratic) {
             hypothesis.parameters.front().lower = -model.drag_heave.quadratic;
@@ -349,7 +373,8 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
         }
         if (info.name == "gap_dependent_added_mass") {
             start({{0.5, 0.02}, {0.5, 0.06}, {0.5, 0.2}});
-            // the law with which inertia grows is not one law; with the far value free the catalogue's form bends to others
+            // the law with which inertia grows is not one law; with the far value free the catalogue's form bends to
+            // others
             Hypothesis bent = hypothesis;
             bent.form = "far inertia free as well";
             add_use(bent, dynamics::effect("added_mass").info(), "");
@@ -359,7 +384,8 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
             list.push_back(std::move(bent));
         } else if (info.name == "surface_roughness") {
             start({{0.1, 0.1, 0.03}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.3}});
-            hypothesis.parameters[0].lower = hypothesis.parameters[1].lower = 0;   // deeper near, weaker far: not the other way round
+            hypothesis.parameters[0].lower = hypothesis.parameters[1].lower =
+                0;  // deeper near, weaker far: not the other way round
         } else if (info.name == "tether_stiffness") {
             start({{0.03, 0.1}});
         } else if (info.name != "periodic_disturbance") {  // its starts come from a scan over frequency
@@ -379,14 +405,17 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
         }
     }
     if (sources == 1) {
-        // the scale of the force table and its exponents are the declared numbers that have no name of their own in the catalogue
+        // the scale of the force table and its exponents are the declared numbers that have no name of their own in the
+        // catalogue
         const dynamics::ForceSource& source = model.forces[which];
         const std::string prefix = "force." + std::to_string(which + 1) + ".";
-        list.push_back(of_declared(prefix + "factor", source.factor, 0.05 * source.factor, 20 * source.factor, 0.1 * source.factor, {"gap"}));
+        list.push_back(of_declared(prefix + "factor", source.factor, 0.05 * source.factor, 20 * source.factor,
+                                   0.1 * source.factor, {"gap"}));
         for (const dynamics::ForceScale& scale : source.scales) {
             if (std::find(varying.begin(), varying.end(), scale.channel) != varying.end()) {
                 const std::string channel = dynamics::channel_name(scale.channel);
-                list.push_back(of_declared(prefix + "scale." + channel + ".exponent", scale.exponent, -6, 10, 0.2, {"gap", channel}));
+                list.push_back(of_declared(prefix + "scale." + channel + ".exponent", scale.exponent, -6, 10, 0.2,
+                                           {"gap", channel}));
             }
         }
     }
@@ -398,8 +427,9 @@ void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& na
         return;
     }
     std::erase_if(list, [&](const Hypothesis& h) {
-        return !std::all_of(h.names.begin(), h.names.end(),
-                            [&](const std::string& own) { return std::find(names.begin(), names.end(), own) != names.end(); });
+        return !std::all_of(h.names.begin(), h.names.end(), [&](const std::string& own) {
+            return std::find(names.begin(), names.end(), own) != names.end();
+        });
     });
     if (list.empty()) {
         throw core::InputError("option", "none of the candidates asked for can be seen in such data", {},
@@ -407,10 +437,12 @@ void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& na
     }
 }
 
-Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b) {
+Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b,
+                  std::span<const double> start_b) {
     const auto scales = [](const Hypothesis& h) { return h.names.front() == "sensor_gain"; };
     if (scales(b) && !scales(a)) {
-        // a gain acts on the force, then comes what is added to the reading: with both linear a fit cannot get caught on its way to a small gain
+        // a gain acts on the force, then comes what is added to the reading: with both linear a fit cannot get caught
+        // on its way to a small gain
         return joined(b, start_b, a, start_a);
     }
     Hypothesis both = a;
@@ -440,7 +472,8 @@ Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hy
 }
 
 double occam_factor(const Hypothesis& hypothesis, std::size_t data) {
-    return static_cast<double>(hypothesis.parameters.size()) * std::log(static_cast<double>(std::max<std::size_t>(data, 2)));
+    return static_cast<double>(hypothesis.parameters.size()) *
+           std::log(static_cast<double>(std::max<std::size_t>(data, 2)));
 }
 
 }  // namespace underbody::discovery

@@ -6,31 +6,31 @@
 #include <vector>
 
 #include "surrogates/discovery/least_squares.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::discovery {
 
 /// A set of effects whose numbers are to be fitted.
 struct Hypothesis {
-    std::vector<std::string> names;          ///< of the catalogue, sorted, distinct: what a verdict would say
-    std::string form;                        ///< which variant of it ("lift_force only", ...), for the report
-    std::vector<dynamics::EffectUse> uses;   ///< what is added to the model; numbers at their start
-    std::vector<FitParameter> parameters;    ///< free numbers
+    std::vector<std::string> names;         ///< of the catalogue, sorted, distinct: what a verdict would say
+    std::string form;                       ///< which variant of it ("lift_force only", ...), for the report
+    std::vector<dynamics::EffectUse> uses;  ///< what is added to the model; numbers at their start
+    std::vector<FitParameter> parameters;   ///< free numbers
     struct Slot {
         std::size_t use = 0;
         std::size_t value = 0;
     };
-    std::vector<Slot> slots;                 ///< where each free number belongs
+    std::vector<Slot> slots;  ///< where each free number belongs
     struct Copy {
         std::size_t parameter = 0;
         Slot to;
     };
-    std::vector<Copy> copies;                ///< further places of a free number
+    std::vector<Copy> copies;  ///< further places of a free number
     /// Other starts worth trying, each of the length of `parameters` (the first start is parameters[i].start).
     std::vector<std::vector<double>> starts;
     std::vector<std::string> depends_on;
-    double prior = 1;                        ///< weight before the data were seen
+    double prior = 1;  ///< weight before the data were seen
 
     /// The uses with these numbers.
     [[nodiscard]] std::vector<dynamics::EffectUse> with(std::span<const double> p) const;
@@ -43,11 +43,11 @@ struct Hypothesis {
 struct FittedHypothesis {
     Hypothesis hypothesis;
     Fit fit;
-    double cost = 0;      ///< -2 log likelihood
-    double occam = 0;     ///< -2 log of the prior volume that the data leave: what free numbers cost
+    double cost = 0;                    ///< -2 log likelihood
+    double occam = 0;                   ///< -2 log of the prior volume that the data leave: what free numbers cost
     std::vector<double> cost_of_group;  ///< cost by run (or group of set points)
-    std::vector<double> held_out;       ///< cost of each run (group) with numbers from the other runs; empty: not computed
-    double explained = 0;               ///< cost of the model as declared less `cost`
+    std::vector<double> held_out;  ///< cost of each run (group) with numbers from the other runs; empty: not computed
+    double explained = 0;          ///< cost of the model as declared less `cost`
     std::vector<double> explained_by_group;
     /// What numbers fitted to other runs lose: 0 when nothing was held out.
     [[nodiscard]] double optimism() const {
@@ -60,23 +60,25 @@ struct FittedHypothesis {
     [[nodiscard]] double score() const { return cost + optimism() + occam; }
 };
 
-/// The names that a static set with these varying channels and measured quantities can show against this model, each with its variants.
-/// An effect that could change nothing there (no speed varies, no table knows of pitch, ...) is not among them.
+/// The names that a static set with these varying channels and measured quantities can show against this model, each
+/// with its variants. An effect that could change nothing there (no speed varies, no table knows of pitch, ...) is not
+/// among them.
 std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const std::vector<dynamics::Channel>& varying,
                                           const std::vector<std::string>& quantities);
 
-/// The names that heave time series can show. `varying`: conditions that differ from run to run; a declared exponent over one of them
-/// may be off.
+/// The names that heave time series can show. `varying`: conditions that differ from run to run; a declared exponent
+/// over one of them may be off.
 std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<dynamics::Channel>& varying);
 
 /// Leaves those whose every name is among `names` (empty: all). Throws core::InputError when none is left.
 void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& names);
 
 /// Both at once. Parameters of `a` start at `start_a` (fitted), those of `b` where they stand.
-Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b, std::span<const double> start_b);
+Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b,
+                  std::span<const double> start_b);
 
-/// What free numbers cost, as -2 log (Schwarz 1978): their number times log of the number of data. Laws that say the same then cost
-/// the same whatever their units.
+/// What free numbers cost, as -2 log (Schwarz 1978): their number times log of the number of data. Laws that say the
+/// same then cost the same whatever their units.
 double occam_factor(const Hypothesis& hypothesis, std::size_t data);
 
 }  // namespace underbody::discovery

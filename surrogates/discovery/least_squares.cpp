@@ -22,7 +22,8 @@ public:
         fit.log_determinant = evaluate(fit.parameters, fit.residuals);
         fit.cost = cost(fit.residuals, fit.log_determinant);
         double damping = 1e-3;
-        bool fresh = false;   // the Jacobian belongs to where the fit stands, but for a step that gained less than the tolerance
+        bool fresh =
+            false;  // the Jacobian belongs to where the fit stands, but for a step that gained less than the tolerance
         for (int i = 0; i < options_.iterations && count_ > 0; ++i) {
             linearise(fit);
             fresh = true;
@@ -35,7 +36,8 @@ public:
                 break;
             }
         }
-        if (count_ > 0 && !fresh && options_.iterations > 1) {   // a single step is part of a longer search: its errors are not asked for
+        if (count_ > 0 && !fresh &&
+            options_.iterations > 1) {  // a single step is part of a longer search: its errors are not asked for
             linearise(fit);
         }
         spread(fit);
@@ -105,7 +107,8 @@ private:
     /// True where a number stands at a bound and the cost falls beyond it.
     bool held(const Fit& fit, std::size_t j) const {
         const double slope = gradient_(static_cast<Eigen::Index>(j));
-        return (fit.parameters[j] <= parameters_[j].lower && slope > 0) || (fit.parameters[j] >= parameters_[j].upper && slope < 0);
+        return (fit.parameters[j] <= parameters_[j].lower && slope > 0) ||
+               (fit.parameters[j] >= parameters_[j].upper && slope < 0);
     }
 
     /// Normal equations with the numbers held at their bounds taken out.
@@ -192,7 +195,8 @@ private:
 
 }  // namespace
 
-Fit least_squares(const std::vector<FitParameter>& parameters, const WhitenedResiduals& residuals, const FitOptions& options) {
+Fit least_squares(const std::vector<FitParameter>& parameters, const WhitenedResiduals& residuals,
+                  const FitOptions& options) {
     return Solver(parameters, residuals, options).run();
 }
 

@@ -1,4 +1,5 @@
-// The report of a discovery: pictures first, the verdict in a sentence, how sure, what else, what it changes, what to do next.
+// The report of a discovery: pictures first, the verdict in a sentence, how sure, what else, what it changes, what to
+// do next.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,17 +15,22 @@ namespace {
 
 std::string percent(double share) {
     const double value = 100 * share;
-    return value > 99.5 && share < 1 ? "> 99 %" : value < 0.5 ? "< 1 %" : core::format_number(std::round(value), 3) + " %";
+    return value > 99.5 && share < 1 ? "> 99 %"
+           : value < 0.5             ? "< 1 %"
+                                     : core::format_number(std::round(value), 3) + " %";
 }
 
-std::string in_noise(const ErrorEstimate& estimate, double noise) { return core::format_number(estimate.rmse / std::max(noise, 1e-300), 3); }
+std::string in_noise(const ErrorEstimate& estimate, double noise) {
+    return core::format_number(estimate.rmse / std::max(noise, 1e-300), 3);
+}
 
 std::string with_interval(const ErrorEstimate& e) {
     int digits = 3;  // more where the ends would read alike
     while (digits < 7 && e.low < e.high && core::format_number(e.low, digits) == core::format_number(e.high, digits)) {
         ++digits;
     }
-    return core::format_number(e.rmse, digits) + " (" + core::format_number(e.low, digits) + " to " + core::format_number(e.high, digits) + ")";
+    return core::format_number(e.rmse, digits) + " (" + core::format_number(e.low, digits) + " to " +
+           core::format_number(e.high, digits) + ")";
 }
 
 std::string headline(const Discovery& d) {
@@ -53,7 +59,8 @@ void add_facts(core::HtmlPage& page, const Discovery& d) {
                          "held-out error of " + chief.channel + " in units of its noise, before \u2192 after"});
     }
     if (d.placebo.twins > 0) {
-        facts.push_back({std::to_string(d.placebo.alarms) + " of " + std::to_string(d.placebo.twins), "false alarms on twins with nothing missing"});
+        facts.push_back({std::to_string(d.placebo.alarms) + " of " + std::to_string(d.placebo.twins),
+                         "false alarms on twins with nothing missing"});
     }
     page.facts(facts);
 }
@@ -66,8 +73,10 @@ void add_rivals(core::HtmlPage& page, const Discovery& d) {
         for (const FoundParameter& parameter : effect.parameters) {
             numbers += (numbers.empty() ? "" : "; ") + parameter.name + " " + value_text(parameter);
         }
-        const std::string reason = chosen || effect.told_apart_by.empty() ? effect.evidence : "told apart: " + effect.told_apart_by;
-        rows.push_back({effect.name, percent(effect.probability), numbers, effect.depends_on.empty() ? "" : list_of(effect.depends_on), reason});
+        const std::string reason =
+            chosen || effect.told_apart_by.empty() ? effect.evidence : "told apart: " + effect.told_apart_by;
+        rows.push_back({effect.name, percent(effect.probability), numbers,
+                        effect.depends_on.empty() ? "" : list_of(effect.depends_on), reason});
     };
     for (const FoundEffect& effect : d.effects) {
         add(effect, true);
@@ -78,7 +87,8 @@ void add_rivals(core::HtmlPage& page, const Discovery& d) {
     rows.push_back({"none", percent(d.none_probability), "", "",
                     "chance that noise alone shows as much structure: " + core::format_number(d.gate, 2)});
     page.table({"what is missing", "probability", "its numbers", "depends on", "why, or what tells it apart"}, rows);
-    page.paragraph("Found without any named effect, the residual depends on: " + list_of(d.verdict == "none" ? std::vector<std::string>{} : d.depends_on) + ".");
+    page.paragraph("Found without any named effect, the residual depends on: " +
+                   list_of(d.verdict == "none" ? std::vector<std::string>{} : d.depends_on) + ".");
 }
 
 void add_error(core::HtmlPage& page, const Discovery& d) {
@@ -86,18 +96,20 @@ void add_error(core::HtmlPage& page, const Discovery& d) {
     page.paragraph("Measured on " + d.held_out + ".");
     std::vector<std::vector<std::string>> rows;
     for (const ErrorChange& change : d.error) {
-        const std::string horizon = change.horizon <= 0            ? "set points"
+        const std::string horizon = change.horizon <= 0          ? "set points"
                                     : std::isinf(change.horizon) ? "free run"
                                                                  : core::format_number(change.horizon, 3) + " s";
-        rows.push_back({change.channel + " [" + change.unit + "]", horizon, with_interval(change.before), with_interval(change.after),
-                        in_noise(change.before, change.noise), in_noise(change.after, change.noise)});
+        rows.push_back({change.channel + " [" + change.unit + "]", horizon, with_interval(change.before),
+                        with_interval(change.after), in_noise(change.before, change.noise),
+                        in_noise(change.after, change.noise)});
     }
     page.table({"channel", "horizon", "before (95 %)", "after (95 %)", "before, in noise", "after, in noise"}, rows,
                "Root mean square of measured less predicted; intervals from resampling whole runs or set points.");
     if (d.placebo.twins > 0) {
         page.paragraph("Placebo: the whole procedure on " + std::to_string(d.placebo.twins) +
-                       " simulated twins of these data in which nothing is missing. Something was found in " + std::to_string(d.placebo.alarms) +
-                       "; their held-out error changed by a factor of " + core::format_number(d.placebo.error_ratio, 4) + ".");
+                       " simulated twins of these data in which nothing is missing. Something was found in " +
+                       std::to_string(d.placebo.alarms) + "; their held-out error changed by a factor of " +
+                       core::format_number(d.placebo.error_ratio, 4) + ".");
     }
 }
 
@@ -106,10 +118,13 @@ void add_consequence(core::HtmlPage& page, const Consequence& consequence) {
     if (!consequence.text.empty()) {
         page.paragraph(consequence.text);
     }
-    const auto gap_text = [](double gap) { return std::isfinite(gap) ? core::format_number(1000 * gap, 4) : std::string("gone"); };
+    const auto gap_text = [](double gap) {
+        return std::isfinite(gap) ? core::format_number(1000 * gap, 4) : std::string("gone");
+    };
     std::vector<std::vector<std::string>> rows;
     for (const EquilibriumPair& pair : consequence.equilibria) {
-        rows.push_back({pair.name, pair.stable ? "stable" : "unstable", std::isfinite(pair.gap_before) ? gap_text(pair.gap_before) : "not there",
+        rows.push_back({pair.name, pair.stable ? "stable" : "unstable",
+                        std::isfinite(pair.gap_before) ? gap_text(pair.gap_before) : "not there",
                         gap_text(pair.gap_after)});
     }
     if (!rows.empty()) {
@@ -124,7 +139,8 @@ void add_consequence(core::HtmlPage& page, const Consequence& consequence) {
     }
     std::vector<std::vector<std::string>> regions;
     for (const auto& [name, shares] : both) {
-        regions.push_back({name, core::format_number(100 * shares.first, 3), core::format_number(100 * shares.second, 3)});
+        regions.push_back(
+            {name, core::format_number(100 * shares.first, 3), core::format_number(100 * shares.second, 3)});
     }
     if (!regions.empty()) {
         page.table({"where a start ends", "share before [%]", "share after [%]"}, regions);
@@ -133,7 +149,8 @@ void add_consequence(core::HtmlPage& page, const Consequence& consequence) {
         page.table({"state estimator", "before", "after"},
                    {{"error of heave_velocity [mm/s]", core::format_number(1000 * consequence.estimator_before, 3),
                      core::format_number(1000 * consequence.estimator_after, 3)}},
-                   "Root mean square of the velocity that a Kalman filter gives with the declared model and with the new one, less the velocity smoothed over "
+                   "Root mean square of the velocity that a Kalman filter gives with the declared model and with the "
+                   "new one, less the velocity smoothed over "
                    "whole runs with the new one (there is no truer reference in the data), after the first 2 s.");
     }
 }
@@ -145,20 +162,23 @@ void add_noise_and_limits(core::HtmlPage& page, const Discovery& d) {
         noise.push_back({channel + " [" + used.unit + "]", core::format_number(used.value, 3),
                          used.estimated > 0 ? core::format_number(used.estimated, 3) : "", used.from});
     }
-    page.table({"channel", "used", "estimated from the scatter", "from"}, noise, "One standard deviation of a reading.");
+    page.table({"channel", "used", "estimated from the scatter", "from"}, noise,
+               "One standard deviation of a reading.");
     std::vector<std::vector<std::string>> limits;
     std::vector<std::string> seen;
     for (const DetectionLimit& limit : d.limits) {
         const std::string key = limit.name + limit.parameter;
         // Of what was found the finding speaks; its limit beside it would read as a contradiction.
-        const bool found = std::any_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) { return effect.name == limit.name; });
+        const bool found = std::any_of(d.effects.begin(), d.effects.end(),
+                                       [&](const FoundEffect& effect) { return effect.name == limit.name; });
         if (!found && std::isfinite(limit.value) && std::find(seen.begin(), seen.end(), key) == seen.end()) {
             seen.push_back(key);
-            limits.push_back({limit.name, limit.parameter, core::format_number(limit.value, 3) + (limit.unit == "1" ? "" : " " + limit.unit)});
+            limits.push_back({limit.name, limit.parameter,
+                              core::format_number(limit.value, 3) + (limit.unit == "1" ? "" : " " + limit.unit)});
         }
     }
-    const std::string title = "Smallest effects that these data would have shown" + std::string(d.effects.empty() ? "" : " beside what was found") +
-                              " (nine times in ten)";
+    const std::string title = "Smallest effects that these data would have shown" +
+                              std::string(d.effects.empty() ? "" : " beside what was found") + " (nine times in ten)";
     if (d.verdict == "none") {
         page.table({"effect", "number", "limit"}, limits, title);
     } else {
@@ -170,11 +190,13 @@ void add_noise_and_limits(core::HtmlPage& page, const Discovery& d) {
 
 std::string report_html(const Discovery& d, const dynamics::Model& before, const dynamics::Measurements& data,
                         const FigureRenderer& renderer) {
-    core::HtmlPage page(headline(d), before.name + " against " + (data.title.empty() ? data.folder.string() : data.title));
+    core::HtmlPage page(headline(d),
+                        before.name + " against " + (data.title.empty() ? data.folder.string() : data.title));
     page.paragraph(d.sentence);
     add_facts(page, d);
-    const auto serious = std::count_if(d.problems.begin(), d.problems.end(),
-                                       [](const core::Problem& problem) { return problem.severity != core::Problem::Severity::note; });
+    const auto serious = std::count_if(d.problems.begin(), d.problems.end(), [](const core::Problem& problem) {
+        return problem.severity != core::Problem::Severity::note;
+    });
     for (const core::Problem& problem : d.problems) {
         if (problem.severity != core::Problem::Severity::note) {
             page.warning(problem.message);
@@ -193,7 +215,8 @@ std::string report_html(const Discovery& d, const dynamics::Model& before, const
     page.section("The next experiment");
     page.paragraph(d.next_experiment);
     if (d.next_set_points.rows() > 0) {
-        page.link("next-experiment.csv", "next-experiment.csv: " + std::to_string(d.next_set_points.rows()) + " rows in the order to follow");
+        page.link("next-experiment.csv",
+                  "next-experiment.csv: " + std::to_string(d.next_set_points.rows()) + " rows in the order to follow");
     }
     if (serious < static_cast<std::ptrdiff_t>(d.problems.size())) {
         page.section("Remarks on the data");
@@ -208,13 +231,18 @@ std::string report_html(const Discovery& d, const dynamics::Model& before, const
     add_noise_and_limits(page, d);
     page.section("How it was decided");
     page.list({"Runs or set points were set aside before anything was fitted; the errors above are from them alone.",
-               "The gate asks whether the residual has more structure than the fitted noise: its thresholds come from resampled noise of these data, not from a "
+               "The gate asks whether the residual has more structure than the fitted noise: its thresholds come from "
+               "resampled noise of these data, not from a "
                "table. Only behind an open gate is anything named.",
-               "Every effect of the catalogue was fitted inside the experiment within its physical bounds, alone and, where one left structure, in pairs. What "
-               "free numbers cost is their count times the logarithm of the number of data (Schwarz 1978); laws of nature differ in form from the catalogue's, so "
+               "Every effect of the catalogue was fitted inside the experiment within its physical bounds, alone and, "
+               "where one left structure, in pairs. What "
+               "free numbers cost is their count times the logarithm of the number of data (Schwarz 1978); laws of "
+               "nature differ in form from the catalogue's, so "
                "that a small share of what is explained counts as undecided.",
-               "'unknown' is said when the best named effect leaves a real part of the structure; a smooth correction over the variables that carry it is then in "
-               "the model. The probabilities were held against frequencies on simulated data with known truth (tests/bench/discovery)."});
+               "'unknown' is said when the best named effect leaves a real part of the structure; a smooth correction "
+               "over the variables that carry it is then in "
+               "the model. The probabilities were held against frequencies on simulated data with known truth "
+               "(tests/bench/discovery)."});
     page.section("From what it was made");
     page.list(d.model.lineage.made_from);
     return page.text();

@@ -7,8 +7,8 @@
 
 #include "core/text.h"
 #include "core/units.h"
-#include "surrogates/discovery/heave_filter.h"
-#include "surrogates/discovery/static_experiment.h"
+#include "surrogates/discovery/heave/heave_filter.h"
+#include "surrogates/discovery/static/static_experiment.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
@@ -16,8 +16,8 @@ namespace underbody::discovery {
 namespace {
 
 /// Bins of equal numbers of values. `correlated`: how many neighbouring values tell one story.
-ResidualCurve binned(const std::string& variable, const std::vector<double>& x, const std::vector<double>& y, std::size_t bins,
-                     double correlated) {
+ResidualCurve binned(const std::string& variable, const std::vector<double>& x, const std::vector<double>& y,
+                     std::size_t bins, double correlated) {
     ResidualCurve curve;
     curve.variable = variable;
     const core::QuantityName* quantity = core::find_quantity(variable);
@@ -77,7 +77,8 @@ core::Figure picture(const Residual& residual, const ResidualCurve& curve) {
     return figure;
 }
 
-std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamics::Measurements& data, core::Progress& progress) {
+std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamics::Measurements& data,
+                                     core::Progress& progress) {
     const HeaveRecords records = prepare_heave_records(model, data);
     Residual residual;
     residual.quantity = "lift_force";
@@ -162,8 +163,10 @@ std::vector<Residual> static_residual(const dynamics::Model& model, const dynami
 
 }  // namespace
 
-std::vector<Residual> measured_residual(const dynamics::Model& model, const dynamics::Measurements& data, core::Progress& progress) {
-    return data.kind == dynamics::MeasurementKind::steady ? static_residual(model, data) : heave_residual(model, data, progress);
+std::vector<Residual> measured_residual(const dynamics::Model& model, const dynamics::Measurements& data,
+                                        core::Progress& progress) {
+    return data.kind == dynamics::MeasurementKind::steady ? static_residual(model, data)
+                                                          : heave_residual(model, data, progress);
 }
 
 nlohmann::json to_json(const Residual& residual) {

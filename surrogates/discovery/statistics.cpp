@@ -101,7 +101,8 @@ double autocorrelation(std::span<const double> values, std::size_t lag) {
     return below > 0 ? above / below : 0;
 }
 
-ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const std::vector<double>& counts, std::uint64_t seed) {
+ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const std::vector<double>& counts,
+                              std::uint64_t seed) {
     ErrorEstimate estimate;
     const std::size_t groups = counts.size();
     double total = 0;

@@ -43,8 +43,9 @@ struct ErrorEstimate {
     double high = 0;
     std::size_t count = 0;
 };
-/// `sum_of_squares[g]` and `counts[g]` of each group. With fewer than five groups the resampled interval is too narrow and is
-/// widened by the factor of Student's t over the normal. Deterministic by `seed`.
-ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const std::vector<double>& counts, std::uint64_t seed);
+/// `sum_of_squares[g]` and `counts[g]` of each group. With fewer than five groups the resampled interval is too narrow
+/// and is widened by the factor of Student's t over the normal. Deterministic by `seed`.
+ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const std::vector<double>& counts,
+                              std::uint64_t seed);
 
 }  // namespace underbody::discovery

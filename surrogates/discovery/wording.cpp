@@ -23,7 +23,8 @@ std::string value_text(const FoundParameter& parameter) {
     double scale = 1;
     std::string unit = parameter.unit == "1" ? "" : parameter.unit;
     const double size = std::max(std::abs(parameter.value), 3 * parameter.sigma);
-    const bool prefixed = unit == "m" || unit == "N" || unit == "N m" || unit == "s" || unit == "N/m" || unit == "m/s" || unit == "N/s" || unit == "N m/s";
+    const bool prefixed = unit == "m" || unit == "N" || unit == "N m" || unit == "s" || unit == "N/m" ||
+                          unit == "m/s" || unit == "N/s" || unit == "N m/s";
     if (prefixed && size > 0 && size < 0.1) {
         const bool micro = size < 1e-4;
         scale = micro ? 1e6 : 1e3;
@@ -32,19 +33,25 @@ std::string value_text(const FoundParameter& parameter) {
     // As many digits as the error lets stand: 1.0006 +- 0.0004, not 1 +- 0.0004.
     int digits = 3;
     if (parameter.sigma > 0 && std::isfinite(parameter.sigma) && std::abs(parameter.value) > parameter.sigma) {
-        digits = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(parameter.value))) - std::floor(std::log10(parameter.sigma))) + 1, 3, 9);
+        digits = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(parameter.value))) -
+                                             std::floor(std::log10(parameter.sigma))) +
+                                1,
+                            3, 9);
     }
     const std::string text = core::format_number(scale * parameter.value, digits);
-    return (parameter.sigma > 0 ? text + " \u00b1 " + core::format_number(scale * parameter.sigma, 2) : text) + (unit.empty() ? "" : " " + unit);
+    return (parameter.sigma > 0 ? text + " \u00b1 " + core::format_number(scale * parameter.sigma, 2) : text) +
+           (unit.empty() ? "" : " " + unit);
 }
 
 std::string probability_text(double probability) {
-    return probability > 0.995 ? "above 0.99" : probability < 0.005 ? "below 0.01" : core::format_number(probability, 2);
+    return probability > 0.995   ? "above 0.99"
+           : probability < 0.005 ? "below 0.01"
+                                 : core::format_number(probability, 2);
 }
 
 namespace {
 
-constexpr double tied = 0.2;   ///< a rival of that probability is worth a name in the verdict
+constexpr double tied = 0.2;  ///< a rival of that probability is worth a name in the verdict
 
 }  // namespace
 
@@ -67,14 +74,17 @@ std::string verdict_names(const Discovery& discovery) {
 }
 
 std::string settling_text(double chance) {
-    const std::string percent = chance > 0.995 ? "above 99 %" : chance < 0.005 ? "below 1 %" : core::format_number(100 * chance, 2) + " %";
+    const std::string percent = chance > 0.995   ? "above 99 %"
+                                : chance < 0.005 ? "below 1 %"
+                                                 : core::format_number(100 * chance, 2) + " %";
     return chance < 0.5 ? "even this would settle it (odds of 20 to 1) with a chance of only " + percent
                         : "this settles it (odds of 20 to 1) with a chance of " + percent;
 }
 
 namespace {
 
-/// A declared value that is off is called by its own name: "another value of the declared vehicle.mass: 2.31 +- 0.02 kg".
+/// A declared value that is off is called by its own name: "another value of the declared vehicle.mass: 2.31 +- 0.02
+/// kg".
 std::string named(const FoundEffect& effect) {
     if (effect.name == "declared_parameter" && effect.uses.size() == 1 && effect.parameters.size() == 1) {
         const FoundParameter& value = effect.parameters.front();
@@ -82,7 +92,8 @@ std::string named(const FoundEffect& effect) {
     }
     std::string text = effect.name;
     for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
-        text += (k == 0 ? " (" : ", ") + effect.parameters[k].name + " " + value_text(effect.parameters[k]) + (k + 1 == effect.parameters.size() ? ")" : "");
+        text += (k == 0 ? " (" : ", ") + effect.parameters[k].name + " " + value_text(effect.parameters[k]) +
+                (k + 1 == effect.parameters.size() ? ")" : "");
     }
     return text;
 }
@@ -94,10 +105,12 @@ std::string verdict_sentence(const Discovery& discovery) {
         discovery.error.empty() || discovery.verdict == "none"
             ? ""
             : " On held-out data the error of " + discovery.error.front().channel +
-                  (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from " : " falls from ") +
+                  (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from "
+                                                                                                   : " falls from ") +
                   core::format_number(discovery.error.front().before.rmse, 3) + " to " +
-                  core::format_number(discovery.error.front().after.rmse, 3) + " " + discovery.error.front().unit + " (noise " +
-                  core::format_number(discovery.error.front().noise, 3) + " " + discovery.error.front().unit + ").";
+                  core::format_number(discovery.error.front().after.rmse, 3) + " " + discovery.error.front().unit +
+                  " (noise " + core::format_number(discovery.error.front().noise, 3) + " " +
+                  discovery.error.front().unit + ").";
     if (discovery.verdict == "none") {
         return "Nothing is missing: what the model leaves looks like noise (chance of as much structure in noise: " +
                core::format_number(discovery.gate, 2) + ").";
@@ -113,7 +126,8 @@ std::string verdict_sentence(const Discovery& discovery) {
     text += ", probability " + probability_text(discovery.effects.front().probability) + ".";
     for (const FoundEffect& rival : discovery.alternatives) {
         if (rival.probability > tied) {
-            text += " These data cannot well tell it from " + rival.name + " (" + core::format_number(rival.probability, 2) + ").";
+            text += " These data cannot well tell it from " + rival.name + " (" +
+                    core::format_number(rival.probability, 2) + ").";
         }
     }
     return text + error;

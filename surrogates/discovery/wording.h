@@ -11,8 +11,8 @@ namespace underbody::discovery {
 /// "gap and speed", "gap, speed and time"; "nothing that was measured" for none.
 std::string list_of(const std::vector<std::string>& names);
 
-/// The verdict in names: "none", "coulomb_friction and input_delay", "gap_offset or force_bias" where the data cannot well tell them apart,
-/// "unknown, over gap and speed".
+/// The verdict in names: "none", "coulomb_friction and input_delay", "gap_offset or force_bias" where the data cannot
+/// well tell them apart, "unknown, over gap and speed".
 std::string verdict_names(const Discovery& discovery);
 
 /// The verdict for people, one or two sentences.
@@ -24,7 +24,8 @@ std::string value_text(const FoundParameter& parameter);
 /// "0.87"; "above 0.99" and "below 0.01" where more digits would promise more than anybody knows.
 std::string probability_text(double probability);
 
-/// What a next experiment promises, of the chance that it reaches odds of 20 to 1: "this settles it (odds of 20 to 1) with a chance of 97 %".
+/// What a next experiment promises, of the chance that it reaches odds of 20 to 1: "this settles it (odds of 20 to 1)
+/// with a chance of 97 %".
 std::string settling_text(double chance);
 
 }  // namespace underbody::discovery

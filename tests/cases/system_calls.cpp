@@ -74,42 +74,42 @@ long FailingWrites::calls() { return calls_made; }
 // What the libraries find before the C library's own.
 extern "C" {
 
-#define UNDERBODY_OPEN(name)                                                   \
-    int name(const char* path, int flags, ...) {                               \
-        va_list more;                                                          \
-        va_start(more, flags);                                                 \
+#define UNDERBODY_OPEN(name)                                                                 \
+    int name(const char* path, int flags, ...) {                                             \
+        va_list more;                                                                        \
+        va_start(more, flags);                                                               \
         const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0; \
-        va_end(more);                                                          \
-        underbody::test::look(path, flags);                                    \
-        if ((flags & O_CREAT) != 0 && underbody::test::fails()) {              \
-            errno = ENOSPC;                                                    \
-            return -1;                                                         \
-        }                                                                      \
-        static auto* const real = underbody::test::next<int(const char*, int, ...)>(#name); \
-        return real(path, flags, mode);                                        \
+        va_end(more);                                                                        \
+        underbody::test::look(path, flags);                                                  \
+        if ((flags & O_CREAT) != 0 && underbody::test::fails()) {                            \
+            errno = ENOSPC;                                                                  \
+            return -1;                                                                       \
+        }                                                                                    \
+        static auto* const real = underbody::test::next<int(const char*, int, ...)>(#name);  \
+        return real(path, flags, mode);                                                      \
     }
 UNDERBODY_OPEN(open)
 UNDERBODY_OPEN(open64)
 #undef UNDERBODY_OPEN
 
-#define UNDERBODY_FOPEN(name)                                                  \
-    FILE* name(const char* path, const char* mode) {                           \
-        underbody::test::look(path, mode[0] == 'r' && mode[1] != '+' ? O_RDONLY : O_WRONLY); \
+#define UNDERBODY_FOPEN(name)                                                                    \
+    FILE* name(const char* path, const char* mode) {                                             \
+        underbody::test::look(path, mode[0] == 'r' && mode[1] != '+' ? O_RDONLY : O_WRONLY);     \
         static auto* const real = underbody::test::next<FILE*(const char*, const char*)>(#name); \
-        return real(path, mode);                                               \
+        return real(path, mode);                                                                 \
     }
 UNDERBODY_FOPEN(fopen)
 UNDERBODY_FOPEN(fopen64)
 #undef UNDERBODY_FOPEN
 
-#define UNDERBODY_FAILING(result, name, parameters, exception, arguments)      \
-    result name parameters exception {                                                 \
-        if (underbody::test::fails()) {                                        \
-            errno = ENOSPC;                                                    \
-            return -1;                                                         \
-        }                                                                      \
+#define UNDERBODY_FAILING(result, name, parameters, exception, arguments)          \
+    result name parameters exception {                                             \
+        if (underbody::test::fails()) {                                            \
+            errno = ENOSPC;                                                        \
+            return -1;                                                             \
+        }                                                                          \
         static auto* const real = underbody::test::next<result parameters>(#name); \
-        return real arguments;                                                 \
+        return real arguments;                                                     \
     }
 UNDERBODY_FAILING(ssize_t, pwrite, (int file, const void* bytes, size_t size, off_t at), , (file, bytes, size, at))
 UNDERBODY_FAILING(ssize_t, pwrite64, (int file, const void* bytes, size_t size, off64_t at), , (file, bytes, size, at))

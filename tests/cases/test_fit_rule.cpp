@@ -1,4 +1,5 @@
-// One rule for how a table is fitted: the report of a study, its exports and the maps of its regions have the same force.
+// One rule for how a table is fitted: the report of a study, its exports and the maps of its regions have the same
+// force.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,9 +8,9 @@
 #include "cases/study.h"
 #include "core/file.h"
 #include "core/random.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/region.h"
-#include "surrogates/tables/equilibria.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/tables/analysis/equilibria.h"
 
 namespace underbody::cases {
 namespace {
@@ -24,7 +25,8 @@ StudyResults noisy_results() {
         gap.push_back(h);
         pitch.push_back(0);
         speed.push_back(0.5);
-        lift.push_back(0.25 + 4e-6 / (h * h) - 0.15 * std::exp(-std::pow(std::log(h / 0.025) / 1.1, 2)) + random.normal(0, 0.02));
+        lift.push_back(0.25 + 4e-6 / (h * h) - 0.15 * std::exp(-std::pow(std::log(h / 0.025) / 1.1, 2)) +
+                       random.normal(0, 0.02));
         names.push_back("case " + std::to_string(i));
     }
     StudyResults results;
@@ -54,7 +56,8 @@ protected:
         table.virtual_mass = 4;
         study.tables = {table};
         core::write_file(folder.path() / "model.toml",
-                         "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.8 kg\"\nnet_weight = \"0.18 N\"\n[conditions]\nspeed = \"0.5 m/s\"\n"
+                         "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.8 kg\"\nnet_weight = \"0.18 "
+                         "N\"\n[conditions]\nspeed = \"0.5 m/s\"\n"
                          "[drag.heave]\nlinear = \"2 N s/m\"\n");
         region.name = "map";
         region.model = folder.path() / "model.toml";
@@ -67,7 +70,9 @@ protected:
     [[nodiscard]] tables::Equilibria in_the_report() const {
         tables::EquilibriumOptions options;
         options.net_weight = *study.tables[0].net_weight;
-        return tables::equilibria(tables::ForceTable::fit(table_points(study.tables[0], results), "lift_force", fit_options(study.tables[0])), options);
+        return tables::equilibria(
+            tables::ForceTable::fit(table_points(study.tables[0], results), "lift_force", fit_options(study.tables[0])),
+            options);
     }
 };
 
@@ -109,7 +114,8 @@ TEST_F(FitRule, TheTwoFormerRulesDifferHere) {
 }
 
 TEST_F(FitRule, AModelAtAnotherSpeedSaysThatItsForceIsScaled) {
-    core::write_file(region.model, "[vehicle]\nmass = \"2.2 kg\"\nnet_weight = \"0.18 N\"\n[conditions]\nspeed = \"0.6 m/s\"\n");
+    core::write_file(region.model,
+                     "[vehicle]\nmass = \"2.2 kg\"\nnet_weight = \"0.18 N\"\n[conditions]\nspeed = \"0.6 m/s\"\n");
     const dynamics::Model model = region_model(study, region, results);
     ASSERT_FALSE(model.remarks.empty());
     EXPECT_NE(model.remarks.back().message.find("(0.6/0.5)^2"), std::string::npos) << model.remarks.back().message;
@@ -120,8 +126,11 @@ TEST_F(FitRule, AModelAtAnotherSpeedSaysThatItsForceIsScaled) {
 
 TEST_F(FitRule, WhereAndAxesMayBeTextsOrTables) {
     core::write_file(folder.path() / "a-h1.csv", "x");
-    const std::string head = "title = \"t\"\n[[case]]\nfiles = \"{variant}-h{gap:mm}.csv\"\nconditions = \"speed=0.5 m/s, mesh=medium\"\n[[table]]\nname = \"t\"\nquantity = \"lift_force\"\n";
-    core::write_file(folder.path() / "study.toml", head + "axes = \"gap, pitch\"\nfit = \"gp\"\nwhere = \"variant=a, speed=0.5\"\n");
+    const std::string head =
+        "title = \"t\"\n[[case]]\nfiles = \"{variant}-h{gap:mm}.csv\"\nconditions = \"speed=0.5 m/s, "
+        "mesh=medium\"\n[[table]]\nname = \"t\"\nquantity = \"lift_force\"\n";
+    core::write_file(folder.path() / "study.toml",
+                     head + "axes = \"gap, pitch\"\nfit = \"gp\"\nwhere = \"variant=a, speed=0.5\"\n");
     const Study text = Study::open(folder.path());
     EXPECT_EQ(text.tables.at(0).axes, (std::vector<std::string>{"gap", "pitch"}));
     EXPECT_EQ(text.tables[0].where.text("variant"), "a");

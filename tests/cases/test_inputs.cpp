@@ -1,6 +1,4 @@
 // What is read is noted: every file that an importer opens, and every place where it looks for one.
-#include "core/inputs.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,10 +7,11 @@
 
 #include "cases/file_states.h"
 #include "core/file.h"
+#include "core/inputs.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "postproc/field.h"
-#include "postproc/loads.h"
+#include "postproc/field/field.h"
+#include "postproc/loads/loads.h"
 #include "tests/support/support.h"
 #ifdef UNDERBODY_WATCHES_SYSTEM_CALLS
 #include "tests/cases/system_calls.h"
@@ -33,7 +32,9 @@ struct Recorded {
     bool read = false;  ///< not refused
 };
 
-std::string below(const fs::path& file, const fs::path& folder) { return file.lexically_normal().lexically_relative(folder).string(); }
+std::string below(const fs::path& file, const fs::path& folder) {
+    return file.lexically_normal().lexically_relative(folder).string();
+}
 
 template <class Work>
 Recorded recorded(const fs::path& folder, const Work& work) {
@@ -116,7 +117,8 @@ TEST_P(Importers, NoteWhatTheyOpenAndSeeEachByteOfIt) {
         found = recorded(folder, read);
         for (const auto& path : opened.paths()) {
             if (fs::is_regular_file(path)) {
-                EXPECT_THAT(found.contents, Contains(below(path, folder))) << "opened for " << file << ", and not noted";
+                EXPECT_THAT(found.contents, Contains(below(path, folder)))
+                    << "opened for " << file << ", and not noted";
             }
         }
 #else
@@ -131,7 +133,8 @@ TEST_P(Importers, NoteWhatTheyOpenAndSeeEachByteOfIt) {
                 continue;
             }
             std::string changed = whole;
-            changed[static_cast<std::size_t>(random.uniform(0, 1) * static_cast<double>(whole.size())) % whole.size()] ^= 1;
+            changed[static_cast<std::size_t>(random.uniform(0, 1) * static_cast<double>(whole.size())) %
+                    whole.size()] ^= 1;
             core::write_file(other, changed);
             EXPECT_EQ(still(found, folder), !found.contents.contains(below(other, folder))) << file << " and " << other;
             core::write_file(other, whole);
@@ -157,12 +160,15 @@ TEST_P(Importers, NoteWhatTheyOpenAndSeeEachByteOfIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, Importers,
-                         testing::Values("cfd_post_csv", "cgns", "ensight", "fluent_ascii", "fluent_hdf5", "fluent_legacy", "vtk_files",
-                                         "openfoam/ascii", "openfoam/binary", "openfoam/packed", "openfoam/decomposed", "samples/cfx_csv",
-                                         "samples/cgns", "samples/ensight/CylinderCrossflow", "samples/fluent_cff", "samples/tecplot"),
+                         testing::Values("cfd_post_csv", "cgns", "ensight", "fluent_ascii", "fluent_hdf5",
+                                         "fluent_legacy", "vtk_files", "openfoam/ascii", "openfoam/binary",
+                                         "openfoam/packed", "openfoam/decomposed", "samples/cfx_csv", "samples/cgns",
+                                         "samples/ensight/CylinderCrossflow", "samples/fluent_cff", "samples/tecplot"),
                          [](const auto& one) {
                              std::string name = one.param;
-                             std::replace_if(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+                             std::replace_if(
+                                 name.begin(), name.end(),
+                                 [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
                              return name;
                          });
 
@@ -193,10 +199,12 @@ TEST(Inputs, ATimeThatAppearsInAnOpenFoamCaseIsSeenAndALogIsNot) {
 
 TEST(Inputs, PiecesOfACollectionOfVtkAreNoted) {
     const core::TemporaryFolder folder;
-    fs::copy(test::data_folder() / "vtk_files" / "tetrahedron.vtu", folder.path() / "parts_0.vtu", fs::copy_options::overwrite_existing);
-    core::write_file(folder.path() / "all.vtm",
-                     "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>\n"
-                     "<DataSet index=\"0\" name=\"a\" file=\"parts_0.vtu\"/>\n</vtkMultiBlockDataSet>\n</VTKFile>\n");
+    fs::copy(test::data_folder() / "vtk_files" / "tetrahedron.vtu", folder.path() / "parts_0.vtu",
+             fs::copy_options::overwrite_existing);
+    core::write_file(
+        folder.path() / "all.vtm",
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>\n"
+        "<DataSet index=\"0\" name=\"a\" file=\"parts_0.vtu\"/>\n</vtkMultiBlockDataSet>\n</VTKFile>\n");
     const auto found = recorded(folder.path(), [&] { (void)postproc::read_field(folder.path() / "all.vtm"); });
     EXPECT_THAT(found.contents, testing::ElementsAre("all.vtm", "parts_0.vtu"));
 }

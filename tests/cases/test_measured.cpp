@@ -32,8 +32,10 @@ TEST(MeasuredStudies, ABearingDeclaredViscousLacksATorqueThatHardlyGrowsWithTheS
     UNDERBODY_NEEDS_SHARED("measured/rm2_tow_tank");
     const cases::MeasuredStudy study = cases::bearing_study(folder());
     EXPECT_NE(study.found.verdict, "none") << study.found.sentence;
-    // in one direction of rotation Coulomb's torque is a constant; with the slope that falls it is a power of the speed near zero
-    EXPECT_LT(study.found.error.front().after.rmse, 0.1 * study.found.error.front().before.rmse) << study.found.sentence;
+    // in one direction of rotation Coulomb's torque is a constant; with the slope that falls it is a power of the speed
+    // near zero
+    EXPECT_LT(study.found.error.front().after.rmse, 0.1 * study.found.error.front().before.rmse)
+        << study.found.sentence;
     EXPECT_LT(study.found.error.front().after.rmse, 0.035) << study.found.sentence;
     ASSERT_EQ(study.found.effects.size(), 2U) << study.found.sentence;
     EXPECT_EQ(study.found.effects[0].name, "force_bias");
@@ -46,7 +48,8 @@ TEST(MeasuredStudies, StrutsDeclaredQuadraticTakeATorqueOfALowerPower) {
     UNDERBODY_NEEDS_SHARED("measured/rm2_tow_tank");
     const cases::MeasuredStudy study = cases::strut_study(folder());
     ASSERT_NE(study.found.verdict, "none") << study.found.sentence;
-    EXPECT_LT(study.found.error.front().after.rmse, 0.4 * study.found.error.front().before.rmse) << study.found.sentence;
+    EXPECT_LT(study.found.error.front().after.rmse, 0.4 * study.found.error.front().before.rmse)
+        << study.found.sentence;
     EXPECT_EQ(study.found.depends_on, std::vector<std::string>{"speed"}) << study.found.sentence;
 }
 
@@ -58,7 +61,8 @@ TEST(MeasuredStudies, AShipAlongABankSinksByMoreThanTheSquareOfItsSpeedAndMoreNe
         EXPECT_TRUE(std::find(on.begin(), on.end(), "speed") != on.end()) << study.name << ": " << study.found.sentence;
         if (study.name.find("sinkage") != std::string::npos) {
             EXPECT_TRUE(std::find(on.begin(), on.end(), "gap") != on.end()) << study.found.sentence;
-            EXPECT_LT(study.found.error.front().after.rmse, 0.6 * study.found.error.front().before.rmse) << study.found.sentence;
+            EXPECT_LT(study.found.error.front().after.rmse, 0.6 * study.found.error.front().before.rmse)
+                << study.found.sentence;
         }
     }
 }
@@ -67,7 +71,8 @@ TEST(MeasuredStudies, TheThrustOfADroneFollowsItsBattery) {
     UNDERBODY_NEEDS_SHARED("measured/cf21_thrust_stand");
     const cases::MeasuredStudy study = cases::thrust_stand_study(folder());
     EXPECT_NE(study.found.verdict, "none") << study.found.sentence;
-    const bool over_voltage = std::find(study.found.depends_on.begin(), study.found.depends_on.end(), "jet_voltage") != study.found.depends_on.end();
+    const bool over_voltage = std::find(study.found.depends_on.begin(), study.found.depends_on.end(), "jet_voltage") !=
+                              study.found.depends_on.end();
     EXPECT_TRUE(over_voltage || probability_of(study.found, "declared_parameter") > 0.2) << study.found.sentence;
     EXPECT_LT(study.found.error.front().after.rmse, study.found.error.front().before.rmse) << study.found.sentence;
 }
@@ -79,7 +84,9 @@ TEST(MeasuredStudies, UnderAPlateSuctionAndABiasOfTheOpticsAreATie) {
     EXPECT_GT(probability_of(study.found, "force_bias"), 0.15) << study.found.sentence;
     EXPECT_GT(probability_of(study.found, "gap_offset"), 0.15) << study.found.sentence;
     EXPECT_LT(study.found.effects.front().probability, 0.6) << study.found.sentence;
-    EXPECT_NE(discovery::report_html(study.found, study.model, study.measured, {}).find("The model lacks: gap offset, or force bias"), std::string::npos);
+    EXPECT_NE(discovery::report_html(study.found, study.model, study.measured, {})
+                  .find("The model lacks: gap offset, or force bias"),
+              std::string::npos);
 }
 
 TEST(MeasuredStudies, HeavyBallsFallByTheirWeightAloneAndLightOnesDoNot) {
@@ -95,7 +102,9 @@ TEST(MeasuredStudies, HeavyBallsFallByTheirWeightAloneAndLightOnesDoNot) {
             EXPECT_LT(study.found.error.front().after.rmse, 0.5 * study.found.error.front().before.rmse) << study.name;
         }
         // a fall of three seconds shows no wave, and a later look at a fall is a fall
-        EXPECT_DOUBLE_EQ(probability_of(study.found, "periodic_disturbance") + probability_of(study.found, "gap_sensor_delay"), 0) << study.name;
+        EXPECT_DOUBLE_EQ(
+            probability_of(study.found, "periodic_disturbance") + probability_of(study.found, "gap_sensor_delay"), 0)
+            << study.name;
     }
 }
 
@@ -103,8 +112,10 @@ TEST(MeasuredStudies, PerforatedBallsSlowDownByDrag) {
     UNDERBODY_NEEDS_SHARED("measured/ball_drops");
     for (const cases::MeasuredStudy& study : cases::ball_drop_studies(folder())) {
         if (study.name.find("Whiffle") != std::string::npos) {
-            // steady or unsteady (the owner of the data: linear drag fits better than the quadratic one that physics expects)
-            EXPECT_GT(probability_of(study.found, "damping") + probability_of(study.found, "history_force"), 0.5) << study.name << ": " << study.found.sentence;
+            // steady or unsteady (the owner of the data: linear drag fits better than the quadratic one that physics
+            // expects)
+            EXPECT_GT(probability_of(study.found, "damping") + probability_of(study.found, "history_force"), 0.5)
+                << study.name << ": " << study.found.sentence;
         }
     }
 }

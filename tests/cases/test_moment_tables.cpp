@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/table.h"
 #include "core/text.h"
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/fit/force_table.h"
 #include "tests/support/small_study.h"
 
 namespace underbody::cases {

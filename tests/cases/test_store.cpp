@@ -1,15 +1,14 @@
-#include "cases/store.h"
-
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <fcntl.h>
 #include <sys/stat.h>
 
 #include <thread>
 
 #include "cases/claim.h"
 #include "cases/file_states.h"
+#include "cases/store.h"
 #include "core/error.h"
 #include "core/file.h"
 
@@ -19,7 +18,8 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-StoredResult result(const std::string& kind, const std::string& name, const std::string& key, const std::string& state = "s") {
+StoredResult result(const std::string& kind, const std::string& name, const std::string& key,
+                    const std::string& state = "s") {
     StoredResult made;
     made.kind = kind;
     made.name = name;
@@ -124,8 +124,9 @@ TEST(Store, TheTableOfTheFirstVersionStays) {
     {
         SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
         database.exec("PRAGMA journal_mode=WAL");
-        database.exec("CREATE TABLE results (key TEXT PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, value BLOB NOT NULL,"
-                      " made TEXT NOT NULL DEFAULT CURRENT_TIMESTAMP, number INTEGER NOT NULL)");
+        database.exec(
+            "CREATE TABLE results (key TEXT PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, value BLOB NOT NULL,"
+            " made TEXT NOT NULL DEFAULT CURRENT_TIMESTAMP, number INTEGER NOT NULL)");
         database.exec("INSERT INTO results (key, kind, name, value, number) VALUES ('k', 'loads', 'case', 'v', 1)");
     }
     {

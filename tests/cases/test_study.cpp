@@ -1,8 +1,7 @@
-#include "cases/study.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cases/study.h"
 #include "core/file.h"
 #include "tests/support/support.h"
 
@@ -31,7 +30,9 @@ protected:
 TEST_F(StudyFolder, TakesConditionsFromNamesAndFromTheCase) {
     put("fields/ellipse-h5-p-2.csv", "x");
     put("fields/ellipse-h10-p0.csv", "x");
-    put("study.toml", "title = \"t\"\n[[case]]\nfiles = \"fields/{variant}-h{gap:mm}-p{pitch:deg}.csv\"\nconditions.speed = \"0.5 m/s\"\n");
+    put("study.toml",
+        "title = \"t\"\n[[case]]\nfiles = \"fields/{variant}-h{gap:mm}-p{pitch:deg}.csv\"\nconditions.speed = \"0.5 "
+        "m/s\"\n");
     const Study study = Study::open(folder.path());
     ASSERT_EQ(study.cases.size(), 2U);
     EXPECT_EQ(study.cases[1].name, "ellipse-h5-p-2");
@@ -51,12 +52,17 @@ TEST_F(StudyFolder, IsRefusedWithPlaceAndHint) {
     EXPECT_THAT(refused(head + "[[regoin]]\nname = \"r\"\n").hint(), HasSubstr("'region'"));
     EXPECT_THAT(refused("title = \"t\"\n[[case]]\nfiles = \"field/*.csv\"\n").message(), HasSubstr("no file fits"));
     EXPECT_THAT(refused(head + "[[case]]\nfiles = \"fields/*.csv\"\n").message(), HasSubstr("occurs twice"));
-    EXPECT_THAT(refused(head + "[[table]]\nname = \"l\"\nquantity = \"lift_forze\"\naxes = [\"gap\"]\n").hint(), HasSubstr("'lift_force'"));
-    EXPECT_THAT(refused(head + "[[table]]\nname = \"l\"\nquantity = \"lift_force\"\naxes = [\"gap\"]\nwhere.variant = \"b\"\n").message(),
-                HasSubstr("no case fits"));
+    EXPECT_THAT(refused(head + "[[table]]\nname = \"l\"\nquantity = \"lift_forze\"\naxes = [\"gap\"]\n").hint(),
+                HasSubstr("'lift_force'"));
+    EXPECT_THAT(
+        refused(head + "[[table]]\nname = \"l\"\nquantity = \"lift_force\"\naxes = [\"gap\"]\nwhere.variant = \"b\"\n")
+            .message(),
+        HasSubstr("no case fits"));
     EXPECT_THAT(refused(head + "[frame]\nforward = \"+x\"\nup = \"-x\"\n").message(), HasSubstr("one axis"));
-    EXPECT_THAT(refused(head + "[[compare]]\nname = \"c\"\ntables = [\"lift\"]\n").message(), HasSubstr("no [[table]]"));
-    EXPECT_THAT(refused(head + "[[body]]\nname = \"../b\"\nshape = \"x.toml\"\n").message(), HasSubstr("cannot be a name"));
+    EXPECT_THAT(refused(head + "[[compare]]\nname = \"c\"\ntables = [\"lift\"]\n").message(),
+                HasSubstr("no [[table]]"));
+    EXPECT_THAT(refused(head + "[[body]]\nname = \"../b\"\nshape = \"x.toml\"\n").message(),
+                HasSubstr("cannot be a name"));
     const auto error = refused(head + "[frame]\nforward = \"x+\"\n");
     EXPECT_EQ(error.place().line.value_or(0), 5);
 }
@@ -86,7 +92,8 @@ TEST_F(StudyFolder, AFolderMayBeACaseAndAMarkerAPattern) {
         put("runs/" + std::string(name) + "-h5/case.foam", "");
     }
     fs::create_directories(folder.path() / "runs" / "c-h7");
-    for (const char* pattern : {"runs/{variant}-h{gap:mm}", "runs/{variant}-h{gap:mm}/case.foam", "runs/{variant}-h{gap:mm}/system/controlDict"}) {
+    for (const char* pattern : {"runs/{variant}-h{gap:mm}", "runs/{variant}-h{gap:mm}/case.foam",
+                                "runs/{variant}-h{gap:mm}/system/controlDict"}) {
         put("study.toml", "title = \"t\"\n[[case]]\nfiles = \"" + std::string(pattern) + "\"\n");
         const Study study = Study::open(folder.path());
         ASSERT_EQ(study.cases.size(), 2U) << pattern;

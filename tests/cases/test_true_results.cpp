@@ -60,19 +60,25 @@ protected:
     void write_large_study() {
         test::write_small_study(folder);
         replace("glide.toml", "added_mass_heave = \"2 kg\"", "added_mass_heave = \"added.csv\"");
-        replace("glide.toml", "[conditions]", "[[force]]\nquantity = \"lift_force\"\ntable = \"tables/more.csv\"\n[conditions]");
+        replace("glide.toml", "[conditions]",
+                "[[force]]\nquantity = \"lift_force\"\ntable = \"tables/more.csv\"\n[conditions]");
         put("added.csv", "gap [mm], added_mass_heave [kg]\n1, 2.1\n6, 2\n20, 1.9\n");
         put("tables/more.csv", "gap [mm], lift_force [N]\n1, 0.01\n3, 0.005\n6, 0\n");
-        put("shapes/body.toml", "[body]\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\nheight = \"145 mm\"\nbase_cut = 0.75\n");
-        put("rig/dataset.toml", "kind = \"static\"\ntitle = \"t\"\n[conditions]\nspeed = \"0.5 m/s\"\n[[run]]\nfile = \"a.csv\"\n");
+        put("shapes/body.toml",
+            "[body]\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\nheight = \"145 mm\"\nbase_cut = 0.75\n");
+        put("rig/dataset.toml",
+            "kind = \"static\"\ntitle = \"t\"\n[conditions]\nspeed = \"0.5 m/s\"\n[[run]]\nfile = \"a.csv\"\n");
         std::string rows = "gap [mm], lift_force [N], lift_force_sigma [N]\n";
         for (int i = 0; i < 30; ++i) {
-            rows += core::format_number(1 + i / 6.0, 6) + ", " + core::format_number(0.01 - i * 3e-4 + (i % 3) * 1e-4, 6) + ", 0.0002\n";
+            rows += core::format_number(1 + i / 6.0, 6) + ", " +
+                    core::format_number(0.01 - i * 3e-4 + (i % 3) * 1e-4, 6) + ", 0.0002\n";
         }
         put("rig/a.csv", rows);
         put("rig/notes.txt", "nobody reads this");
-        put("static.toml", "[vehicle]\nmass = \"2 kg\"\nnet_weight = \"0.35 N\"\n[drag.heave]\nlinear = \"0.5 N s/m\"\nquadratic = \"10 N s^2/m^2\"\n"
-                           "[[force]]\nquantity = \"lift_force\"\ntable = \"tables/more.csv\"\n");
+        put("static.toml",
+            "[vehicle]\nmass = \"2 kg\"\nnet_weight = \"0.35 N\"\n[drag.heave]\nlinear = \"0.5 N s/m\"\nquadratic = "
+            "\"10 N s^2/m^2\"\n"
+            "[[force]]\nquantity = \"lift_force\"\ntable = \"tables/more.csv\"\n");
         core::write_file(folder / "study.toml",
                          get("study.toml") +
                              "[[body]]\nname = \"hull\"\nshape = \"shapes/body.toml\"\n"
@@ -82,7 +88,8 @@ protected:
     }
 };
 
-const std::set<std::string> of_lift = {"table lift", "export lift as c", "export lift as csv", "region map", "model map", "compare both"};
+const std::set<std::string> of_lift = {"table lift", "export lift as c", "export lift as csv",
+                                       "region map", "model map",        "compare both"};
 
 std::set<std::string> together(std::set<std::string> a, const std::set<std::string>& b) {
     a.insert(b.begin(), b.end());
@@ -99,7 +106,8 @@ TEST_F(TrueResults, OneByteOfAnyFileMakesExactlyWhatRestsOnItNew) {
         std::set<std::string> made;
     } changes[] = {
         // A value: the loads, and all that is made of them. A byte that changes no number: the loads alone.
-        {"fields/cube-h4.csv", "-0.05, -0.05, 0.004, 100", "-0.05, -0.05, 0.004, 101", together(of_lift, {"table second", "loads cube-h4", "verify solver"})},
+        {"fields/cube-h4.csv", "-0.05, -0.05, 0.004, 100", "-0.05, -0.05, 0.004, 101",
+         together(of_lift, {"table second", "loads cube-h4", "verify solver"})},
         {"fields/cube-h3.csv", "[Name]\nhull", "[Name]\nhulk", {"loads cube-h3"}},
         {"forces.csv", "2, 0.5, 0", "2, 0.6, 0", {"verify solver"}},
         {"glide.toml", "mass = \"2 kg\"", "mass = \"3 kg\"", {"region map", "model map"}},
@@ -117,7 +125,9 @@ TEST_F(TrueResults, OneByteOfAnyFileMakesExactlyWhatRestsOnItNew) {
     for (const auto& change : changes) {
         const std::string whole = get(change.file);
         replace(change.file, change.old, change.by);
-        EXPECT_EQ(in_state(stored_results(Study::open(folder), looking), StepState::changed).empty(), change.made.empty()) << change.file;
+        EXPECT_EQ(in_state(stored_results(Study::open(folder), looking), StepState::changed).empty(),
+                  change.made.empty())
+            << change.file;
         EXPECT_EQ(computed(), change.made) << change.file;
         put(change.file, whole);
         EXPECT_THAT(computed(), IsEmpty()) << change.file << ", put back";
@@ -135,14 +145,18 @@ TEST_F(TrueResults, OneOptionMakesExactlyWhatRestsOnItNew) {
         std::string old, by;
         std::set<std::string> made;
     } changes[] = {
-        {"net_weight = \"0.35 N\"", "net_weight = \"0.34 N\"", {"table lift", "compare both", "export lift as c", "export lift as csv"}},
+        {"net_weight = \"0.35 N\"",
+         "net_weight = \"0.34 N\"",
+         {"table lift", "compare both", "export lift as c", "export lift as csv"}},
         {"exports = [\"c\", \"csv\"]", "exports = [\"c\", \"json\"]", {"export lift as json"}},
         {"for = \"20 s\"", "for = \"21 s\"", {"region map"}},
         {"columns = 40", "columns = 41", {"region map"}},
         {"quantities = [\"lift_force\", \"drag_force\"]", "quantities = [\"lift_force\"]", {"verify solver"}},
         {"axes = [\"gap\"]\nwhere", "axes = [\"gap\"]\nrelative_sigma = 0.01\nwhere", of_lift},
-        {"title = \"a cube\"\n", "title = \"a cube\"\n[reference]\nlength = \"0.1 m\"\n", together(all_loads, {"verify solver"})},
-        {"title = \"a cube\"\n", "title = \"a cube\"\n[reference]\ndensity = \"1000 kg/m^3\"\n", together(all_loads, {"body hull", "verify solver"})},
+        {"title = \"a cube\"\n", "title = \"a cube\"\n[reference]\nlength = \"0.1 m\"\n",
+         together(all_loads, {"verify solver"})},
+        {"title = \"a cube\"\n", "title = \"a cube\"\n[reference]\ndensity = \"1000 kg/m^3\"\n",
+         together(all_loads, {"body hull", "verify solver"})},
         {"title = \"a cube\"\n", "title = \"a cube\"\n[frame]\nmoments_about = [0, 0, 0.001]\n",
          together(all_loads, {"verify solver"})},  // forces do not know the point of the moments: their tables stay
     };
@@ -162,7 +176,9 @@ TEST_F(TrueResults, CasesWhoseNamedFilesAreAlikeStayApart) {
         put("runs/" + name + "/case.foam", "");
     }
     replace("runs/b/0.005/wallShearStress", "dimensions", "dimensions ");
-    put("study.toml", "title = \"t\"\n[[case]]\nfiles = \"runs/{variant}/case.foam\"\nconditions.gap = \"5 mm\"\n[reference]\ndensity = \"998 kg/m^3\"\n");
+    put("study.toml",
+        "title = \"t\"\n[[case]]\nfiles = \"runs/{variant}/case.foam\"\nconditions.gap = \"5 "
+        "mm\"\n[reference]\ndensity = \"998 kg/m^3\"\n");
     for (int round = 0; round < 4; ++round) {
         const StudyResults results = run();
         ASSERT_EQ(results.case_loads.size(), 2U);
@@ -235,9 +251,12 @@ TEST_F(TrueResults, AStudyThatIsMovedOrCopiedIsUnchangedByteByByte) {
     Store store(moved / ".underbody" / "store.sqlite", Store::Access::read);
     for (const auto& result : store.results()) {
         const std::string place = scratch.path().string();
-        EXPECT_EQ(store.value(result.id).value_or("").find(place), std::string::npos) << result.kind << " " << result.name;
-        EXPECT_EQ(store.made(result.id).value().about.find(place), std::string::npos) << result.kind << " " << result.name;
-        EXPECT_EQ(store.value(result.id).value_or("").find(fs::temp_directory_path().string() + "/underbody"), std::string::npos)
+        EXPECT_EQ(store.value(result.id).value_or("").find(place), std::string::npos)
+            << result.kind << " " << result.name;
+        EXPECT_EQ(store.made(result.id).value().about.find(place), std::string::npos)
+            << result.kind << " " << result.name;
+        EXPECT_EQ(store.value(result.id).value_or("").find(fs::temp_directory_path().string() + "/underbody"),
+                  std::string::npos)
             << result.kind << " " << result.name;
         for (const auto& input : result.inputs) {
             EXPECT_FALSE(fs::path(input.path).is_absolute()) << result.kind << " " << result.name << ": " << input.path;
@@ -356,7 +375,8 @@ TEST_F(TrueResults, DISABLED_AWriteThatFailsAnywhereLeavesTheStoreWhole) {
             (void)run();
         } catch (const core::SystemError&) {
         }
-        for (const auto& [name, bytes] : fs::exists(folder / "report") ? bytes_below(folder / "report") : std::map<std::string, std::string>()) {
+        for (const auto& [name, bytes] :
+             fs::exists(folder / "report") ? bytes_below(folder / "report") : std::map<std::string, std::string>()) {
             ASSERT_TRUE(report.contains(name)) << "call " << n << " leaves " << name;
             EXPECT_EQ(bytes, report.at(name)) << "call " << n << ": half of " << name;
         }

@@ -160,7 +160,8 @@ TEST(NamePattern, SaysWhyAFileDoesNotFit) {
     EXPECT_EQ(gap.why_not(folder.path() / "a-h5mm.csv", folder.path()), "'5mm' carries its unit: write {gap:mm}mm");
     EXPECT_EQ(gap.why_not(folder.path() / "a-hO5.csv", folder.path()), "'O5' is no number for {gap:mm}");
     ASSERT_EQ(both.near_misses(folder.path()).size(), 1U);
-    EXPECT_EQ(both.why_not(folder.path() / "p-2.csv", folder.path()), "nothing is left for {mesh} behind the number -2");
+    EXPECT_EQ(both.why_not(folder.path() / "p-2.csv", folder.path()),
+              "nothing is left for {mesh} behind the number -2");
     EXPECT_THROW(NamePattern("a-{sped:m/s}.csv"), UsageError);
     EXPECT_NO_THROW(NamePattern("a-{rpm:1/min}.csv"));
 }
@@ -187,15 +188,18 @@ TEST(Parallel, CoversEveryIndexOnceAndRethrows) {
     for (const auto& count : seen) {
         ASSERT_EQ(count.load(), 1);
     }
-    EXPECT_THROW(parallel_for(100, [](std::size_t i) {
-                     if (i == 57) {
-                         throw InputError("range", "57");
-                     }
-                 }),
+    EXPECT_THROW(parallel_for(100,
+                              [](std::size_t i) {
+                                  if (i == 57) {
+                                      throw InputError("range", "57");
+                                  }
+                              }),
                  InputError);
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(parallel_for(100, [](std::size_t) {}, progress), Cancelled);
+    EXPECT_THROW(parallel_for(
+                     100, [](std::size_t) {}, progress),
+                 Cancelled);
 }
 
 TEST(Random, HasTheMomentsOfItsDistributionsAndIsReproducible) {

@@ -32,7 +32,8 @@ std::string refusal(const std::string& bytes) {
 }
 
 const std::string square =
-    "ply\nformat ascii 1.0\ncomment patch 0 base plate\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\n"
+    "ply\nformat ascii 1.0\ncomment patch 0 base plate\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+    "double z\n"
     "property float pressure\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0 10\n1 0 0 20\n1 1 0 30\n0 1 0 40\n3 0 1 2\n3 0 2 3\n";
 
@@ -92,8 +93,8 @@ TEST(PlyFile, IsTheSameInTextAndInBothByteOrders) {
         for (std::size_t p = 0; p < 1 + random() % 5; ++p) {
             kinds.push_back(random() % types.size());
             lists.push_back(random() % 3 == 0);
-            header += std::string("property ") + (lists.back() ? "list ushort " : "") + types[kinds.back()].first + " p" +
-                      std::to_string(p) + "\n";
+            header += std::string("property ") + (lists.back() ? "list ushort " : "") + types[kinds.back()].first +
+                      " p" + std::to_string(p) + "\n";
         }
         header += "end_header\n";
         std::string text = "ply\nformat ascii 1.0\n" + header;
@@ -138,15 +139,19 @@ TEST(PlyFile, SaysWhatIsWrongAndWhere) {
     EXPECT_THAT(refusal(replaced(square, "1 1 0 30", "1 1 oh 30")), HasSubstr("a.ply:14"));
     EXPECT_THAT(refusal(replaced(square, "1 1 0 30", "1 1 oh 30")), HasSubstr("'oh' is no number"));
     EXPECT_THAT(refusal(replaced(square, "1 1 0 30", "1 1 0")), HasSubstr("'vertex' 3 of 4 has only 3 values"));
-    EXPECT_THAT(refusal(replaced(square, "1 1 0 30", "1 1 0 30 7")), HasSubstr("has 5 values where its properties take 4"));
+    EXPECT_THAT(refusal(replaced(square, "1 1 0 30", "1 1 0 30 7")),
+                HasSubstr("has 5 values where its properties take 4"));
     EXPECT_THAT(refusal(replaced(square, "1 1 0 30", "1 nan 0 30")), HasSubstr("'vertex' 3 of 4 has a coordinate"));
-    EXPECT_THAT(refusal(replaced(square, "3 0 2 3\n", "3 0 2 300\n")), HasSubstr("'face' 2 of 2 names vertex 300, and there are 4"));
+    EXPECT_THAT(refusal(replaced(square, "3 0 2 3\n", "3 0 2 300\n")),
+                HasSubstr("'face' 2 of 2 names vertex 300, and there are 4"));
     EXPECT_THAT(refusal(replaced(square, "3 0 2 3\n", "3 0 2 -1\n")), HasSubstr("names vertex -1"));
     EXPECT_THAT(refusal(replaced(square, "3 0 2 3\n", "2 0 2\n")), HasSubstr("'face' 2 of 2 has 2 corners"));
     EXPECT_THAT(refusal(replaced(square, "3 0 2 3\n", "-3 0 2 3\n")), HasSubstr("a list of -3 values"));
     EXPECT_THAT(refusal(replaced(square, "3 0 2 3\n", "3 0 2\n")), HasSubstr("the file ends within 'face' 2 of 2"));
-    EXPECT_THAT(refusal(replaced(square, "element vertex 4", "element vertex 400000000")), HasSubstr("bytes are too few"));
-    EXPECT_THAT(refusal(replaced(square, "element vertex 4", "element vertex -4")), HasSubstr("'-4' is no number of 'vertex'"));
+    EXPECT_THAT(refusal(replaced(square, "element vertex 4", "element vertex 400000000")),
+                HasSubstr("bytes are too few"));
+    EXPECT_THAT(refusal(replaced(square, "element vertex 4", "element vertex -4")),
+                HasSubstr("'-4' is no number of 'vertex'"));
     EXPECT_THAT(refusal(replaced(square, "property double z", "property real z")), HasSubstr("'real' is no type"));
     EXPECT_THAT(refusal(replaced(square, "property double z", "property double y")), HasSubstr("two properties 'y'"));
     EXPECT_THAT(refusal(replaced(square, "property double z\n", "property list uchar float z\n")), testing::Not(""));
@@ -156,11 +161,14 @@ TEST(PlyFile, SaysWhatIsWrongAndWhere) {
     EXPECT_THAT(refusal("ply\nend_header\n"), HasSubstr("does not say its format"));
     EXPECT_THAT(refusal(""), HasSubstr("begins with a line 'ply'"));
     EXPECT_THAT(refusal(replaced(square, "vertex_indices", "corners")), HasSubstr("no list 'vertex_indices'"));
-    EXPECT_THAT(refusal(replaced(square, "uchar int", "float int")), HasSubstr("the length of a list is a whole number"));
+    EXPECT_THAT(refusal(replaced(square, "uchar int", "float int")),
+                HasSubstr("the length of a list is a whole number"));
 }
 
 TEST(PlyFile, OfPointsAloneHasNoCorners) {
-    const std::string points = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
+    const std::string points =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 "
+        "2 3\n";
     const PlyFile ply = read_ply(points, "a.ply");
     EXPECT_EQ(ply_points(ply, "a.ply").z.at(0), 3);
     EXPECT_EQ(ply_corners(ply, "a.ply"), nullptr);

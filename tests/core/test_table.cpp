@@ -1,11 +1,10 @@
-#include "core/table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
+#include "core/table.h"
 #include "core/text.h"
 
 namespace underbody::core {
@@ -56,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BadTable{"gap [m, lift_force [N]\n1, 2\n", "parse", 1, 1, "name [unit]"},
                     BadTable{"gap [m], lift_force [N]\n1, 2\n1\n", "ragged", 3, 0, "1 fields"},
                     BadTable{"gap [m], lift_force [N]\n1, 2, 3\n", "ragged", 2, 3, "3 fields"},
-                    BadTable{"gap [m], lift_force [N]\n1, \"0,25\"\n", "parse", 2, 0, "\"0,25\" is a number with a decimal comma"},
+                    BadTable{"gap [m], lift_force [N]\n1, \"0,25\"\n", "parse", 2, 0,
+                             "\"0,25\" is a number with a decimal comma"},
                     BadTable{"gap [m], lift_force [N]\n\n# x\n1, two\n", "parse", 4, 2, "'two'"},
                     BadTable{"gap [m], lift_force [N]\n1, nan\n", "range", 2, 2, "not finite"},
                     BadTable{"gap [m], lift_force [N]\ninf, 2\n", "range", 2, 1, "not finite"},
@@ -64,7 +64,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Table, ConvertsToSiAndKeepsUnknownColumns) {
     const Table table = read_csv(
-        "\xEF\xBB\xBF# made by hand\r\ngap [mm], pitch [deg], lift_force [mN], lift_force_sigma [mN], note, colour index [1]\r\n"
+        "\xEF\xBB\xBF# made by hand\r\ngap [mm], pitch [deg], lift_force [mN], lift_force_sigma [mN], note, colour "
+        "index [1]\r\n"
         "5, 2, -412, 4, first, 3\r\n, 0, 1, 1, , 4\r\n",
         "text");
     EXPECT_EQ(table.rows(), 2U);

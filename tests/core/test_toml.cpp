@@ -1,7 +1,7 @@
-#include "core/toml.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "core/toml.h"
 
 namespace underbody::core {
 namespace {
@@ -66,7 +66,8 @@ TEST(Toml, ErrorsNameTheLineAndTheKey) {
 }
 
 TEST(Toml, ListsOfTablesKnowTheirKeys) {
-    const auto root = read_toml_text("[[force]]\nquantity = \"lift_force\"\n[[force]]\nquantity = \"drag_force\"\ntabel = \"x\"\n", "m.toml");
+    const auto root = read_toml_text(
+        "[[force]]\nquantity = \"lift_force\"\n[[force]]\nquantity = \"drag_force\"\ntabel = \"x\"\n", "m.toml");
     for (const auto& force : root.tables("force")) {
         (void)force.choice("quantity", {"lift_force", "drag_force"});
         (void)force.string_or("table", "");

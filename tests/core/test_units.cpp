@@ -1,5 +1,3 @@
-#include "core/units.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +11,7 @@
 #include "core/random.h"
 #include "core/table.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "tests/support/support.h"
 
 namespace underbody::core {
@@ -151,8 +150,8 @@ TEST(Text, Base64MatchesRfc4648) {
 
 TEST(Locale, NumbersAreReadAndWrittenAlikeUnderAGermanLocale) {
     const TemporaryFolder folder;
-    const test::ProgramRun made = test::run_program(
-        "localedef", {"-i", "de_DE", "-f", "UTF-8", (folder.path() / "de_DE.UTF-8").string()});
+    const test::ProgramRun made =
+        test::run_program("localedef", {"-i", "de_DE", "-f", "UTF-8", (folder.path() / "de_DE.UTF-8").string()});
     if (made.exit_code == 127) {
         GTEST_SKIP() << "skipped: localedef is not installed";
     }

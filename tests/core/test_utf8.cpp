@@ -15,7 +15,8 @@ TEST(Utf8, IsKeptAndLatinOneBecomesIt) {
 }
 
 TEST(Utf8, HasNoOverlongFormsSurrogatesAndCutCharacters) {
-    for (const char* text : {"\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "\xE7\xBF", "\xC3", "\x80"}) {
+    for (const char* text : {"\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80",
+                             "\xE7\xBF", "\xC3", "\x80"}) {
         EXPECT_FALSE(is_utf8(text));
         EXPECT_TRUE(is_utf8(as_utf8(text)));
     }

@@ -14,11 +14,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     namespace fs = std::filesystem;
     static const auto importer = underbody::postproc::openfoam_importer();
     static const underbody::core::TemporaryFolder folder;
-    static constexpr std::array files = {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
-                                         "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "0.005/p",
+    static constexpr std::array files = {"constant/polyMesh/points",
+                                         "constant/polyMesh/faces",
+                                         "constant/polyMesh/owner",
+                                         "constant/polyMesh/neighbour",
+                                         "constant/polyMesh/boundary",
+                                         "0.005/p",
                                          "0.005/U"};
     static const bool ready = [] {
-        fs::copy(fs::path(UNDERBODY_TEST_DATA) / "openfoam" / "binary", folder.path() / "box", fs::copy_options::recursive);
+        fs::copy(fs::path(UNDERBODY_TEST_DATA) / "openfoam" / "binary", folder.path() / "box",
+                 fs::copy_options::recursive);
         return true;
     }();
     if (!ready || size < 2) {
@@ -26,7 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const fs::path target = folder.path() / "box" / files[data[0] % files.size()];
     const std::string whole = underbody::core::read_file(target);
-    std::ofstream(target, std::ios::binary).write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
+    std::ofstream(target, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
     try {
         (void)importer.read(folder.path() / "box", {}, underbody::core::Progress::none());
     } catch (const underbody::core::Error&) {

@@ -1,5 +1,5 @@
 // Monitors, transcripts, plots and force reports: every reader gets every text.
-#include "postproc/importers/reports.h"
+#include "postproc/importers/reports/reports.h"
 #include "tests/fuzz/fuzz_importer.h"
 
 namespace {

@@ -5,14 +5,14 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "geometry/added_mass.h"
-#include "geometry/body_surface.h"
-#include "geometry/certificate.h"
-#include "geometry/ellipsoid_added_mass.h"
-#include "geometry/mass_properties.h"
-#include "geometry/panel_mesh.h"
-#include "geometry/primitives.h"
-#include "geometry/source_panels.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/certificate.h"
+#include "geometry/body/mass_properties.h"
+#include "geometry/body/primitives.h"
+#include "geometry/water/added_mass.h"
+#include "geometry/water/ellipsoid_added_mass.h"
+#include "geometry/water/panel_mesh.h"
+#include "geometry/water/source_panels.h"
 
 namespace underbody::geometry {
 namespace {
@@ -232,7 +232,8 @@ TEST(AddedMass, OfASurfaceOfManyTrianglesIsThatOfItsShape) {
     EXPECT_EQ(free.fit->triangles, many.triangles.size());
     EXPECT_LT(free.fit->distance_rms, 1e-3);
     for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_NEAR(free.matrix[k][k] / (core::default_water_density * exact.translation[k]), 1, 0.005) << "Lamb within 0.5 %";
+        EXPECT_NEAR(free.matrix[k][k] / (core::default_water_density * exact.translation[k]), 1, 0.005)
+            << "Lamb within 0.5 %";
     }
     const BodyShape evie;
     options.reference.reset();

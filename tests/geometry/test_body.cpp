@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "geometry/body_figures.h"
-#include "geometry/body_shape.h"
-#include "geometry/body_surface.h"
-#include "geometry/mass_properties.h"
-#include "geometry/mesh_file.h"
-#include "geometry/placement.h"
+#include "geometry/body/body_figures.h"
+#include "geometry/body/body_shape.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/mass_properties.h"
+#include "geometry/mesh/mesh_file.h"
+#include "geometry/water/placement.h"
 #include "tests/support/support.h"
 
 namespace underbody::geometry {
@@ -132,13 +132,16 @@ TEST(Placement, NamesThePointInTheMiddleOfSeveralEquallyLow) {
 TEST(GapFigure, HasNoHolesUnderTheBase) {
     // A square base has rows of cells whose middles lie on the plane of symmetry, where the edges of triangles run.
     for (const char* name : {"ellipse", "rectangle"}) {
-        const SurfaceMesh body = make_surface(read_shape(test::source_folder() / "cases/evie/shapes" / (std::string(name) + ".toml")));
+        const SurfaceMesh body =
+            make_surface(read_shape(test::source_folder() / "cases/evie/shapes" / (std::string(name) + ".toml")));
         const auto figure = gap_figure(body, {0.005, 0.01, 0});
         const auto& map = figure.maps.at(0);
         int holes = 0;
         for (std::size_t j = 1; j + 1 < map.rows; ++j) {
             for (std::size_t i = 1; i + 1 < map.columns; ++i) {
-                const auto at = [&](std::size_t row, std::size_t column) { return std::isfinite(map.values[row * map.columns + column]); };
+                const auto at = [&](std::size_t row, std::size_t column) {
+                    return std::isfinite(map.values[row * map.columns + column]);
+                };
                 holes += !at(j, i) && ((at(j - 1, i) && at(j + 1, i)) || (at(j, i - 1) && at(j, i + 1))) ? 1 : 0;
             }
         }

@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "core/file.h"
-#include "geometry/body_report.h"
-#include "geometry/body_surface.h"
-#include "geometry/exact_body.h"
-#include "geometry/mesh_file.h"
-#include "geometry/mesh_reader.h"
+#include "geometry/body/body_report.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/exact_body.h"
+#include "geometry/mesh/mesh_file.h"
+#include "geometry/mesh/mesh_reader.h"
 #include "tests/support/support.h"
 
 namespace underbody::geometry {
@@ -58,7 +58,8 @@ TEST(ExactMass, OfAnEllipsoidSegmentIsItsClosedForm) {
     for (const double cut : {0.1, 0.75, 0.97}) {
         BodyShape shape;
         shape.base_cut = cut;
-        expect_equal(ExactBody(shape).moments(), segment(shape.length / 2, shape.width / 2, shape.height / 2, cut), 1e-9);
+        expect_equal(ExactBody(shape).moments(), segment(shape.length / 2, shape.width / 2, shape.height / 2, cut),
+                     1e-9);
     }
 }
 

@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "geometry/body_surface.h"
-#include "geometry/certificate.h"
-#include "geometry/mass_properties.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/certificate.h"
+#include "geometry/body/mass_properties.h"
 #include "tests/support/support.h"
 
 namespace underbody::geometry {

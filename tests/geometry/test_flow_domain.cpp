@@ -9,9 +9,9 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "geometry/body_surface.h"
-#include "geometry/flow_domain.h"
-#include "geometry/mesh_reader.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/cases/flow_domain.h"
+#include "geometry/mesh/mesh_reader.h"
 #include "tests/support/support.h"
 
 namespace underbody::geometry {

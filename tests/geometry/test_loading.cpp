@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "geometry/body_surface.h"
-#include "geometry/loading.h"
-#include "geometry/placement.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/water/loading.h"
+#include "geometry/water/placement.h"
 
 namespace underbody::geometry {
 namespace {

@@ -7,12 +7,12 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "geometry/body_surface.h"
-#include "geometry/certificate.h"
-#include "geometry/mass_properties.h"
-#include "geometry/mesh_file.h"
-#include "geometry/mesh_reader.h"
-#include "geometry/slice.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/certificate.h"
+#include "geometry/body/mass_properties.h"
+#include "geometry/mesh/mesh_file.h"
+#include "geometry/mesh/mesh_reader.h"
+#include "geometry/mesh/slice.h"
 
 namespace underbody::geometry {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "geometry/body_report.h"
-#include "geometry/body_surface.h"
-#include "geometry/mesh_file.h"
-#include "geometry/variants.h"
+#include "geometry/body/body_report.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/variants.h"
+#include "geometry/mesh/mesh_file.h"
 #include "tests/support/support.h"
 
 namespace underbody::geometry {

@@ -24,7 +24,7 @@ for library in core geometry postproc surrogates cases; do
     forbid "$library" 'Q[A-Z][A-Za-z]+|qcustomplot|CLI/|spdlog/' 'libraries know nothing of Qt or the command line'
 done
 # Headers that only .cpp files of the importers include: they say so in their first lines.
-inner='^postproc/importers/(hdf5_numbers|hdf5_chunks|hdf5_handle|solver_number)\.h:'
+inner='^postproc/importers/(hdf5/hdf5_numbers|hdf5/hdf5_chunks|hdf5/hdf5_handle|solver_number)\.h:'
 for room in core geometry postproc surrogates cases; do
     hits=$(grep -rnE --include='*.h' '^#include <(CGAL/|OpenMesh/|toml\+\+/|nlohmann/json\.hpp|openturns|sundials|ceres/|hdf5|H5|cgnslib|fast_float/|SQLiteCpp)' "$room" 2>/dev/null | grep -vE "$inner")
     if [ -n "$hits" ]; then
@@ -38,15 +38,25 @@ if [ -n "$hits" ]; then
     bad=1
 fi
 # Importers hand fields to the rest of postproc; what loads, views and probes are made of is none of their affair.
-hits=$(grep -rnE --include='*.h' --include='*.cpp' '^#include "postproc/(loads|stated|mesh_study|deviation|body_zones|facing|doubled|shells|view|draw|probe|gap_flow|difference)' postproc/importers 2>/dev/null)
+hits=$(grep -rnE --include='*.h' --include='*.cpp' '^#include "postproc/(loads|views|probe)/' postproc/importers 2>/dev/null)
 if [ -n "$hits" ]; then
     printf 'importers know nothing of loads, views and probes:\n%s\n' "$hits"
     bad=1
 fi
 # And the headers above stay with the importers.
-hits=$(grep -rnE --include='*.h' --include='*.cpp' '^#include "postproc/importers/(hdf5_numbers|hdf5_chunks|hdf5_handle|solver_number)\.h"' . 2>/dev/null | grep -vE '^\./(postproc/importers|tests|build)/')
+hits=$(grep -rnE --include='*.h' --include='*.cpp' '^#include "postproc/importers/(hdf5/hdf5_numbers|hdf5/hdf5_chunks|hdf5/hdf5_handle|solver_number)\.h"' . 2>/dev/null | grep -vE '^\./(postproc/importers|tests|build)/')
 if [ -n "$hits" ]; then
     printf 'headers of the importers alone:\n%s\n' "$hits"
     bad=1
 fi
+# Within a room, in the same way: what a sub-folder may not include.
+forbid postproc/field 'postproc/(loads|views|probe)/' "$upward"
+forbid postproc/loads 'postproc/(views|probe)/' "$upward"
+forbid postproc/views 'postproc/probe/' "$upward"
+forbid geometry/mesh 'geometry/(body|water|cases)/' "$upward"
+forbid geometry/body 'geometry/cases/' "$upward"
+forbid surrogates/dynamics/model 'surrogates/dynamics/(effects|plant|simulate|basin|linear|theory)/' "$upward"
+forbid surrogates/dynamics/effects 'surrogates/dynamics/(simulate|basin|linear|theory)/' "$upward"
+forbid surrogates/dynamics/plant 'surrogates/dynamics/(effects|simulate|basin|linear|theory)/' "$upward"
+forbid surrogates/dynamics/simulate 'surrogates/dynamics/(basin|theory)/' "$upward"
 exit $bad

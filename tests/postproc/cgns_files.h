@@ -68,26 +68,32 @@ public:
         section("cells", CGNS_ENUMV(HEXA_8), {1, 2, 3, 4, 5, 6, 7, 8}, 8);
         return zone;
     }
-    static std::array<std::vector<double>, 3> cube_nodes() { return {{{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}}; }
+    static std::array<std::vector<double>, 3> cube_nodes() {
+        return {{{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}};
+    }
     /// Its faces, outward: z = 0, z = 1, y = 0, x = 1, y = 1, x = 0.
-    static std::vector<cgsize_t> cube_faces() { return {1, 4, 3, 2, 5, 6, 7, 8, 1, 2, 6, 5, 2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8}; }
+    static std::vector<cgsize_t> cube_faces() {
+        return {1, 4, 3, 2, 5, 6, 7, 8, 1, 2, 6, 5, 2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8};
+    }
 
     void coordinates(const std::array<std::vector<double>, 3>& x) {
         const char* names[] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
         for (int k = 0; k < physical; ++k) {
             int index = 0;
-            ok(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), names[k], x[static_cast<std::size_t>(k)].data(), &index));
+            ok(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), names[k], x[static_cast<std::size_t>(k)].data(),
+                              &index));
         }
     }
     /// Elements of one kind with so many nodes each, numbered on from those before.
-    void section(const std::string& name, CGNS_ENUMT(ElementType_t) kind, const std::vector<cgsize_t>& nodes, std::size_t each) {
+    void section(const std::string& name, CGNS_ENUMT(ElementType_t) kind, const std::vector<cgsize_t>& nodes,
+                 std::size_t each) {
         int index = 0;
         const auto last = next + static_cast<cgsize_t>(nodes.size() / each) - 1;
         ok(cg_section_write(file, base, zone, name.c_str(), kind, next, last, 0, nodes.data(), &index));
         next = last + 1;
     }
-    int condition(const std::string& name, CGNS_ENUMT(BCType_t) type, CGNS_ENUMT(PointSetType_t) set, CGNS_ENUMT(GridLocation_t) where,
-                  const std::vector<cgsize_t>& numbers, int indices = 1) {
+    int condition(const std::string& name, CGNS_ENUMT(BCType_t) type, CGNS_ENUMT(PointSetType_t) set,
+                  CGNS_ENUMT(GridLocation_t) where, const std::vector<cgsize_t>& numbers, int indices = 1) {
         int index = 0;
         const auto points = static_cast<cgsize_t>(numbers.size() / static_cast<std::size_t>(indices));
         ok(cg_boco_write(file, base, zone, name.c_str(), type, set, points, numbers.data(), &index));
@@ -97,7 +103,8 @@ public:
         return index;
     }
     /// Its number.
-    int solution(const std::string& name, CGNS_ENUMT(GridLocation_t) where, const std::string& variable, const std::vector<double>& values) {
+    int solution(const std::string& name, CGNS_ENUMT(GridLocation_t) where, const std::string& variable,
+                 const std::vector<double>& values) {
         int index = 0;
         int field = 0;
         ok(cg_sol_write(file, base, zone, name.c_str(), where, &index));

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "postproc/field.h"
+#include "postproc/field/field.h"
 
 namespace underbody::test {
 

@@ -1,6 +1,4 @@
 // Names of arrays: each once, vectors only whole, in all formats alike.
-#include "postproc/importers/array_names.h"
-
 #include <gmock/gmock.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -12,10 +10,11 @@
 #include <fstream>
 
 #include "core/file.h"
-#include "postproc/importers/element_zone.h"
-#include "postproc/importers/zone_values.h"
-#include "postproc/names.h"
-#include "postproc/vtk_files.h"
+#include "postproc/field/names.h"
+#include "postproc/field/vtk_files.h"
+#include "postproc/importers/mesh/array_names.h"
+#include "postproc/importers/mesh/element_zone.h"
+#include "postproc/importers/mesh/zone_values.h"
 
 namespace underbody::postproc {
 namespace {
@@ -50,18 +49,25 @@ TEST(ArrayNames, PlainSpellingsComeBeforeOthers) {
 }
 
 TEST(ArrayNames, OfOneMeaningThePlainestHasTheNameAndAllKeepOne) {
-    std::vector<ArrayPlan> plans = {{"Solved Pressure", "pressure"}, {"Pressure", "pressure"}, {"PRESSURE", "pressure"}, {"", ""}, {"T", "temperature"}};
+    std::vector<ArrayPlan> plans = {{"Solved Pressure", "pressure"},
+                                    {"Pressure", "pressure"},
+                                    {"PRESSURE", "pressure"},
+                                    {"", ""},
+                                    {"T", "temperature"}};
     core::Problems problems;
     settle_names(plans, {}, problems);
     EXPECT_THAT(names_of(plans), ElementsAre("Solved Pressure", "pressure", "PRESSURE (2)", "", "temperature"));
     ASSERT_EQ(problems.size(), 2U);
-    EXPECT_EQ(problems[0].message, "'Solved Pressure' and 'Pressure' both mean pressure: that is 'Pressure' here, the other is kept as 'Solved Pressure'");
+    EXPECT_EQ(problems[0].message,
+              "'Solved Pressure' and 'Pressure' both mean pressure: that is 'Pressure' here, the other is kept as "
+              "'Solved Pressure'");
     settle_names(plans, {}, problems);
     EXPECT_EQ(problems.size(), 2U);
 }
 
 TEST(ArrayNames, VectorsAreMadeOfAllTheirComponents) {
-    const auto joined = [](std::vector<std::string> names, int dimension, std::size_t warnings, const std::vector<std::string>& wanted = {}) {
+    const auto joined = [](std::vector<std::string> names, int dimension, std::size_t warnings,
+                           const std::vector<std::string>& wanted = {}) {
         std::vector<ArrayPlan> plans;
         for (const auto& name : names) {
             plans.push_back({name, name});
@@ -73,14 +79,16 @@ TEST(ArrayNames, VectorsAreMadeOfAllTheirComponents) {
         EXPECT_EQ(problems.size(), warnings);
         return names_of(plans);
     };
-    EXPECT_THAT(joined({"velocity_z", "velocity_x", "velocity_y"}, 3, 0), ElementsAre("velocity", "velocity", "velocity"));
+    EXPECT_THAT(joined({"velocity_z", "velocity_x", "velocity_y"}, 3, 0),
+                ElementsAre("velocity", "velocity", "velocity"));
     EXPECT_THAT(joined({"velocity_x", "velocity_y"}, 3, 1), ElementsAre("velocity_x", "velocity_y"));
     EXPECT_THAT(joined({"velocity_x", "velocity_y"}, 2, 0), ElementsAre("velocity", "velocity"));
     EXPECT_THAT(joined({"velocity_x", "velocity_z"}, 2, 1), ElementsAre("velocity_x", "velocity_z"));
     EXPECT_THAT(joined({"velocity_x"}, 3, 0, {"velocity_x"}), ElementsAre("velocity_x"));
     EXPECT_THAT(joined({"velocity_x", "velocity_y"}, 3, 1, {"vel*"}), ElementsAre("velocity_x", "velocity_y"));
     // A vector that the file has is not made again.
-    EXPECT_THAT(joined({"velocity", "velocity_x", "velocity_y", "velocity_z"}, 3, 0), ElementsAre("velocity", "velocity_x", "velocity_y", "velocity_z"));
+    EXPECT_THAT(joined({"velocity", "velocity_x", "velocity_y", "velocity_z"}, 3, 0),
+                ElementsAre("velocity", "velocity_x", "velocity_y", "velocity_z"));
 }
 
 // ---- values on ids (Fluent, OpenFOAM) ----
@@ -102,7 +110,8 @@ struct Filled {
 };
 
 void fill(Filled& out, std::vector<ValueBlock> values, int dimension, const ReadOptions& options = {}) {
-    ZoneValues(values, "a.cas", dimension, options, core::Progress::none()).add_to(out.zone, *out.data, Ids(1, 2), true, {}, out.problems);
+    ZoneValues(values, "a.cas", dimension, options, core::Progress::none())
+        .add_to(out.zone, *out.data, Ids(1, 2), true, {}, out.problems);
 }
 
 std::vector<ValueBlock> velocities(std::initializer_list<const char*> names) {
@@ -168,7 +177,8 @@ TEST(ZoneValues, AUnitStatedAgainstTheFileIsTakenAndTold) {
 
 // ---- elements with nodes (EnSight, CGNS, Fluent's tables) ----
 
-Zone tetrahedron_with(const std::vector<std::string>& variables, core::Problems& problems, const ReadOptions& options = {}) {
+Zone tetrahedron_with(const std::vector<std::string>& variables, core::Problems& problems,
+                      const ReadOptions& options = {}) {
     ElementPart part;
     part.name = "water";
     part.points.grow_to(12);
@@ -186,7 +196,8 @@ Zone tetrahedron_with(const std::vector<std::string>& variables, core::Problems&
 
 TEST(ElementZones, KeepComponentsApartWhereOneIsMissingAndNamesOnce) {
     core::Problems problems;
-    EXPECT_THAT(names_in(tetrahedron_with({"VelocityX", "VelocityY"}, problems)), ElementsAre("velocity_x", "velocity_y"));
+    EXPECT_THAT(names_in(tetrahedron_with({"VelocityX", "VelocityY"}, problems)),
+                ElementsAre("velocity_x", "velocity_y"));
     EXPECT_THAT(problems.at(0).message, HasSubstr("velocity has no z component here"));
     problems.clear();
     const Zone zone = tetrahedron_with({"Static Pressure", "Pressure"}, problems);
@@ -205,14 +216,17 @@ TEST(ElementZones, KeepComponentsApartWhereOneIsMissingAndNamesOnce) {
 TEST(VtkZones, KeepComponentsApartWhereOneIsMissingAndNamesOnce) {
     const core::TemporaryFolder folder;
     const auto path = folder.path() / "a.vtk";
-    std::ofstream(path) << "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
-                           "CELL_DATA 1\nFIELD attributes 6\nvelocity_x 1 1 double\n1\nvelocity_y 1 1 double\n2\nStaticPressure 1 1 double\n3\n"
+    std::ofstream(path) << "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 "
+                           "1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+                           "CELL_DATA 1\nFIELD attributes 6\nvelocity_x 1 1 double\n1\nvelocity_y 1 1 "
+                           "double\n2\nStaticPressure 1 1 double\n3\n"
                            "Static_Pressure 1 1 double\n4\npressure 1 1 double\n5\nDensity[g/cm^3] 1 1 double\n6\n";
     ReadOptions options;
     options.units = {{"density", "kg/m^3"}};
     const Field field = read_field(path, options);
     auto* data = field.zones.at(0).surface->GetCellData();
-    EXPECT_THAT(names_in(field.zones[0]), ElementsAre("velocity_x", "velocity_y", "StaticPressure", "Static_Pressure", "pressure", "density"));
+    EXPECT_THAT(names_in(field.zones[0]),
+                ElementsAre("velocity_x", "velocity_y", "StaticPressure", "Static_Pressure", "pressure", "density"));
     EXPECT_EQ(data->GetNumberOfArrays(), 6);
     EXPECT_EQ(data->GetArray("pressure")->GetComponent(0, 0), 5);
     EXPECT_EQ(data->GetArray("Static_Pressure")->GetComponent(0, 0), 4);
@@ -228,8 +242,11 @@ TEST(VtkZones, KeepComponentsApartWhereOneIsMissingAndNamesOnce) {
 
 TEST(VtkZones, WhatImportWritesKeepsItsNamesAndUnits) {
     const core::TemporaryFolder folder;
-    std::ofstream(folder.path() / "a.csv") << "[Name]\nbody\n[Data]\nX [ m ],Y [ m ],Z [ m ],T [ s ],Temperature,Static Pressure [ Pa ],Pressure [ kPa ],h [ W m^-2 C^-1 ],Enthalpy [ furlongish ],Velocity u [ m/s ]\n"
-                                              "0,0,0,1,2,3,4,5,6,7\n1,0,0,1,2,3,4,5,6,7\n0,1,0,1,2,3,4,5,6,7\n0,0,1,1,2,3,4,5,6,7\n[Faces]\n0,2,1\n0,1,3\n";
+    std::ofstream(folder.path() / "a.csv")
+        << "[Name]\nbody\n[Data]\nX [ m ],Y [ m ],Z [ m ],T [ s ],Temperature,Static Pressure [ Pa ],Pressure [ kPa "
+           "],h [ W m^-2 C^-1 ],Enthalpy [ furlongish ],Velocity u [ m/s ]\n"
+           "0,0,0,1,2,3,4,5,6,7\n1,0,0,1,2,3,4,5,6,7\n0,1,0,1,2,3,4,5,6,7\n0,0,1,1,2,3,4,5,6,7\n[Faces]\n0,2,1\n0,1,"
+           "3\n";
     const Field written = read_field(folder.path() / "a.csv");
     for (const char* name : {"b.vtp", "b.vtu", "b.vtm"}) {
         write_vtk(written, folder.path() / name);

@@ -1,6 +1,4 @@
 // Which walls are the body when nobody says: a ground, a tunnel, a ceiling, a room, several bodies.
-#include "postproc/body_zones.h"
-
 #include <gmock/gmock.h>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
@@ -14,6 +12,7 @@
 #include <memory>
 
 #include "core/random.h"
+#include "postproc/loads/body_zones.h"
 
 namespace underbody::postproc {
 namespace {
@@ -77,7 +76,8 @@ WallShape hull(bool half, double at = 0) {
     return sheet("hull", 60, 30, [=](double s, double t) {
         const double phi = (half ? M_PI : 2 * M_PI) * (1 - s);
         const double theta = 1e-6 + t * (lowest - 1e-6);
-        return Point{at + std::sin(theta) * std::cos(phi), 0.7 * std::sin(theta) * std::sin(phi), 0.5 * std::cos(theta)};
+        return Point{at + std::sin(theta) * std::cos(phi), 0.7 * std::sin(theta) * std::sin(phi),
+                     0.5 * std::cos(theta)};
     });
 }
 
@@ -128,11 +128,16 @@ TEST(BodyZones, ABodyAloneKeepsAllItsWalls) {
 TEST(BodyZones, AGroundIsNoneOfThem) {
     for (const bool half : {false, true}) {
         const double from = half ? 0 : -3;
-        EXPECT_THAT(names_of(walls_beside_body({hull(half), flat("ground", -3, 3, from, 3, -0.4), base(half)})), ElementsAre("ground")) << half;
+        EXPECT_THAT(names_of(walls_beside_body({hull(half), flat("ground", -3, 3, from, 3, -0.4), base(half)})),
+                    ElementsAre("ground"))
+            << half;
         // In two parts, one of them just under the body, and uneven.
-        const std::vector<WallShape> parts = {flat("near", -1, 1, half ? 0 : -0.7, 0.7, -0.4), flat("far", 1, 9, from, 3, -0.4), hull(half), base(half)};
+        const std::vector<WallShape> parts = {flat("near", -1, 1, half ? 0 : -0.7, 0.7, -0.4),
+                                              flat("far", 1, 9, from, 3, -0.4), hull(half), base(half)};
         EXPECT_THAT(names_of(walls_beside_body(parts)), ElementsAre("near", "far")) << half;
-        const auto bed = sheet("bed", 40, 40, [=](double s, double t) { return Point{6 * s - 3, from + t * (3 - from), -0.6 + 0.05 * std::sin(20 * s) * std::cos(17 * t)}; });
+        const auto bed = sheet("bed", 40, 40, [=](double s, double t) {
+            return Point{6 * s - 3, from + t * (3 - from), -0.6 + 0.05 * std::sin(20 * s) * std::cos(17 * t)};
+        });
         EXPECT_THAT(names_of(walls_beside_body({bed, hull(half), base(half)})), ElementsAre("bed")) << half;
     }
 }
@@ -145,40 +150,56 @@ TEST(BodyZones, AThirdWallOnTheBodyTakesNothingFromIt) {
             return Point{0.3 + 0.05 * std::cos(phi), 0.05 * std::sin(phi), -0.35 - 0.03 * t};
         });
         EXPECT_THAT(walls_beside_body({hull(half), base(half), nozzle}), IsEmpty()) << half;
-        EXPECT_THAT(names_of(walls_beside_body({nozzle, flat("ground", -3, 3, from, 3, -0.4), base(half), hull(half)})), ElementsAre("ground")) << half;
+        EXPECT_THAT(names_of(walls_beside_body({nozzle, flat("ground", -3, 3, from, 3, -0.4), base(half), hull(half)})),
+                    ElementsAre("ground"))
+            << half;
     }
     // A hull so flat that it looks one way as its base does: they meet at the rim.
     Walls made;
     const auto disc = [&](const std::string& name, double height) {
-        return made.make(name, 40, 10, [=](double s, double t) { return Point{t * std::cos(2 * M_PI * s), t * std::sin(2 * M_PI * s), height * (1 - t * t)}; });
+        return made.make(name, 40, 10, [=](double s, double t) {
+            return Point{t * std::cos(2 * M_PI * s), t * std::sin(2 * M_PI * s), height * (1 - t * t)};
+        });
     };
     const auto fin = made.make("fin", 4, 4, [](double s, double t) { return Point{0.1 * s, 0, 0.05 + 0.1 * t}; });
     EXPECT_THAT(walls_beside_body({disc("hull", 0.1), disc("base", 0), fin}), IsEmpty());
 }
 
 TEST(BodyZones, FloorAndCeilingOfAChannelAreNoneEither) {
-    const std::vector<WallShape> walls = {flat("floor", -5, 5, -2, 2, -1), flat("ceiling", -5, 5, -2, 2, 1), hull(false), base(false)};
+    const std::vector<WallShape> walls = {flat("floor", -5, 5, -2, 2, -1), flat("ceiling", -5, 5, -2, 2, 1),
+                                          hull(false), base(false)};
     EXPECT_THAT(names_of(walls_beside_body(walls)), ElementsAre("floor", "ceiling"));
 }
 
 TEST(BodyZones, ATunnelAroundTheBodyIsNoneWhenItsFluidIsInside) {
     const auto tunnel = [](bool known) {  // a tube along x, normals inward
-        return sheet("tunnel", 4, 40, [](double s, double t) { return Point{10 * s - 5, 3 * std::cos(2 * M_PI * t), 3 * std::sin(2 * M_PI * t)}; }, known);
+        return sheet(
+            "tunnel", 4, 40,
+            [](double s, double t) {
+                return Point{10 * s - 5, 3 * std::cos(2 * M_PI * t), 3 * std::sin(2 * M_PI * t)};
+            },
+            known);
     };
     ASSERT_LT(tunnel(true).volume, 0);
     EXPECT_THAT(names_of(walls_beside_body({tunnel(true), hull(false), base(false)})), ElementsAre("tunnel"));
-    EXPECT_THAT(walls_beside_body({tunnel(false), hull(false), base(false)}), IsEmpty());  // nobody knows where its fluid is
+    EXPECT_THAT(walls_beside_body({tunnel(false), hull(false), base(false)}),
+                IsEmpty());  // nobody knows where its fluid is
 }
 
 TEST(BodyZones, ATunnelOfWhichNobodyKnowsTheSideIsKnownByWhatLiesInside) {
     Walls walls_made;
-    const auto wall = [&](const std::string& name, int columns, int rows, const Place& place) { return walls_made.make(name, columns, rows, place); };
+    const auto wall = [&](const std::string& name, int columns, int rows, const Place& place) {
+        return walls_made.make(name, columns, rows, place);
+    };
     const auto ball = [&](const std::string& name, double radius, double at) {
         return wall(name, 24, 12, [=](double s, double t) {
-            return Point{at + radius * std::sin(M_PI * t) * std::cos(2 * M_PI * s), radius * std::sin(M_PI * t) * std::sin(2 * M_PI * s), radius * std::cos(M_PI * t)};
+            return Point{at + radius * std::sin(M_PI * t) * std::cos(2 * M_PI * s),
+                         radius * std::sin(M_PI * t) * std::sin(2 * M_PI * s), radius * std::cos(M_PI * t)};
         });
     };
-    const auto tunnel = wall("tunnel", 40, 8, [](double s, double t) { return Point{10 * t - 5, 3 * std::cos(2 * M_PI * s), 3 * std::sin(2 * M_PI * s)}; });
+    const auto tunnel = wall("tunnel", 40, 8, [](double s, double t) {
+        return Point{10 * t - 5, 3 * std::cos(2 * M_PI * s), 3 * std::sin(2 * M_PI * s)};
+    });
     EXPECT_THAT(names_of(walls_beside_body({tunnel, ball("body", 1, 0)})), ElementsAre("tunnel"));
     EXPECT_THAT(names_of(walls_beside_body({ball("body", 1, 0), ball("fin", 0.2, 2), tunnel})), ElementsAre("tunnel"));
     EXPECT_THAT(names_of(walls_beside_body({ball("tank", 3, 0), ball("body", 1, 0)})), ElementsAre("tank"));
@@ -191,7 +212,8 @@ TEST(BodyZones, ATunnelOfWhichNobodyKnowsTheSideIsKnownByWhatLiesInside) {
     // The base of a hull, drawn in behind its rim: it lies in the hollow, and touches.
     const double lowest = std::acos(-0.7);
     const auto hollow = wall("hull", 24, 12, [=](double s, double t) {
-        return Point{std::sin(t * lowest) * std::cos(2 * M_PI * s), std::sin(t * lowest) * std::sin(2 * M_PI * s), std::cos(t * lowest)};
+        return Point{std::sin(t * lowest) * std::cos(2 * M_PI * s), std::sin(t * lowest) * std::sin(2 * M_PI * s),
+                     std::cos(t * lowest)};
     });
     const auto recess = wall("base", 24, 6, [=](double s, double t) {
         const double r = std::sin(lowest) * (1 - t);
@@ -239,7 +261,9 @@ TEST(BodyZones, WallsThatSurroundTheBodyTogetherAreNoneOfIt) {
             walls.insert(walls.begin() + 3, around.begin(), around.end());
             const auto others = names_of(walls_beside_body(walls));
             EXPECT_EQ(others.size(), around.size()) << known << open;
-            EXPECT_TRUE(std::none_of(others.begin(), others.end(), [](const auto& name) { return name.starts_with("body"); })) << known << open;
+            EXPECT_TRUE(
+                std::none_of(others.begin(), others.end(), [](const auto& name) { return name.starts_with("body"); }))
+                << known << open;
         }
         auto half = body(0, known);
         const auto around = block({-2, 0, 0}, {3, 1, 1.5}, "-y-x+x", true, known);
@@ -250,7 +274,9 @@ TEST(BodyZones, WallsThatSurroundTheBodyTogetherAreNoneOfIt) {
         const auto small = body(-0.1, known);
         two.insert(two.end(), small.begin(), small.end());
         const auto others = walls_beside_body(two);
-        EXPECT_TRUE(std::none_of(others.begin(), others.end(), [](const auto& other) { return other.why.find("surrounds") != std::string::npos; })) << known;
+        EXPECT_TRUE(std::none_of(others.begin(), others.end(), [](const auto& other) {
+            return other.why.find("surrounds") != std::string::npos;
+        })) << known;
     }
 }
 
@@ -271,15 +297,20 @@ TEST(BodyZones, DoNotDependOnPlaceSizeOrDirection) {
         };
         const double lowest = std::acos(-0.7);
         const std::vector<WallShape> walls = {
-            sheet("hull", 60, 30, [&](double s, double t) {
-                const double theta = t * lowest;
-                return moved({std::sin(theta) * std::cos(2 * M_PI * s), -0.7 * std::sin(theta) * std::sin(2 * M_PI * s), 0.5 * std::cos(theta)});
-            }),
-            sheet("base", 60, 5, [&](double s, double t) {
-                const double r = std::sin(lowest) * (1 - t);
-                return moved({r * std::cos(2 * M_PI * s), 0.7 * r * std::sin(2 * M_PI * s), -0.35});
-            }),
-            sheet("ground", 3, 3, [&](double s, double t) { return moved({6 * s - 3, 6 * t - 3, -0.4}); })};
+            sheet("hull", 60, 30,
+                  [&](double s, double t) {
+                      const double theta = t * lowest;
+                      return moved({std::sin(theta) * std::cos(2 * M_PI * s),
+                                    -0.7 * std::sin(theta) * std::sin(2 * M_PI * s), 0.5 * std::cos(theta)});
+                  }),
+            sheet("base", 60, 5,
+                  [&](double s, double t) {
+                      const double r = std::sin(lowest) * (1 - t);
+                      return moved({r * std::cos(2 * M_PI * s), 0.7 * r * std::sin(2 * M_PI * s), -0.35});
+                  }),
+            sheet("ground", 3, 3, [&](double s, double t) {
+                return moved({6 * s - 3, 6 * t - 3, -0.4});
+            })};
         EXPECT_THAT(names_of(walls_beside_body(walls)), ElementsAre("ground")) << trial;
     }
 }
@@ -287,7 +318,8 @@ TEST(BodyZones, DoNotDependOnPlaceSizeOrDirection) {
 TEST(BodyZones, ClosedBodiesThatLieApartAreNamed) {
     const auto ball = [](const std::string& name, double at) {
         return sheet(name, 40, 20, [=](double s, double t) {
-            return Point{at + std::sin(M_PI * t) * std::cos(2 * M_PI * s), std::sin(M_PI * t) * std::sin(2 * M_PI * s), std::cos(M_PI * t)};
+            return Point{at + std::sin(M_PI * t) * std::cos(2 * M_PI * s), std::sin(M_PI * t) * std::sin(2 * M_PI * s),
+                         std::cos(M_PI * t)};
         });
     };
     EXPECT_THAT(separate_bodies({ball("first", 0), ball("second", 3)}), ElementsAre("first", "second"));
@@ -298,7 +330,9 @@ TEST(BodyZones, ClosedBodiesThatLieApartAreNamed) {
 TEST(BodyZones, DuctsAreNoBodiesThoughTheirWallsCancel) {
     // A round pipe, open at both ends: its area vectors sum to nothing.
     const auto pipe = [](const std::string& name, double at) {
-        return sheet(name, 40, 8, [=](double s, double t) { return Point{at + std::cos(2 * M_PI * s), std::sin(2 * M_PI * s), 5 * t}; });
+        return sheet(name, 40, 8, [=](double s, double t) {
+            return Point{at + std::cos(2 * M_PI * s), std::sin(2 * M_PI * s), 5 * t};
+        });
     };
     EXPECT_THAT(separate_bodies({pipe("inlet-duct", 0), pipe("outlet-duct", 3)}), IsEmpty());
     EXPECT_THAT(walls_beside_body({pipe("inlet-duct", 0), pipe("outlet-duct", 3)}), IsEmpty());
@@ -306,19 +340,24 @@ TEST(BodyZones, DuctsAreNoBodiesThoughTheirWallsCancel) {
 
 TEST(ZoneNames, SayWhatIsPlainlyNoWall) {
     const std::pair<const char*, ZoneKind> said[] = {
-        {"inlet", ZoneKind::inlet},       {"Block 1/velocity-inlet-2", ZoneKind::inlet}, {"INFLOW", ZoneKind::inlet},       {"pressure_outlet3", ZoneKind::outlet},
-        {"opening", ZoneKind::outlet},    {"symmetryPlane", ZoneKind::symmetry},         {"sym", ZoneKind::symmetry},       {"Symmetry top", ZoneKind::symmetry},
-        {"farField", ZoneKind::farfield}, {"far_field", ZoneKind::farfield},             {"FREESTREAM", ZoneKind::farfield}, {"cyclic1", ZoneKind::periodic}};
+        {"inlet", ZoneKind::inlet},         {"Block 1/velocity-inlet-2", ZoneKind::inlet},
+        {"INFLOW", ZoneKind::inlet},        {"pressure_outlet3", ZoneKind::outlet},
+        {"opening", ZoneKind::outlet},      {"symmetryPlane", ZoneKind::symmetry},
+        {"sym", ZoneKind::symmetry},        {"Symmetry top", ZoneKind::symmetry},
+        {"farField", ZoneKind::farfield},   {"far_field", ZoneKind::farfield},
+        {"FREESTREAM", ZoneKind::farfield}, {"cyclic1", ZoneKind::periodic}};
     for (const auto& [name, kind] : said) {
         EXPECT_EQ(kind_said_by_name(name), kind) << name;
     }
-    for (const char* name : {"hull", "inlet-duct", "outlet flange", "opening_door", "interiors-panel", "asymmetry", "", "7", "wall", "ground", "inlet/hull"}) {
+    for (const char* name : {"hull", "inlet-duct", "outlet flange", "opening_door", "interiors-panel", "asymmetry", "",
+                             "7", "wall", "ground", "inlet/hull"}) {
         EXPECT_EQ(kind_said_by_name(name), ZoneKind::unknown) << name;
     }
 }
 
 TEST(ZoneNames, ChooseTheBodyOnlyWhereTheFileDoesNotSayWhatIsAWall) {
-    const auto chosen = [](std::initializer_list<std::pair<const char*, ZoneKind>> zones, std::vector<std::string>& otherwise) {
+    const auto chosen = [](std::initializer_list<std::pair<const char*, ZoneKind>> zones,
+                           std::vector<std::string>& otherwise) {
         Field field;
         for (const auto& [name, kind] : zones) {
             field.zones.emplace_back();
@@ -328,7 +367,8 @@ TEST(ZoneNames, ChooseTheBodyOnlyWhereTheFileDoesNotSayWhatIsAWall) {
         }
         const auto names_of = [](const std::vector<const Zone*>& some) {
             std::vector<std::string> names;
-            std::transform(some.begin(), some.end(), std::back_inserter(names), [](const Zone* zone) { return zone->name; });
+            std::transform(some.begin(), some.end(), std::back_inserter(names),
+                           [](const Zone* zone) { return zone->name; });
             return names;
         };
         std::vector<const Zone*> said_otherwise;
@@ -337,11 +377,13 @@ TEST(ZoneNames, ChooseTheBodyOnlyWhereTheFileDoesNotSayWhatIsAWall) {
         return names;
     };
     std::vector<std::string> otherwise;
-    EXPECT_THAT(chosen({{"hull", ZoneKind::unknown}, {"inlet", ZoneKind::unknown}, {"a", ZoneKind::outlet}}, otherwise), ElementsAre("hull"));
+    EXPECT_THAT(chosen({{"hull", ZoneKind::unknown}, {"inlet", ZoneKind::unknown}, {"a", ZoneKind::outlet}}, otherwise),
+                ElementsAre("hull"));
     EXPECT_THAT(otherwise, ElementsAre("inlet", "a"));
     EXPECT_THAT(chosen({{"hull", ZoneKind::unknown}, {"inlet", ZoneKind::wall}}, otherwise), ElementsAre("inlet"));
     EXPECT_THAT(otherwise, IsEmpty());
-    EXPECT_THAT(chosen({{"inlet", ZoneKind::unknown}, {"outlet", ZoneKind::unknown}}, otherwise), ElementsAre("inlet", "outlet"));
+    EXPECT_THAT(chosen({{"inlet", ZoneKind::unknown}, {"outlet", ZoneKind::unknown}}, otherwise),
+                ElementsAre("inlet", "outlet"));
     EXPECT_THAT(otherwise, IsEmpty());
 }
 

@@ -1,12 +1,12 @@
-// Cells out of faces in any order, from any corner, looking either way: kind, order of nodes and size against determinants.
-#include "postproc/importers/cell_shapes.h"
-
+// Cells out of faces in any order, from any corner, looking either way: kind, order of nodes and size against
+// determinants.
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/random.h"
+#include "postproc/importers/mesh/cell_shapes.h"
 
 namespace underbody::postproc {
 namespace {
@@ -26,7 +26,8 @@ struct Stored {
             std::swap(faces[i - 1], faces[static_cast<std::size_t>(random.uniform() * double(i))]);
         }
         for (auto& face : faces) {
-            std::rotate(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(random.uniform() * double(face.size())), face.end());
+            std::rotate(face.begin(),
+                        face.begin() + static_cast<std::ptrdiff_t>(random.uniform() * double(face.size())), face.end());
             const bool inward = random.uniform() < 0.5;
             if (inward) {
                 std::reverse(face.begin(), face.end());
@@ -47,7 +48,8 @@ struct Stored {
 };
 
 /// The corners of the unit cube through a random matrix and shift; with it the determinant.
-std::vector<double> skewed(const std::vector<std::array<double, 3>>& corners, core::Random& random, double& determinant) {
+std::vector<double> skewed(const std::vector<std::array<double, 3>>& corners, core::Random& random,
+                           double& determinant) {
     double m[3][3];
     do {
         for (auto& row : m) {
@@ -55,7 +57,8 @@ std::vector<double> skewed(const std::vector<std::array<double, 3>>& corners, co
                 x = random.uniform(-1, 1);
             }
         }
-        determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+        determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                      m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                       m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
     } while (determinant < 0.05);
     std::vector<double> points;
@@ -75,7 +78,10 @@ struct Kind {
 };
 
 std::vector<Kind> kinds() {
-    return {{hexahedron, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, vtk_hexahedron, 1},
+    return {{hexahedron,
+             {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+             vtk_hexahedron,
+             1},
             {wedge, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, vtk_wedge, 0.5},
             {pyramid, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}, vtk_pyramid, 1.0 / 3},
             {tetrahedron, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, vtk_tetra, 1.0 / 6}};
@@ -119,7 +125,9 @@ TEST(CellShapes, AreRecognisedHoweverTheirFacesAreStored) {
             EXPECT_NEAR(size.volume, kind.volume * determinant, 1e-13);
             EXPECT_LE(size.opening, 1e-13);
             // VTK's wedge has its first triangle look outward, the other cells their base inward.
-            expect_faces_of(cell, kind.type == vtk_wedge ? Faces{{1, 2, 3}, {4, 6, 5}, {1, 4, 5, 2}, {2, 5, 6, 3}, {3, 6, 4, 1}} : kind.faces);
+            expect_faces_of(cell, kind.type == vtk_wedge
+                                      ? Faces{{1, 2, 3}, {4, 6, 5}, {1, 4, 5, 2}, {2, 5, 6, 3}, {3, 6, 4, 1}}
+                                      : kind.faces);
             EXPECT_EQ(stored.cell(true).type, vtk_polyhedron);
             EXPECT_NEAR(size_of(stored.cell(true), points.data(), 3).volume, kind.volume * determinant, 1e-13);
         }
@@ -166,10 +174,11 @@ TEST(CellShapes, AFaceThatLooksTheWrongWayOpensTheCell) {
 TEST(CellShapes, FacesThatMakeNoPrismStayAPolyhedron) {
     core::Random random(9);
     // Two side faces on one edge and none on the opposite one; a lid that crosses over; a node twice.
-    for (const Faces& faces : {Faces{{4, 3, 2, 1}, {5, 6, 7, 8}, {1, 2, 6, 5}, {1, 2, 6, 5}, {3, 4, 8, 7}, {4, 1, 5, 8}},
-                               Faces{{4, 3, 2, 1}, {5, 7, 6, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}},
-                               Faces{{4, 3, 2, 1}, {5, 6, 7, 7}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 7, 7}, {4, 1, 5, 7}},
-                               Faces{{4, 3, 2, 1}, {5, 6, 7, 8}, {9, 10, 11, 12}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}}}) {
+    for (const Faces& faces :
+         {Faces{{4, 3, 2, 1}, {5, 6, 7, 8}, {1, 2, 6, 5}, {1, 2, 6, 5}, {3, 4, 8, 7}, {4, 1, 5, 8}},
+          Faces{{4, 3, 2, 1}, {5, 7, 6, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}},
+          Faces{{4, 3, 2, 1}, {5, 6, 7, 7}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 7, 7}, {4, 1, 5, 7}},
+          Faces{{4, 3, 2, 1}, {5, 6, 7, 8}, {9, 10, 11, 12}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}}}) {
         const Stored stored(faces, random);
         EXPECT_EQ(stored.cell().type, vtk_polyhedron);
     }

@@ -16,7 +16,7 @@
 #include "core/random.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "postproc/field.h"
+#include "postproc/field/field.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -96,15 +96,18 @@ TEST(CfdPostCsv, DoesNotCareForBomLineEndsCommentsAndSpreadsheetCommas) {
 }
 
 TEST(CfdPostCsv, ConvertsTheUnitsOfTheHeader) {
-    std::string text = replaced(good, "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]", "X [ mm ], Y [mm], Z [ mm ], Pressure [ bar ]");
-    text = replaced(text, "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]", "X [ m ], Y [ mm ], Z [ m ], Temperature [ C ]");
+    std::string text =
+        replaced(good, "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]", "X [ mm ], Y [mm], Z [ mm ], Pressure [ bar ]");
+    text =
+        replaced(text, "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]", "X [ m ], Y [ mm ], Z [ m ], Temperature [ C ]");
     const Field field = read_text(text);
     EXPECT_NEAR(field.zones[0].surface->GetPoint(1)[0], 0.001, 1e-18);
     EXPECT_NEAR(value(field.zones[0], "pressure", 0), 15e5, 1e-6);
     EXPECT_NEAR(value(field.zones[1], "temperature", 1), 275.15, 1e-9);
     ASSERT_EQ(field.problems.size(), 1U);  // mixed units are said
     EXPECT_THAT(field.problems[0].message, HasSubstr("different units"));
-    EXPECT_NEAR(value(read_text(replaced(good, "Pressure [ Pa ]", "Pressure [ psf ]")).zones[0], "pressure", 0), 15 * 47.88025898, 1e-6);
+    EXPECT_NEAR(value(read_text(replaced(good, "Pressure [ Pa ]", "Pressure [ psf ]")).zones[0], "pressure", 0),
+                15 * 47.88025898, 1e-6);
 }
 
 TEST(CfdPostCsv, AsksForUnitsThatTheFileDoesNotSay) {
@@ -128,7 +131,8 @@ TEST(CfdPostCsv, NamesFileAndLineOfWhatIsWrong) {
         {replaced(good, "1,1,0, -3.5e+01", "1,1,0, nan"), "line 9: 'nan' is not a finite number"},
         {replaced(good, "1,1,0, -3.5e+01", "1,1,0, -inf"), "line 9: '-inf' is not a finite number"},
         {replaced(good, "1,1,0, -3.5e+01", "1,1,0, 1e999"), "line 9: '1e999' is not a number"},
-        {replaced(good, "1,1,0, -3.5e+01, 1,0,2", "1,1,0, -3.5e+01, 1"), "line 9: the row has 5 values, the header names 7"},
+        {replaced(good, "1,1,0, -3.5e+01, 1,0,2", "1,1,0, -3.5e+01, 1"),
+         "line 9: the row has 5 values, the header names 7"},
         {replaced(good, "1,1,0, -3.5e+01, 1,0,2", "1,1,0, -3.5e+01, 1,0,2,7"), "line 9: the row has more values"},
         {replaced(good, "0, 2, 3\n", "0, 2, 4\n"), "line 14: node 4 is missing: zone 'base' has 4 nodes"},
         {replaced(good, "0, 2, 3\n", "0, -2, 3\n"), "line 14: '-2' is not a node number"},
@@ -136,7 +140,10 @@ TEST(CfdPostCsv, NamesFileAndLineOfWhatIsWrong) {
         {replaced(good, "0, 2, 3\n", "0, 2 3\n"), "line 14: '3' behind a node number"},
         {replaced(good, "hull", "base"), "line 16: two zones are called 'base'"},
         {replaced(good, "1,1,0, -3.5e+01", ",1,0, -3.5e+01"), "line 9: coordinate 'X' has no value here"},
-        {replaced(good, "\n0,0,0, 1.5e+01, 1,0,0\n1,0,0, 2.5e+01, 1,0,0\n1,1,0, -3.5e+01, 1,0,2\n0,1,0, 4.5E+001, 1,0,0\n", "\n"), "has no rows"},
+        {replaced(good,
+                  "\n0,0,0, 1.5e+01, 1,0,0\n1,0,0, 2.5e+01, 1,0,0\n1,1,0, -3.5e+01, 1,0,2\n0,1,0, 4.5E+001, 1,0,0\n",
+                  "\n"),
+         "has no rows"},
         {"[Name]\nempty\n", "line 1: zone 'empty' has no [Data]"},
         {"[Name]\nx\n[Data]\n", "line 3: [Data] of zone 'x' is empty"},
         {"[Name]\n[Data]\nX [m],Y [m]\n1,2\n", "line 1: [Name] without a name"}};
@@ -165,16 +172,19 @@ TEST(CfdPostCsv, SeesThatANodeOfTheLastFaceLostADigit) {
     std::string text = "[Name]\nprism\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n";
     for (int i = 0; i < 12; ++i) {
         const double angle = M_PI / 3 * (i % 6);
-        text += std::to_string(std::cos(angle)) + ", " + std::to_string(std::sin(angle)) + ", " + std::to_string(i / 6) + ", 1\n";
+        text += std::to_string(std::cos(angle)) + ", " + std::to_string(std::sin(angle)) + ", " +
+                std::to_string(i / 6) + ", 1\n";
     }
     text += "\n[Faces]\n0, 5, 4, 3, 2, 1\n6, 7, 8, 9, 10, 11\n";
     for (int i = 0; i < 6; ++i) {
-        text += std::to_string(i) + ", " + std::to_string((i + 1) % 6) + ", " + std::to_string((i + 1) % 6 + 6) + ", " + std::to_string(i + 6) + "\n";
+        text += std::to_string(i) + ", " + std::to_string((i + 1) % 6) + ", " + std::to_string((i + 1) % 6 + 6) + ", " +
+                std::to_string(i + 6) + "\n";
     }
     const auto errors = [&](std::size_t missing) {
         core::write_file(folder.path() / "prism.csv", text.substr(0, text.size() - missing));
         const auto field = postproc::read_field(folder.path() / "prism.csv");
-        return std::count_if(field.problems.begin(), field.problems.end(), [](const auto& p) { return p.severity == core::Problem::Severity::error; });
+        return std::count_if(field.problems.begin(), field.problems.end(),
+                             [](const auto& p) { return p.severity == core::Problem::Severity::error; });
     };
     EXPECT_EQ(errors(0), 0);
     EXPECT_EQ(errors(1), 0);  // the last line end alone
@@ -184,7 +194,8 @@ TEST(CfdPostCsv, SeesThatANodeOfTheLastFaceLostADigit) {
 }
 
 TEST(CfdPostCsv, TellsDecimalCommasAndTakesSemicolonsWithPoints) {
-    std::string semicolons = "[Name]\na\n[Data]\nX [ m ];Y [ m ];Z [ m ];Pressure [ Pa ]\n0;0;0;1.5\n1;0;0;2.5\n0;1;0;3.5\n[Faces]\n0;1;2\n";
+    std::string semicolons =
+        "[Name]\na\n[Data]\nX [ m ];Y [ m ];Z [ m ];Pressure [ Pa ]\n0;0;0;1.5\n1;0;0;2.5\n0;1;0;3.5\n[Faces]\n0;1;2\n";
     EXPECT_EQ(value(read_text(semicolons).zones[0], "pressure", 1), 2.5);
     EXPECT_THAT(failure(replaced(semicolons, "1.5", "1,5")), HasSubstr("line 5: '1,5' has a decimal comma"));
 }
@@ -200,7 +211,8 @@ TEST(CfdPostCsv, TakesTabsBetweenColumns) {
 }
 
 TEST(CfdPostCsv, KeepsMissingValuesAsMissingAndSaysWhere) {
-    const Field field = read_text(replaced(replaced(good, "1,1,0, -3.5e+01", "1,1,0, null"), "0,1,0, 4.5E+001", "0,1,0, "));
+    const Field field =
+        read_text(replaced(replaced(good, "1,1,0, -3.5e+01", "1,1,0, null"), "0,1,0, 4.5E+001", "0,1,0, "));
     EXPECT_TRUE(std::isnan(value(field.zones[0], "pressure", 2)));
     EXPECT_TRUE(std::isnan(value(field.zones[0], "pressure", 3)));
     ASSERT_EQ(field.problems.size(), 1U);
@@ -210,7 +222,8 @@ TEST(CfdPostCsv, KeepsMissingValuesAsMissingAndSaysWhere) {
 
 TEST(CfdPostCsv, TakesRepeatedColumnsOnceAndNodeNumbersAsNumbers) {
     const Field field = read_text(
-        "[Name]\na\n[Data]\nNode Number, X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Pressure [ Pa ], X [ m ], Velocity [ m s^-1 ], Velocity u [ m s^-1 ]\n"
+        "[Name]\na\n[Data]\nNode Number, X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Pressure [ Pa ], X [ m ], "
+        "Velocity [ m s^-1 ], Velocity u [ m s^-1 ]\n"
         "0,0,0,0,1,1,0,3,1\n1,1,0,0,2,2,1,3,1\n2,0,1,0,3,3,0,3,1\n[Faces]\n0,1,2\n");
     const auto& arrays = field.zones[0].arrays;
     ASSERT_EQ(arrays.size(), 3U);
@@ -220,17 +233,23 @@ TEST(CfdPostCsv, TakesRepeatedColumnsOnceAndNodeNumbersAsNumbers) {
 }
 
 TEST(CfdPostCsv, ReadsLinesPointsAndProfilesWithoutCoordinates) {
-    const Field line = read_text("[Name]\ncut\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n0,0,0,1\n1,0,0,2\n2,0,0,3\n[Lines]\n0,1\n1,2\n");
+    const Field line = read_text(
+        "[Name]\ncut\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa "
+        "]\n0,0,0,1\n1,0,0,2\n2,0,0,3\n[Lines]\n0,1\n1,2\n");
     EXPECT_EQ(line.zones[0].kind, ZoneKind::line);
     EXPECT_EQ(line.zones[0].surface->GetNumberOfLines(), 2);
-    const Field profile = read_text("[Name],,\nInflow,,\n\n[Spatial Fields],,\nr,,\n\n[Data],,\nr [ m ], Total Pressure [ Pa ], Velocity Axial\n0.2,1e5,1\n0.3,1.1e5,1\n");
+    const Field profile = read_text(
+        "[Name],,\nInflow,,\n\n[Spatial Fields],,\nr,,\n\n[Data],,\nr [ m ], Total Pressure [ Pa ], Velocity "
+        "Axial\n0.2,1e5,1\n0.3,1.1e5,1\n");
     EXPECT_EQ(profile.zones[0].kind, ZoneKind::other);
     EXPECT_EQ(profile.zones[0].surface->GetFieldData()->GetArray("pressure_total")->GetComponent(1, 0), 1.1e5);
 }
 
 TEST(CfdPostCsv, KeepsACylindricalProfileAsATableWithItsCoordinates) {
-    const Field profile = read_text("[Name]\nInflow\n[Spatial Fields]\nr,Theta,z\n[Data]\nr [ mm ], Theta [ degree ], z [ m ], Pressure [ Pa ], Velocity r [ m s^-1 ]\n"
-                                    "200,0,0.5,1,3\n200,90,0.5,2,4\n");
+    const Field profile = read_text(
+        "[Name]\nInflow\n[Spatial Fields]\nr,Theta,z\n[Data]\nr [ mm ], Theta [ degree ], z [ m ], Pressure [ Pa ], "
+        "Velocity r [ m s^-1 ]\n"
+        "200,0,0.5,1,3\n200,90,0.5,2,4\n");
     const auto& zone = profile.zones[0];
     EXPECT_EQ(zone.kind, ZoneKind::other);  // nobody knows where its axis lies: no surface is made of it
     EXPECT_EQ(zone.original_kind, "profile without coordinates");
@@ -314,7 +333,8 @@ TEST(CfdPostCsv, TakesAsLongForABlockWhereverItStands) {
 }
 
 TEST(CfdPostCsv, RefusesNodeNumbersThatNoNumberHolds) {
-    EXPECT_THAT(failure(replaced(good, "0, 2, 3\n", "0, 2, " + std::string(40, '9') + "\n")), HasSubstr("is not a node number"));
+    EXPECT_THAT(failure(replaced(good, "0, 2, 3\n", "0, 2, " + std::string(40, '9') + "\n")),
+                HasSubstr("is not a node number"));
 }
 
 /// A tetrahedron with columns of `header` behind its coordinates, the same `values` in every row.
@@ -343,7 +363,8 @@ std::string words_of(const Field& field) {
 }
 
 TEST(CfdPostCsv, OneComponentAskedForIsThatComponent) {
-    const std::string text = body("Pressure [ Pa ],Velocity u [ m s^-1 ],Velocity v [ m s^-1 ],Velocity w [ m s^-1 ]", "7,1,2,3");
+    const std::string text =
+        body("Pressure [ Pa ],Velocity u [ m s^-1 ],Velocity v [ m s^-1 ],Velocity w [ m s^-1 ]", "7,1,2,3");
     ReadOptions options;
     for (const char* name : {"Velocity v", "velocity_y", "*_y"}) {
         options.arrays = {name};
@@ -365,7 +386,8 @@ TEST(CfdPostCsv, AMissingComponentIsNoughtInAPlaneCaseOnly) {
     const Field solid = read_text(body("Velocity u [ m s^-1 ],Velocity v [ m s^-1 ]", "1,2"));
     EXPECT_THAT(names_in(solid.zones[0]), testing::ElementsAre("velocity_x", "velocity_y"));
     EXPECT_THAT(words_of(solid), HasSubstr("velocity has no z component here: no vector, but velocity_x, velocity_y"));
-    const Field plane = read_text("[Name]\ncut\n[Data]\nX [ m ],Y [ m ],Velocity u [ m s^-1 ],Velocity v [ m s^-1 ]\n0,0,1,2\n1,0,1,2\n");
+    const Field plane = read_text(
+        "[Name]\ncut\n[Data]\nX [ m ],Y [ m ],Velocity u [ m s^-1 ],Velocity v [ m s^-1 ]\n0,0,1,2\n1,0,1,2\n");
     EXPECT_EQ(plane.dimension, 2);
     EXPECT_EQ(value(plane.zones[0], "velocity", 1, 1), 2);
     EXPECT_EQ(value(plane.zones[0], "velocity", 1, 2), 0);
@@ -387,7 +409,10 @@ TEST(CfdPostCsv, OfColumnsOfOneMeaningThePlainestCounts) {
 }
 
 TEST(CfdPostCsv, LettersForTemperaturesBesideOtherUnitsAreDifferences) {
-    const Field field = read_text(body("h [ Btu hr^-1 ft^-2 F^-1 ],Grad T [ C m^-1 ],Expansion [ C^-1 ],Old [ Btu lb^-1 R^-1 ],Reference [ F ],Temperature [ C ]", "1,1,1,1,32,20"));
+    const Field field =
+        read_text(body("h [ Btu hr^-1 ft^-2 F^-1 ],Grad T [ C m^-1 ],Expansion [ C^-1 ],Old [ Btu lb^-1 R^-1 "
+                       "],Reference [ F ],Temperature [ C ]",
+                       "1,1,1,1,32,20"));
     const Zone& zone = field.zones[0];
     EXPECT_NEAR(value(zone, "h", 0), 5.678263, 1e-6);
     EXPECT_EQ(value(zone, "Grad T", 0), 1);

@@ -16,7 +16,7 @@
 
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -32,22 +32,31 @@ namespace fs = std::filesystem;
 using Nodes = std::vector<cgsize_t>;  // from 1
 
 /// A cube, a wedge beside it, a pyramid on top and a tetrahedron on that; and a pentagonal prism on the other side.
-const std::vector<std::array<double, 3>> points = {
-    {0, 0, 0}, {1, 0, 0}, {1, 1, 0},     {0, 1, 0}, {0, 0, 1}, {1, 0, 1},     {1, 1, 1},  {0, 1, 1},   {2, 0, 0},
-    {2.5, 0.5, 0}, {2, 1, 0}, {2, 0, 1}, {2.5, 0.5, 1}, {2, 1, 1}, {-1, 0.5, 0}, {-1, 0.5, 1}, {0.5, 0.5, 2}, {2, 0.5, 2}};
+const std::vector<std::array<double, 3>> points = {{0, 0, 0},    {1, 0, 0},     {1, 1, 0},     {0, 1, 0}, {0, 0, 1},
+                                                   {1, 0, 1},    {1, 1, 1},     {0, 1, 1},     {2, 0, 0}, {2.5, 0.5, 0},
+                                                   {2, 1, 0},    {2, 0, 1},     {2.5, 0.5, 1}, {2, 1, 1}, {-1, 0.5, 0},
+                                                   {-1, 0.5, 1}, {0.5, 0.5, 2}, {2, 0.5, 2}};
 struct Cell {
     CGNS_ENUMT(ElementType_t) type;
     Nodes nodes;
     std::vector<Nodes> faces;
 };
 const std::vector<Cell> cells = {
-    {CGNS_ENUMV(HEXA_8), {1, 2, 3, 4, 5, 6, 7, 8},
+    {CGNS_ENUMV(HEXA_8),
+     {1, 2, 3, 4, 5, 6, 7, 8},
      {{1, 2, 3, 4}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}}},
     {CGNS_ENUMV(PENTA_6), {1, 4, 15, 5, 8, 16}, {{1, 4, 15}, {5, 8, 16}, {1, 4, 8, 5}, {4, 15, 16, 8}, {15, 1, 5, 16}}},
     {CGNS_ENUMV(PYRA_5), {5, 6, 7, 8, 17}, {{5, 6, 7, 8}, {5, 6, 17}, {6, 7, 17}, {7, 8, 17}, {8, 5, 17}}},
     {CGNS_ENUMV(TETRA_4), {6, 7, 17, 18}, {{6, 7, 17}, {6, 7, 18}, {7, 17, 18}, {17, 6, 18}}}};
-const Cell prism = {CGNS_ENUMV(NFACE_n), {},
-                    {{2, 9, 10, 11, 3}, {6, 12, 13, 14, 7}, {2, 9, 12, 6}, {9, 10, 13, 12}, {10, 11, 14, 13}, {11, 3, 7, 14}, {2, 3, 7, 6}}};
+const Cell prism = {CGNS_ENUMV(NFACE_n),
+                    {},
+                    {{2, 9, 10, 11, 3},
+                     {6, 12, 13, 14, 7},
+                     {2, 9, 12, 6},
+                     {9, 10, 13, 12},
+                     {10, 11, 14, 13},
+                     {11, 3, 7, 14},
+                     {2, 3, 7, 6}}};
 constexpr double volume = 1 + 0.5 + 1.0 / 3 + 0.25;
 
 /// Faces that only one cell has.
@@ -107,20 +116,23 @@ public:
         const auto last = next_ + static_cast<cgsize_t>(elements.size()) - 1;
         int index = 0;
         const bool lists = type == CGNS_ENUMV(MIXED) || type == CGNS_ENUMV(NGON_n) || type == CGNS_ENUMV(NFACE_n);
-        ok(lists ? cg_poly_section_write(file_, base_, zone_, name.c_str(), type, next_, last, 0, list.data(), offsets.data(), &index)
+        ok(lists ? cg_poly_section_write(file_, base_, zone_, name.c_str(), type, next_, last, 0, list.data(),
+                                         offsets.data(), &index)
                  : cg_section_write(file_, base_, zone_, name.c_str(), type, next_, last, 0, list.data(), &index));
         next_ = last + 1;
     }
     void pressure(CGNS_ENUMT(GridLocation_t) where, const std::vector<float>& values) {
         int solution = 0;
         int field = 0;
-        ok(cg_sol_write(file_, base_, zone_, where == CGNS_ENUMV(Vertex) ? "Flow Solution" : "Cells", where, &solution));
+        ok(cg_sol_write(file_, base_, zone_, where == CGNS_ENUMV(Vertex) ? "Flow Solution" : "Cells", where,
+                        &solution));
         ok(cg_field_write(file_, base_, zone_, solution, CGNS_ENUMV(RealSingle), "Pressure", values.data(), &field));
     }
     int condition(const std::string& name, CGNS_ENUMT(BCType_t) type, CGNS_ENUMT(PointSetType_t) set,
                   CGNS_ENUMT(GridLocation_t) where, const Nodes& list) {
         int index = 0;
-        ok(cg_boco_write(file_, base_, zone_, name.c_str(), type, set, static_cast<cgsize_t>(list.size()), list.data(), &index));
+        ok(cg_boco_write(file_, base_, zone_, name.c_str(), type, set, static_cast<cgsize_t>(list.size()), list.data(),
+                         &index));
         ok(cg_boco_gridlocation_write(file_, base_, zone_, index, where));
         return index;
     }
@@ -146,12 +158,15 @@ private:
     cgsize_t next_ = 1;
 };
 
-CGNS_ENUMT(ElementType_t) kind_of_face(const Nodes& face) { return face.size() == 3 ? CGNS_ENUMV(TRI_3) : CGNS_ENUMV(QUAD_4); }
+CGNS_ENUMT(ElementType_t) kind_of_face(const Nodes& face) {
+    return face.size() == 3 ? CGNS_ENUMV(TRI_3) : CGNS_ENUMV(QUAD_4);
+}
 
 std::vector<std::pair<CGNS_ENUMT(ElementType_t), Nodes>> faces_where(const std::vector<Nodes>& all, bool floor) {
     std::vector<std::pair<CGNS_ENUMT(ElementType_t), Nodes>> result;
     for (const auto& face : all) {
-        const bool low = std::all_of(face.begin(), face.end(), [](cgsize_t n) { return points[static_cast<std::size_t>(n - 1)][2] == 0; });
+        const bool low = std::all_of(face.begin(), face.end(),
+                                     [](cgsize_t n) { return points[static_cast<std::size_t>(n - 1)][2] == 0; });
         if (low == floor) {
             result.emplace_back(kind_of_face(face), face);
         }
@@ -180,7 +195,8 @@ void write_like_cfx(const fs::path& path, int type) {
     file.section("Tank Default", CGNS_ENUMV(MIXED), faces_where(hull(cells), false));
     file.pressure(CGNS_ENUMV(Vertex), linear());
     file.condition("in1", CGNS_ENUMV(BCInflow), CGNS_ENUMV(PointList), CGNS_ENUMV(Vertex), {1, 2, 3, 4, 15});
-    file.condition("Tank Default", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(Vertex), {5, 6, 7, 8, 16, 17, 18});
+    file.condition("Tank Default", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(Vertex),
+                   {5, 6, 7, 8, 16, 17, 18});
 }
 
 /// Sum of the area vectors (as the force of a pressure of one) and of the pressure over all surfaces.
@@ -193,7 +209,8 @@ void expect_closed_with_gauss(const postproc::Field& field, double enclosed) {
         }
         EXPECT_TRUE(zone.normals_into_fluid) << zone.name;
         for (vtkIdType c = 0; c < zone.surface->GetNumberOfCells(); ++c) {
-            // Linear over triangles; over the plane quadrilaterals of this mesh the mean of the corners, which are parallelograms.
+            // Linear over triangles; over the plane quadrilaterals of this mesh the mean of the corners, which are
+            // parallelograms.
             auto* cell = zone.surface->GetCell(c);
             auto* values = zone.surface->GetPointData()->GetArray("pressure");
             const vtkIdType n = cell->GetNumberOfPoints();
@@ -208,7 +225,9 @@ void expect_closed_with_gauss(const postproc::Field& field, double enclosed) {
                 for (std::size_t k = 0; k < 3; ++k) {
                     const std::size_t a = (k + 1) % 3;
                     const std::size_t b = (k + 2) % 3;
-                    area[k] += ((x[i][a] - x[0][a]) * (x[i + 1][b] - x[0][b]) - (x[i][b] - x[0][b]) * (x[i + 1][a] - x[0][a])) / 2;
+                    area[k] += ((x[i][a] - x[0][a]) * (x[i + 1][b] - x[0][b]) -
+                                (x[i][b] - x[0][b]) * (x[i + 1][a] - x[0][a])) /
+                               2;
                 }
             }
             for (std::size_t k = 0; k < 3; ++k) {
@@ -219,7 +238,8 @@ void expect_closed_with_gauss(const postproc::Field& field, double enclosed) {
     }
     for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(opening[k], 0, 1e-12);
-        EXPECT_NEAR(force[k], (2.0 + static_cast<double>(k)) * enclosed, 1e-5);  // gradient (2, 3, 4), normals into the fluid
+        EXPECT_NEAR(force[k], (2.0 + static_cast<double>(k)) * enclosed,
+                    1e-5);  // gradient (2, 3, 4), normals into the fluid
     }
 }
 
@@ -270,8 +290,10 @@ TEST(Cgns, SectionsOfOneKindWithFacesInConditionsAndFamilies) {
         for (cgsize_t e = first; e < middle; ++e) {
             list.push_back(e);
         }
-        const int body = file.condition("body", CGNS_ENUMV(FamilySpecified), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), list);
-        file.condition("far", CGNS_ENUMV(BCFarfield), CGNS_ENUMV(PointRange), CGNS_ENUMV(FaceCenter), {middle, file.next() - 1});
+        const int body =
+            file.condition("body", CGNS_ENUMV(FamilySpecified), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), list);
+        file.condition("far", CGNS_ENUMV(BCFarfield), CGNS_ENUMV(PointRange), CGNS_ENUMV(FaceCenter),
+                       {middle, file.next() - 1});
         file.family(body, "hulls", CGNS_ENUMV(BCWallViscous));
     }
     const auto field = read_field(folder.path() / "a.cgns");
@@ -477,7 +499,8 @@ TEST(Cgns, FilesOfALaterLibraryAreRead) {
         const auto before = read_field(path);
         set_version(path, 4.4F);
         int file = 0;
-        ASSERT_NE(cg_open(path.c_str(), CG_MODE_READ, &file), CG_OK) << "the library reads it itself: the detour may go";
+        ASSERT_NE(cg_open(path.c_str(), CG_MODE_READ, &file), CG_OK)
+            << "the library reads it itself: the detour may go";
         const auto field = read_field(path);
         EXPECT_EQ(test::volume_of(field), test::volume_of(before));
         ASSERT_EQ(field.zones.size(), before.zones.size());
@@ -486,9 +509,13 @@ TEST(Cgns, FilesOfALaterLibraryAreRead) {
             EXPECT_EQ(field.zones[z].kind, before.zones[z].kind);
             EXPECT_EQ(field.zones[z].arrays.size(), before.zones[z].arrays.size());
         }
-        const auto told = [](const auto& problem) { return problem.message.find("written by CGNS 4.4") != std::string::npos; };
+        const auto told = [](const auto& problem) {
+            return problem.message.find("written by CGNS 4.4") != std::string::npos;
+        };
         EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), told));
-        EXPECT_NE(test::refusal((core::write_file(folder.path() / "cut.cgns", core::read_file(path).substr(0, 3000)), folder.path() / "cut.cgns")), "");
+        EXPECT_NE(test::refusal((core::write_file(folder.path() / "cut.cgns", core::read_file(path).substr(0, 3000)),
+                                 folder.path() / "cut.cgns")),
+                  "");
     }
 }
 
@@ -504,7 +531,8 @@ int new_file(const fs::path& path, int cell_dimension) {
 }
 
 /// An unstructured zone with one section of elements of a kind; its number.
-int add_zone(int file, const char* name, const std::array<std::vector<double>, 3>& x, CGNS_ENUMT(ElementType_t) kind, cgsize_t elements, const Nodes& nodes) {
+int add_zone(int file, const char* name, const std::array<std::vector<double>, 3>& x, CGNS_ENUMT(ElementType_t) kind,
+             cgsize_t elements, const Nodes& nodes) {
     int zone = 0;
     int index = 0;
     const cgsize_t size[3] = {static_cast<cgsize_t>(x[0].size()), elements, 0};
@@ -522,14 +550,17 @@ TEST(Cgns, FacesInSpaceAreASurfaceAndOneComponentIsNoVector) {
     const fs::path path = folder.path() / "shell.cgns";
     const int file = new_file(path, 2);
     // A unit cube, its lower side in a zone of its own, all normals outward.
-    const std::array<std::vector<double>, 3> x = {{{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}};
+    const std::array<std::vector<double>, 3> x = {
+        {{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}};
     const auto add = [&](const char* name, const Nodes& quads) {
         const int zone = add_zone(file, name, x, CGNS_ENUMV(QUAD_4), static_cast<cgsize_t>(quads.size() / 4), quads);
         int solution = 0;
         int index = 0;
         ASSERT_EQ(cg_sol_write(file, 1, zone, "Solution", CGNS_ENUMV(Vertex), &solution), CG_OK);
-        ASSERT_EQ(cg_field_write(file, 1, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", x[2].data(), &index), CG_OK);
-        ASSERT_EQ(cg_field_write(file, 1, zone, solution, CGNS_ENUMV(RealDouble), "VelocityX", x[0].data(), &index), CG_OK);
+        ASSERT_EQ(cg_field_write(file, 1, zone, solution, CGNS_ENUMV(RealDouble), "Pressure", x[2].data(), &index),
+                  CG_OK);
+        ASSERT_EQ(cg_field_write(file, 1, zone, solution, CGNS_ENUMV(RealDouble), "VelocityX", x[0].data(), &index),
+                  CG_OK);
     };
     add("base", {1, 4, 3, 2});
     add("hull", {5, 6, 7, 8, 1, 2, 6, 5, 2, 3, 7, 6, 3, 4, 8, 7, 4, 1, 5, 8});
@@ -552,7 +583,8 @@ TEST(Cgns, ATimeIsChosenAmongTheSolutionsOfSteps) {
     const core::TemporaryFolder folder;
     const fs::path path = folder.path() / "steps.cgns";
     const int file = new_file(path, 3);
-    const int zone = add_zone(file, "water", {{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, CGNS_ENUMV(TETRA_4), 1, {1, 2, 3, 4});
+    const int zone =
+        add_zone(file, "water", {{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, CGNS_ENUMV(TETRA_4), 1, {1, 2, 3, 4});
     int index = 0;
     std::string pointers;
     for (int step = 1; step <= 3; ++step) {

@@ -5,7 +5,7 @@
 #include "cgns_files.h"
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 
 namespace underbody {
 
@@ -33,17 +33,19 @@ double area(const postproc::Field& field, const std::string& zone) {
 }
 
 /// A block of 2 x 3 x 4 unit cells with one condition of faces or vertices.
-postproc::Field block_with(const std::vector<cgsize_t>& cells, CGNS_ENUMT(PointSetType_t) set, CGNS_ENUMT(GridLocation_t) where,
-                           const std::vector<cgsize_t>& numbers, int inward = 0) {
+postproc::Field block_with(const std::vector<cgsize_t>& cells, CGNS_ENUMT(PointSetType_t) set,
+                           CGNS_ENUMT(GridLocation_t) where, const std::vector<cgsize_t>& numbers, int inward = 0) {
     const core::TemporaryFolder folder;
     {
         CgnsWriter file(folder.path() / "a.cgns", static_cast<int>(cells.size()), static_cast<int>(cells.size()));
         file.add_block("blk", cells);
-        const int condition = file.condition("wall", CGNS_ENUMV(BCWall), set, where, numbers, static_cast<int>(cells.size()));
+        const int condition =
+            file.condition("wall", CGNS_ENUMV(BCWall), set, where, numbers, static_cast<int>(cells.size()));
         if (inward > 0) {
             std::array<int, 3> normal{};
             normal[static_cast<std::size_t>(inward - 1)] = 1;
-            CgnsWriter::ok(cg_boco_normal_write(file.file, file.base, file.zone, condition, normal.data(), 0, CGNS_ENUMV(RealDouble), nullptr));
+            CgnsWriter::ok(cg_boco_normal_write(file.file, file.base, file.zone, condition, normal.data(), 0,
+                                                CGNS_ENUMV(RealDouble), nullptr));
         }
     }
     return read_field(folder.path() / "a.cgns");
@@ -76,14 +78,16 @@ TEST(CgnsBoundaries, ARangeOfFacesHasAllOfThem) {
 TEST(CgnsBoundaries, InABlockOneCellWideTheFileSaysAcrossWhichIndexFacesLie) {
     const auto range = CGNS_ENUMV(PointRange);
     const std::vector<cgsize_t> numbers = {1, 1, 1, 3, 1, 1};  // across j or k
-    for (const auto& [where, inward, y, z] : {std::tuple{CGNS_ENUMV(KFaceCenter), 0, 1.0, 0.0}, std::tuple{CGNS_ENUMV(JFaceCenter), 0, 0.0, 1.0},
-                                              std::tuple{CGNS_ENUMV(FaceCenter), 2, 0.0, 1.0}, std::tuple{CGNS_ENUMV(FaceCenter), 3, 1.0, 0.0}}) {
+    for (const auto& [where, inward, y, z] :
+         {std::tuple{CGNS_ENUMV(KFaceCenter), 0, 1.0, 0.0}, std::tuple{CGNS_ENUMV(JFaceCenter), 0, 0.0, 1.0},
+          std::tuple{CGNS_ENUMV(FaceCenter), 2, 0.0, 1.0}, std::tuple{CGNS_ENUMV(FaceCenter), 3, 1.0, 0.0}}) {
         const auto field = block_with({3, 1, 1}, range, where, numbers, inward);
         ASSERT_NEAR(area(field, "blk/wall"), 3, 1e-12);
         EXPECT_EQ(field.find("blk/wall")->surface->GetBounds()[3], y);
         EXPECT_EQ(field.find("blk/wall")->surface->GetBounds()[5], z);
     }
-    EXPECT_NEAR(area(block_with({3, 1, 1}, range, CGNS_ENUMV(FaceCenter), {1, 1, 2, 3, 1, 2}), "blk/wall"), 3, 1e-12);  // behind the last cell
+    EXPECT_NEAR(area(block_with({3, 1, 1}, range, CGNS_ENUMV(FaceCenter), {1, 1, 2, 3, 1, 2}), "blk/wall"), 3,
+                1e-12);  // behind the last cell
     const auto unsaid = block_with({3, 1, 1}, range, CGNS_ENUMV(FaceCenter), numbers);
     EXPECT_EQ(unsaid.find("blk/wall"), nullptr);
     EXPECT_THAT(told(unsaid), HasSubstr("'wall' (BCWall) has no faces: the file does not say across which index"));
@@ -91,9 +95,12 @@ TEST(CgnsBoundaries, InABlockOneCellWideTheFileSaysAcrossWhichIndexFacesLie) {
 
 TEST(CgnsBoundaries, ListsInBlocksNameFacesOrVertices) {
     const auto list = CGNS_ENUMV(PointList);
-    EXPECT_NEAR(area(block_with({2, 3, 4}, list, CGNS_ENUMV(KFaceCenter), {1, 1, 1, 2, 1, 1, 2, 3, 1}), "blk/wall"), 3, 1e-12);
+    EXPECT_NEAR(area(block_with({2, 3, 4}, list, CGNS_ENUMV(KFaceCenter), {1, 1, 1, 2, 1, 1, 2, 3, 1}), "blk/wall"), 3,
+                1e-12);
     EXPECT_NEAR(area(block_with({2, 3, 4}, list, CGNS_ENUMV(FaceCenter), {3, 1, 1, 3, 3, 4}), "blk/wall"), 2, 1e-12);
-    EXPECT_NEAR(area(block_with({2, 3, 4}, list, CGNS_ENUMV(Vertex), {1, 1, 1, 2, 1, 1, 2, 2, 1, 1, 2, 1, 1, 3, 1}), "blk/wall"), 1, 1e-12);
+    EXPECT_NEAR(area(block_with({2, 3, 4}, list, CGNS_ENUMV(Vertex), {1, 1, 1, 2, 1, 1, 2, 2, 1, 1, 2, 1, 1, 3, 1}),
+                     "blk/wall"),
+                1, 1e-12);
     const auto corner = block_with({2, 3, 4}, list, CGNS_ENUMV(Vertex), {1, 1, 1});
     EXPECT_EQ(corner.find("blk/wall"), nullptr);
     EXPECT_THAT(told(corner), HasSubstr("'wall'"));
@@ -105,11 +112,13 @@ TEST(CgnsBoundaries, PlaneBlocksHaveLines) {
     EXPECT_NEAR(area(block_with({2, 3}, range, CGNS_ENUMV(Vertex), {1, 1, 3, 1}), "blk/wall"), 2, 1e-12);
     EXPECT_NEAR(area(block_with({2, 3}, range, CGNS_ENUMV(EdgeCenter), {3, 1, 3, 3}), "blk/wall"), 3, 1e-12);
     EXPECT_NEAR(area(block_with({2, 3}, range, CGNS_ENUMV(EdgeCenter), {1, 4, 2, 4}), "blk/wall"), 2, 1e-12);
-    EXPECT_NEAR(area(block_with({2, 3}, CGNS_ENUMV(PointList), CGNS_ENUMV(EdgeCenter), {1, 1, 2, 4}, 2), "blk/wall"), 2, 1e-12);
+    EXPECT_NEAR(area(block_with({2, 3}, CGNS_ENUMV(PointList), CGNS_ENUMV(EdgeCenter), {1, 1, 2, 4}, 2), "blk/wall"), 2,
+                1e-12);
 }
 
 TEST(CgnsBoundaries, FacesOutsideABlockAreRefused) {
-    for (const auto& numbers : {std::vector<cgsize_t>{1, 1, 1, 4, 3, 1}, std::vector<cgsize_t>{1, 1, 6, 2, 3, 6}, std::vector<cgsize_t>{0, 1, 1, 2, 3, 1}}) {
+    for (const auto& numbers : {std::vector<cgsize_t>{1, 1, 1, 4, 3, 1}, std::vector<cgsize_t>{1, 1, 6, 2, 3, 6},
+                                std::vector<cgsize_t>{0, 1, 1, 2, 3, 1}}) {
         EXPECT_THROW(block_with({2, 3, 4}, CGNS_ENUMV(PointRange), CGNS_ENUMV(KFaceCenter), numbers), core::InputError);
     }
     EXPECT_THROW(block_with({2, 3, 4}, CGNS_ENUMV(PointList), CGNS_ENUMV(KFaceCenter), {4, 1, 1}), core::InputError);
@@ -121,7 +130,9 @@ TEST(CgnsBoundaries, VerticesThatAreCalledFacesAreVertices) {
         const auto field = block_with({2, 3, 4}, CGNS_ENUMV(PointRange), where, {1, 1, 5, 3, 4, 5});
         EXPECT_NEAR(area(field, "blk/wall"), 6, 1e-12);
         EXPECT_THAT(told(field), HasSubstr("is taken by its vertices"));
-        EXPECT_NEAR(area(block_with({2, 3, 4}, CGNS_ENUMV(PointList), where, {2, 3, 5, 3, 3, 5, 3, 4, 5, 2, 4, 5}), "blk/wall"), 1, 1e-12);
+        EXPECT_NEAR(
+            area(block_with({2, 3, 4}, CGNS_ENUMV(PointList), where, {2, 3, 5, 3, 3, 5, 3, 4, 5, 2, 4, 5}), "blk/wall"),
+            1, 1e-12);
     }
 }
 
@@ -135,11 +146,13 @@ TEST(CgnsBoundaries, CellsAndFacesMayStandInOneSection) {
         const auto faces = CgnsWriter::cube_faces();
         for (std::size_t f = 0; f < 6; ++f) {
             list.push_back(CGNS_ENUMV(QUAD_4));
-            list.insert(list.end(), faces.begin() + static_cast<std::ptrdiff_t>(4 * f), faces.begin() + static_cast<std::ptrdiff_t>(4 * f + 4));
+            list.insert(list.end(), faces.begin() + static_cast<std::ptrdiff_t>(4 * f),
+                        faces.begin() + static_cast<std::ptrdiff_t>(4 * f + 4));
             offsets.push_back(static_cast<cgsize_t>(list.size()));
         }
         int index = 0;
-        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "all", CGNS_ENUMV(MIXED), 1, 7, 0, list.data(), offsets.data(), &index));
+        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "all", CGNS_ENUMV(MIXED), 1, 7, 0,
+                                             list.data(), offsets.data(), &index));
         file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(FaceCenter), {2, 7});
         file.solution("Cells", CGNS_ENUMV(CellCenter), "Pressure", {5});
     }
@@ -201,8 +214,10 @@ TEST(CgnsBoundaries, PolygonsOfOneCellStayThereWithoutACondition) {
         const std::vector<cgsize_t> cell = {1, 2, 3, 4, 5, 6};
         const std::vector<cgsize_t> cell_starts = {0, 6};
         int index = 0;
-        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "faces", CGNS_ENUMV(NGON_n), 1, 6, 0, faces.data(), starts.data(), &index));
-        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "cells", CGNS_ENUMV(NFACE_n), 7, 7, 0, cell.data(), cell_starts.data(), &index));
+        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "faces", CGNS_ENUMV(NGON_n), 1, 6, 0,
+                                             faces.data(), starts.data(), &index));
+        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "cells", CGNS_ENUMV(NFACE_n), 7, 7, 0,
+                                             cell.data(), cell_starts.data(), &index));
         file.condition("floor", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(Vertex), {1, 2, 3, 4});
         file.condition("lid", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {2});
     }
@@ -228,8 +243,9 @@ TEST(CgnsBoundaries, AHundredThousandFacesInOneConditionAreReadAtOnce) {
                     x[1].push_back(j);
                     x[2].push_back(k);
                     if (k == 0 && i < n && j < n) {
-                        const std::array<cgsize_t, 8> corners = {node(i, j, 0), node(i + 1, j, 0), node(i + 1, j + 1, 0), node(i, j + 1, 0),
-                                                                 node(i, j, 1), node(i + 1, j, 1), node(i + 1, j + 1, 1), node(i, j + 1, 1)};
+                        const std::array<cgsize_t, 8> corners = {
+                            node(i, j, 0), node(i + 1, j, 0), node(i + 1, j + 1, 0), node(i, j + 1, 0),
+                            node(i, j, 1), node(i + 1, j, 1), node(i + 1, j + 1, 1), node(i, j + 1, 1)};
                         cells.insert(cells.end(), corners.begin(), corners.end());
                         faces.insert(faces.end(), corners.begin(), corners.begin() + 4);
                     }
@@ -239,16 +255,19 @@ TEST(CgnsBoundaries, AHundredThousandFacesInOneConditionAreReadAtOnce) {
         file.add_zone("water", x, n * n);
         file.section("cells", CGNS_ENUMV(HEXA_8), cells, 8);
         file.section("bottom", CGNS_ENUMV(QUAD_4), faces, 4);
-        file.condition("wall", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(FaceCenter), {n * n + 1, 2 * n * n});
+        file.condition("wall", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(FaceCenter),
+                       {n * n + 1, 2 * n * n});
     }
     postproc::ReadOptions surfaces;
     surfaces.surfaces_only = true;
-    EXPECT_NEAR(area(read_field(folder.path() / "a.cgns", surfaces), "wall"), n * n, 1e-6);  // was refused after a minute
+    EXPECT_NEAR(area(read_field(folder.path() / "a.cgns", surfaces), "wall"), n * n,
+                1e-6);  // was refused after a minute
 }
 
 namespace {
 
-/// Two cubes one on the other, 10 Pa in the lower and 20 in the upper, and the face between them; hexahedra or polyhedra.
+/// Two cubes one on the other, 10 Pa in the lower and 20 in the upper, and the face between them; hexahedra or
+/// polyhedra.
 void write_two_cubes(const fs::path& path, CGNS_ENUMT(BCType_t) type, bool polyhedra, bool upward) {
     CgnsWriter file(path);
     std::array<std::vector<double>, 3> x;
@@ -283,8 +302,10 @@ void write_two_cubes(const fs::path& path, CGNS_ENUMT(BCType_t) type, bool polyh
         const std::vector<cgsize_t> cells = {out, 2, 3, 4, 5, 10, -out, 6, 7, 8, 9, 11};
         const std::vector<cgsize_t> cell_starts = {0, 6, 12};
         int index = 0;
-        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "faces", CGNS_ENUMV(NGON_n), 1, 11, 0, faces.data(), starts.data(), &index));
-        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "cells", CGNS_ENUMV(NFACE_n), 12, 13, 0, cells.data(), cell_starts.data(), &index));
+        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "faces", CGNS_ENUMV(NGON_n), 1, 11, 0,
+                                             faces.data(), starts.data(), &index));
+        CgnsWriter::ok(cg_poly_section_write(file.file, file.base, file.zone, "cells", CGNS_ENUMV(NFACE_n), 12, 13, 0,
+                                             cells.data(), cell_starts.data(), &index));
         file.condition("plate", type, CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {1});
     }
     file.solution("Cells", CGNS_ENUMV(CellCenter), "Pressure", {10, 20});

@@ -6,7 +6,7 @@
 #include "cgns_files.h"
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 
 namespace underbody {
 
@@ -29,18 +29,23 @@ std::string told(const postproc::Field& field) {
 }
 
 /// Data of a condition, one value or one each of what it names, or of a range of its own.
-void write_data(const CgnsWriter& file, int condition, CGNS_ENUMT(BCDataType_t) kind, const std::string& variable, const std::vector<double>& values,
-                CGNS_ENUMT(GridLocation_t) where = CGNS_ENUMV(Vertex), const std::vector<cgsize_t>& range = {}, std::size_t indices = 1) {
+void write_data(const CgnsWriter& file, int condition, CGNS_ENUMT(BCDataType_t) kind, const std::string& variable,
+                const std::vector<double>& values, CGNS_ENUMT(GridLocation_t) where = CGNS_ENUMV(Vertex),
+                const std::vector<cgsize_t>& range = {}, std::size_t indices = 1) {
     int set = 0;
     const std::string name = "Data of " + variable;
-    CgnsWriter::ok(cg_dataset_write(file.file, file.base, file.zone, condition, name.c_str(), CGNS_ENUMV(BCWall), &set));
+    CgnsWriter::ok(
+        cg_dataset_write(file.file, file.base, file.zone, condition, name.c_str(), CGNS_ENUMV(BCWall), &set));
     if (!range.empty()) {
-        CgnsWriter::ok(cg_goto(file.file, file.base, "Zone_t", file.zone, "ZoneBC_t", 1, "BC_t", condition, "BCDataSet_t", set, "end"));
-        CgnsWriter::ok(cg_ptset_write(CGNS_ENUMV(PointRange), static_cast<cgsize_t>(range.size() / indices), range.data()));
+        CgnsWriter::ok(cg_goto(file.file, file.base, "Zone_t", file.zone, "ZoneBC_t", 1, "BC_t", condition,
+                               "BCDataSet_t", set, "end"));
+        CgnsWriter::ok(
+            cg_ptset_write(CGNS_ENUMV(PointRange), static_cast<cgsize_t>(range.size() / indices), range.data()));
         CgnsWriter::ok(cg_gridlocation_write(where));
     }
     CgnsWriter::ok(cg_bcdata_write(file.file, file.base, file.zone, condition, set, kind));
-    CgnsWriter::ok(cg_goto(file.file, file.base, "Zone_t", file.zone, "ZoneBC_t", 1, "BC_t", condition, "BCDataSet_t", set, "BCData_t", static_cast<int>(kind), "end"));
+    CgnsWriter::ok(cg_goto(file.file, file.base, "Zone_t", file.zone, "ZoneBC_t", 1, "BC_t", condition, "BCDataSet_t",
+                           set, "BCData_t", static_cast<int>(kind), "end"));
     const auto count = static_cast<cgsize_t>(values.size());
     CgnsWriter::ok(cg_array_write(variable.c_str(), CGNS_ENUMV(RealDouble), 1, &count, values.data()));
 }
@@ -49,7 +54,9 @@ void write_data(const CgnsWriter& file, int condition, CGNS_ENUMT(BCDataType_t) 
 double face_value(const postproc::Zone& zone, const char* array, double x, double y, double z) {
     for (vtkIdType c = 0; c < zone.surface->GetNumberOfCells(); ++c) {
         const double* box = zone.surface->GetCell(c)->GetBounds();
-        if (std::abs((box[0] + box[1]) / 2 - x) + std::abs((box[2] + box[3]) / 2 - y) + std::abs((box[4] + box[5]) / 2 - z) < 1e-9) {
+        if (std::abs((box[0] + box[1]) / 2 - x) + std::abs((box[2] + box[3]) / 2 - y) +
+                std::abs((box[4] + box[5]) / 2 - z) <
+            1e-9) {
             return zone.surface->GetCellData()->GetArray(array)->GetTuple1(c);
         }
     }
@@ -75,14 +82,16 @@ TEST(CgnsBoundaryValues, FacesOfAListHaveTheirOwn) {
         CgnsWriter file(folder.path() / "a.cgns");
         file.add_cube("water");
         file.section("quads", CGNS_ENUMV(QUAD_4), CgnsWriter::cube_faces(), 4);
-        const int hull = file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {3, 2, 5});  // lid, floor, x = 1
+        const int hull = file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter),
+                                        {3, 2, 5});  // lid, floor, x = 1
         write_data(file, hull, CGNS_ENUMV(Dirichlet), "Pressure", {300, 200, 500});
         write_data(file, hull, CGNS_ENUMV(Neumann), "WallHeatFlux", {3, 2, 5});
         write_data(file, hull, CGNS_ENUMV(Neumann), "Temperature", {3, 2, 5});  // a gradient
         write_data(file, hull, CGNS_ENUMV(Dirichlet), "Density", {998});
         file.solution("Cells", CGNS_ENUMV(CellCenter), "Pressure", {7});
         CgnsWriter::ok(cg_goto(file.file, file.base, "end"));
-        CgnsWriter::ok(cg_units_write(CGNS_ENUMV(Gram), CGNS_ENUMV(Meter), CGNS_ENUMV(Second), CGNS_ENUMV(Kelvin), CGNS_ENUMV(Radian)));
+        CgnsWriter::ok(cg_units_write(CGNS_ENUMV(Gram), CGNS_ENUMV(Meter), CGNS_ENUMV(Second), CGNS_ENUMV(Kelvin),
+                                      CGNS_ENUMV(Radian)));
     }
     const auto field = read_field(folder.path() / "a.cgns");
     const auto* hull = field.find("hull");
@@ -106,7 +115,8 @@ TEST(CgnsBoundaryValues, TheSolutionAtNodesGoesBefore) {
         CgnsWriter file(folder.path() / "a.cgns");
         file.add_cube("water");
         file.section("quads", CGNS_ENUMV(QUAD_4), CgnsWriter::cube_faces(), 4);
-        const int hull = file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(FaceCenter), {2, 7});
+        const int hull =
+            file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(FaceCenter), {2, 7});
         write_data(file, hull, CGNS_ENUMV(Dirichlet), "Pressure", {1, 2, 3, 4, 5, 6});
         file.solution("Nodes", CGNS_ENUMV(Vertex), "Pressure", std::vector<double>(8, 9));
     }
@@ -121,7 +131,8 @@ TEST(CgnsBoundaryValues, VerticesHaveTheirOwn) {
         CgnsWriter file(folder.path() / "a.cgns");
         file.add_cube("water");
         file.section("quads", CGNS_ENUMV(QUAD_4), CgnsWriter::cube_faces(), 4);
-        const int floor = file.condition("floor", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(Vertex), {4, 3, 2, 1});
+        const int floor =
+            file.condition("floor", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(Vertex), {4, 3, 2, 1});
         write_data(file, floor, CGNS_ENUMV(Dirichlet), "Pressure", {40, 30, 20, 10});
         const int lid = file.condition("lid", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(Vertex), {5, 8});
         write_data(file, lid, CGNS_ENUMV(Dirichlet), "Pressure", {50, 60, 70, 80});
@@ -147,9 +158,11 @@ TEST(CgnsBoundaryValues, BlocksHaveThemInTheOrderOfTheirIndices) {
     {
         CgnsWriter file(folder.path() / "a.cgns");
         file.add_block("blk", {2, 3, 4});
-        const int faces = file.condition("faces", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(KFaceCenter), {1, 1, 1, 2, 3, 1}, 3);
+        const int faces = file.condition("faces", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(KFaceCenter),
+                                         {1, 1, 1, 2, 3, 1}, 3);
         write_data(file, faces, CGNS_ENUMV(Dirichlet), "Pressure", values);
-        const int vertices = file.condition("vertices", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(Vertex), {1, 1, 5, 3, 4, 5}, 3);
+        const int vertices = file.condition("vertices", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(Vertex),
+                                            {1, 1, 5, 3, 4, 5}, 3);
         write_data(file, vertices, CGNS_ENUMV(Dirichlet), "Temperature", at_nodes);
     }
     const auto field = read_field(folder.path() / "a.cgns");
@@ -166,9 +179,12 @@ TEST(CgnsBoundaryValues, TheyMayNameTheirFacesThemselves) {
     {
         CgnsWriter file(folder.path() / "block.cgns");
         file.add_block("blk", {2, 3, 4});
-        const int wall = file.condition("wall", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(Vertex), {1, 1, 5, 3, 4, 5}, 3);
-        write_data(file, wall, CGNS_ENUMV(Dirichlet), "Pressure", {100, 101, 102, 103, 104, 105}, CGNS_ENUMV(KFaceCenter), {1, 1, 5, 2, 3, 5}, 3);
-        write_data(file, wall, CGNS_ENUMV(Dirichlet), "Temperature", {7, 8}, CGNS_ENUMV(KFaceCenter), {1, 1, 5, 2, 1, 5}, 3);
+        const int wall = file.condition("wall", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointRange), CGNS_ENUMV(Vertex),
+                                        {1, 1, 5, 3, 4, 5}, 3);
+        write_data(file, wall, CGNS_ENUMV(Dirichlet), "Pressure", {100, 101, 102, 103, 104, 105},
+                   CGNS_ENUMV(KFaceCenter), {1, 1, 5, 2, 3, 5}, 3);
+        write_data(file, wall, CGNS_ENUMV(Dirichlet), "Temperature", {7, 8}, CGNS_ENUMV(KFaceCenter),
+                   {1, 1, 5, 2, 1, 5}, 3);
     }
     const auto block = read_field(folder.path() / "block.cgns");
     for (int j = 0; j < 3; ++j) {
@@ -181,7 +197,8 @@ TEST(CgnsBoundaryValues, TheyMayNameTheirFacesThemselves) {
         CgnsWriter file(folder.path() / "cube.cgns");
         file.add_cube("water");
         file.section("quads", CGNS_ENUMV(QUAD_4), CgnsWriter::cube_faces(), 4);
-        const int hull = file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {3, 2});
+        const int hull =
+            file.condition("hull", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), CGNS_ENUMV(FaceCenter), {3, 2});
         write_data(file, hull, CGNS_ENUMV(Dirichlet), "Pressure", {2, 3, 4, 5}, CGNS_ENUMV(FaceCenter), {2, 5});
     }
     const auto cube = read_field(folder.path() / "cube.cgns");

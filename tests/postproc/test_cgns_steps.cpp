@@ -95,7 +95,8 @@ TEST(CgnsSteps, SolutionsOfCellsAndVerticesHavePointersOfTheirOwn) {
         write_pointers(file, "FlowSolutionCellPointers", {"C1", "C2"});
         write_pointers(file, "FlowSolutionVertexPointers", {"V1", "V2"});
     }
-    for (const auto& [time, step] : {std::pair{std::optional(0.1), 1.0}, std::pair{std::optional(0.2), 2.0}, std::pair{std::optional<double>(), 2.0}}) {
+    for (const auto& [time, step] : {std::pair{std::optional(0.1), 1.0}, std::pair{std::optional(0.2), 2.0},
+                                     std::pair{std::optional<double>(), 2.0}}) {
         const auto field = read_at(path, time);
         EXPECT_EQ(pressure_of(field), step);
         EXPECT_EQ(value_of(field, "temperature"), 300 + step);
@@ -114,7 +115,8 @@ TEST(CgnsSteps, ATimeIsRefusedWhereTheFileDoesNotSayWhichSolutionsAreOfIt) {
             file.solution("Sol" + std::to_string(step), CGNS_ENUMV(Vertex), "Pressure", std::vector<double>(8, step));
         }
     }
-    EXPECT_THAT(refusal_at(path, 0.1), HasSubstr("holds Pressure in several solutions and does not say of which times"));
+    EXPECT_THAT(refusal_at(path, 0.1),
+                HasSubstr("holds Pressure in several solutions and does not say of which times"));
     const auto last = read_at(path, {});
     EXPECT_EQ(pressure_of(last), 3);
     EXPECT_THAT(told(last), HasSubstr("the last is read, 'Sol3'"));
@@ -124,7 +126,8 @@ TEST(CgnsSteps, ATimeIsRefusedWhereTheFileDoesNotSayWhichSolutionsAreOfIt) {
         write_times(file, {0.1, 0.2, 0.3});
         file.solution("Sol", CGNS_ENUMV(Vertex), "Pressure", std::vector<double>(8, 1));
     }
-    EXPECT_THAT(told(read_at(folder.path() / "one.cgns", 0.2)), HasSubstr("does not say of which time its solution 'Sol' is"));
+    EXPECT_THAT(told(read_at(folder.path() / "one.cgns", 0.2)),
+                HasSubstr("does not say of which time its solution 'Sol' is"));
     {
         CgnsWriter file(folder.path() / "none.cgns");
         file.add_cube("water");
@@ -143,10 +146,12 @@ TEST(CgnsSteps, SolutionsOfPartsAloneAreLeftOutAloud) {
         file.section("faces", CGNS_ENUMV(QUAD_4), CgnsWriter::cube_faces(), 4);
         const cgsize_t nodes[2] = {1, 3};
         int index = 0;
-        CgnsWriter::ok(cg_sol_ptset_write(file.file, file.base, file.zone, "Some", CGNS_ENUMV(Vertex), CGNS_ENUMV(PointRange), 2, nodes, &index));
+        CgnsWriter::ok(cg_sol_ptset_write(file.file, file.base, file.zone, "Some", CGNS_ENUMV(Vertex),
+                                          CGNS_ENUMV(PointRange), 2, nodes, &index));
         const double values[3] = {1, 2, 3};
         int field = 0;
-        CgnsWriter::ok(cg_field_write(file.file, file.base, file.zone, index, CGNS_ENUMV(RealDouble), "Temperature", values, &field));
+        CgnsWriter::ok(cg_field_write(file.file, file.base, file.zone, index, CGNS_ENUMV(RealDouble), "Temperature",
+                                      values, &field));
     }
     const auto field = read_at(path, {});
     EXPECT_EQ(pressure_of(field), 5);
@@ -215,9 +220,11 @@ TEST(CgnsSteps, ZonesOfOtherStepsStayAway) {
         const std::array<int, 2> zones = {1, 2};
         CgnsWriter::ok(cg_array_write("NumberOfZones", CGNS_ENUMV(Integer), 1, &steps, zones.data()));
         const std::array<cgsize_t, 3> size = {32, 2, 2};
-        CgnsWriter::ok(cg_array_write("ZonePointers", CGNS_ENUMV(Character), 3, size.data(), padded({"water 1", "Null", "/Base/water 2", "water 3"}).c_str()));
+        CgnsWriter::ok(cg_array_write("ZonePointers", CGNS_ENUMV(Character), 3, size.data(),
+                                      padded({"water 1", "Null", "/Base/water 2", "water 3"}).c_str()));
     }
-    for (const auto& [time, step] : {std::pair{std::optional(0.1), 1.0}, std::pair{std::optional(0.2), 2.0}, std::pair{std::optional<double>(), 2.0}}) {
+    for (const auto& [time, step] : {std::pair{std::optional(0.1), 1.0}, std::pair{std::optional(0.2), 2.0},
+                                     std::pair{std::optional<double>(), 2.0}}) {
         const auto field = read_at(path, time);
         EXPECT_EQ(field.zones.size(), step == 1 ? 2U : 4U);
         EXPECT_EQ(pressure_of(field), step);

@@ -6,7 +6,7 @@
 #include "cgns_files.h"
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 
 namespace underbody {
 
@@ -23,7 +23,9 @@ void state_units(CGNS_ENUMT(LengthUnits_t) length, CGNS_ENUMT(TemperatureUnits_t
     CgnsWriter::ok(cg_units_write(CGNS_ENUMV(Kilogram), length, CGNS_ENUMV(Second), temperature, CGNS_ENUMV(Radian)));
 }
 
-double value_of(const postproc::Field& field, const char* array) { return field.find("water")->volume->GetPointData()->GetArray(array)->GetTuple1(0); }
+double value_of(const postproc::Field& field, const char* array) {
+    return field.find("water")->volume->GetPointData()->GetArray(array)->GetTuple1(0);
+}
 
 std::string told(const postproc::Field& field) {
     std::string text;
@@ -56,7 +58,8 @@ TEST(CgnsUnits, TemperaturesHaveTheUnitThatTheFileStates) {
     const auto read = [](CGNS_ENUMT(TemperatureUnits_t) unit, bool at_base) {
         return value_of(cube_of("Temperature", {},
                                 [&](const CgnsWriter& file) {
-                                    at_base ? CgnsWriter::ok(cg_goto(file.file, file.base, "end")) : go_to_variable(file);
+                                    at_base ? CgnsWriter::ok(cg_goto(file.file, file.base, "end"))
+                                            : go_to_variable(file);
                                     state_units(CGNS_ENUMV(Meter), unit);
                                 }),
                         "temperature");
@@ -76,7 +79,8 @@ TEST(CgnsUnits, NormalisedValuesAreConvertedAsTheFileSays) {
             CgnsWriter::ok(cg_dataclass_write(CGNS_ENUMV(NormalizedByDimensional)));
             const std::array<double, 2> factors = {50000, 7};
             const std::array<float, 2> small = {50000, 7};
-            CgnsWriter::ok(single ? cg_conversion_write(CGNS_ENUMV(RealSingle), small.data()) : cg_conversion_write(CGNS_ENUMV(RealDouble), factors.data()));
+            CgnsWriter::ok(single ? cg_conversion_write(CGNS_ENUMV(RealSingle), small.data())
+                                  : cg_conversion_write(CGNS_ENUMV(RealDouble), factors.data()));
         });
         EXPECT_NEAR(value_of(field, "pressure"), 1000007, 1e-6);
         EXPECT_THAT(told(field), Not(HasSubstr("no dimensions")));
@@ -95,7 +99,10 @@ TEST(CgnsUnits, AClassBelowTheBaseCounts) {
         CgnsWriter::ok(cg_goto(file.file, file.base, "Zone_t", file.zone, "end"));
         CgnsWriter::ok(cg_dataclass_write(CGNS_ENUMV(NormalizedByUnknownDimensional)));
     });
-    EXPECT_THAT(told(of_zone), HasSubstr("CoordinateX, CoordinateY, CoordinateZ, Pressure have no dimensions (NormalizedByUnknownDimensional)"));
+    EXPECT_THAT(
+        told(of_zone),
+        HasSubstr(
+            "CoordinateX, CoordinateY, CoordinateZ, Pressure have no dimensions (NormalizedByUnknownDimensional)"));
     EXPECT_EQ(value_of(of_zone, "pressure"), 20);
     EXPECT_NEAR(test::volume_of(of_zone), 1, 1e-12);
     // Of the whole file, but not of the pressure.
@@ -152,7 +159,8 @@ TEST(CgnsUnits, AZoneWithoutAllItsCoordinatesIsRefused) {
             const auto x = CgnsWriter::cube_nodes();
             const char* names[] = {"CoordinateX", "CoordinateZ"};
             for (std::size_t k = 0; k < axes; ++k) {
-                CgnsWriter::ok(cg_coord_write(file.file, file.base, file.zone, CGNS_ENUMV(RealDouble), names[k], x[k].data(), &index));
+                CgnsWriter::ok(cg_coord_write(file.file, file.base, file.zone, CGNS_ENUMV(RealDouble), names[k],
+                                              x[k].data(), &index));
             }
         }
         EXPECT_THAT(test::refusal(path), HasSubstr(axes == 0 ? "no coordinates" : "no CoordinateY"));

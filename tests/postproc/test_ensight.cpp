@@ -74,11 +74,13 @@ TEST(Ensight, AGeometryOrVariableCutAnywhereIsRefused) {
 TEST(Ensight, LinesOfACaseMayHaveAnySpacingAndWhatIsNotKnownIsTold) {
     const core::TemporaryFolder folder;
     for (const char* ending : {".geo", ".scl1", ".vel"}) {
-        std::filesystem::copy_file(data(std::string("ascii") + ending), folder.path() / (std::string("ascii") + ending));
+        std::filesystem::copy_file(data(std::string("ascii") + ending),
+                                   folder.path() / (std::string("ascii") + ending));
     }
     const auto path = folder.path() / "case.encas";
     const auto with = [&](const std::string& variable) {
-        core::write_file(path, "# a comment\nFORMAT\ntype:ensight gold\nGeometry\n model:ascii.geo\nVARIABLE\n" + variable);
+        core::write_file(path,
+                         "# a comment\nFORMAT\ntype:ensight gold\nGeometry\n model:ascii.geo\nVARIABLE\n" + variable);
         return read_field(path);
     };
     const auto spaced = with("Scalar \t per  node :  Static_Pressure   ascii.scl1 \r\n");
@@ -87,7 +89,8 @@ TEST(Ensight, LinesOfACaseMayHaveAnySpacingAndWhatIsNotKnownIsTold) {
     const auto unknown = with("scaler per node: Static_Pressure ascii.scl1\n");
     EXPECT_EQ(unknown.find("body")->find("pressure"), nullptr);
     ASSERT_FALSE(unknown.problems.empty());
-    EXPECT_EQ(unknown.problems.front().message, "'scaler per node' is not known under VARIABLE and passed over; did you mean 'scalar per node'?");
+    EXPECT_EQ(unknown.problems.front().message,
+              "'scaler per node' is not known under VARIABLE and passed over; did you mean 'scalar per node'?");
     EXPECT_EQ(unknown.problems.front().place.line, 7);
     EXPECT_EQ(unknown.problems.front().severity, core::Problem::Severity::warning);
 }

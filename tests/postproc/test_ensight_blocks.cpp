@@ -14,7 +14,7 @@
 
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -151,8 +151,9 @@ TEST(EnsightBlocks, ThreeKindsOfBlocksAreTheSameCellsWithTheirValues) {
             cells.line("velocity").line("part").ints({1}).line("block");
             cells.reals(counted(6)).reals(counted(6, 10)).reals(counted(6, 20));
             cells.to(folder.path() / "a.u");
-            write_case(folder.path() / "a.case",
-                       "GEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: Pressure a.p\nvector per element: Velocity a.u\n");
+            write_case(
+                folder.path() / "a.case",
+                "GEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: Pressure a.p\nvector per element: Velocity a.u\n");
             const auto field = read_field(folder.path() / "a.case");
             ASSERT_EQ(field.zones.size(), 1U);
             auto& grid = *field.zones[0].volume;
@@ -169,7 +170,12 @@ TEST(EnsightBlocks, BlankedCellsAndGhostsAreLeftOutWithTheirValues) {
     const core::TemporaryFolder folder;
     Writer geometry("little");
     head(geometry);
-    geometry.line("part").ints({1}).line("tank").line("block uniform iblanked with_ghost").ints({3, 4, 2}).reals({0, 0, 0, 1, 2, 3});
+    geometry.line("part")
+        .ints({1})
+        .line("tank")
+        .line("block uniform iblanked with_ghost")
+        .ints({3, 4, 2})
+        .reals({0, 0, 0, 1, 2, 3});
     std::vector<std::int32_t> blank(24, 1);
     blank[0] = 0;  // a corner: one cell
     geometry.ints(blank).line("ghost_flags").ints({0, 0, 0, 0, 0, 1});
@@ -187,10 +193,19 @@ TEST(EnsightBlocks, BlankedCellsAndGhostsAreLeftOutWithTheirValues) {
 
 TEST(EnsightWalls, LookIntoTheVolumeThatIsInTheFile) {
     const core::TemporaryFolder folder;
-    const std::vector<float> x = {0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1};  // a unit cube: x, y, z
+    const std::vector<float> x = {0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1,
+                                  0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1};  // a unit cube: x, y, z
     Writer geometry("little");
     head(geometry);
-    geometry.line("part").ints({1}).line("water").line("coordinates").ints({8}).reals(x).line("hexa8").ints({1}).ints({1, 2, 3, 4, 5, 6, 7, 8});
+    geometry.line("part")
+        .ints({1})
+        .line("water")
+        .line("coordinates")
+        .ints({8})
+        .reals(x)
+        .line("hexa8")
+        .ints({1})
+        .ints({1, 2, 3, 4, 5, 6, 7, 8});
     // The same corners in another order, the faces now in, now out.
     const std::vector<float> turned = {1, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0};
     geometry.line("part").ints({2}).line("walls").line("coordinates").ints({8}).reals(turned);
@@ -215,13 +230,34 @@ TEST(EnsightWalls, LookIntoTheVolumeThatIsInTheFile) {
 TEST(EnsightWalls, LookIntoACellWhoseCentreLiesOutsideIt) {
     // An L of 10 x 10 x 1 with arms 1 thick: the mean of its corners lies off the arms.
     const core::TemporaryFolder folder;
-    const std::vector<float> points = {0, 10, 10, 1, 1, 0, 0, 10, 10, 1, 1, 0, 0, 0, 1, 1, 10, 10, 0, 0, 1, 1, 10, 10, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
+    const std::vector<float> points = {0, 10, 10, 1, 1,  0,  0, 10, 10, 1, 1, 0, 0, 0, 1, 1, 10, 10,
+                                       0, 0,  1,  1, 10, 10, 0, 0,  0,  0, 0, 0, 1, 1, 1, 1, 1,  1};
     const std::vector<std::int32_t> sizes = {6, 6, 4, 4, 4, 4, 4, 4};
-    const std::vector<std::int32_t> faces = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 1, 2, 8, 7, 2, 3, 9, 8, 4, 3, 9, 10, 4, 5, 11, 10, 5, 6, 12, 11, 6, 1, 7, 12};
+    const std::vector<std::int32_t> faces = {1, 2, 3, 4, 5, 6,  7, 8, 9,  10, 11, 12, 1,  2,  8, 7, 2, 3,
+                                             9, 8, 4, 3, 9, 10, 4, 5, 11, 10, 5,  6,  12, 11, 6, 1, 7, 12};
     Writer geometry("little");
     head(geometry);
-    geometry.line("part").ints({1}).line("water").line("coordinates").ints({12}).reals(points).line("nfaced").ints({1}).ints({8}).ints(sizes).ints(faces);
-    geometry.line("part").ints({2}).line("walls").line("coordinates").ints({12}).reals(points).line("nsided").ints({8}).ints(sizes).ints(faces);
+    geometry.line("part")
+        .ints({1})
+        .line("water")
+        .line("coordinates")
+        .ints({12})
+        .reals(points)
+        .line("nfaced")
+        .ints({1})
+        .ints({8})
+        .ints(sizes)
+        .ints(faces);
+    geometry.line("part")
+        .ints({2})
+        .line("walls")
+        .line("coordinates")
+        .ints({12})
+        .reals(points)
+        .line("nsided")
+        .ints({8})
+        .ints(sizes)
+        .ints(faces);
     geometry.to(folder.path() / "a.geo");
     write_case(folder.path() / "a.case", "GEOMETRY\nmodel: a.geo\n");
     const auto field = read_field(folder.path() / "a.case");
@@ -277,13 +313,26 @@ TEST(EnsightBlocks, MayHoldTheIdsThatTheHeaderPromisesOrNot) {
         for (const bool there : {true, false}) {
             Writer geometry(coding);
             geometry.line("a title").line("a second one").line("node id given").line("element id given");
-            geometry.line("part").ints({1}).line("tank").line("block uniform").ints({2, 2, 2}).reals({0, 0, 0, 1, 1, 1});
+            geometry.line("part")
+                .ints({1})
+                .line("tank")
+                .line("block uniform")
+                .ints({2, 2, 2})
+                .reals({0, 0, 0, 1, 1, 1});
             if (there) {
                 geometry.line("node_ids").ints({1, 2, 3, 4, 5, 6, 7, 8}).line("element_ids").ints({1});
             }
-            geometry.line("part").ints({2}).line("pool").line("block uniform").ints({3, 2, 2}).reals({5, 0, 0, 1, 1, 1});
+            geometry.line("part")
+                .ints({2})
+                .line("pool")
+                .line("block uniform")
+                .ints({3, 2, 2})
+                .reals({5, 0, 0, 1, 1, 1});
             if (there) {
-                geometry.line("node_ids").ints({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}).line("element_ids").ints({1, 2});
+                geometry.line("node_ids")
+                    .ints({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})
+                    .line("element_ids")
+                    .ints({1, 2});
             }
             geometry.to(folder.path() / "a.geo");
             write_case(folder.path() / "a.case", "GEOMETRY\nmodel: a.geo\n");
@@ -321,7 +370,12 @@ TEST(EnsightBlocks, ABlockThatAsksForMoreThanTheCaseHoldsIsRefused) {
     const core::TemporaryFolder folder;
     Writer geometry("little");
     head(geometry);
-    geometry.line("part").ints({1}).line("tank").line("block uniform").ints({1000, 1000, 1000}).reals({0, 0, 0, 1, 1, 1});
+    geometry.line("part")
+        .ints({1})
+        .line("tank")
+        .line("block uniform")
+        .ints({1000, 1000, 1000})
+        .reals({0, 0, 0, 1, 1, 1});
     geometry.to(folder.path() / "a.geo");
     write_case(folder.path() / "a.case", "GEOMETRY\nmodel: a.geo\n");
     EXPECT_THAT(test::refusal(folder.path() / "a.case"), HasSubstr("1000000000 nodes"));
@@ -334,11 +388,16 @@ TEST(EnsightTimes, StepsInFilesOfTheirOwnAreChosenByTime) {
         cube(geometry, static_cast<float>(step));
         geometry.to(folder.path() / ("a.geo0" + std::to_string(2 * step)));
         Writer values("little", false);
-        values.line("pressure").line("part").ints({1}).line("coordinates").reals(counted(8, static_cast<float>(100 * step)));
+        values.line("pressure")
+            .line("part")
+            .ints({1})
+            .line("coordinates")
+            .reals(counted(8, static_cast<float>(100 * step)));
         values.to(folder.path() / ("a.p0" + std::to_string(2 * step)));
     }
     write_case(folder.path() / "a.case",
-               "GEOMETRY\nmodel: 1 a.geo**\nVARIABLE\nscalar per node: 1 Pressure a.p**\nTIME\ntime set: 1\nnumber of steps: 3\n"
+               "GEOMETRY\nmodel: 1 a.geo**\nVARIABLE\nscalar per node: 1 Pressure a.p**\nTIME\ntime set: 1\nnumber of "
+               "steps: 3\n"
                "filename start number: 0\nfilename increment: 2\ntime values: 0.0\n0.5\n1.5\n");
     EXPECT_EQ(left_of(read_field(folder.path() / "a.case")), 2);
     ReadOptions options;
@@ -390,7 +449,8 @@ TEST(EnsightTimes, CoordinatesThatChangeAloneTakeTheElementsFromTheirStep) {
         geometry.to(folder.path() / ("a.geo" + std::to_string(step)));
     }
     write_case(folder.path() / "a.case",
-               "GEOMETRY\nmodel: 1 a.geo* change_coords_only\nTIME\ntime set: 1\nnumber of steps: 2\nfilename start number: 0\n"
+               "GEOMETRY\nmodel: 1 a.geo* change_coords_only\nTIME\ntime set: 1\nnumber of steps: 2\nfilename start "
+               "number: 0\n"
                "filename increment: 1\ntime values: 0 1\n");
     const auto field = read_field(folder.path() / "a.case");
     EXPECT_EQ(test::cells_of(field), 1);
@@ -426,8 +486,9 @@ TEST(EnsightLines, ThatGoRoundInAPlaneAreTheBoundaryOfAPlaneCase) {
     const auto result = postproc::loads(field, body);
     EXPECT_NEAR(result.total.force[0], 0, 1e-12);
     EXPECT_NEAR(result.total.force[1], -2, 1e-12);
-    const bool told = std::any_of(field.problems.begin(), field.problems.end(),
-                                  [](const auto& problem) { return problem.message.find("boundaries of a plane case") != std::string::npos; });
+    const bool told = std::any_of(field.problems.begin(), field.problems.end(), [](const auto& problem) {
+        return problem.message.find("boundaries of a plane case") != std::string::npos;
+    });
     EXPECT_TRUE(told);
     for (const bool closed : {true, false}) {  // lines in space; lines through a flow
         write(folder.path(), "little", closed, closed ? 1.0F : 0.0F);

@@ -1,16 +1,15 @@
-#include "postproc/field.h"
-
 #include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
-#include <vtkPointData.h>
+
+#include <nlohmann/json.hpp>
 
 #include "core/file.h"
-#include "postproc/summary.h"
-#include "postproc/vtk_files.h"
+#include "postproc/field/field.h"
+#include "postproc/field/summary.h"
+#include "postproc/field/vtk_files.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -18,10 +17,23 @@ namespace {
 
 TEST(CanonicalNames, KnowTheSpellingsOfTheSolvers) {
     const std::vector<std::pair<std::string, std::string>> names = {
-        {"Pressure", "pressure"}, {"SV_P", "pressure"}, {"static-pressure", "pressure"}, {"Total Pressure", "pressure_total"},
-        {"Wall Shear X", "wall_shear_x"}, {"x-wall-shear", "wall_shear_x"}, {"Velocity v", "velocity_y"}, {"VelocityZ", "velocity_z"},
-        {"SV_W", "velocity_z"}, {"U", "velocity"}, {"u", "velocity_x"}, {"Yplus", "y_plus"}, {"y-plus", "y_plus"}, {"nut", "kinematic_eddy_viscosity"},
-        {"Turbulence Kinetic Energy", "turbulence_kinetic_energy"}, {"SV_WALL_SHEAR", "wall_shear_force"}, {"my variable", "my variable"}};
+        {"Pressure", "pressure"},
+        {"SV_P", "pressure"},
+        {"static-pressure", "pressure"},
+        {"Total Pressure", "pressure_total"},
+        {"Wall Shear X", "wall_shear_x"},
+        {"x-wall-shear", "wall_shear_x"},
+        {"Velocity v", "velocity_y"},
+        {"VelocityZ", "velocity_z"},
+        {"SV_W", "velocity_z"},
+        {"U", "velocity"},
+        {"u", "velocity_x"},
+        {"Yplus", "y_plus"},
+        {"y-plus", "y_plus"},
+        {"nut", "kinematic_eddy_viscosity"},
+        {"Turbulence Kinetic Energy", "turbulence_kinetic_energy"},
+        {"SV_WALL_SHEAR", "wall_shear_force"},
+        {"my variable", "my variable"}};
     for (const auto& [original, canonical] : names) {
         EXPECT_EQ(canonical_name(original).name, canonical) << original;
     }
@@ -60,9 +72,11 @@ TEST(ReadField, SaysWhatItCannotRead) {
 
 TEST(VtkFiles, HoldWhatTheFieldHeld) {
     const core::TemporaryFolder folder;
-    core::write_file(folder.path() / "a.csv",
-                     "[Name]\na\n[Data]\nX [ mm ], Y [ mm ], Z [ mm ], Pressure [ kPa ]\n0,0,0,1\n1,0,0,2\n0,1,0,3\n[Faces]\n0,1,2\n"
-                     "[Name]\nb\n[Data]\nX [ mm ], Y [ mm ], Z [ mm ], Pressure [ kPa ], Yplus\n0,0,1,1,5\n1,0,1,2,5\n0,1,1,3,5\n[Faces]\n0,1,2\n");
+    core::write_file(
+        folder.path() / "a.csv",
+        "[Name]\na\n[Data]\nX [ mm ], Y [ mm ], Z [ mm ], Pressure [ kPa ]\n0,0,0,1\n1,0,0,2\n0,1,0,3\n[Faces]\n0,1,2\n"
+        "[Name]\nb\n[Data]\nX [ mm ], Y [ mm ], Z [ mm ], Pressure [ kPa ], "
+        "Yplus\n0,0,1,1,5\n1,0,1,2,5\n0,1,1,3,5\n[Faces]\n0,1,2\n");
     const Field field = read_field(folder.path() / "a.csv");
     const auto left_out = write_vtk(field, folder.path() / "a.vtp");
     ASSERT_EQ(left_out.size(), 1U);
@@ -81,7 +95,9 @@ TEST(VtkFiles, HoldWhatTheFieldHeld) {
 
 TEST(Summary, GivesZonesArraysAndRanges) {
     const core::TemporaryFolder folder;
-    core::write_file(folder.path() / "a.csv", "[Name]\na\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ bar ]\n0,0,0,1\n1,0,0,2\n0,2,0,null\n[Faces]\n0,1,2\n");
+    core::write_file(folder.path() / "a.csv",
+                     "[Name]\na\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ bar "
+                     "]\n0,0,0,1\n1,0,0,2\n0,2,0,null\n[Faces]\n0,1,2\n");
     const nlohmann::json json = summarise(read_field(folder.path() / "a.csv"));
     EXPECT_EQ(json["format"], "CFD-Post CSV");
     EXPECT_EQ(json["zones"][0]["faces"], 1);

@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 /// Writes groups, data sets and attributes by their paths.
 class Writer {
 public:
-    explicit Writer(const fs::path& path) : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), links_(H5Pcreate(H5P_LINK_CREATE)) {
+    explicit Writer(const fs::path& path)
+        : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), links_(H5Pcreate(H5P_LINK_CREATE)) {
         H5Pset_create_intermediate_group(links_, 1);
     }
     ~Writer() {
@@ -51,7 +52,8 @@ public:
         const hid_t type = H5Tcopy(H5T_C_S1);
         H5Tset_size(type, H5T_VARIABLE);
         const hsize_t size = values.size();
-        if (H5Lexists(file_, path.substr(0, path.find('/', 1)).c_str(), H5P_DEFAULT) > 0 && H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0) {
+        if (H5Lexists(file_, path.substr(0, path.find('/', 1)).c_str(), H5P_DEFAULT) > 0 &&
+            H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0) {
             H5Ldelete(file_, path.c_str(), H5P_DEFAULT);
         }
         set(path, type, type, 1, &size, values.data(), false);
@@ -73,7 +75,8 @@ public:
         H5Sclose(space);
         H5Oclose(object);
     }
-    void text_attribute(const std::string& path, const std::string& name, const std::string& value, bool variable = false) {
+    void text_attribute(const std::string& path, const std::string& name, const std::string& value,
+                        bool variable = false) {
         const hid_t object = H5Oopen(file_, path.c_str(), H5P_DEFAULT);
         const hid_t space = H5Screate(H5S_SCALAR);
         const hid_t type = H5Tcopy(H5T_C_S1);
@@ -92,7 +95,8 @@ public:
     }
 
 private:
-    void set(const std::string& path, hid_t stored, hid_t type, int rank, const hsize_t* size, const void* values, bool packed = true) {
+    void set(const std::string& path, hid_t stored, hid_t type, int rank, const hsize_t* size, const void* values,
+             bool packed = true) {
         const hid_t space = H5Screate_simple(rank, size, nullptr);
         const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
         if (packed && size[0] > 0) {
@@ -126,13 +130,15 @@ struct FaceZone {
 /// Two unit cubes beside each other along x; nodes by x, y, z. Normals point into c0.
 std::vector<FaceZone> zones() {
     const auto node = [](int i, int j, int k) { return 1 + i + 3 * (j + 2 * k); };
-    std::vector<FaceZone> result = {{5, 2, "interior-tank", {}}, {6, 3, "hull", {}}, {7, 10, "inlet", {}}, {8, 5, "outlet", {}}};
+    std::vector<FaceZone> result = {
+        {5, 2, "interior-tank", {}}, {6, 3, "hull", {}}, {7, 10, "inlet", {}}, {8, 5, "outlet", {}}};
     result[0].faces = {{{node(1, 0, 0), node(1, 1, 0), node(1, 1, 1), node(1, 0, 1)}, 2, 1}};
     result[2].faces = {{{node(0, 0, 0), node(0, 1, 0), node(0, 1, 1), node(0, 0, 1)}, 1, 0}};
     result[3].faces = {{{node(2, 0, 0), node(2, 0, 1), node(2, 1, 1), node(2, 1, 0)}, 2, 0}};
     for (int i = 0; i < 2; ++i) {
         const std::int32_t cell = i + 1;
-        result[1].faces.push_back({{node(i, 0, 0), node(i + 1, 0, 0), node(i + 1, 1, 0), node(i, 1, 0)}, cell, 0});  // floor
+        result[1].faces.push_back(
+            {{node(i, 0, 0), node(i + 1, 0, 0), node(i + 1, 1, 0), node(i, 1, 0)}, cell, 0});  // floor
         result[1].faces.push_back({{node(i, 0, 1), node(i, 1, 1), node(i + 1, 1, 1), node(i + 1, 0, 1)}, cell, 0});
         result[1].faces.push_back({{node(i, 0, 0), node(i, 0, 1), node(i + 1, 0, 1), node(i + 1, 0, 0)}, cell, 0});
         result[1].faces.push_back({{node(i, 1, 0), node(i + 1, 1, 0), node(i + 1, 1, 1), node(i, 1, 1)}, cell, 0});
@@ -225,10 +231,12 @@ void write_case(const fs::path& path, int parts = 1) {
     out.text("/settings/Thread Variables", "(39 (6 wall hull 1)(\n))(39 (2 fluid water 1)())");
 }
 
-/// Two phases beside the mixture; pressure 10 x at the middle of each face; a force of (1, 0, 0) N per face of the hull.
+/// Two phases beside the mixture; pressure 10 x at the middle of each face; a force of (1, 0, 0) N per face of the
+/// hull.
 void write_data(const fs::path& path) {
     Writer out(path);
-    const auto put = [&](const std::string& where, int part, int first, int last, const std::vector<double>& values, hsize_t columns = 0) {
+    const auto put = [&](const std::string& where, int part, int first, int last, const std::vector<double>& values,
+                         hsize_t columns = 0) {
         const std::string name = "/results/1/" + where + "/" + std::to_string(part);
         out.reals(name, values, columns);
         out.ids(name, first, last);
@@ -238,7 +246,8 @@ void write_data(const fs::path& path) {
     put("phase-2/cells/SV_VOF", 1, 1, 2, {0.25, 0.75});
     put("phase-3/cells/SV_VOF", 1, 1, 2, {0.75, 0.25});
     put("phase-1/faces/SV_P", 1, 1, 11, {10, 5, 5, 5, 5, 15, 15, 15, 15, 0, 20});
-    put("phase-1/faces/SV_WALL_SHEAR", 1, 2, 9, {-1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0}, 3);
+    put("phase-1/faces/SV_WALL_SHEAR", 1, 2, 9,
+        {-1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0}, 3);
     out.text("/settings/Case File", "elsewhere/other.cas.h5");
 }
 
@@ -258,8 +267,10 @@ TEST(FluentHdf5, ZonesPhasesAndForcesAreRight) {
             ASSERT_NE(field.find("more water"), nullptr);
             EXPECT_NEAR(test::volume_of(field), 2, 1e-14);
             EXPECT_EQ(field.find("more water")->volume->GetCellData()->GetArray("pressure")->GetTuple1(0), 15);
-            EXPECT_EQ(field.find("water")->volume->GetCellData()->GetArray("volume_fraction.phase-2")->GetTuple1(0), 0.25);
-            EXPECT_EQ(field.find("water")->volume->GetCellData()->GetArray("volume_fraction.phase-3")->GetTuple1(0), 0.75);
+            EXPECT_EQ(field.find("water")->volume->GetCellData()->GetArray("volume_fraction.phase-2")->GetTuple1(0),
+                      0.25);
+            EXPECT_EQ(field.find("water")->volume->GetCellData()->GetArray("volume_fraction.phase-3")->GetTuple1(0),
+                      0.75);
             // Gauss: the gradient of the pressure is (10, 0, 0).
             test::Triple force{};
             for (const char* zone : {"hull", "inlet", "outlet"}) {
@@ -297,7 +308,8 @@ TEST(FluentHdf5, ASolidNeedsNoValuesAndAWallTakesThePressureOfItsCells) {
         Writer out(folder.path() / "tank.cas.h5");
         write_mesh(out);
         out.text("/settings/Rampant Variables", "((operating-pressure 101325))");
-        out.text("/settings/Thread Variables", "(39 (6 wall hull 1)(\n))(39 (2 fluid water 1)())(39 (3 solid more 1)())");
+        out.text("/settings/Thread Variables",
+                 "(39 (6 wall hull 1)(\n))(39 (2 fluid water 1)())(39 (3 solid more 1)())");
         Writer data(folder.path() / "tank.dat.h5");
         data.reals("/results/1/phase-1/cells/SV_P/1", {5});
         data.ids("/results/1/phase-1/cells/SV_P/1", 1, 1);
@@ -391,7 +403,9 @@ TEST(FluentHdf5, CellsOfAnotherKindAmongManyAlikeAreFoundWhereTheFileDoesNotSayW
         next += next == 3 || next == 6 ? 1 : 0;
         cell_of[static_cast<std::size_t>(c)] = c == cut ? 0 : next++;
     }
-    const auto cell = [&](int column, bool upper) { return column == cut ? (upper ? 6 : 3) : cell_of[static_cast<std::size_t>(column)]; };
+    const auto cell = [&](int column, bool upper) {
+        return column == cut ? (upper ? 6 : 3) : cell_of[static_cast<std::size_t>(column)];
+    };
     std::vector<std::int32_t> nodes, c0, c1;
     const auto face = [&](int a, int b, int left, int right = 0) {
         nodes.insert(nodes.end(), {a, b});
@@ -489,7 +503,8 @@ TEST(FluentHdf5, ACaseTakesNoDataOfAnotherRun) {
     write_data(folder.path() / "wing.dat.h5");
     write_data(folder.path() / "run-1-00010.dat.h5");
     EXPECT_EQ(read_field(folder.path() / "wing-10.cas.h5").files.size(), 1U);
-    const auto later = read_field(folder.path() / "run-1-00010.dat.h5");  // results of a series belong to the case they began with
+    const auto later =
+        read_field(folder.path() / "run-1-00010.dat.h5");  // results of a series belong to the case they began with
     ASSERT_EQ(later.files.size(), 2U);
     EXPECT_THAT(later.files[0], HasSubstr("run-1-00010.dat.h5"));  // the one that was asked for
     EXPECT_THAT(later.files[1], HasSubstr("run.cas.h5"));
@@ -517,7 +532,9 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
     EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1", "faceCount", 12); }), HasSubstr("missing"));
     EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1", "cellCount", 3); }), HasSubstr("cells"));
     EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1/faces/c0/1", "maxId", -5); }), HasSubstr("ids 1 to -5"));
-    EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1/faces/c0/1", "maxId", std::numeric_limits<std::int64_t>::max()); }), HasSubstr("ids 1 to 9223372036854775807"));
+    EXPECT_THAT(
+        damaged([&](hid_t f) { set(f, "/meshes/1/faces/c0/1", "maxId", std::numeric_limits<std::int64_t>::max()); }),
+        HasSubstr("ids 1 to 9223372036854775807"));
     EXPECT_THAT(damaged([&](hid_t f) {  // an attribute of a number with bits elsewhere
                     const hid_t owner = H5Oopen(f, "/meshes/1/faces/c0/1", H5P_DEFAULT);
                     H5Adelete(owner, "maxId");
@@ -531,8 +548,10 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
                     H5Oclose(owner);
                 }),
                 HasSubstr("its attribute maxId is not one whole number"));
-    EXPECT_THAT(damaged([&](hid_t f) { H5Ldelete(f, "/meshes/1/faces/nodes/1/nodes", H5P_DEFAULT); }), HasSubstr("faces/nodes/1"));
-    EXPECT_THAT(damaged([&](hid_t f) { H5Ldelete(f, "/meshes/1/faces/c0", H5P_DEFAULT); }), HasSubstr("understood so far"));
+    EXPECT_THAT(damaged([&](hid_t f) { H5Ldelete(f, "/meshes/1/faces/nodes/1/nodes", H5P_DEFAULT); }),
+                HasSubstr("faces/nodes/1"));
+    EXPECT_THAT(damaged([&](hid_t f) { H5Ldelete(f, "/meshes/1/faces/c0", H5P_DEFAULT); }),
+                HasSubstr("understood so far"));
     const auto values = [](hid_t file, const char* name, std::vector<std::int32_t> list) {
         const hid_t data = H5Dopen2(file, name, H5P_DEFAULT);
         H5Dwrite(data, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, list.data());
@@ -554,16 +573,29 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
                     H5Tclose(wide);
                 }),
                 HasSubstr("its numbers of 32 bytes are of no kind that is read"));
-    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 400}); }), HasSubstr("more nodes"));
-    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4}); }), HasSubstr("43 corners together, and 44 nodes"));
+    EXPECT_THAT(damaged([&](hid_t f) {
+                    values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 400});
+                }),
+                HasSubstr("more nodes"));
+    EXPECT_THAT(damaged([&](hid_t f) {
+                    values(f, "/meshes/1/faces/nodes/1/nnodes", {4, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4});
+                }),
+                HasSubstr("43 corners together, and 44 nodes"));
     EXPECT_THAT(damaged([&](hid_t f) {
                     values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 2000000});
                     set(f, "/meshes/1", "cellCount", 2000000);
                 }),
                 HasSubstr("2000000 cells, but its faces have only"));
-    EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1", "cellCount", 2000000000); }), HasSubstr("cellCount is 2000000000, more than a file of"));
-    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/cells/zoneTopology/maxId", {2, 2}); }), HasSubstr("cells beyond the 2"));
-    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/cells/zoneTopology/minId", {1, 1}), values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 1}); }),
+    EXPECT_THAT(damaged([&](hid_t f) { set(f, "/meshes/1", "cellCount", 2000000000); }),
+                HasSubstr("cellCount is 2000000000, more than a file of"));
+    EXPECT_THAT(damaged([&](hid_t f) {
+                    values(f, "/meshes/1/cells/zoneTopology/maxId", {2, 2});
+                }),
+                HasSubstr("cells beyond the 2"));
+    EXPECT_THAT(damaged([&](hid_t f) {
+                    values(f, "/meshes/1/cells/zoneTopology/minId", {1, 1}),
+                        values(f, "/meshes/1/cells/zoneTopology/maxId", {1, 1});
+                }),
                 HasSubstr("have numbers in common, from 1 on"));
     // Nodes 9 to 12 twice, 5 to 8 never: their sum is right.
     write_case(path, 3);
@@ -573,7 +605,10 @@ TEST(FluentHdf5, WrongCountsAreRefusedWithTheirPath) {
     H5Fclose(file);
     EXPECT_THAT(test::refusal(path), HasSubstr("its ids begin at 9"));
     EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/c1/1", {-7}); }), HasSubstr("names cell"));
-    EXPECT_THAT(damaged([&](hid_t f) { values(f, "/meshes/1/faces/c0/1", {2, 1, 1, 1, 1, 2, 2, 2, 2, 1, 77}); }), HasSubstr("names cell 77"));
+    EXPECT_THAT(damaged([&](hid_t f) {
+                    values(f, "/meshes/1/faces/c0/1", {2, 1, 1, 1, 1, 2, 2, 2, 2, 1, 77});
+                }),
+                HasSubstr("names cell 77"));
 }
 
 }  // namespace underbody

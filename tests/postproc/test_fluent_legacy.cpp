@@ -136,8 +136,10 @@ TEST(FluentLegacy, AWallWithoutPressureTakesThatOfTheCellsBesideIt) {
         const auto whole = read_field(data("ascii.dat"));
         auto* cells = whole.find("water")->volume->GetCellData()->GetArray("pressure");
         const auto range = test::range_of(*floor->surface, "pressure");
-        EXPECT_EQ(range.low, std::min({cells->GetComponent(0, 0), cells->GetComponent(1, 0), cells->GetComponent(2, 0)}));
-        EXPECT_EQ(range.high, std::max({cells->GetComponent(0, 0), cells->GetComponent(1, 0), cells->GetComponent(2, 0)}));
+        EXPECT_EQ(range.low,
+                  std::min({cells->GetComponent(0, 0), cells->GetComponent(1, 0), cells->GetComponent(2, 0)}));
+        EXPECT_EQ(range.high,
+                  std::max({cells->GetComponent(0, 0), cells->GetComponent(1, 0), cells->GetComponent(2, 0)}));
         const bool told = std::any_of(field.problems.begin(), field.problems.end(), [](const auto& problem) {
             return problem.message.find("that of the cells beside it") != std::string::npos;
         });
@@ -186,7 +188,8 @@ TEST(FluentLegacy, WrongCountsAndIndicesAreRefusedWithTheirPlace) {
 TEST(FluentLegacy, LongBodiesReadByManyThreadsAreRefusedWhereTheyAreWrong) {
     // A strip of 20000 quadrilaterals in 2-D: bodies of several pieces.
     const std::size_t cells = 20000;
-    std::string text = "(0 \"strip\")\n(2 2)\n(12 (0 1 4e20 0))\n(12 (2 1 4e20 1 3))\n(13 (0 1 ea61 0))\n(10 (0 1 9c42 0 2))\n";
+    std::string text =
+        "(0 \"strip\")\n(2 2)\n(12 (0 1 4e20 0))\n(12 (2 1 4e20 1 3))\n(13 (0 1 ea61 0))\n(10 (0 1 9c42 0 2))\n";
     const auto hex = [](std::size_t value) {
         std::array<char, 20> digits{};
         std::snprintf(digits.data(), digits.size(), "%zx", value);
@@ -264,12 +267,15 @@ TEST(FluentLegacy, ACommentSpeaksOfTheSectionBehindItAlone) {
     // Nor does one that speaks of another zone.
     EXPECT_EQ(range(whole + "(0 \"SV_P, domain 1, cell zone 2, 5 cells:\")\n" + temperature, "temperature").low, 300);
     const auto twice = read_field(alone(folder, whole + temperature + temperature, "twice.dat"), options);
-    EXPECT_TRUE(std::any_of(twice.problems.begin(), twice.problems.end(), [](const auto& p) { return p.message == "SV_T on zone 10 stands twice in the data: the first counts"; }));
+    EXPECT_TRUE(std::any_of(twice.problems.begin(), twice.problems.end(), [](const auto& p) {
+        return p.message == "SV_T on zone 10 stands twice in the data: the first counts";
+    }));
 }
 
 TEST(FluentLegacy, AZoneInSeveralSectionsTakesItsValuesFromOne) {
     const core::TemporaryFolder folder;
-    const std::string text = replaced(core::read_file(data("ascii.cas")), "(13 (a 5 7 3 0)\n(\n4 1 2 3 4 1 0\n", "(13 (a 5 5 3 0)\n(\n4 1 2 3 4 1 0\n))\n(13 (a 6 7 3 0)\n(\n");
+    const std::string text = replaced(core::read_file(data("ascii.cas")), "(13 (a 5 7 3 0)\n(\n4 1 2 3 4 1 0\n",
+                                      "(13 (a 5 5 3 0)\n(\n4 1 2 3 4 1 0\n))\n(13 (a 6 7 3 0)\n(\n");
     ReadOptions options;
     options.companion = data("ascii.dat");
     const auto whole = read_field(data("ascii.cas"), options);
@@ -281,18 +287,23 @@ TEST(FluentLegacy, AZoneInSeveralSectionsTakesItsValuesFromOne) {
 
 TEST(FluentLegacy, AFaceOfTwoCornersIsNoFace) {
     const core::TemporaryFolder folder;
-    const auto field = read_field(alone(folder, replaced(core::read_file(data("ascii.cas")), "4 1 2 3 4 1 0\n5 2", "2 1 2 1 0\n5 2"), "thin.cas"));
+    const auto field = read_field(alone(
+        folder, replaced(core::read_file(data("ascii.cas")), "4 1 2 3 4 1 0\n5 2", "2 1 2 1 0\n5 2"), "thin.cas"));
     EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), [](const auto& p) {
-        return p.severity == core::Problem::Severity::error && p.message.find("1 faces of zone 'floor' have fewer corners") == 0;
+        return p.severity == core::Problem::Severity::error &&
+               p.message.find("1 faces of zone 'floor' have fewer corners") == 0;
     }));
 }
 
 TEST(FluentLegacy, AWallBesideSolidsAloneIsNoWallOfTheFluid) {
     const core::TemporaryFolder folder;
-    const std::string text = replaced(core::read_file(data("ascii.cas")), "(39 (2 fluid water 1)", "(39 (2 solid hull-metal 1)");
+    const std::string text =
+        replaced(core::read_file(data("ascii.cas")), "(39 (2 fluid water 1)", "(39 (2 solid hull-metal 1)");
     const auto field = read_field(alone(folder, text, "metal.cas"));
     EXPECT_EQ(field.find("body")->kind, postproc::ZoneKind::solid);
-    EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), [](const auto& p) { return p.message == "wall 'body' bounds solids alone: no fluid acts on it"; }));
+    EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), [](const auto& p) {
+        return p.message == "wall 'body' bounds solids alone: no fluid acts on it";
+    }));
     EXPECT_EQ(read_field(data("ascii.cas")).find("body")->kind, postproc::ZoneKind::wall);
 }
 

@@ -23,9 +23,10 @@ enum class Coding { text, single_precision, double_precision };
 /// A plane case in one of the codings.
 class CaseFile {
 public:
-    CaseFile(Coding coding, std::uint32_t cells, std::uint32_t faces, const std::vector<std::array<double, 2>>& nodes) : coding_(coding) {
-        out_ << std::hex << "(0 \"made by a test\")\n(2 2)\n(4 (60 0 0 1 2 4 4 4 8 8 8 4))\n(10 (0 1 " << nodes.size() << " 0 2))\n(12 (0 1 " << cells << " 0))\n(13 (0 1 "
-             << faces << " 0))\n";
+    CaseFile(Coding coding, std::uint32_t cells, std::uint32_t faces, const std::vector<std::array<double, 2>>& nodes)
+        : coding_(coding) {
+        out_ << std::hex << "(0 \"made by a test\")\n(2 2)\n(4 (60 0 0 1 2 4 4 4 8 8 8 4))\n(10 (0 1 " << nodes.size()
+             << " 0 2))\n(12 (0 1 " << cells << " 0))\n(13 (0 1 " << faces << " 0))\n";
         out_ << "(" << index(10) << " (1 1 " << nodes.size() << " 1 2)(";
         for (const auto& [x, y] : nodes) {
             real(x);
@@ -54,9 +55,14 @@ public:
 
 private:
     [[nodiscard]] std::string index(int section) const {
-        return (coding_ == Coding::text ? "" : coding_ == Coding::single_precision ? "20" : "30") + std::to_string(section);
+        return (coding_ == Coding::text               ? ""
+                : coding_ == Coding::single_precision ? "20"
+                                                      : "30") +
+               std::to_string(section);
     }
-    void raw(const void* bytes, std::size_t count) { out_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count)); }
+    void raw(const void* bytes, std::size_t count) {
+        out_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+    }
     void real(double x) {
         const auto single = static_cast<float>(x);
         if (coding_ == Coding::text) {
@@ -78,22 +84,26 @@ private:
 /// A square beside another one that was split into four. The parents' faces lie in zones of their own: one the file
 /// calls hidden (kind 1f), one a wall that only the tree tells from its children.
 CaseFile adapted(Coding coding) {
-    CaseFile file(coding, 6, 19, {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}, {1, 0.5}, {1.5, 0}, {2, 0.5}, {1.5, 1}, {1.5, 0.5}});
+    CaseFile file(coding, 6, 19,
+                  {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}, {1, 0.5}, {1.5, 0}, {2, 0.5}, {1.5, 1}, {1.5, 0.5}});
     file.add_line("(12 (2 1 5 1 3))\n(12 (3 6 6 20 3))");
     file.add(13, "4 1 6 2 2", {2, 7, 1, 2, 7, 5, 1, 5, 8, 11, 2, 3, 11, 10, 5, 4, 7, 11, 5, 2, 11, 9, 4, 3});
-    file.add(13, "5 7 f 3 2", {1, 2, 1, 0, 2, 8, 2, 0, 8, 3, 3, 0, 3, 9, 3, 0, 9, 6, 4, 0, 6, 10, 4, 0, 10, 5, 5, 0, 5, 4, 1, 0, 4, 1, 1, 0});
+    file.add(13, "5 7 f 3 2", {1, 2, 1, 0,  2, 8, 2,  0, 8, 3, 3, 0, 3, 9, 3, 0, 9, 6,
+                               4, 0, 6, 10, 4, 0, 10, 5, 5, 0, 5, 4, 1, 0, 4, 1, 1, 0});
     file.add(13, "6 10 10 1f 2", {2, 5, 1, 6});
     file.add(13, "5 11 13 3 2", {2, 3, 6, 0, 3, 6, 6, 0, 6, 5, 6, 0});
     file.add(58, "6 6 3 2", {4, 2, 3, 4, 5});
     file.add(59, "10 13 6 4", {2, 1, 2, 2, 8, 9, 2, 10, 11, 2, 12, 13});
-    file.add_line("(39 (2 fluid water 1)())\n(39 (3 fluid parents 1)())\n(39 (4 interior inside 1)())\n(39 (5 wall rim 1)())");
+    file.add_line(
+        "(39 (2 fluid water 1)())\n(39 (3 fluid parents 1)())\n(39 (4 interior inside 1)())\n(39 (5 wall rim 1)())");
     return file;
 }
 
 /// A square beside two half squares; the zones of the interface do not share nodes, the faces cut out of them do the
 /// fluxes. `kind`: of the zones beside the interface.
 CaseFile interface_case(Coding coding, const std::string& kind, bool with_children, bool rim_in_pieces = false) {
-    CaseFile file(coding, 3, with_children ? 13 : 11, {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {1, 0}, {2, 0}, {2, 0.5}, {2, 1}, {1, 1}, {1, 0.5}});
+    CaseFile file(coding, 3, with_children ? 13 : 11,
+                  {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {1, 0}, {2, 0}, {2, 0.5}, {2, 1}, {1, 1}, {1, 0.5}});
     file.add_line("(12 (2 1 3 1 3))");
     file.add(13, "3 1 1 2 2", {10, 7, 3, 2});
     const Numbers rim = {1, 2, 1, 0, 5, 6, 2, 0, 6, 7, 2, 0, 7, 8, 3, 0, 8, 9, 3, 0, 3, 4, 1, 0, 4, 1, 1, 0};
@@ -141,11 +151,14 @@ TEST(FluentTrees, CutAnywhereAreRefusedOrWhole) {
     for (const Coding coding : codings) {
         const core::TemporaryFolder folder;
         const std::string whole = core::read_file(adapted(coding).written(folder));
-        const auto first = whole.rfind(coding == Coding::text ? "(58" : coding == Coding::single_precision ? "(2058" : "(3058");
+        const auto first = whole.rfind(coding == Coding::text               ? "(58"
+                                       : coding == Coding::single_precision ? "(2058"
+                                                                            : "(3058");
         for (std::size_t size = first + 1; size < whole.rfind("))") + 2; ++size) {
             core::write_file(folder.path() / "cut.cas", whole.substr(0, size));
             const std::string reason = test::refusal(folder.path() / "cut.cas");
-            EXPECT_TRUE(reason.empty() || reason.find("understood so far") != std::string::npos) << size << " " << reason;
+            EXPECT_TRUE(reason.empty() || reason.find("understood so far") != std::string::npos)
+                << size << " " << reason;
         }
         // A tree that announces more parents than the file has bytes.
         std::string wrong = whole;
@@ -188,7 +201,8 @@ std::string data_in(const std::vector<std::pair<int, int>>& pieces) {
 
 /// The number of the rim's face, by where its middle lies.
 int number_at(const std::array<double, 2>& middle) {
-    const std::vector<std::array<double, 2>> middles = {{0.5, 0}, {1.5, 0}, {2, 0.25}, {2, 0.75}, {1.5, 1}, {0.5, 1}, {0, 0.5}};
+    const std::vector<std::array<double, 2>> middles = {{0.5, 0}, {1.5, 0}, {2, 0.25}, {2, 0.75},
+                                                        {1.5, 1}, {0.5, 1}, {0, 0.5}};
     for (std::size_t i = 0; i < middles.size(); ++i) {
         if (std::hypot(middles[i][0] - middle[0], middles[i][1] - middle[1]) < 1e-6) {
             return static_cast<int>(i) + 2;
@@ -200,7 +214,8 @@ int number_at(const std::array<double, 2>& middle) {
 TEST(FluentBlocks, ValuesFindTheirFacesWhateverTheOrderOfThePieces) {
     for (const Coding coding : codings) {
         for (const bool in_pieces : {false, true}) {
-            for (const auto& pieces : std::vector<std::vector<std::pair<int, int>>>{{{2, 8}}, {{2, 4}, {5, 8}}, {{5, 8}, {2, 4}}, {{5, 6}, {2, 3}}}) {
+            for (const auto& pieces : std::vector<std::vector<std::pair<int, int>>>{
+                     {{2, 8}}, {{2, 4}, {5, 8}}, {{5, 8}, {2, 4}}, {{5, 6}, {2, 3}}}) {
                 if (in_pieces && pieces.size() == 1) {
                     continue;  // data over two pieces of a zone are those of another case
                 }

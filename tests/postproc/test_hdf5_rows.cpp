@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "postproc/importers/hdf5_rows.h"
+#include "postproc/importers/hdf5/hdf5_rows.h"
 
 namespace underbody {
 
@@ -26,9 +26,9 @@ struct Way {
     std::vector<hsize_t> chunk;  ///< none: in one piece
     bool shuffled = false;
     bool deflated = false;
-    bool summed = false;  ///< with a check sum
-    hsize_t user_block = 0;  ///< bytes of somebody else before the file
-    bool cut = false;        ///< the last chunk has no more rows than the data set, as Fluent Meshing writes it
+    bool summed = false;       ///< with a check sum
+    hsize_t user_block = 0;    ///< bytes of somebody else before the file
+    bool cut = false;          ///< the last chunk has no more rows than the data set, as Fluent Meshing writes it
     bool edges_plain = false;  ///< chunks that reach beyond the data set are not packed
 };
 
@@ -56,7 +56,8 @@ void cut_last_chunk(hid_t file, hid_t set, hid_t properties, hid_t type, hsize_t
     H5Pclose(own);
 }
 
-void write(const fs::path& path, const Way& way, hid_t type, std::vector<hsize_t> size, const std::vector<double>& values) {
+void write(const fs::path& path, const Way& way, hid_t type, std::vector<hsize_t> size,
+           const std::vector<double>& values) {
     const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_userblock(creation, way.user_block);
     const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
@@ -145,13 +146,14 @@ TEST(Hdf5Rows, SharesOfAListAreTheSameHoweverItIsStored) {
             EXPECT_EQ(all, counted(count));
 
             std::size_t seen = 0;
-            postproc::each_row(file, "/values", core::Progress::none(), [&](const std::uint32_t* numbers, std::size_t some) {
-                for (std::size_t i = 0; i < some; ++i) {
-                    EXPECT_EQ(numbers[i], seen + i);
-                }
-                seen += some;
-                return seen < 100000;
-            });
+            postproc::each_row(file, "/values", core::Progress::none(),
+                               [&](const std::uint32_t* numbers, std::size_t some) {
+                                   for (std::size_t i = 0; i < some; ++i) {
+                                       EXPECT_EQ(numbers[i], seen + i);
+                                   }
+                                   seen += some;
+                                   return seen < 100000;
+                               });
             EXPECT_GE(seen, 100000);
             if (chunk == 65536 && way.name == "deflated") {
                 EXPECT_EQ(seen, 2 * chunk);  // not inflated: the rest
@@ -189,9 +191,12 @@ TEST(Hdf5Rows, TablesWhoseChunksAreNarrowerAreTheSame) {
 TEST(Hdf5Rows, EveryTypeOfNumberGivesTheSameAsTheLibrary) {
     const core::TemporaryFolder folder;
     const auto path = folder.path() / "values.h5";
-    const std::vector<double> values = {0, 1, -1, 127, -128, 32767, -32768, 2147483647, -2147483648.0, 4294967295.0, 1099511627776.0, -1099511627776.0, 0.5};
-    const hid_t types[] = {H5T_STD_I8LE,  H5T_STD_U8LE,  H5T_STD_I16LE, H5T_STD_U16LE,  H5T_STD_I32LE,  H5T_STD_U32LE,  H5T_STD_I64LE, H5T_STD_U64LE,
-                           H5T_STD_I16BE, H5T_STD_I32BE, H5T_STD_I64BE, H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE};
+    const std::vector<double> values = {
+        0,  1, -1, 127, -128, 32767, -32768, 2147483647, -2147483648.0, 4294967295.0, 1099511627776.0, -1099511627776.0,
+        0.5};
+    const hid_t types[] = {H5T_STD_I8LE,  H5T_STD_U8LE,   H5T_STD_I16LE,  H5T_STD_U16LE,  H5T_STD_I32LE,
+                           H5T_STD_U32LE, H5T_STD_I64LE,  H5T_STD_U64LE,  H5T_STD_I16BE,  H5T_STD_I32BE,
+                           H5T_STD_I64BE, H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE};
     for (const hid_t type : types) {
         const bool whole = H5Tget_class(type) == H5T_INTEGER;
         std::vector<double> as_library, as_reals;
@@ -305,13 +310,23 @@ TEST(Hdf5Rows, ChunksThatOnlyTheLibraryCouldUnpackAreRefused) {
         H5Fclose(file);
         return refusal(path, count);
     };
-    EXPECT_EQ(made(H5T_STD_I32LE, [](hid_t) {}, count), "");
-    EXPECT_THAT(made(H5T_STD_I32LE, [](hid_t) {}, 32), HasSubstr("rows 32 to 48 were never written"));
-    EXPECT_THAT(made(H5T_STD_I32LE, [](hid_t p) { H5Pset_nbit(p); }, count), HasSubstr("h5repack"));
-    EXPECT_THAT(made(H5T_STD_I32LE, [](hid_t p) { H5Pset_deflate(p, 1), H5Pset_shuffle(p); }, count), HasSubstr("packed in another way"));
+    EXPECT_EQ(made(
+                  H5T_STD_I32LE, [](hid_t) {}, count),
+              "");
+    EXPECT_THAT(made(
+                    H5T_STD_I32LE, [](hid_t) {}, 32),
+                HasSubstr("rows 32 to 48 were never written"));
+    EXPECT_THAT(made(
+                    H5T_STD_I32LE, [](hid_t p) { H5Pset_nbit(p); }, count),
+                HasSubstr("h5repack"));
+    EXPECT_THAT(made(
+                    H5T_STD_I32LE, [](hid_t p) { H5Pset_deflate(p, 1), H5Pset_shuffle(p); }, count),
+                HasSubstr("packed in another way"));
     const hid_t odd = H5Tcopy(H5T_STD_I32LE);
     H5Tset_precision(odd, 24);
-    EXPECT_THAT(made(odd, [](hid_t) {}, count), HasSubstr("4 bytes are of no kind that is read"));
+    EXPECT_THAT(made(
+                    odd, [](hid_t) {}, count),
+                HasSubstr("4 bytes are of no kind that is read"));
     H5Tclose(odd);
 }
 
@@ -346,7 +361,8 @@ TEST(Hdf5File, StringsAreTheSameHoweverTheyAreStored) {
                     fixed.replace(i * width, names[i].size(), names[i]);
                     pointers.push_back(names[i].c_str());
                 }
-                H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, variable ? static_cast<const void*>(pointers.data()) : fixed.data());
+                H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                         variable ? static_cast<const void*>(pointers.data()) : fixed.data());
                 H5Dclose(set);
                 H5Sclose(space);
                 H5Pclose(properties);

@@ -9,8 +9,8 @@
 
 #include "core/file.h"
 #include "core/random.h"
-#include "postproc/field.h"
-#include "postproc/importers/reports.h"
+#include "postproc/field/field.h"
+#include "postproc/importers/reports/reports.h"
 #include "tests/support/support.h"
 
 namespace underbody {

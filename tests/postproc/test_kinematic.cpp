@@ -1,11 +1,11 @@
-#include "postproc/kinematic.h"
-
 #include <gtest/gtest.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
+
+#include "postproc/field/kinematic.h"
 
 namespace underbody::postproc {
 namespace {
@@ -34,7 +34,8 @@ Field kinematic_field() {
 
 TEST(Kinematic, PressureBecomesPascal) {
     Field field = kinematic_field();
-    const vtkSmartPointer<vtkDoubleArray> kept = vtkDoubleArray::SafeDownCast(field.zones[0].surface->GetCellData()->GetArray("kinematic_pressure"));
+    const vtkSmartPointer<vtkDoubleArray> kept =
+        vtkDoubleArray::SafeDownCast(field.zones[0].surface->GetCellData()->GetArray("kinematic_pressure"));
     EXPECT_TRUE(is_kinematic(field));
     multiply_by_density(field, 1000);
     EXPECT_FALSE(is_kinematic(field));

@@ -13,9 +13,9 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "postproc/loads.h"
-#include "postproc/loads_table.h"
-#include "postproc/mesh_study.h"
+#include "postproc/loads/loads.h"
+#include "postproc/loads/loads_table.h"
+#include "postproc/loads/mesh_study.h"
 
 namespace underbody::postproc {
 namespace {
@@ -24,8 +24,9 @@ using testing::HasSubstr;
 using PointFunction = std::function<double(const Vector&)>;
 
 /// A zone from points and faces, with pressure and shear as functions of the place, on nodes.
-Zone make_zone(const std::string& name, const std::vector<Vector>& points, const std::vector<std::vector<vtkIdType>>& faces,
-               const PointFunction& pressure, const std::function<Vector(const Vector&)>& shear = {}) {
+Zone make_zone(const std::string& name, const std::vector<Vector>& points,
+               const std::vector<std::vector<vtkIdType>>& faces, const PointFunction& pressure,
+               const std::function<Vector(const Vector&)>& shear = {}) {
     Zone zone;
     zone.name = name;
     zone.kind = ZoneKind::wall;
@@ -52,13 +53,14 @@ Zone make_zone(const std::string& name, const std::vector<Vector>& points, const
     zone.surface->SetPolys(cells);
     zone.surface->GetPointData()->AddArray(values);
     zone.surface->GetPointData()->AddArray(tractions);
-    zone.arrays = {{"pressure", "Pa", "Pressure", "Pa", Location::nodes, 1}, {"wall_shear", "Pa", "Wall Shear X", "Pa", Location::nodes, 3}};
+    zone.arrays = {{"pressure", "Pa", "Pressure", "Pa", Location::nodes, 1},
+                   {"wall_shear", "Pa", "Wall Shear X", "Pa", Location::nodes, 3}};
     return zone;
 }
 
 /// An ellipsoid of quads (triangles at the poles), optionally cut at y = 0 to a half model; `turned`: normals inward.
-Zone ellipsoid(int rings, const Vector& axes, const PointFunction& pressure, bool half = false, bool turned = false, const std::string& name = "hull",
-               const std::function<Vector(const Vector&)>& shear = {}) {
+Zone ellipsoid(int rings, const Vector& axes, const PointFunction& pressure, bool half = false, bool turned = false,
+               const std::string& name = "hull", const std::function<Vector(const Vector&)>& shear = {}) {
     std::vector<Vector> points;
     std::vector<std::vector<vtkIdType>> faces;
     const int around = half ? rings : 2 * rings;
@@ -80,7 +82,9 @@ Zone ellipsoid(int rings, const Vector& axes, const PointFunction& pressure, boo
             const vtkIdType b = i * columns + (j + 1) % columns;
             const vtkIdType c = b + columns;
             const vtkIdType d = a + columns;
-            std::vector<vtkIdType> face = i == 0 ? std::vector<vtkIdType>{a, d, c} : i == rings - 1 ? std::vector<vtkIdType>{a, d, b} : std::vector<vtkIdType>{a, d, c, b};
+            std::vector<vtkIdType> face = i == 0           ? std::vector<vtkIdType>{a, d, c}
+                                          : i == rings - 1 ? std::vector<vtkIdType>{a, d, b}
+                                                           : std::vector<vtkIdType>{a, d, c, b};
             if (turned) {
                 std::reverse(face.begin(), face.end());
             }
@@ -130,7 +134,8 @@ TEST(Loads, ConvergeToTheBuoyancyWithTheSecondOrder) {
     const double exact = rho * g * 4 * M_PI / 3 * 1e-3;
     double last = 0;
     for (const int rings : {20, 40, 80}) {
-        const double error = exact - loads(field_of({ellipsoid(rings, {0.1, 0.1, 0.1}, hydrostatic)}), about({})).named.lift_force;
+        const double error =
+            exact - loads(field_of({ellipsoid(rings, {0.1, 0.1, 0.1}, hydrostatic)}), about({})).named.lift_force;
         if (last > 0) {
             EXPECT_NEAR(last / error, 4, 0.1);
         }
@@ -187,7 +192,8 @@ TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
     const auto p = [](const Vector& x) { return 30 * x[0] - 200 * x[2] + 1000 * x[0] * x[2] + 40; };
     const auto whole = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p)}), about({0.01, 0, -0.02}));
     for (const bool turned : {false, true}) {
-        const auto half = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, turned)}), about({0.01, 0, -0.02}, "y"));
+        const auto half =
+            loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, turned)}), about({0.01, 0, -0.02}, "y"));
         for (std::size_t k = 0; k < 3; ++k) {
             EXPECT_NEAR(half.total.force[k], whole.total.force[k], 1e-9);
             EXPECT_NEAR(half.total.moment[k], whole.total.moment[k], 1e-10);
@@ -195,11 +201,13 @@ TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
         EXPECT_NEAR(half.area, whole.area, 1e-9);
         EXPECT_LT(half.closure, 1e-9);
         // A reference beside the plane moves the moment by r x F.
-        const auto beside = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, turned)}), about({0.01, 0.5, -0.02}, "y"));
+        const auto beside =
+            loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, turned)}), about({0.01, 0.5, -0.02}, "y"));
         EXPECT_NEAR(beside.total.moment[0], whole.total.moment[0] - 0.5 * whole.total.force[2], 1e-9);
     }
     const auto forgotten = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, true)}), about({0.01, 0, -0.02}));
-    EXPECT_NEAR(2 * forgotten.total.force[2], whole.total.force[2], 1e-9);  // the sides are settled also without the plane
+    EXPECT_NEAR(2 * forgotten.total.force[2], whole.total.force[2],
+                1e-9);  // the sides are settled also without the plane
     ASSERT_FALSE(forgotten.problems.empty());
     EXPECT_THAT(forgotten.problems.back().message, HasSubstr("option 'symmetry y'"));
     EXPECT_GT(forgotten.closure, 0.1);
@@ -210,10 +218,14 @@ TEST(Loads, OfAHalfModelAreThoseOfTheWhole) {
 
 TEST(Loads, OfTheShearOnAHalfModelAreThoseOfTheWhole) {
     // What mirroring at y = 0 leaves as it is: along x and z even, along y odd.
-    const auto shear = [](const Vector& x) { return Vector{3 + 20 * x[0] + x[1] * x[1], 40 * x[1], 5 - 30 * x[2] * x[0]}; };
+    const auto shear = [](const Vector& x) {
+        return Vector{3 + 20 * x[0] + x[1] * x[1], 40 * x[1], 5 - 30 * x[2] * x[0]};
+    };
     const auto p = [](const Vector& x) { return 100 * x[2]; };
-    const auto whole = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, false, false, "hull", shear)}), about({0.01, 0, -0.02}));
-    const auto half = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, false, "hull", shear)}), about({0.01, 0, -0.02}, "y"));
+    const auto whole =
+        loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, false, false, "hull", shear)}), about({0.01, 0, -0.02}));
+    const auto half = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, true, false, "hull", shear)}),
+                            about({0.01, 0, -0.02}, "y"));
     ASSERT_GT(std::abs(whole.viscous.force[0]), 0.01);
     ASSERT_GT(std::abs(whole.viscous.moment[1]), 1e-4);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -221,7 +233,8 @@ TEST(Loads, OfTheShearOnAHalfModelAreThoseOfTheWhole) {
         EXPECT_NEAR(half.viscous.moment[k], whole.viscous.moment[k], 1e-11);
     }
     // About another point: M' = M + (r - r') x F.
-    const auto moved = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, false, false, "hull", shear)}), about({-0.3, 0.2, 0.5}));
+    const auto moved =
+        loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, p, false, false, "hull", shear)}), about({-0.3, 0.2, 0.5}));
     const Vector arm = {0.31, -0.2, -0.52};
     const Vector more = cross(arm, whole.total.force);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -231,10 +244,13 @@ TEST(Loads, OfTheShearOnAHalfModelAreThoseOfTheWhole) {
 
 /// A box whose top and bottom are zones of their own; any of them may lie the wrong way round.
 Field box(bool turn_bottom, bool turn_top, bool without_top = false) {
-    const std::vector<Vector> x = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0, 0, 0.5}, {2, 0, 0.5}, {2, 1, 0.5}, {0, 1, 0.5}};
+    const std::vector<Vector> x = {{0, 0, 0},   {2, 0, 0},   {2, 1, 0},   {0, 1, 0},
+                                   {0, 0, 0.5}, {2, 0, 0.5}, {2, 1, 0.5}, {0, 1, 0.5}};
     std::vector<std::vector<vtkIdType>> bottom = {{0, 3, 2, 1}};
     std::vector<std::vector<vtkIdType>> top = {{4, 5, 6, 7}};
-    const auto turn = [](auto& faces) { std::for_each(faces.begin(), faces.end(), [](auto& f) { std::reverse(f.begin(), f.end()); }); };
+    const auto turn = [](auto& faces) {
+        std::for_each(faces.begin(), faces.end(), [](auto& f) { std::reverse(f.begin(), f.end()); });
+    };
     if (turn_bottom) {
         turn(bottom);
     }
@@ -242,10 +258,12 @@ Field box(bool turn_bottom, bool turn_top, bool without_top = false) {
         turn(top);
     }
     const auto p = [](const Vector& q) { return 1 + q[2]; };
-    std::vector<Zone> zones = {make_zone("base", {x[0], x[1], x[2], x[3]}, {{bottom[0][0], bottom[0][1], bottom[0][2], bottom[0][3]}}, p),
-                               make_zone("sides", x, {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}, p)};
+    std::vector<Zone> zones = {
+        make_zone("base", {x[0], x[1], x[2], x[3]}, {{bottom[0][0], bottom[0][1], bottom[0][2], bottom[0][3]}}, p),
+        make_zone("sides", x, {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}, p)};
     if (!without_top) {
-        zones.push_back(make_zone("top", {x[4], x[5], x[6], x[7]}, {{top[0][0] - 4, top[0][1] - 4, top[0][2] - 4, top[0][3] - 4}}, p));
+        zones.push_back(make_zone("top", {x[4], x[5], x[6], x[7]},
+                                  {{top[0][0] - 4, top[0][1] - 4, top[0][2] - 4, top[0][3] - 4}}, p));
     }
     return field_of(std::move(zones));
 }
@@ -271,7 +289,8 @@ TEST(Loads, SettleTheSidesOfEachZone) {
 
 Field box_over_ground(bool open) {
     Field field = box(false, false, open);
-    field.zones.push_back(make_zone("ground", {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}}, {{0, 1, 2, 3}}, [](const Vector&) { return 1.0; }));
+    field.zones.push_back(make_zone("ground", {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}}, {{0, 1, 2, 3}},
+                                    [](const Vector&) { return 1.0; }));
     return field;
 }
 
@@ -292,7 +311,8 @@ TEST(Loads, LeaveOutWhatIsCalledAnInletWhereTheFileNamesNoWalls) {
     Field field = box(false, false, true);
     for (const char* name : {"inlet", "Outlet 2"}) {
         const double x = *name == 'i' ? -3 : 5;
-        field.zones.push_back(make_zone(name, {{x, -1, 0}, {x, 1, 0}, {x, 1, 2}, {x, -1, 2}}, {{0, 1, 2, 3}}, [](const Vector&) { return 7.0; }));
+        field.zones.push_back(make_zone(name, {{x, -1, 0}, {x, 1, 0}, {x, 1, 2}, {x, -1, 2}}, {{0, 1, 2, 3}},
+                                        [](const Vector&) { return 7.0; }));
     }
     for (auto& zone : field.zones) {
         zone.kind = ZoneKind::unknown;
@@ -372,14 +392,16 @@ TEST(Loads, CountFacesOnceThatStandTwiceInTheFile) {
             ASSERT_FALSE(result.left_out.empty());
             EXPECT_EQ(result.left_out[0].name == "Default", !first);
             EXPECT_EQ(result.left_out[0].by, LeftOutZone::By::doubled);
-            EXPECT_TRUE(std::any_of(result.problems.begin(), result.problems.end(), [](const auto& p) { return p.message.find("left out of the sum: all ") == 0; }));
+            EXPECT_TRUE(std::any_of(result.problems.begin(), result.problems.end(),
+                                    [](const auto& p) { return p.message.find("left out of the sum: all ") == 0; }));
         }
     }
     // Named, it counts, and is said to.
     LoadsOptions all = about({0, 0, 0});
     all.zones = {"*"};
     const auto twice = loads(box_with_group(9, true), all);
-    EXPECT_TRUE(std::any_of(twice.problems.begin(), twice.problems.end(), [](const auto& p) { return p.message.find("counts twice") != std::string::npos; }));
+    EXPECT_TRUE(std::any_of(twice.problems.begin(), twice.problems.end(),
+                            [](const auto& p) { return p.message.find("counts twice") != std::string::npos; }));
     // Beside the walls it is no double of them.
     EXPECT_TRUE(loads(box_with_group(9, true, 1e-3), about({0, 0, 0})).left_out.empty());
 }
@@ -388,7 +410,8 @@ TEST(Loads, OfZonesThatShareSomeOfTheirFacesAreRefused) {
     Field field = box(false, false);
     Zone& sides = field.zones[1];
     ASSERT_GT(sides.surface->GetNumberOfPolys(), 1);
-    const auto overlap = make_zone("overlap", {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.5}, {0, 0, 0.5}, {0, -1, 0}, {2, -1, 0}}, {{0, 1, 2, 3}, {0, 4, 5, 1}}, [](const Vector& p) { return 1 + p[2]; });
+    const auto overlap = make_zone("overlap", {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.5}, {0, 0, 0.5}, {0, -1, 0}, {2, -1, 0}},
+                                   {{0, 1, 2, 3}, {0, 4, 5, 1}}, [](const Vector& p) { return 1 + p[2]; });
     field.zones.push_back(overlap);
     try {
         loads(field);
@@ -398,7 +421,8 @@ TEST(Loads, OfZonesThatShareSomeOfTheirFacesAreRefused) {
         EXPECT_THAT(error.message(), HasSubstr("overlap"));
     }
     // The other side of a thin wall looks the other way.
-    field.zones.back() = make_zone("overlap", {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.5}, {0, 0, 0.5}, {0, -1, 0}, {2, -1, 0}}, {{3, 2, 1, 0}, {0, 4, 5, 1}}, [](const Vector& p) { return 1 + p[2]; });
+    field.zones.back() = make_zone("overlap", {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.5}, {0, 0, 0.5}, {0, -1, 0}, {2, -1, 0}},
+                                   {{3, 2, 1, 0}, {0, 4, 5, 1}}, [](const Vector& p) { return 1 + p[2]; });
     EXPECT_TRUE(loads(field).left_out.empty());
 }
 
@@ -438,19 +462,27 @@ TEST(Loads, SeeNoGroundInAPipeWithAFlange) {
     const auto p = [](const Vector&) { return 5.0; };
     LoadsOptions all = about({});
     all.zones = {"*"};
-    const auto result = loads(field_of({make_zone("pipe", points, faces, p), make_zone("flange", {{3, -2, -2}, {3, 2, -2}, {3, 2, 2}, {3, -2, 2}}, {{0, 1, 2, 3}}, p)}), all);
+    const auto result =
+        loads(field_of({make_zone("pipe", points, faces, p),
+                        make_zone("flange", {{3, -2, -2}, {3, 2, -2}, {3, 2, 2}, {3, -2, 2}}, {{0, 1, 2, 3}}, p)}),
+              all);
     ASSERT_FALSE(result.problems.empty());
-    EXPECT_THAT(result.problems.back().message, testing::AllOf(HasSubstr("not closed"), testing::Not(HasSubstr("a ground?"))));
+    EXPECT_THAT(result.problems.back().message,
+                testing::AllOf(HasSubstr("not closed"), testing::Not(HasSubstr("a ground?"))));
 }
 
-/// Two boxes of one zone, the second at x + 5, with a winding of its own; `around` makes it a tank around the first instead.
+/// Two boxes of one zone, the second at x + 5, with a winding of its own; `around` makes it a tank around the first
+/// instead.
 Field two_boxes(bool turned, bool around) {
     std::vector<Vector> points;
-    std::vector<std::vector<vtkIdType>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    std::vector<std::vector<vtkIdType>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                                 {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
     for (const bool second : {false, true}) {
         for (const double z : {0.0, 0.5}) {
             for (const auto& [x, y] : {std::pair{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}}) {
-                points.push_back(!second ? Vector{x, y, z} : around ? Vector{6 * x - 4, 6 * y - 2, 6 * z - 1} : Vector{x / 2 + 5, y, z});
+                points.push_back(!second  ? Vector{x, y, z}
+                                 : around ? Vector{6 * x - 4, 6 * y - 2, 6 * z - 1}
+                                          : Vector{x / 2 + 5, y, z});
             }
         }
     }
@@ -461,7 +493,8 @@ Field two_boxes(bool turned, bool around) {
             std::reverse(faces.back().begin(), faces.back().end());
         }
     }
-    return field_of({make_zone("walls", points, faces, [](const Vector& p) { return 10 + 2 * p[0] - 3 * p[1] + 4 * p[2]; })});
+    return field_of(
+        {make_zone("walls", points, faces, [](const Vector& p) { return 10 + 2 * p[0] - 3 * p[1] + 4 * p[2]; })});
 }
 
 TEST(Loads, OfSeveralBodiesInOneZoneDoNotDependOnTheWindingOfEach) {
@@ -508,7 +541,8 @@ TEST(Loads, SayThatTheSideOfADuctIsNotKnown) {
         EXPECT_THAT(result.orientation, testing::Not(HasSubstr("closes")));
     }
     const auto closed = loads(box(true, false), about({0, 0, 0}));
-    EXPECT_TRUE(std::none_of(closed.problems.begin(), closed.problems.end(), [](const auto& p) { return p.message.find("duct") != std::string::npos; }));
+    EXPECT_TRUE(std::none_of(closed.problems.begin(), closed.problems.end(),
+                             [](const auto& p) { return p.message.find("duct") != std::string::npos; }));
 }
 
 TEST(Loads, TakeTheSidesAsToldWhenTold) {
@@ -520,7 +554,8 @@ TEST(Loads, TakeTheSidesAsToldWhenTold) {
 }
 
 TEST(Loads, SayThatAPlateAloneHasNoSide) {
-    const auto plate = make_zone("base", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}}, [](const Vector&) { return 7.0; });
+    const auto plate = make_zone("base", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}},
+                                 [](const Vector&) { return 7.0; });
     const auto result = loads(field_of({plate}));
     ASSERT_FALSE(result.problems.empty());
     EXPECT_THAT(result.problems[0].message, HasSubstr("cannot be told from its shape"));
@@ -529,9 +564,10 @@ TEST(Loads, SayThatAPlateAloneHasNoSide) {
 
 TEST(Loads, IntegrateLinearValuesExactlyOverEveryPolygon) {
     // A plane hexagon, a quad, a triangle; p = a + b x, so that F and M are the polygon's moments in closed form.
-    const std::vector<std::vector<Vector>> polygons = {{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}},
-                                                       {{0, 0, 0}, {2, 0, 0}, {3, 2, 0}, {0, 1, 0}},
-                                                       {{0, 0, 0}, {1, -1, 0}, {3, 0, 0}, {3, 2, 0}, {1, 3, 0}, {0, 2, 0}}};
+    const std::vector<std::vector<Vector>> polygons = {
+        {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}},
+        {{0, 0, 0}, {2, 0, 0}, {3, 2, 0}, {0, 1, 0}},
+        {{0, 0, 0}, {1, -1, 0}, {3, 0, 0}, {3, 2, 0}, {1, 3, 0}, {0, 2, 0}}};
     for (const auto& polygon : polygons) {
         double area = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;  // by Green's theorem
         for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -549,7 +585,9 @@ TEST(Loads, IntegrateLinearValuesExactlyOverEveryPolygon) {
         LoadsOptions options = about({});
         options.fluid = FluidSide::as_in_file;
         const auto shear = [](const Vector& q) { return Vector{2 + 3 * q[0], 0, 1}; };
-        const auto result = loads(field_of({make_zone("a", polygon, {face}, [](const Vector& q) { return 5 + 7 * q[0]; }, shear)}), options);
+        const auto result = loads(field_of({make_zone(
+                                      "a", polygon, {face}, [](const Vector& q) { return 5 + 7 * q[0]; }, shear)}),
+                                  options);
         const double force = -(5 * area + 7 * sx);
         const bool quad = polygon.size() == 4;  // a bilinear map is not linear in x over a general quad, only nearly
         EXPECT_NEAR(result.pressure.force[2], force, quad ? 2e-12 : 1e-12);
@@ -577,7 +615,9 @@ TEST(Loads, OfAWarpedQuadAreThoseOfItsBilinearPatch) {
         Vector force{};
         Vector moment{};
         constexpr int n = 160;
-        const auto mix = [&](auto get, double u, double v) { return (1 - u) * (1 - v) * get(0) + u * (1 - v) * get(1) + u * v * get(2) + (1 - u) * v * get(3); };
+        const auto mix = [&](auto get, double u, double v) {
+            return (1 - u) * (1 - v) * get(0) + u * (1 - v) * get(1) + u * v * get(2) + (1 - u) * v * get(3);
+        };
         for (int i = 0; i < n; ++i) {
             for (int j = 0; j < n; ++j) {
                 const double u = (i + 0.5) / n;
@@ -589,7 +629,8 @@ TEST(Loads, OfAWarpedQuadAreThoseOfItsBilinearPatch) {
                     dv[k] = (1 - u) * (x[3][k] - x[0][k]) + u * (x[2][k] - x[1][k]);
                 }
                 const double value = mix([&](std::size_t m) { return p[m]; }, u, v) / (n * n);
-                const Vector f = {-value * (du[1] * dv[2] - du[2] * dv[1]), -value * (du[2] * dv[0] - du[0] * dv[2]), -value * (du[0] * dv[1] - du[1] * dv[0])};
+                const Vector f = {-value * (du[1] * dv[2] - du[2] * dv[1]), -value * (du[2] * dv[0] - du[0] * dv[2]),
+                                  -value * (du[0] * dv[1] - du[1] * dv[0])};
                 for (std::size_t k = 0; k < 3; ++k) {
                     force[k] += f[k];
                 }
@@ -601,7 +642,8 @@ TEST(Loads, OfAWarpedQuadAreThoseOfItsBilinearPatch) {
         std::size_t next = 0;
         LoadsOptions options = about({});
         options.fluid = FluidSide::as_in_file;
-        const auto result = loads(field_of({make_zone("a", x, {{0, 1, 2, 3}}, [&](const Vector&) { return p[next++]; })}), options);
+        const auto result =
+            loads(field_of({make_zone("a", x, {{0, 1, 2, 3}}, [&](const Vector&) { return p[next++]; })}), options);
         for (std::size_t k = 0; k < 3; ++k) {
             EXPECT_NEAR(result.pressure.force[k], force[k], 1e-4);
             EXPECT_NEAR(result.pressure.moment[k], moment[k], 2e-4);
@@ -626,7 +668,8 @@ TEST(Loads, TurnWithTheAxesAndKeepTheVehiclesSense) {
 }
 
 TEST(Loads, AreTheSameWithAnyNumberOfThreads) {
-    const Field field = field_of({ellipsoid(300, {0.1, 0.08, 0.06}, [](const Vector& x) { return std::sin(50 * x[0]) + x[2]; })});
+    const Field field =
+        field_of({ellipsoid(300, {0.1, 0.08, 0.06}, [](const Vector& x) { return std::sin(50 * x[0]) + x[2]; })});
     core::set_threads(1);
     const auto one = loads(field, about({}));
     core::set_threads(4);
@@ -708,8 +751,9 @@ TEST(Loads, GiveCoefficientsAndTheRunningIntegral) {
     EXPECT_NEAR(result.stations.back().behind.lift_force, result.named.lift_force, 1e-9);
     EXPECT_NEAR(result.stations[5].behind.lift_force, 0.5 * result.named.lift_force, 0.03 * result.named.lift_force);
     const nlohmann::json json = result;
-    for (const char* key : {"force", "moment", "reference", "pressure", "viscous", "lift_force", "drag_force", "side_force", "pitch_moment", "roll_moment", "yaw_moment",
-                            "coefficients", "zones", "closure", "force_per_reference_pascal", "values_from"}) {
+    for (const char* key : {"force", "moment", "reference", "pressure", "viscous", "lift_force", "drag_force",
+                            "side_force", "pitch_moment", "roll_moment", "yaw_moment", "coefficients", "zones",
+                            "closure", "force_per_reference_pascal", "values_from"}) {
         EXPECT_TRUE(json.contains(key)) << key;
     }
     EXPECT_EQ(json["pressure"]["force"].size(), 3U);
@@ -728,8 +772,10 @@ TEST(Loads, OfAWholeBodyAreNotDoubled) {
 
 TEST(Loads, TellAGroundFromThePlaneOfAHalfModel) {
     // A body over a ground at z = 0, in one zone: open along z, and no half of anything.
-    std::vector<Vector> points = {{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}, {0, 0, 0.6}, {2, 0, 0.6}, {2, 1, 0.6}, {0, 1, 0.6}, {-1, -1, 0}, {3, -1, 0}, {3, 2, 0}, {-1, 2, 0}};
-    const std::vector<std::vector<vtkIdType>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {8, 9, 10, 11}};
+    std::vector<Vector> points = {{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}, {0, 0, 0.6}, {2, 0, 0.6},
+                                  {2, 1, 0.6}, {0, 1, 0.6}, {-1, -1, 0}, {3, -1, 0},  {3, 2, 0},   {-1, 2, 0}};
+    const std::vector<std::vector<vtkIdType>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},  {1, 2, 6, 5},
+                                                       {2, 3, 7, 6}, {3, 0, 4, 7}, {8, 9, 10, 11}};
     const Field field = field_of({make_zone("walls", points, faces, [](const Vector& p) { return 1 + p[2]; })});
     for (const auto& problem : loads(field, about({0, 0, 0})).problems) {
         EXPECT_THAT(problem.message, testing::Not(HasSubstr("half model")));
@@ -799,7 +845,8 @@ TEST(Loads, OfAPlaneCaseArePerMetreDepth) {
 }
 
 /// A profile y(x) of lines from the tail to the nose, z x t looks out of it; node values.
-Field profile(const std::vector<std::array<double, 2>>& places, const PointFunction& pressure, const Vector& shear, bool known) {
+Field profile(const std::vector<std::array<double, 2>>& places, const PointFunction& pressure, const Vector& shear,
+              bool known) {
     Zone zone;
     zone.name = "body";
     zone.kind = ZoneKind::wall;
@@ -864,7 +911,8 @@ TEST(Loads, OfAnAxisymmetricCaseAreThoseOfTheBodyOfRevolution) {
         EXPECT_EQ(result.total.force[2], 0);
         EXPECT_NEAR(result.area, area, 1e-12);
         EXPECT_NEAR(result.total.moment[0], 7 * swirl, 1e-12);
-        EXPECT_NEAR(result.total.moment[2], 0.02 * result.total.force[0], 1e-12);  // the axis passes the reference 0.02 m below it
+        EXPECT_NEAR(result.total.moment[2], 0.02 * result.total.force[0],
+                    1e-12);  // the axis passes the reference 0.02 m below it
         EXPECT_LT(result.closure, 1e-12);
         EXPECT_NEAR(result.named.drag_force, -result.total.force[0], 1e-12);
         ASSERT_TRUE(result.coefficients);
@@ -898,7 +946,9 @@ TEST(Loads, OfHalfAPlaneCaseAreThoseOfTheWhole) {
     }
     const double area = 0.5 * count * 0.01 * std::sin(M_PI / count);
     for (const bool known : {true, false}) {
-        const auto half = loads(profile(places, [](const Vector& x) { return 50 - 2000 * x[0]; }, {4, 0, 0}, known), about({}, "y"));
+        const auto half = loads(profile(
+                                    places, [](const Vector& x) { return 50 - 2000 * x[0]; }, {4, 0, 0}, known),
+                                about({}, "y"));
         EXPECT_NEAR(half.pressure.force[0], 2 * 2000 * area, 1e-9);
         EXPECT_NEAR(half.viscous.force[0], 2 * 4 * count * 0.2 * std::sin(M_PI / count / 2), 1e-9);
         EXPECT_EQ(half.total.force[1], 0);
@@ -908,16 +958,21 @@ TEST(Loads, OfHalfAPlaneCaseAreThoseOfTheWhole) {
 }
 
 TEST(Loads, OfAnOpenSurfaceAreAuditedAgainstAbsolutePressureToo) {
-    // One atmosphere and 20 Pa of flow on half an ellipsoid: a kilopascal is less than 1 % of that force, and fifty times the flow's.
-    const auto absolute = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 101325 + 200 * x[0]; }, true)}), about({}));
+    // One atmosphere and 20 Pa of flow on half an ellipsoid: a kilopascal is less than 1 % of that force, and fifty
+    // times the flow's.
+    const auto absolute = loads(field_of({ellipsoid(
+                                    30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 101325 + 200 * x[0]; }, true)}),
+                                about({}));
     ASSERT_FALSE(absolute.problems.empty());
     EXPECT_THAT(absolute.problems.back().message, HasSubstr("not closed"));
     // Closed, it does not matter.
-    const auto closed = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 101325 + 200 * x[0]; })}), about({}));
+    const auto closed = loads(
+        field_of({ellipsoid(30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 101325 + 200 * x[0]; })}), about({}));
     EXPECT_TRUE(closed.problems.empty());
     LoadsOptions options = about({});
     options.reference_pressure = 101325;
-    const auto gauge = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 101325 + 200 * x[0]; })}), options);
+    const auto gauge = loads(
+        field_of({ellipsoid(30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 101325 + 200 * x[0]; })}), options);
     EXPECT_NEAR(gauge.total.force[0], closed.total.force[0], 1e-8);
 }
 
@@ -961,7 +1016,8 @@ TEST(Loads, TakeTheValuesOfFacesBehindThoseOfLines) {
 }
 
 TEST(Loads, HaveNoCentreOfPressureWithoutLift) {
-    const auto drag_only = loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 100 * x[0]; })}), about({}));
+    const auto drag_only =
+        loads(field_of({ellipsoid(30, {0.1, 0.08, 0.06}, [](const Vector& x) { return 100 * x[0]; })}), about({}));
     EXPECT_FALSE(drag_only.centre_of_pressure);
     // Buoyancy of a body shifted forward acts at its centroid, wherever moments are taken.
     Zone shifted = ellipsoid(30, {0.1, 0.08, 0.06}, hydrostatic);
@@ -980,7 +1036,9 @@ TEST(Loads, HaveNoCentreOfPressureWithoutLift) {
 
 TEST(LoadsTable, HasOneRowACaseWithItsConditions) {
     const auto result = loads(box(false, false));
-    const core::Table table = loads_table({{"a.csv", {{"gap", 0.005}}, {{"variant", "ellipse"}}, result, {}, {}}, {"b.csv", {{"gap", 0.01}, {"lift_force", 1.0}}, {}, result, {}, {}}}, {{"gap", "mm"}});
+    const core::Table table = loads_table({{"a.csv", {{"gap", 0.005}}, {{"variant", "ellipse"}}, result, {}, {}},
+                                           {"b.csv", {{"gap", 0.01}, {"lift_force", 1.0}}, {}, result, {}, {}}},
+                                          {{"gap", "mm"}});
     EXPECT_EQ(table.rows(), 2U);
     EXPECT_EQ(table.find("gap")->written_unit, "mm");
     EXPECT_EQ(table.numbers("gap")[1], 0.01);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/table.h"
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -32,7 +32,8 @@ TEST(LoadsOfEvie, AgreeWithTheSolverForEveryShippedField) {
         EXPECT_NEAR(result.named.lift_force, lift, settled);
         EXPECT_NEAR(result.named_viscous.drag_force, forces.numbers("drag_viscous")[row], 0.003 * size);
         EXPECT_NEAR(result.named_pressure.lift_force, forces.numbers("lift_pressure")[row], settled);
-        const double base_at_middle = result.reference[2] - result.reference[0] * std::tan(forces.numbers("pitch")[row]);
+        const double base_at_middle =
+            result.reference[2] - result.reference[0] * std::tan(forces.numbers("pitch")[row]);
         EXPECT_NEAR(base_at_middle, forces.numbers("gap")[row], 1e-6);
         // The solver's moments are about the centre of the ellipsoid's base, also where a variant has less of it.
         const double moment = result.named.pitch_moment + result.reference[0] * result.named.lift_force;
@@ -49,7 +50,8 @@ TEST(LoadsOfEvie, AgreeWithTheSolverForEveryShippedField) {
         worst_moment = std::max(worst_moment, std::abs(moment - forces.numbers("pitch_moment")[row]) / (size * 0.0727));
     }
     RecordProperty("worst_lift", std::to_string(worst_lift));
-    std::cout << "of the force: lift " << worst_lift << ", drag " << worst_drag << "; moment, of force times length " << worst_moment << "\n";
+    std::cout << "of the force: lift " << worst_lift << ", drag " << worst_drag << "; moment, of force times length "
+              << worst_moment << "\n";
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/file.h"
-#include "postproc/stated_loads.h"
+#include "postproc/loads/stated_loads.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -42,10 +42,12 @@ solvers { p { solver PCG; preconditioner DIC; tolerance 1e-8; relTol 0.01; } U {
 SIMPLE { nNonOrthogonalCorrectors 0; pRefCell 0; pRefValue 0; }
 relaxationFactors { fields { p 0.3; } equations { U 0.7; } }
 )foam"},
-        {"constant/transportProperties", R"foam(FoamFile { version 2.0; format ascii; class dictionary; object transportProperties; }
+        {"constant/transportProperties",
+         R"foam(FoamFile { version 2.0; format ascii; class dictionary; object transportProperties; }
 transportModel Newtonian; nu 0.01;
 )foam"},
-        {"constant/turbulenceProperties", R"foam(FoamFile { version 2.0; format ascii; class dictionary; object turbulenceProperties; }
+        {"constant/turbulenceProperties",
+         R"foam(FoamFile { version 2.0; format ascii; class dictionary; object turbulenceProperties; }
 simulationType laminar;
 )foam"},
         {"0/U", R"foam(FoamFile { version 2.0; format ascii; class volVectorField; object U; }

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "postproc/loads_table.h"
-#include "postproc/mesh_study.h"
+#include "postproc/loads/loads_table.h"
+#include "postproc/loads/mesh_study.h"
 
 namespace underbody::postproc {
 namespace {
@@ -21,7 +21,8 @@ TEST(LoadsTable, MakesOneCaseOfItsMeshes) {
         return one;
     };
     core::Problems notes;
-    const auto studies = mesh_studies({with_lift(57280, 0.274, 0.005), with_lift(374400, 0.242, 0.005), with_lift(138544, 0.270, 0.005), with_lift(138544, 0.4, 0.002)},
+    const auto studies = mesh_studies({with_lift(57280, 0.274, 0.005), with_lift(374400, 0.242, 0.005),
+                                       with_lift(138544, 0.270, 0.005), with_lift(138544, 0.4, 0.002)},
                                       "cells", notes);
     EXPECT_TRUE(notes.empty());
     ASSERT_EQ(studies.size(), 2U);
@@ -83,12 +84,19 @@ TEST(LoadsTable, KeepsCasesApartThatDifferInAConditionOfAnyName) {
     const auto sharp = case_with("sharp.csv", 0.1, {{"gap", 0.005}, {"nose_radius", 0.001}, {"cells", 100000}});
     EXPECT_EQ(mesh_studies({sharp, blunt}, "cells", notes).size(), 2U);
     ASSERT_EQ(notes.size(), 2U);
-    EXPECT_THAT(notes[0].message, HasSubstr("'sharp.csv' and 'blunt.csv' differ in 'nose_radius': taken for two cases"));
-    EXPECT_THAT(notes[1].message, HasSubstr("no mesh study by 'cells': no case is there on two meshes; they differ in 'nose_radius' too"));
+    EXPECT_THAT(notes[0].message,
+                HasSubstr("'sharp.csv' and 'blunt.csv' differ in 'nose_radius': taken for two cases"));
+    EXPECT_THAT(
+        notes[1].message,
+        HasSubstr("no mesh study by 'cells': no case is there on two meshes; they differ in 'nose_radius' too"));
     // What an earlier table says of its results, and the other counts of the mesh, tells nothing apart.
     notes.clear();
-    auto fine = case_with("fine.csv", 0.1, {{"cells", 8000}, {"faces", 400}, {"lift_force_stated", 1}, {"lift_coefficient", 2}, {"closure", 0.1}});
-    auto coarse = case_with("coarse.csv", 0.2, {{"cells", 1000}, {"faces", 100}, {"lift_force_stated", 2}, {"lift_coefficient", 3}, {"closure", 0.2}});
+    auto fine = case_with(
+        "fine.csv", 0.1,
+        {{"cells", 8000}, {"faces", 400}, {"lift_force_stated", 1}, {"lift_coefficient", 2}, {"closure", 0.1}});
+    auto coarse = case_with(
+        "coarse.csv", 0.2,
+        {{"cells", 1000}, {"faces", 100}, {"lift_force_stated", 2}, {"lift_coefficient", 3}, {"closure", 0.2}});
     fine.texts = {{"values_from", "faces"}};
     coarse.texts = {{"values_from", "nodes"}};
     EXPECT_EQ(mesh_studies({fine, coarse}, "cells", notes).size(), 1U);
@@ -103,7 +111,8 @@ TEST(LoadsTable, SaysThatThereIsNoMeshStudy) {
     other.texts = {{"name", "b"}};
     EXPECT_EQ(mesh_studies({one, other}, "cells", notes).size(), 2U);
     ASSERT_EQ(notes.size(), 1U);
-    EXPECT_THAT(notes[0].message, HasSubstr("they differ in 'name' too (a text that names the mesh alone is called 'mesh')"));
+    EXPECT_THAT(notes[0].message,
+                HasSubstr("they differ in 'name' too (a text that names the mesh alone is called 'mesh')"));
 }
 
 TEST(LoadsTable, KnowsThatAPlaneMeshHasTwoDimensions) {
@@ -117,7 +126,8 @@ TEST(LoadsTable, KnowsThatAPlaneMeshHasTwoDimensions) {
     };
     for (const char* column : {"cells", "faces"}) {
         core::Problems notes;
-        const auto studies = mesh_studies({plane(16000, 400, 0.1), plane(4000, 200, 0.2), plane(1000, 100, 0.4)}, column, notes);
+        const auto studies =
+            mesh_studies({plane(16000, 400, 0.1), plane(4000, 200, 0.2), plane(1000, 100, 0.4)}, column, notes);
         ASSERT_EQ(studies.size(), 1U);
         EXPECT_NEAR(studies[0].meshes[0].second.observed_order, 1, 1e-9) << column;
         EXPECT_NEAR(studies[0].meshes[0].second.expanded_uncertainty, 0.125, 1e-9);
@@ -140,12 +150,14 @@ TEST(LoadsTable, SaysWhatThePlaneForcesArePerAndHoldsNoOthers) {
         (void)loads_table({plane, case_with("body.cas", 0.1, {})});
         ADD_FAILURE() << "forces per metre and forces in one column";
     } catch (const core::InputError& error) {
-        EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("'strip.cas' per metre depth"), HasSubstr("'body.cas' of a body")));
+        EXPECT_THAT(error.what(),
+                    testing::AllOf(HasSubstr("'strip.cas' per metre depth"), HasSubstr("'body.cas' of a body")));
     }
 }
 
 TEST(LoadsTable, IsAManifestAgain) {
-    LoadsCase one = case_with("a.csv", 0.1, {{"gap", 0.005}, {"lift_force", 1}, {"lift_force_stated", 2}, {"lift_coefficient", 0.5}});
+    LoadsCase one = case_with("a.csv", 0.1,
+                              {{"gap", 0.005}, {"lift_force", 1}, {"lift_force_stated", 2}, {"lift_coefficient", 0.5}});
     one.texts = {{"values_from", "nodes"}};
     one.loads.coefficients = LoadsCoefficients{};
     one.loads.coefficients->lift = 0.6;
@@ -160,7 +172,9 @@ TEST(LoadsTable, IsAManifestAgain) {
 
 TEST(LoadsTable, ComparesNothingWithAMissingValue) {
     core::Problems notes;
-    const auto comparisons = compare_with_stated({case_with("a.csv", 0.1, {{"lift_force", 1}, {"drag_force", NAN}}), case_with("b.csv", 0.1, {{"lift_force", NAN}})}, notes);
+    const auto comparisons = compare_with_stated({case_with("a.csv", 0.1, {{"lift_force", 1}, {"drag_force", NAN}}),
+                                                  case_with("b.csv", 0.1, {{"lift_force", NAN}})},
+                                                 notes);
     ASSERT_EQ(comparisons.size(), 1U);
     EXPECT_NEAR(comparisons[0].of_force, 0.1 / 1.1, 1e-12);  // over our own force
     ASSERT_EQ(notes.size(), 2U);

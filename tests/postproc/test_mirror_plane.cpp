@@ -1,13 +1,12 @@
 // Where the plane of a half model lies.
-#include "postproc/mirror_plane.h"
-
 #include <gmock/gmock.h>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 
-#include "postproc/surface_arrays.h"
+#include "postproc/field/surface_arrays.h"
+#include "postproc/loads/mirror_plane.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {

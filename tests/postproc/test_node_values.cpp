@@ -1,6 +1,4 @@
 // Cell values carried to nodes: linear fields exactly on every kind of cell, walls as they are.
-#include "postproc/node_values.h"
-
 #include <gmock/gmock.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -16,8 +14,9 @@
 #include <functional>
 
 #include "core/random.h"
-#include "postproc/field.h"
-#include "postproc/probe.h"
+#include "postproc/field/field.h"
+#include "postproc/field/node_values.h"
+#include "postproc/probe/probe.h"
 
 namespace underbody::postproc {
 namespace {
@@ -27,7 +26,9 @@ using Ids = std::vector<vtkIdType>;
 
 constexpr std::array<int, 3> cells_along = {5, 4, 6};
 
-vtkIdType id(int i, int j, int k) { return static_cast<vtkIdType>((k * (cells_along[1] + 1) + j) * (cells_along[0] + 1) + i); }
+vtkIdType id(int i, int j, int k) {
+    return static_cast<vtkIdType>((k * (cells_along[1] + 1) + j) * (cells_along[0] + 1) + i);
+}
 
 /// The unit cube, cells growing away from z = 0; `shaken`: every inner node moved about.
 vtkSmartPointer<vtkPoints> block_points(bool shaken) {
@@ -37,8 +38,10 @@ vtkSmartPointer<vtkPoints> block_points(bool shaken) {
     for (int k = 0; k <= cells_along[2]; ++k) {
         for (int j = 0; j <= cells_along[1]; ++j) {
             for (int i = 0; i <= cells_along[0]; ++i) {
-                Point p = {double(i) / cells_along[0], double(j) / cells_along[1], std::pow(double(k) / cells_along[2], 2)};
-                const bool inner = i > 0 && j > 0 && k > 0 && i < cells_along[0] && j < cells_along[1] && k < cells_along[2];
+                Point p = {double(i) / cells_along[0], double(j) / cells_along[1],
+                           std::pow(double(k) / cells_along[2], 2)};
+                const bool inner =
+                    i > 0 && j > 0 && k > 0 && i < cells_along[0] && j < cells_along[1] && k < cells_along[2];
                 for (std::size_t c = 0; c < 3; ++c) {
                     p[c] += shaken && inner ? random.uniform(-0.02, 0.02) : 0;
                 }
@@ -50,21 +53,25 @@ vtkSmartPointer<vtkPoints> block_points(bool shaken) {
 }
 
 /// Each hexahedron of the block, as what `split` makes of its eight nodes.
-vtkSmartPointer<vtkUnstructuredGrid> block(bool shaken, const std::function<void(vtkUnstructuredGrid&, const Ids&)>& split) {
+vtkSmartPointer<vtkUnstructuredGrid> block(bool shaken,
+                                           const std::function<void(vtkUnstructuredGrid&, const Ids&)>& split) {
     auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
     grid->SetPoints(block_points(shaken));
     grid->Allocate(1000);
     for (int k = 0; k < cells_along[2]; ++k) {
         for (int j = 0; j < cells_along[1]; ++j) {
             for (int i = 0; i < cells_along[0]; ++i) {
-                split(*grid, {id(i, j, k), id(i + 1, j, k), id(i + 1, j + 1, k), id(i, j + 1, k), id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)});
+                split(*grid, {id(i, j, k), id(i + 1, j, k), id(i + 1, j + 1, k), id(i, j + 1, k), id(i, j, k + 1),
+                              id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)});
             }
         }
     }
     return grid;
 }
 
-void insert(vtkUnstructuredGrid& grid, int type, const Ids& nodes) { grid.InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data()); }
+void insert(vtkUnstructuredGrid& grid, int type, const Ids& nodes) {
+    grid.InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
+}
 
 void as_hexahedron(vtkUnstructuredGrid& grid, const Ids& n) { insert(grid, VTK_HEXAHEDRON, n); }
 void as_wedges(vtkUnstructuredGrid& grid, const Ids& n) {
@@ -76,7 +83,8 @@ void as_tetrahedra(vtkUnstructuredGrid& grid, const Ids& n) {
         insert(grid, VTK_TETRA, {n[0], n[static_cast<std::size_t>(a)], n[static_cast<std::size_t>(b)], n[6]});
     }
 }
-const std::vector<std::array<std::size_t, 4>> sides = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+const std::vector<std::array<std::size_t, 4>> sides = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                                       {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 void as_pyramids(vtkUnstructuredGrid& grid, const Ids& n) {
     Point middle{};
     for (const auto node : n) {
@@ -117,7 +125,8 @@ Point centre_by_triangulation(vtkUnstructuredGrid& grid, vtkIdType cell) {
             points->GetPoint(t + i, x[static_cast<std::size_t>(i)].data());
         }
         const auto edge = [&](std::size_t i, std::size_t k) { return x[i][k] - x[0][k]; };
-        const double v = std::abs(edge(1, 0) * (edge(2, 1) * edge(3, 2) - edge(2, 2) * edge(3, 1)) + edge(1, 1) * (edge(2, 2) * edge(3, 0) - edge(2, 0) * edge(3, 2)) +
+        const double v = std::abs(edge(1, 0) * (edge(2, 1) * edge(3, 2) - edge(2, 2) * edge(3, 1)) +
+                                  edge(1, 1) * (edge(2, 2) * edge(3, 0) - edge(2, 0) * edge(3, 2)) +
                                   edge(1, 2) * (edge(2, 0) * edge(3, 1) - edge(2, 1) * edge(3, 0)));
         volume += v;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -142,7 +151,10 @@ TEST(NodeValues, OfALinearFieldAreExactInEveryKindOfCell) {
         std::function<void(vtkUnstructuredGrid&, const Ids&)> split;
         bool shaken;  // a face that is not flat has no one centre: only where all are
     };
-    for (const auto& kind : {Kind{"hexahedra", as_hexahedron, false}, {"wedges", as_wedges, false}, {"tetrahedra", as_tetrahedra, true}, {"pyramids", as_pyramids, false},
+    for (const auto& kind : {Kind{"hexahedra", as_hexahedron, false},
+                             {"wedges", as_wedges, false},
+                             {"tetrahedra", as_tetrahedra, true},
+                             {"pyramids", as_pyramids, false},
                              {"polyhedra", as_polyhedron, false}}) {
         const auto grid = block(kind.shaken, kind.split);
         set_cells(*grid, "p", linear);

@@ -9,8 +9,8 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "import_support.h"
-#include "postproc/importers/openfoam_forces.h"
-#include "postproc/loads.h"
+#include "postproc/importers/reports/openfoam_forces.h"
+#include "postproc/loads/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -56,8 +56,10 @@ TEST(OpenFoam, ForcesAreThoseOfTheSolverInEveryCoding) {
         const auto* lid = field.find("movingWall");
         ASSERT_NE(lid, nullptr);
         EXPECT_EQ(lid->kind, postproc::ZoneKind::wall);
-        EXPECT_EQ(lid->surface->GetCellData()->GetArray("velocity")->GetComponent(3, 0), 1);  // fixedValue uniform (1 0 0)
-        EXPECT_EQ(field.find("fixedWalls")->surface->GetCellData()->GetArray("velocity")->GetComponent(3, 0), 0);  // noSlip
+        EXPECT_EQ(lid->surface->GetCellData()->GetArray("velocity")->GetComponent(3, 0),
+                  1);  // fixedValue uniform (1 0 0)
+        EXPECT_EQ(field.find("fixedWalls")->surface->GetCellData()->GetArray("velocity")->GetComponent(3, 0),
+                  0);  // noSlip
         postproc::LoadsOptions options;
         options.zones = {"*Wall*"};
         options.reference = postproc::Vector{0.01, 0.02, 0.03};
@@ -153,11 +155,13 @@ TEST(OpenFoam, APatchWithoutFacesOnAProcessorStatesAnEmptyListWithoutItsType) {
     copy_case(data("decomposed"), box);
     for (const char* processor : {"processor0", "processor1"}) {
         const fs::path boundary = box / processor / "constant/polyMesh/boundary";
-        insert_before_last(boundary, ")\n", "    sensor\n    {\n        type wall;\n        nFaces 0;\n        startFace 68;\n    }\n");
+        insert_before_last(boundary, ")\n",
+                           "    sensor\n    {\n        type wall;\n        nFaces 0;\n        startFace 68;\n    }\n");
         std::string text = core::read_file(boundary);
         std::ofstream(boundary, std::ios::binary) << text.replace(text.find("\n4\n"), 3, "\n5\n");
         for (const char* field : {"p", "U"}) {
-            insert_before_last(box / processor / "0.005" / field, "}\n", "    sensor { type fixedValue; value nonuniform 0(); }\n");
+            insert_before_last(box / processor / "0.005" / field, "}\n",
+                               "    sensor { type fixedValue; value nonuniform 0(); }\n");
         }
     }
     const auto field = read_field(box);
@@ -167,14 +171,17 @@ TEST(OpenFoam, APatchWithoutFacesOnAProcessorStatesAnEmptyListWithoutItsType) {
     const fs::path pressure = box / "processor0/0.005/p";
     std::string text = core::read_file(pressure);
     const std::string stated = "type            zeroGradient;";
-    std::ofstream(pressure, std::ios::binary) << text.replace(text.find(stated), stated.size(), "type fixedValue; value nonuniform 0();");
+    std::ofstream(pressure, std::ios::binary)
+        << text.replace(text.find(stated), stated.size(), "type fixedValue; value nonuniform 0();");
     EXPECT_THAT(test::refusal(box), HasSubstr("'movingWall' has 0 values for 4 faces"));
 }
 
 /// The box with another boundary field for its pressure.
 void state_boundary(const fs::path& box, const std::string& boundary) {
     std::string text = core::read_file(data("ascii") / "0.005/p");
-    std::ofstream(box / "0.005/p", std::ios::binary) << text.substr(0, text.find("boundaryField")) << "boundaryField\n{\n" << boundary << "}\n";
+    std::ofstream(box / "0.005/p", std::ios::binary)
+        << text.substr(0, text.find("boundaryField")) << "boundaryField\n{\n"
+        << boundary << "}\n";
 }
 
 double pressure_on(const postproc::Field& field, const std::string& patch) {
@@ -185,7 +192,9 @@ TEST(OpenFoam, QuotedKeysArePatternsOfWhichTheLastCountsUnlessAPlainKeyIsThere) 
     const core::TemporaryFolder folder;
     const fs::path box = folder.path() / "box";
     copy_case(data("ascii"), box);
-    const auto value = [](const std::string& key, int number) { return key + " { type fixedValue; value uniform " + std::to_string(number) + "; }\n"; };
+    const auto value = [](const std::string& key, int number) {
+        return key + " { type fixedValue; value uniform " + std::to_string(number) + "; }\n";
+    };
     state_boundary(box, value("\".*\"", 5) + value("\"(moving|other)Wall\"", 7));
     EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 7);
     EXPECT_EQ(pressure_on(read_field(box), "fixedWalls"), 5);
@@ -213,12 +222,15 @@ TEST(OpenFoam, KeysMayBeGroupsOfPatches) {
     std::string text = core::read_file(file);
     const std::size_t at = text.find('{', text.find("movingWall")) + 1;
     std::ofstream(file, std::ios::binary) << text.insert(at, "\n        inGroups List<word> 2(lids moving);");
-    state_boundary(box, "lids { type fixedValue; value uniform 7; }\nwall { type fixedValue; value uniform 5; }\n\".*\" { type fixedValue; value uniform 3; }\n");
+    state_boundary(box,
+                   "lids { type fixedValue; value uniform 7; }\nwall { type fixedValue; value uniform 5; }\n\".*\" { "
+                   "type fixedValue; value uniform 3; }\n");
     EXPECT_EQ(pressure_on(read_field(box), "fixedWalls"), 5);  // walls are a group that nobody has to name
     EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 5);  // the last one
     state_boundary(box, "wall { type fixedValue; value uniform 5; }\nlids { type fixedValue; value uniform 7; }\n");
     EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 7);
-    state_boundary(box, "wall { type fixedValue; value uniform 5; }\nmovingWall { type fixedValue; value uniform 9; }\n");
+    state_boundary(box,
+                   "wall { type fixedValue; value uniform 5; }\nmovingWall { type fixedValue; value uniform 9; }\n");
     EXPECT_EQ(pressure_on(read_field(box), "movingWall"), 9);
 }
 
@@ -227,7 +239,8 @@ TEST(OpenFoam, ValuesThatAreGuessedAreTold) {
     const fs::path box = folder.path() / "box";
     copy_case(data("ascii"), box);
     state_boundary(box, "movingWall { type zeroGradient; }\nfrontAndBack { type empty; }\n");
-    EXPECT_THAT(test::told(read_field(box)), HasSubstr("patch 'fixedWalls' has no entry in 'p': its values are those of the cells beside it"));
+    EXPECT_THAT(test::told(read_field(box)),
+                HasSubstr("patch 'fixedWalls' has no entry in 'p': its values are those of the cells beside it"));
     state_boundary(box, "movingWall { $common; }\nfixedWalls { type zeroGradient; }\nfrontAndBack { type empty; }\n");
     const std::string told = test::told(read_field(box));
     EXPECT_THAT(told, HasSubstr("patch 'movingWall' takes its entry in 'p' from another, which is not read"));
@@ -408,7 +421,9 @@ TEST(OpenFoam, ForcesOfARunThatBeganAgainReplaceThoseOfTheFirst) {
     const core::TemporaryFolder folder;
     const fs::path start = folder.path() / "postProcessing/forces/0";
     const auto write = [&](const std::string& name, double scale) {
-        std::string text = "# Force\n# CofR : (0 0 0)\n#\n# Time total_x total_y total_z pressure_x pressure_y pressure_z viscous_x viscous_y viscous_z\n";
+        std::string text =
+            "# Force\n# CofR : (0 0 0)\n#\n# Time total_x total_y total_z pressure_x pressure_y pressure_z viscous_x "
+            "viscous_y viscous_z\n";
         for (int time = 1; time <= 3; ++time) {
             const std::string force = core::format_number(scale * time);
             text += std::to_string(time) + " " + force + " 0 0 " + force + " 0 0 0 0 0\n";
@@ -446,12 +461,16 @@ TEST(OpenFoam, WrongCountsAndLabelsAreRefused) {
     EXPECT_THAT(reason("constant/polyMesh/owner", "128\n(", "900000000\n("), HasSubstr("bytes are left"));
     EXPECT_THAT(reason("constant/polyMesh/faces", "4(1 6 31 26)", "4(1 6 31 2600)"), HasSubstr("names node"));
     EXPECT_THAT(reason("constant/polyMesh/faces", "4(1 6 31 26)", "900000000(1 6 31 26)"), HasSubstr("bytes are left"));
-    EXPECT_THAT(reason("constant/polyMesh/boundary", "nFaces          8;", "nFaces          9;"), HasSubstr("should begin at"));
+    EXPECT_THAT(reason("constant/polyMesh/boundary", "nFaces          8;", "nFaces          9;"),
+                HasSubstr("should begin at"));
     EXPECT_THAT(reason("constant/polyMesh/points", "(0 0 0)", "(0 nan 0)"), HasSubstr("not a number"));
     EXPECT_THAT(reason("constant/polyMesh/points", "(0 0 0)", "(0,1 0 0)"), HasSubstr("points"));
-    EXPECT_THAT(reason("0.005/p", "nonuniform List<scalar> \n32\n", "nonuniform List<scalar> \n900000000\n"), HasSubstr("bytes are left"));
-    EXPECT_THAT(reason("0.005/p", "nonuniform List<scalar> \n32\n(", "nonuniform List<scalar> \n900000000{1}\n;("), HasSubstr("repeated"));
-    EXPECT_THAT(reason("0.005/U", "internalField   nonuniform", "internalField   mysterious"), HasSubstr("'mysterious'"));
+    EXPECT_THAT(reason("0.005/p", "nonuniform List<scalar> \n32\n", "nonuniform List<scalar> \n900000000\n"),
+                HasSubstr("bytes are left"));
+    EXPECT_THAT(reason("0.005/p", "nonuniform List<scalar> \n32\n(", "nonuniform List<scalar> \n900000000{1}\n;("),
+                HasSubstr("repeated"));
+    EXPECT_THAT(reason("0.005/U", "internalField   nonuniform", "internalField   mysterious"),
+                HasSubstr("'mysterious'"));
 }
 
 }  // namespace underbody

@@ -2,13 +2,12 @@
 #include <gmock/gmock.h>
 #include <vtkPointData.h>
 
-#include <fstream>
-
 #include <cmath>
+#include <fstream>
 
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/import_error.h"
+#include "postproc/field/import_error.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -66,11 +65,17 @@ std::string understood_of(const std::filesystem::path& path) {
 TEST(OtherFiles, ThatAreDamagedSayWhatWasUnderstoodOfThem) {
     const core::TemporaryFolder folder;
     const std::string table = "nodenumber x-coordinate y-coordinate pressure\n1 0 0 5\n2 1 0 6\n";
-    EXPECT_EQ(understood_of(written(folder, "a.txt", table + "3 1 1\n")), "columns nodenumber, x-coordinate, y-coordinate, pressure; 2 whole rows");
-    const std::string block = "[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m ]\n0,0,0\n1,0,0\n0,1,0\n\n[Faces]\n0,1,2\n\n[Name]\nbase\n\n[Data]\nX [ m ], Y [ m ], Z [ m ]\n0,0,x\n";
+    EXPECT_EQ(understood_of(written(folder, "a.txt", table + "3 1 1\n")),
+              "columns nodenumber, x-coordinate, y-coordinate, pressure; 2 whole rows");
+    const std::string block =
+        "[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m "
+        "]\n0,0,0\n1,0,0\n0,1,0\n\n[Faces]\n0,1,2\n\n[Name]\nbase\n\n[Data]\nX [ m ], Y [ m ], Z [ m ]\n0,0,x\n";
     EXPECT_EQ(understood_of(written(folder, "b.csv", block)), "2 zones (hull, base); read hull with 3 nodes, 1 faces");
-    EXPECT_EQ(understood_of(written(folder, "c.vtk", std::string(triangle).substr(0, 120))), "the format, VTK legacy, nothing else yet");
-    EXPECT_EQ(understood_of(written(folder, "d.cas", "(0 \"x\")\n(2 3)\n(10 (0 1 8 0))\n(45 (7 wall hull)())\n(10 (1 1 8")), "5 sections, nodes 0 of 8, faces 0, cells 0, zones hull");
+    EXPECT_EQ(understood_of(written(folder, "c.vtk", std::string(triangle).substr(0, 120))),
+              "the format, VTK legacy, nothing else yet");
+    EXPECT_EQ(
+        understood_of(written(folder, "d.cas", "(0 \"x\")\n(2 3)\n(10 (0 1 8 0))\n(45 (7 wall hull)())\n(10 (1 1 8")),
+        "5 sections, nodes 0 of 8, faces 0, cells 0, zones hull");
 }
 
 TEST(OtherFiles, FluentsAsciiTableIsPointsAndSaysSo) {
@@ -87,7 +92,9 @@ TEST(OtherFiles, FluentsAsciiTableIsPointsAndSaysSo) {
     EXPECT_EQ(zone.surface->GetPointData()->GetArray("pressure")->GetTuple1(1), 6);
     EXPECT_NE(zone.find("wall_shear_x"), nullptr);
     EXPECT_THAT(field.problems.back().message, HasSubstr("forces cannot be integrated"));
-    const auto odd = read_field(written(folder, "odd.txt", "nodenumber x-coordinate y-coordinate pressure\n1 0 0 1.0-101\n2 1 0 1.#QNAN\n3 1 1 2.5+100\n"));
+    const auto odd = read_field(
+        written(folder, "odd.txt",
+                "nodenumber x-coordinate y-coordinate pressure\n1 0 0 1.0-101\n2 1 0 1.#QNAN\n3 1 1 2.5+100\n"));
     auto* pressure = odd.zones.at(0).surface->GetPointData()->GetArray("pressure");
     EXPECT_EQ(pressure->GetTuple1(0), 1e-101);  // Fortran, three digits of exponent
     EXPECT_TRUE(std::isnan(pressure->GetTuple1(1)));

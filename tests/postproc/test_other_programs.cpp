@@ -8,9 +8,9 @@
 #include "cgns_files.h"
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/loads.h"
-#include "postproc/summary.h"
-#include "postproc/vtk_files.h"
+#include "postproc/field/summary.h"
+#include "postproc/field/vtk_files.h"
+#include "postproc/loads/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody {

@@ -1,11 +1,9 @@
 // Probing of a block of cells with linear values: everything has a closed form.
-#include "postproc/probe.h"
-
 #include <gmock/gmock.h>
-#include <vtkCellType.h>
 #include <vtkCellArray.h>
-#include <vtkDoubleArray.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -14,7 +12,8 @@
 #include <cmath>
 #include <functional>
 
-#include "postproc/field.h"
+#include "postproc/field/field.h"
+#include "postproc/probe/probe.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -24,7 +23,13 @@ using Vector = std::array<double, 3>;
 
 /// A gap of 1 m x 0.4 m x 0.1 m under a flat base: velocity -(1 + 20 z) along x, p = 5 x + z.
 /// `in_cells`: the values at the middle of the cells, as a finite-volume solver has them. `beside`: all moved along y.
-Field gap_block(bool in_cells = false, const std::function<Vector(const Vector&)>& stream = [](const Vector& p) { return Vector{-(1 + 20 * p[2]), 0, 0}; }, double beside = 0) {
+Field gap_block(
+    bool in_cells = false,
+    const std::function<Vector(const Vector&)>& stream =
+        [](const Vector& p) {
+            return Vector{-(1 + 20 * p[2]), 0, 0};
+        },
+    double beside = 0) {
     constexpr std::array<int, 3> n = {10, 8, 6};
     constexpr std::array<double, 3> size = {1, 0.4, 0.1};
     Zone volume;
@@ -58,11 +63,13 @@ Field gap_block(bool in_cells = false, const std::function<Vector(const Vector&)
     for (int k = 0; k < n[2]; ++k) {
         for (int j = 0; j < n[1]; ++j) {
             for (int i = 0; i < n[0]; ++i) {
-                const vtkIdType ids[8] = {id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
-                                          id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
+                const vtkIdType ids[8] = {
+                    id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
+                    id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
                 volume.volume->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
                 if (in_cells) {
-                    const Vector middle = {size[0] * ((i + 0.5) / n[0] - 0.5), size[1] * ((j + 0.5) / n[1] - 0.5), size[2] * (k + 0.5) / n[2]};
+                    const Vector middle = {size[0] * ((i + 0.5) / n[0] - 0.5), size[1] * ((j + 0.5) / n[1] - 0.5),
+                                           size[2] * (k + 0.5) / n[2]};
                     velocity->InsertNextTuple(stream(middle).data());
                     pressure->InsertNextValue(5 * middle[0] + middle[2]);
                 }
@@ -137,7 +144,12 @@ TEST(Probe, GivesTheFlowThroughTheGapInClosedForm) {
 
 /// Half a gap: base and water begin at a plane that is not y = 0.
 Field half_gap(double plane) {
-    return gap_block(false, [](const Vector& p) { return Vector{-(1 + 20 * p[2]), 0, 0}; }, plane + 0.1);
+    return gap_block(
+        false,
+        [](const Vector& p) {
+            return Vector{-(1 + 20 * p[2]), 0, 0};
+        },
+        plane + 0.1);
 }
 
 /// A face of 1 x 1 m at a height; pressure is the height, wall shear too where it has one, `odd` has no unit.
@@ -237,7 +249,8 @@ TEST(Probe, GivesTheFlowOfCellValuesAsTheCellsHaveIt) {
     options.stations = 4;
     const core::Table flow = gap_flow(gap_block(true), options);
     for (std::size_t i = 0; i < flow.rows(); ++i) {
-        EXPECT_NEAR(flow.numbers("volume_flow")[i], 0.04, 1e-8);  // a mean of the nodes alone would give more at the ground and less at the base
+        EXPECT_NEAR(flow.numbers("volume_flow")[i], 0.04,
+                    1e-8);  // a mean of the nodes alone would give more at the ground and less at the base
         EXPECT_NEAR(flow.numbers("bulk_velocity")[i], 2, 1e-6);
         EXPECT_NEAR(flow.numbers("mean_pressure")[i], 5 * flow.numbers("position")[i] + 0.05, 1e-7);
     }
@@ -248,11 +261,16 @@ TEST(Probe, KeepsTheWaterThatComesInFromTheSides) {
     GapOptions options;
     options.stations = 5;
     for (const bool in_cells : {false, true}) {
-        const core::Table flow = gap_flow(gap_block(in_cells, [](const Vector& p) { return Vector{-(2 + p[0]), p[1], 0}; }), options);
+        const core::Table flow = gap_flow(gap_block(in_cells,
+                                                    [](const Vector& p) {
+                                                        return Vector{-(2 + p[0]), p[1], 0};
+                                                    }),
+                                          options);
         for (std::size_t i = 1; i < flow.rows(); ++i) {
             const double length = flow.numbers("position")[i] - flow.numbers("position")[i - 1];
             const double through_sides = 2 * 0.1 * 0.1 * length;  // v = 0.1 m/s on both, over the height of 0.1 m
-            EXPECT_NEAR(flow.numbers("volume_flow")[i] - flow.numbers("volume_flow")[i - 1], through_sides, in_cells ? 1e-4 : 1e-8);
+            EXPECT_NEAR(flow.numbers("volume_flow")[i] - flow.numbers("volume_flow")[i - 1], through_sides,
+                        in_cells ? 1e-4 : 1e-8);
         }
     }
 }
@@ -293,7 +311,8 @@ TEST(Probe, BalancesTheRealGapBetweenTwoStations) {
         }
         const double in = flow.numbers("volume_flow")[to] / 2;
         const double gone = flow.numbers("volume_flow")[from] / 2;
-        EXPECT_NEAR(in, gone + out, 0.02 * in) << from << " to " << to << ": in " << in << ", out astern " << gone << ", out at the side " << out;
+        EXPECT_NEAR(in, gone + out, 0.02 * in)
+            << from << " to " << to << ": in " << in << ", out astern " << gone << ", out at the side " << out;
     }
 }
 

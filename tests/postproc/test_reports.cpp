@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/file.h"
-#include "postproc/importers/reports.h"
+#include "postproc/importers/reports/reports.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -200,11 +200,13 @@ TEST(ForceReports, ATranscriptWithSeveralReportsGivesThemAll) {
     const core::TemporaryFolder folder;
     const auto reports = read_force_reports(written(
         folder,
-        "\xEF\xBB\xBF  iter  continuity  x-velocity\r\n  10 1e-3 2e-4\r\n\r\nForces\r\n      Forces [N]     Coefficients\r\n"
+        "\xEF\xBB\xBF  iter  continuity  x-velocity\r\n  10 1e-3 2e-4\r\n\r\nForces\r\n      Forces [N]     "
+        "Coefficients\r\n"
         "Zone Pressure Viscous Total Pressure Viscous Total\r\n"
         "hull (1 2 3) (0.1 0.2 0.3) (1.1 2.2 3.3) (4 5 6) (7 8 9) (10 11 12)\r\n----- -----\r\n"
         "Net (1 2 3) (0.1 0.2 0.3) (1.1 2.2 3.3) (4 5 6) (7 8 9) (10 11 12)\r\n\r\n"
-        "Forces - Direction Vector (0 0 -1)\r\n   Forces [lbf]   Coefficients\r\nZone Pressure Viscous Total Pressure Viscous Total\r\n"
+        "Forces - Direction Vector (0 0 -1)\r\n   Forces [lbf]   Coefficients\r\nZone Pressure Viscous Total Pressure "
+        "Viscous Total\r\n"
         "hull 1 0.5 1.5 1 2 3\r\nbase:012 2 0.5 2.5 1 2 3\r\n-----\r\nNet 3 1 4 2 4 6\r\n"
         "Moments - Moment Center (-1.5 0 0.25) Moment Axis (0 1 0)\r\n   Moments (n-m)  Coefficients\r\n"
         "Zone Pressure Viscous Total Pressure Viscous Total\r\nhull -1 -2 -3 0 0 0\r\n-----\r\nNet -1 -2 -3 0 0 0\r\n"
@@ -256,7 +258,8 @@ TEST(ForceReports, ATextThatEndsWithinAReportIsRefused) {
 
 TEST(ForceReports, ALineOfBracketsAloneEndsNothing) {
     const core::TemporaryFolder folder;
-    const auto reports = read_force_reports(written(folder, "Forces - Direction Vector (1 0 0)\nForces (n)\nhull 1 2 3 4 5 6\n)\nnet 1 2 3 4 5 6\n"));
+    const auto reports = read_force_reports(
+        written(folder, "Forces - Direction Vector (1 0 0)\nForces (n)\nhull 1 2 3 4 5 6\n)\nnet 1 2 3 4 5 6\n"));
     ASSERT_EQ(reports.size(), 1U);
     EXPECT_EQ(reports[0].rows.back().zone, "Net");
     EXPECT_EQ(reports[0].rows.back().total, 3);
@@ -286,7 +289,8 @@ std::string reason_against(const std::filesystem::path& path) {
 TEST(OutputOfCfx, GivesTheResidualsOfEveryIterationThroughNoticesBetweenAndWithin) {
     const core::TemporaryFolder folder;
     const auto residuals = read_monitor(written(folder, cfx_output()));
-    EXPECT_THAT(residuals.columns, ElementsAre("Iteration", "U-Mom", "U-Mom max", "P-Mass", "P-Mass max", "K-TurbKE", "K-TurbKE max"));
+    EXPECT_THAT(residuals.columns,
+                ElementsAre("Iteration", "U-Mom", "U-Mom max", "P-Mass", "P-Mass max", "K-TurbKE", "K-TurbKE max"));
     EXPECT_THAT(residuals.values[0], ElementsAre(1, 2));
     EXPECT_THAT(*residuals.find("K-TurbKE"), ElementsAre(0.11, 0.033));
     EXPECT_THAT(*residuals.find("U-Mom max"), ElementsAre(0.3, 0.14));
@@ -296,12 +300,15 @@ TEST(OutputOfCfx, GivesTheResidualsOfEveryIterationThroughNoticesBetweenAndWithi
 TEST(OutputOfCfx, CountsTimeStepsByTheirLastLoopAndTellsDivergence) {
     const core::TemporaryFolder folder;
     const auto table = [](const std::string& rms) {
-        return " |       Equation       | Rate | RMS Res | Max Res |  Linear Solution |\n +------+------+\n | U-Mom                | 0.00 | " + rms +
-               " | 3.0E-01 |       8.2E-03  OK|\n +------+------+\n";
+        return " |       Equation       | Rate | RMS Res | Max Res |  Linear Solution |\n +------+------+\n | U-Mom    "
+               "            | 0.00 | " +
+               rms + " | 3.0E-01 |       8.2E-03  OK|\n +------+------+\n";
     };
     const std::string loop = " COEFFICIENT LOOP ITERATION =  1             CPU SECONDS = 1.0E+00\n";
-    const auto residuals = read_monitor(written(folder, " TIME STEP =  1 SIMULATION TIME = 1.0E-02 CPU SECONDS = 1\n" + loop + table("2.0E-02") + loop + table("1.0E-03") +
-                                                            " TIME STEP =  2 SIMULATION TIME = 2.0E-02 CPU SECONDS = 2\n" + loop + table("NaN")));
+    const auto residuals = read_monitor(
+        written(folder, " TIME STEP =  1 SIMULATION TIME = 1.0E-02 CPU SECONDS = 1\n" + loop + table("2.0E-02") + loop +
+                            table("1.0E-03") + " TIME STEP =  2 SIMULATION TIME = 2.0E-02 CPU SECONDS = 2\n" + loop +
+                            table("NaN")));
     EXPECT_THAT(residuals.values[0], ElementsAre(1, 2));
     EXPECT_EQ(residuals.columns[0], "Time Step");
     EXPECT_EQ(residuals.find("U-Mom")->at(0), 1e-3);
@@ -324,7 +331,9 @@ TEST(OutputOfCfx, GivesTheForcesAndMomentsOnEachWall) {
     EXPECT_EQ(pitch.direction[1], 1);
     EXPECT_NEAR(pitch.net()->total, 0.0102, 1e-12);
     // In the units of the run.
-    const auto in_feet = read_force_reports(written(folder, changed(changed(cfx_output(), "Length Units = [m]", "Length Units = [ft]"), "Mass Units = [kg]", "Mass Units = [lb]")));
+    const auto in_feet =
+        read_force_reports(written(folder, changed(changed(cfx_output(), "Length Units = [m]", "Length Units = [ft]"),
+                                                   "Mass Units = [kg]", "Mass Units = [lb]")));
     EXPECT_NEAR(in_feet[2].net()->pressure, 0.27 * 0.45359237 * 0.3048, 1e-12);
     EXPECT_NEAR(in_feet[4].net()->pressure, 0.009 * 0.45359237 * 0.3048 * 0.3048, 1e-14);
 }
@@ -332,10 +341,14 @@ TEST(OutputOfCfx, GivesTheForcesAndMomentsOnEachWall) {
 TEST(OutputOfCfx, KeepsWallsOfOneNameInTwoDomainGroupsApart) {
     const core::TemporaryFolder folder;
     const auto table = [](const std::string& title) {
-        return " |  " + title + " On Walls  |\n        X-Comp.  Y-Comp.  Z-Comp.\n\n Domain Group: R1\n\n Blade  1 2 3\n Hub Default  4 5 6\n       -----  -----  -----\n"
-               " Domain Group Totals :  5 7 9\n\n Domain Group: S1\n\n Blade  10 20 30\n       -----  -----  -----\n Domain Group Totals :  10 20 30\n\n";
+        return " |  " + title +
+               " On Walls  |\n        X-Comp.  Y-Comp.  Z-Comp.\n\n Domain Group: R1\n\n Blade  1 2 3\n Hub Default  4 "
+               "5 6\n       -----  -----  -----\n"
+               " Domain Group Totals :  5 7 9\n\n Domain Group: S1\n\n Blade  10 20 30\n       -----  -----  -----\n "
+               "Domain Group Totals :  10 20 30\n\n";
     };
-    const auto reports = read_force_reports(written(folder, " OUTER LOOP ITERATION =    1    CPU SECONDS = 1.2E+00\n" + table("Pressure Force") + table("Viscous Force")));
+    const auto reports = read_force_reports(written(folder, " OUTER LOOP ITERATION =    1    CPU SECONDS = 1.2E+00\n" +
+                                                                table("Pressure Force") + table("Viscous Force")));
     ASSERT_EQ(reports.size(), 3U);
     ASSERT_EQ(reports[0].rows.size(), 4U);
     EXPECT_EQ(reports[0].rows[0].zone, "R1: Blade");
@@ -349,20 +362,26 @@ TEST(OutputOfCfx, KeepsWallsOfOneNameInTwoDomainGroupsApart) {
 TEST(OutputOfCfx, ThatLostLinesIsRefused) {
     const core::TemporaryFolder folder;
     const std::string base = " base                          2.0000E-03    0.0000E+00   -8.6000E-01\n";
-    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), base, ""))), HasSubstr("lines are missing or damaged"));
-    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), "-8.6000E-01", " 8.6000E-01"))), HasSubstr("add up to"));
-    EXPECT_THAT(reason_against(written(folder, cfx_output().substr(0, cfx_output().find("Viscous Force")))), HasSubstr("incomplete: 2 walls with a pressure part, 0 with a viscous one"));
-    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), " hull                         -3.0000E-02", " keel                         -3.0000E-02"))),
+    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), base, ""))),
+                HasSubstr("lines are missing or damaged"));
+    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), "-8.6000E-01", " 8.6000E-01"))),
+                HasSubstr("add up to"));
+    EXPECT_THAT(reason_against(written(folder, cfx_output().substr(0, cfx_output().find("Viscous Force")))),
+                HasSubstr("incomplete: 2 walls with a pressure part, 0 with a viscous one"));
+    EXPECT_THAT(reason_against(written(folder, changed(cfx_output(), " hull                         -3.0000E-02",
+                                                       " keel                         -3.0000E-02"))),
                 HasSubstr("wall 'hull' has no viscous part"));
 }
 
 TEST(Monitors, EveryHeadOfFluentIsUnderstood) {
     const core::TemporaryFolder folder;
-    const auto transient = read_monitor(written(
-        folder, "\"lift-rfile\"\r\n\"Time Step\" \"lift etc..\"\r\n(\"Time Step\" \"lift\" \"flow-time\")\r\n1 0.5 0.01\r\n2 0.6 0.02\r\n"));
+    const auto transient = read_monitor(written(folder,
+                                                "\"lift-rfile\"\r\n\"Time Step\" \"lift etc..\"\r\n(\"Time Step\" "
+                                                "\"lift\" \"flow-time\")\r\n1 0.5 0.01\r\n2 0.6 0.02\r\n"));
     EXPECT_THAT(transient.columns, ElementsAre("Time Step", "lift", "flow-time"));
     EXPECT_TRUE(transient.problems.empty());
-    const auto old = read_monitor(written(folder, "\"Convergence history of Lift\"\n\"Iterations\"\"cl-1\"\n1\t0.5\n2\t0.6\n"));
+    const auto old =
+        read_monitor(written(folder, "\"Convergence history of Lift\"\n\"Iterations\"\"cl-1\"\n1\t0.5\n2\t0.6\n"));
     EXPECT_THAT(old.columns, ElementsAre("Iterations", "cl-1"));
     const auto bare = read_monitor(written(folder, "1\t0.5\n2\t0.6"));
     EXPECT_THAT(bare.values[1], ElementsAre(0.5, 0.6));

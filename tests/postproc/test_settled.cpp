@@ -9,9 +9,9 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "postproc/beside.h"
-#include "postproc/importers/reports.h"
-#include "postproc/settled.h"
+#include "postproc/field/beside.h"
+#include "postproc/importers/reports/reports.h"
+#include "postproc/loads/settled.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {

@@ -1,6 +1,4 @@
 // Connected parts of a surface: by nodes, by places, with their values.
-#include "postproc/shells.h"
-
 #include <gmock/gmock.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -12,6 +10,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "postproc/field/connected_components.h"
 
 namespace underbody::postproc {
 namespace {

@@ -7,10 +7,10 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "core/text.h"
-#include "postproc/loads_table.h"
-#include "postproc/settled.h"
-#include "postproc/mesh_study.h"
-#include "postproc/stated_loads.h"
+#include "postproc/loads/loads_table.h"
+#include "postproc/loads/mesh_study.h"
+#include "postproc/loads/settled.h"
+#include "postproc/loads/stated_loads.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -19,11 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A box of 2 x 1 x 0.5 m with p = 1 + z and a shear of (0.1, 0, 0) Pa on its base: base (0.2, 0, 2) N, hull (0, 0, -3) N.
-/// The half of it with y > 0 when asked for.
+/// A box of 2 x 1 x 0.5 m with p = 1 + z and a shear of (0.1, 0, 0) Pa on its base: base (0.2, 0, 2) N, hull (0, 0, -3)
+/// N. The half of it with y > 0 when asked for.
 std::string box(bool half) {
     const std::string y0 = half ? "0.5" : "0";
-    const std::string head = "[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa ]\n";
+    const std::string head =
+        "[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ "
+        "Pa ]\n";
     const auto node = [&](const char* x, const std::string& y, const char* z, const char* p, const char* shear) {
         return std::string(x) + "," + y + "," + z + "," + p + "," + shear + ",0,0\n";
     };
@@ -35,7 +37,8 @@ std::string box(bool half) {
             bottom += *z == '0' && z[1] == 0 ? node(x, y, z, p, "0.1") : "";
         }
     }
-    return "[Name]\nbase\n\n" + head + bottom + "\n[Faces]\n0,3,2,1\n\n[Name]\nhull\n\n" + head + all + "\n[Faces]\n" + (half ? "" : "0,1,5,4\n") + "1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,6,7\n";
+    return "[Name]\nbase\n\n" + head + bottom + "\n[Faces]\n0,3,2,1\n\n[Name]\nhull\n\n" + head + all + "\n[Faces]\n" +
+           (half ? "" : "0,1,5,4\n") + "1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,6,7\n";
 }
 
 class StatedLoads : public testing::Test {
@@ -61,19 +64,22 @@ const std::string report =
     "Zone             Pressure         Viscous          Total            Pressure         Viscous          Total\n"
     "base             2                0                2                3.2              0                3.2\n"
     "hull             -3               0                -3               -4.8             0                -4.8\n"
-    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- ----------------\n"
+    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- "
+    "----------------\n"
     "Net              -1               0                -1               -1.6             0                -1.6\n\n"
     "Forces - Direction Vector (-2 0 0)\n"
     "Zone             Pressure         Viscous          Total            Pressure         Viscous          Total\n"
     "base             0                -0.2             -0.2             0                0                0\n"
     "hull             0                0                0                0                0                0\n"
-    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- ----------------\n"
+    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- "
+    "----------------\n"
     "Net              0                -0.2             -0.2             0                0                0\n\n"
     "Moments - Moment Center (0 0 0) Moment Axis (0 1 0)\n"
     "Zone             Pressure         Viscous          Total            Pressure         Viscous          Total\n"
     "base             -2               0                -2               0                0                0\n"
     "hull             3                0                3                0                0                0\n"
-    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- ----------------\n"
+    "---------------- ---------------- ---------------- ---------------- ---------------- ---------------- "
+    "----------------\n"
     "Net              1                0                1                0                0                0\n";
 
 TEST_F(StatedLoads, OfAForceReportAreComparedRowByRow) {
@@ -101,7 +107,8 @@ TEST_F(StatedLoads, ThatDifferAreSeenWithTheirShareOfTheForce) {
     off.replace(off.find("Net              -1 "), 20, "Net              -1.1");
     core::Problems notes;
     const auto comparisons = compare_with_solver(result, stated_in_report(written("forces.txt", off)), notes);
-    const auto net = std::find_if(comparisons.begin(), comparisons.end(), [](const Comparison& c) { return c.quantity == "pressure part of lift_force"; });
+    const auto net = std::find_if(comparisons.begin(), comparisons.end(),
+                                  [](const Comparison& c) { return c.quantity == "pressure part of lift_force"; });
     ASSERT_NE(net, comparisons.end());
     EXPECT_NEAR(net->of_force, 0.1 / std::hypot(1, 0.2), 1e-12);
 }
@@ -116,7 +123,9 @@ TEST_F(StatedLoads, AreFarFromAForceOfNothing) {
     core::Problems notes;
     const auto comparisons = compare_with_solver(nothing, stated_in_report(written("forces.txt", report)), notes);
     const auto of = [&](const std::string& quantity) {
-        return std::find_if(comparisons.begin(), comparisons.end(), [&](const Comparison& c) { return c.quantity == quantity; })->of_force;
+        return std::find_if(comparisons.begin(), comparisons.end(),
+                            [&](const Comparison& c) { return c.quantity == quantity; })
+            ->of_force;
     };
     EXPECT_EQ(of("lift_force"), 1);
     EXPECT_EQ(of("drag_force"), 0.2);  // of the report's force, the lift of 1 N
@@ -180,8 +189,13 @@ TEST_F(StatedLoads, OfATranscriptAreThoseOfItsLastReports) {
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_THAT(notes[0].message, HasSubstr("3 reports of the force along (0, 0, 1)"));
     // Reports of other zones along the same direction stand beside each other.
-    const std::string head = "Forces - Direction Vector (0 0 1)\nZone             Pressure         Viscous          Total            Pressure         Viscous          Total\n";
-    EXPECT_EQ(stated_in_report(written("two.txt", head + "base 2 0 2 0 0 0\nNet 2 0 2 0 0 0\n\n" + head + "hull -3 0 -3 0 0 0\nNet -3 0 -3 0 0 0\n")).size(), 6U);
+    const std::string head =
+        "Forces - Direction Vector (0 0 1)\nZone             Pressure         Viscous          Total            "
+        "Pressure         Viscous          Total\n";
+    EXPECT_EQ(stated_in_report(written("two.txt", head + "base 2 0 2 0 0 0\nNet 2 0 2 0 0 0\n\n" + head +
+                                                      "hull -3 0 -3 0 0 0\nNet -3 0 -3 0 0 0\n"))
+                  .size(),
+              6U);
 }
 
 TEST_F(StatedLoads, LieBesideAFileUnderItsName) {
@@ -207,11 +221,14 @@ TEST_F(StatedLoads, AreOfTheFileWithTheLongestNameThatFits) {
 /// The same of CFX's solver: a summary of the walls at the end of its output.
 std::string cfx_summary() {
     const auto table = [](const char* title, const char* base, const char* hull, const char* total) {
-        return std::string(" +----------+\n |  ") + title + " On Walls  |\n +----------+\n        X-Comp.  Y-Comp.  Z-Comp.\n\n Domain Group: water\n\n base  " + base + "\n hull  " +
-               hull + "\n       -----  -----  -----\n Domain Group Totals :  " + total + "\n\n";
+        return std::string(" +----------+\n |  ") + title +
+               " On Walls  |\n +----------+\n        X-Comp.  Y-Comp.  Z-Comp.\n\n Domain Group: water\n\n base  " +
+               base + "\n hull  " + hull + "\n       -----  -----  -----\n Domain Group Totals :  " + total + "\n\n";
     };
-    return " OUTER LOOP ITERATION =    1    CPU SECONDS = 1.2E+00\n" + table("Pressure Force", "0 0 2.0E+00", "0 0 -3.0E+00", "0 0 -1.0E+00") +
-           table("Viscous Force", "2.0E-01 0 0", "0 0 0", "2.0E-01 0 0") + table("Pressure Moment", "1.0E+00 -2.0E+00 0", "-1.5E+00 3.0E+00 0", "-5.0E-01 1.0E+00 0") +
+    return " OUTER LOOP ITERATION =    1    CPU SECONDS = 1.2E+00\n" +
+           table("Pressure Force", "0 0 2.0E+00", "0 0 -3.0E+00", "0 0 -1.0E+00") +
+           table("Viscous Force", "2.0E-01 0 0", "0 0 0", "2.0E-01 0 0") +
+           table("Pressure Moment", "1.0E+00 -2.0E+00 0", "-1.5E+00 3.0E+00 0", "-5.0E-01 1.0E+00 0") +
            table("Viscous Moment", "0 0 -1.0E-01", "0 0 0", "0 0 -1.0E-01");
 }
 
@@ -236,7 +253,8 @@ std::string monitor(double mean, double scatter, std::uint64_t seed = 3) {
     std::string text = "\"lift-rfile\"\n\"Iteration\" \"lift etc..\"\n(\"Iteration\" \"lift\" \"drag\")\n";
     for (int i = 1; i <= 600; ++i) {
         const double approach = 3 * std::exp(-i / 25.0);
-        text += std::to_string(i) + " " + core::format_number(mean + approach + scatter * random.normal()) + " " + core::format_number(0.2 + approach) + "\n";
+        text += std::to_string(i) + " " + core::format_number(mean + approach + scatter * random.normal()) + " " +
+                core::format_number(0.2 + approach) + "\n";
     }
     return text;
 }
@@ -421,27 +439,37 @@ TEST_F(StatedLoads, OfAMonitorAreRefusedWhenTheyAreNotClear) {
         }
         return std::string("accepted");
     };
-    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string()), result); }), HasSubstr("several columns"));
-    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string() + ":lft"), result); }), HasSubstr("did you mean 'lift'?"));
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string()), result); }),
+                HasSubstr("several columns"));
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + path.string() + ":lft"), result); }),
+                HasSubstr("did you mean 'lift'?"));
     const auto none = written("none.out", "\"Iteration\"\n1\n2\n");
-    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + none.string()), result); }), HasSubstr("no column of values, only 'Iteration'"));
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + none.string()), result); }),
+                HasSubstr("no column of values, only 'Iteration'"));
     EXPECT_THAT(message([] { monitor_source("lift_froce=a.out"); }), HasSubstr("did you mean 'lift_force'?"));
     EXPECT_THAT(message([] { monitor_source("lift_force [m]=a.out"); }), HasSubstr("no unit of lift_force"));
     EXPECT_THAT(message([] { monitor_source("a.out"); }), HasSubstr("no QUANTITY=FILE"));
     const auto brief = written("short.out", "(\"Iteration\" \"lift\")\n1 2\n2 2\n");
-    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + brief.string()), result); }), HasSubstr("too short"));
+    EXPECT_THAT(message([&] { stated_by_monitor(monitor_source("lift_force=" + brief.string()), result); }),
+                HasSubstr("too short"));
 }
 
 // ---- OpenFOAM ----
 
 /// Force and moment files of a case whose forces settle on those of the box, moments about the origin.
 void write_openfoam(const fs::path& folder, int from, int to, double error) {
-    std::string force = "# Force\n# CofR       : (0 0 0)\n#\n# Time        \t(total_x total_y total_z)\t(pressure_x pressure_y pressure_z)\t(viscous_x viscous_y viscous_z)\n";
-    std::string moment = "# Moment\n# CofR       : (0 0 0)\n#\n# Time        \t(total_x total_y total_z)\t(pressure_x pressure_y pressure_z)\t(viscous_x viscous_y viscous_z)\n";
+    std::string force =
+        "# Force\n# CofR       : (0 0 0)\n#\n# Time        \t(total_x total_y total_z)\t(pressure_x pressure_y "
+        "pressure_z)\t(viscous_x viscous_y viscous_z)\n";
+    std::string moment =
+        "# Moment\n# CofR       : (0 0 0)\n#\n# Time        \t(total_x total_y total_z)\t(pressure_x pressure_y "
+        "pressure_z)\t(viscous_x viscous_y viscous_z)\n";
     for (int i = from; i <= to; ++i) {
         const double z = -1 + error * (i % 2 == 0 ? 1 : -1);
         const std::string time = std::to_string(i) + "\t";
-        const auto triple = [](double x, double y, double w) { return "(" + core::format_number(x) + " " + core::format_number(y) + " " + core::format_number(w) + ")"; };
+        const auto triple = [](double x, double y, double w) {
+            return "(" + core::format_number(x) + " " + core::format_number(y) + " " + core::format_number(w) + ")";
+        };
         force += time + triple(0.2, 0, z) + "\t" + triple(0, 0, z) + "\t" + triple(0.2, 0, 0) + "\n";
         // r x F with the pressure at (1, 0.5, 0) and the shear at (1, 0.5, 0): (0.5 z, -z, 0) and (0, 0, -0.1)
         moment += time + triple(0.5 * z, -z, -0.1) + "\t" + triple(0.5 * z, -z, 0) + "\t" + triple(0, 0, -0.1) + "\n";
@@ -455,7 +483,8 @@ TEST_F(StatedLoads, OfOpenFoamCarryOverRestartsAndMoveToTheReferencePoint) {
     write_openfoam(folder_.path(), 1, 100, 0.5);
     write_openfoam(folder_.path(), 51, 150, 0.001);
     core::write_file(folder_.path() / "system" / "controlDict",
-                     "functions { other { type x; } forces { type forces; // patches (keel);\n patches (base \"hul.*\"); rho rhoInf; rhoInf 998; } }\n");
+                     "functions { other { type x; } forces { type forces; // patches (keel);\n patches (base "
+                     "\"hul.*\"); rho rhoInf; rhoInf 998; } }\n");
     const auto stated = stated_by_openfoam(folder_.path(), result);
     ASSERT_EQ(stated.size(), 18U);
     EXPECT_THAT(stated[0].zones, testing::ElementsAre("base", "hull"));
@@ -477,7 +506,8 @@ TEST_F(StatedLoads, OfOpenFoamAreThoseOfTheFieldsTime) {
     LoadsResult result = loads_of();
     EXPECT_FALSE(result.time);
     write_openfoam(folder_.path(), 1, 100, 0.5);
-    core::write_file(folder_.path() / "system" / "controlDict", "functions { forces { type forces; patches (base hull); } }\n");
+    core::write_file(folder_.path() / "system" / "controlDict",
+                     "functions { forces { type forces; patches (base hull); } }\n");
     const auto compared = [&](double time, core::Problems& notes) {
         result.time = time;
         return compare_with_solver(result, stated_by_openfoam(folder_.path(), result), notes)[0].stated;
@@ -486,7 +516,9 @@ TEST_F(StatedLoads, OfOpenFoamAreThoseOfTheFieldsTime) {
     EXPECT_NEAR(compared(20, notes), -0.5, 1e-12);
     EXPECT_NEAR(compared(21, notes), -1.5, 1e-12);
     EXPECT_TRUE(notes.empty());
-    EXPECT_EQ(stated_by_openfoam(folder_.path(), result)[0].history->count + stated_by_openfoam(folder_.path(), result)[0].history->first, 21U);
+    EXPECT_EQ(stated_by_openfoam(folder_.path(), result)[0].history->count +
+                  stated_by_openfoam(folder_.path(), result)[0].history->first,
+              21U);
     EXPECT_NEAR(compared(22.2, notes), -0.5, 1e-12);  // no such row: the nearest, and said once
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_THAT(notes[0].message, HasSubstr("time 22.2"));
@@ -509,15 +541,23 @@ TEST_F(StatedLoads, OfOpenFoamAreOfThePatchesOfTheirEntry) {
         return stated[0].zones;
     };
     core::Problems notes;
-    // A dictionary within, before the patches; an entry whose name ends alike; a comment; brackets of patterns and names.
-    EXPECT_THAT(zones("functions { forces { type forces; binData { nBin 20; patches (keel); } patches (base); } }\n", notes), testing::ElementsAre("base"));
-    EXPECT_THAT(zones("functions { myforces { patches (hull); } forces { patches (base); } }\n", notes), testing::ElementsAre("base"));
-    EXPECT_THAT(zones("functions { /* forces { patches (base); } */ forces { patches\n(\n\"(hull|keel)\" );\n} }\n", notes), testing::ElementsAre("hull"));
-    EXPECT_THAT(zones("functions { \"forces\" { patches(base hull); rho rhoInf; } }\n", notes), testing::ElementsAre("base", "hull"));
+    // A dictionary within, before the patches; an entry whose name ends alike; a comment; brackets of patterns and
+    // names.
+    EXPECT_THAT(
+        zones("functions { forces { type forces; binData { nBin 20; patches (keel); } patches (base); } }\n", notes),
+        testing::ElementsAre("base"));
+    EXPECT_THAT(zones("functions { myforces { patches (hull); } forces { patches (base); } }\n", notes),
+                testing::ElementsAre("base"));
+    EXPECT_THAT(
+        zones("functions { /* forces { patches (base); } */ forces { patches\n(\n\"(hull|keel)\" );\n} }\n", notes),
+        testing::ElementsAre("hull"));
+    EXPECT_THAT(zones("functions { \"forces\" { patches(base hull); rho rhoInf; } }\n", notes),
+                testing::ElementsAre("base", "hull"));
     EXPECT_TRUE(notes.empty());
     EXPECT_THAT(zones("functions { forces { patches (wall(1) base); } }\n", notes), testing::ElementsAre("base"));
     // What is said elsewhere, or not at all, is said once.
-    for (const char* elsewhere : {"functions { #include \"forces\" }\n", "functions { forces { patches $walls; } }\n", "functions { forces { patches ($walls); } }\n"}) {
+    for (const char* elsewhere : {"functions { #include \"forces\" }\n", "functions { forces { patches $walls; } }\n",
+                                  "functions { forces { patches ($walls); } }\n"}) {
         notes.clear();
         EXPECT_TRUE(zones(elsewhere, notes).empty());
         ASSERT_EQ(notes.size(), 1U) << elsewhere;
@@ -527,7 +567,8 @@ TEST_F(StatedLoads, OfOpenFoamAreOfThePatchesOfTheirEntry) {
 
 TEST_F(StatedLoads, OfOlderOpenFoamAreReadFromOneFile) {
     const LoadsResult result = loads_of();
-    std::string text = "# Forces\n# CofR : (1 0.5 0)\n# Time forces(pressure viscous porous) moment(pressure viscous porous)\n";
+    std::string text =
+        "# Forces\n# CofR : (1 0.5 0)\n# Time forces(pressure viscous porous) moment(pressure viscous porous)\n";
     for (int i = 1; i <= 10; ++i) {
         text += std::to_string(i) + "\t((0 0 -1) (0.2 0 0) (0 0 0)) ((0 0 0) (0 0 0) (0 0 0))\n";
     }
@@ -538,7 +579,8 @@ TEST_F(StatedLoads, OfOlderOpenFoamAreReadFromOneFile) {
     for (const auto& one : comparisons) {
         EXPECT_NEAR(one.value, one.stated, 1e-12) << one.quantity;
     }
-    core::write_file(folder_.path() / "postProcessing" / "forces1" / "0" / "forces.dat", text + "11 ((0 0 -1) (0.2 0\n");
+    core::write_file(folder_.path() / "postProcessing" / "forces1" / "0" / "forces.dat",
+                     text + "11 ((0 0 -1) (0.2 0\n");
     EXPECT_THROW(stated_by_openfoam(folder_.path(), result), core::InputError);
 }
 

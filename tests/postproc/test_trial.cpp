@@ -1,6 +1,4 @@
 // Reading in a process of its own: what crashes, takes too much memory or is cancelled there.
-#include "postproc/importers/trial.h"
-
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -10,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "postproc/importers/sandboxed_read.h"
 
 namespace underbody::postproc {
 namespace {
@@ -37,7 +36,8 @@ TEST_F(Trial, LetsPassWhatEndsWellOrRefusesInWords) {
 }
 
 TEST_F(Trial, RefusesWhatCrashesOrWantsTooMuch) {
-    EXPECT_THAT(refusal([] { std::raise(SIGSEGV); }), testing::AllOf(HasSubstr("file.cgns"), HasSubstr("crashes on it")));
+    EXPECT_THAT(refusal([] { std::raise(SIGSEGV); }),
+                testing::AllOf(HasSubstr("file.cgns"), HasSubstr("crashes on it")));
     EXPECT_THAT(refusal([] { throw std::bad_alloc(); }), HasSubstr("more memory than the file can justify"));
 }
 
@@ -50,7 +50,9 @@ TEST_F(Trial, EndsWithinATenthOfASecondWhenCancelled) {
         asked = Clock::now();
         progress.cancel();
     });
-    EXPECT_THROW(try_in_child(path_, [] { std::this_thread::sleep_for(std::chrono::seconds(30)); }, progress), core::Cancelled);
+    EXPECT_THROW(try_in_child(
+                     path_, [] { std::this_thread::sleep_for(std::chrono::seconds(30)); }, progress),
+                 core::Cancelled);
     user.join();
     EXPECT_LT(Clock::now() - asked, std::chrono::seconds(5));  // a tenth and what a busy machine takes
 }

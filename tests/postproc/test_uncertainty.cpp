@@ -1,5 +1,3 @@
-#include "postproc/uncertainty.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "postproc/loads/uncertainty.h"
 
 namespace underbody::postproc {
 namespace {
@@ -22,7 +21,8 @@ std::vector<MeshValue> power_law(const std::vector<double>& sizes, double limit,
 
 TEST(MeshUncertainty, ReproducesThePublishedExample) {
     // Celik et al. 2008, table 1, first column: 18000, 8000, 4500 cells (2-D), reattachment length.
-    const std::vector<MeshValue> values = {{mesh_size(18000, 2), 6.063}, {mesh_size(8000, 2), 5.972}, {mesh_size(4500, 2), 5.863}};
+    const std::vector<MeshValue> values = {
+        {mesh_size(18000, 2), 6.063}, {mesh_size(8000, 2), 5.972}, {mesh_size(4500, 2), 5.863}};
     const MeshUncertainty result = mesh_uncertainty(values);
     EXPECT_EQ(result.verdict, MeshVerdict::monotone);
     EXPECT_NEAR(result.observed_order, 1.53, 0.005);
@@ -61,7 +61,8 @@ TEST(MeshUncertainty, FindsTheOrderWhateverTheTwoRefinements) {
     const auto result = mesh_uncertainty(std::vector<MeshValue>{cells(3e6), cells(2e6), cells(5e5)});
     EXPECT_NEAR(result.observed_order, 1, 1e-9);
     EXPECT_NEAR(result.expanded_uncertainty, 0.25, 1e-9);
-    // Differences that are the same over unlike refinements have an order too, where the coarser refinement is the smaller.
+    // Differences that are the same over unlike refinements have an order too, where the coarser refinement is the
+    // smaller.
     const auto even = mesh_uncertainty(std::vector<MeshValue>{{1, 1.0}, {2, 1.1}, {3, 1.2}});
     EXPECT_NEAR(even.observed_order, 1, 1e-9);
     EXPECT_NEAR(even.extrapolated, 0.9, 1e-9);
@@ -102,7 +103,8 @@ TEST(MeshUncertainty, NamesOscillatingAndDivergingValues) {
     EXPECT_EQ(mesh_uncertainty(oscillating).verdict, MeshVerdict::oscillating);
     EXPECT_NEAR(mesh_uncertainty(oscillating).expanded_uncertainty, 0.03, 1e-12);
     // EVIE at 5 mm, lift: 0.242, 0.270, 0.274 N on 374k, 138k, 57k cells.
-    const std::vector<MeshValue> diverging = {{mesh_size(374400), 0.242}, {mesh_size(138544), 0.270}, {mesh_size(57280), 0.274}};
+    const std::vector<MeshValue> diverging = {
+        {mesh_size(374400), 0.242}, {mesh_size(138544), 0.270}, {mesh_size(57280), 0.274}};
     const auto result = mesh_uncertainty(diverging);
     EXPECT_EQ(result.verdict, MeshVerdict::diverging);
     EXPECT_NEAR(result.standard_uncertainty, 0.032 / std::sqrt(3), 1e-9);
@@ -180,7 +182,8 @@ TEST(MeshUncertainty, NamesFourMeshesThatDoNotConverge) {
     EXPECT_GT(swinging.expanded_uncertainty, 0.08);
 }
 
-/// Values of a second implementation of Eça and Hoekstra's procedure (numpy's least squares, orders in steps of 0.0005).
+/// Values of a second implementation of Eça and Hoekstra's procedure (numpy's least squares, orders in steps of
+/// 0.0005).
 TEST(MeshUncertainty, OfManyMeshesFitsFixedOrdersWhereTheFreeOneIsNotPlausible) {
     const std::vector<double> sizes = {1, 1.25, 1.6, 2, 2.6};
     struct Known {
@@ -190,7 +193,11 @@ TEST(MeshUncertainty, OfManyMeshesFitsFixedOrdersWhereTheFreeOneIsNotPlausible) 
     for (const Known& known : {Known{power_law(sizes, 1, 0.01, 5), 5, 2, 0.728056, 0.809945},
                                {power_law(sizes, 1, 0.05, 3), 3, 2, 0.880197, 0.493187},
                                {power_law(sizes, 1, 0.5, 0.2), 0.2, NAN, 1.395300, 0.317205},  // both orders together
-                               {{{1, 1.02}, {1.5, 1.05}, {2, 1.07}, {3, 1.16}, {4, 1.21}}, 1.1737, 1.1737, 0.97083, 0.07188},  // without weights
+                               {{{1, 1.02}, {1.5, 1.05}, {2, 1.07}, {3, 1.16}, {4, 1.21}},
+                                1.1737,
+                                1.1737,
+                                0.97083,
+                                0.07188},  // without weights
                                {{{1, 1.0}, {2, 1.1}, {4, 0.95}, {8, 1.12}}, NAN, 2, 1.018710, 0.384810}}) {
         const auto result = mesh_uncertainty(known.values);
         EXPECT_THAT(result.observed_order, testing::NanSensitiveDoubleNear(known.order, 1e-3)) << result.text;
@@ -199,7 +206,8 @@ TEST(MeshUncertainty, OfManyMeshesFitsFixedOrdersWhereTheFreeOneIsNotPlausible) 
         EXPECT_NEAR(result.expanded_uncertainty, known.uncertainty, 3e-5) << result.text;
     }
     EXPECT_THAT(mesh_uncertainty(power_law(sizes, 1, 0.01, 5)).text, testing::HasSubstr("(order 2 used), factor 3"));
-    EXPECT_THAT(mesh_uncertainty(power_law(sizes, 1, 0.5, 0.2)).text, testing::HasSubstr("(orders 1 and 2 together used), factor 3"));
+    EXPECT_THAT(mesh_uncertainty(power_law(sizes, 1, 0.5, 0.2)).text,
+                testing::HasSubstr("(orders 1 and 2 together used), factor 3"));
 }
 
 TEST(MeshUncertainty, RefusesWhatIsNoStudy) {

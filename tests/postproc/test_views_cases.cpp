@@ -1,6 +1,5 @@
 // The picture set of real cases.
 #include <gmock/gmock.h>
-
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 
@@ -9,10 +8,10 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "postproc/field.h"
-#include "postproc/loads.h"
-#include "postproc/view_composer.h"
-#include "postproc/views.h"
+#include "postproc/field/field.h"
+#include "postproc/loads/loads.h"
+#include "postproc/views/view_composer.h"
+#include "postproc/views/views.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -34,7 +33,8 @@ ViewOptions half_model() {
 TEST(ViewsOfASurface, ShowUnderbodyAndHull) {
     UNDERBODY_NEEDS_SHARED("cfd/fields/ellipse-h5-p0.csv");
     const Field field = read_field(test::shared_folder() / "cfd/fields/ellipse-h5-p0.csv");
-    EXPECT_THAT(possible_views(field, half_model()), testing::ElementsAre("pressure-underbody", "pressure-hull", "shear-underbody"));
+    EXPECT_THAT(possible_views(field, half_model()),
+                testing::ElementsAre("pressure-underbody", "pressure-hull", "shear-underbody"));
     for (const auto& view : views(field, half_model())) {
         EXPECT_THAT(view.png, testing::StartsWith("\x89PNG")) << view.name;
         EXPECT_GT(view.png.size(), 20000U) << view.name;
@@ -55,7 +55,8 @@ TEST(ViewsOfAVolume, ShowTheSymmetryPlaneAndTheGap) {
         names.push_back(view.name);
         keep(view, "volume-");
     }
-    EXPECT_THAT(names, testing::IsSupersetOf({"pressure-underbody", "pressure-hull", "pressure-symmetry", "speed-symmetry", "streamlines-gap"}));
+    EXPECT_THAT(names, testing::IsSupersetOf({"pressure-underbody", "pressure-hull", "pressure-symmetry",
+                                              "speed-symmetry", "streamlines-gap"}));
 }
 
 TEST(ViewsOfAPlaneCase, ShowItsCellsAndNoHull) {
@@ -95,22 +96,28 @@ TEST(ViewsOfAVolume, LeaveAGroundOutThatWouldHideTheBody) {
     EXPECT_EQ(view(field, "pressure-underbody", half_model()).png, view(field, "pressure-underbody", named).png);
 }
 
-/// Half a box from y = 0 to `width`, 2 m long, over z = 0.1; pressure `level` + 3 x, wall shear of size 2 + y. `base`: its
-/// lower side is a zone of its own. `from`: all moved along y, pressure and shear with it.
+/// Half a box from y = 0 to `width`, 2 m long, over z = 0.1; pressure `level` + 3 x, wall shear of size 2 + y. `base`:
+/// its lower side is a zone of its own. `from`: all moved along y, pressure and shear with it.
 Field half_box(double width, double level, bool base = true, double from = 0) {
     const auto rows = [&](std::initializer_list<std::array<double, 3>> places) {
-        std::string text = "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa ]\n";
+        std::string text =
+            "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa "
+            "]\n";
         for (const auto& [x, share, z] : places) {
-            text += std::to_string(x) + "," + std::to_string(from + share * width) + "," + std::to_string(z) + "," + std::to_string(level + 3 * x) + "," + std::to_string(2 + share * width) + ",0,0\n";
+            text += std::to_string(x) + "," + std::to_string(from + share * width) + "," + std::to_string(z) + "," +
+                    std::to_string(level + 3 * x) + "," + std::to_string(2 + share * width) + ",0,0\n";
         }
         return text;
     };
     std::string csv;
     if (base) {
-        csv += "[Name]\nbase\n\n[Data]\n" + rows({{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}}) + "\n[Faces]\n0,3,2,1\n\n";
+        csv += "[Name]\nbase\n\n[Data]\n" + rows({{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}}) +
+               "\n[Faces]\n0,3,2,1\n\n";
     }
-    csv += "[Name]\nhull\n\n[Data]\n" + rows({{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}, {0, 0, 0.6}, {2, 0, 0.6}, {2, 1, 0.6}, {0, 1, 0.6}}) +
-           "\n[Faces]\n1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,6,7\n";
+    csv +=
+        "[Name]\nhull\n\n[Data]\n" +
+        rows({{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}, {0, 0, 0.6}, {2, 0, 0.6}, {2, 1, 0.6}, {0, 1, 0.6}}) +
+        "\n[Faces]\n1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,6,7\n";
     const core::TemporaryFolder folder;
     core::write_file(folder.path() / "box.csv", csv);
     return read_field(folder.path() / "box.csv");
@@ -197,20 +204,33 @@ TEST(Views, NameTheZoneThatIsMeant) {
     }
 }
 
-/// A box of 1 x 0.2 x 0.2 m, z from 0.1, with p = 100 z; a hatch of 0.2 x 0.08 m in its lower side is the base. A ground under it.
+/// A box of 1 x 0.2 x 0.2 m, z from 0.1, with p = 100 z; a hatch of 0.2 x 0.08 m in its lower side is the base. A
+/// ground under it.
 Field box_with_a_small_base() {
     const auto rows = [](std::initializer_list<std::array<double, 3>> places) {
         std::string text = "X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n";
         for (const auto& [x, y, z] : places) {
-            text += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z) + "," + std::to_string(100 * z) + "\n";
+            text += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z) + "," +
+                    std::to_string(100 * z) + "\n";
         }
         return text;
     };
     const std::string csv =
-        "[Name]\nbase\n\n[Data]\n" + rows({{-0.1, -0.04, 0.1}, {0.1, -0.04, 0.1}, {0.1, 0.04, 0.1}, {-0.1, 0.04, 0.1}}) + "\n[Faces]\n0,3,2,1\n\n" +
+        "[Name]\nbase\n\n[Data]\n" +
+        rows({{-0.1, -0.04, 0.1}, {0.1, -0.04, 0.1}, {0.1, 0.04, 0.1}, {-0.1, 0.04, 0.1}}) + "\n[Faces]\n0,3,2,1\n\n" +
         "[Name]\nhull\n\n[Data]\n" +
-        rows({{-0.1, -0.04, 0.1}, {0.1, -0.04, 0.1}, {0.1, 0.04, 0.1}, {-0.1, 0.04, 0.1}, {-0.5, -0.1, 0.1}, {0.5, -0.1, 0.1}, {0.5, 0.1, 0.1}, {-0.5, 0.1, 0.1},
-              {-0.5, -0.1, 0.3}, {0.5, -0.1, 0.3}, {0.5, 0.1, 0.3}, {-0.5, 0.1, 0.3}}) +
+        rows({{-0.1, -0.04, 0.1},
+              {0.1, -0.04, 0.1},
+              {0.1, 0.04, 0.1},
+              {-0.1, 0.04, 0.1},
+              {-0.5, -0.1, 0.1},
+              {0.5, -0.1, 0.1},
+              {0.5, 0.1, 0.1},
+              {-0.5, 0.1, 0.1},
+              {-0.5, -0.1, 0.3},
+              {0.5, -0.1, 0.3},
+              {0.5, 0.1, 0.3},
+              {-0.5, 0.1, 0.3}}) +
         "\n[Faces]\n0,1,5,4\n1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,9,8\n5,6,10,9\n6,7,11,10\n7,4,8,11\n8,9,10,11\n\n" +
         "[Name]\nground\n\n[Data]\n" + rows({{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}}) + "\n[Faces]\n0,1,2,3\n";
     const core::TemporaryFolder folder;
@@ -318,7 +338,8 @@ TEST(ViewsOfTwoCases, SayThatSizesAreCompared) {
     const View shear = difference_view(half_box(0.5, 0), half_box(0.5, 0), "wall_shear", with_symmetry("y"));
     EXPECT_EQ(shear.title, "difference of the size of wall shear on the underbody");
     EXPECT_THAT(shear.caption, testing::HasSubstr("not their directions"));
-    EXPECT_EQ(difference_view(half_box(0.5, 0), half_box(0.5, 0), "pressure", with_symmetry("y")).title, "difference of pressure on the underbody");
+    EXPECT_EQ(difference_view(half_box(0.5, 0), half_box(0.5, 0), "pressure", with_symmetry("y")).title,
+              "difference of pressure on the underbody");
 }
 
 TEST(ViewsOfTwoCases, BringPressuresToOneReference) {

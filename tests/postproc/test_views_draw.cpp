@@ -12,8 +12,8 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "postproc/colours.h"
-#include "postproc/views.h"
+#include "postproc/views/colours.h"
+#include "postproc/views/views.h"
 #include "tests/support/support.h"
 
 namespace underbody::postproc {
@@ -27,7 +27,8 @@ Scene sphere() {
         for (int j = 0; j < 2 * rings; ++j) {
             const double theta = M_PI * i / rings;
             const double phi = M_PI * j / rings;
-            surface.points.push_back({0.1 * std::sin(theta) * std::cos(phi), 0.1 * std::sin(theta) * std::sin(phi), 0.1 * std::cos(theta)});
+            surface.points.push_back(
+                {0.1 * std::sin(theta) * std::cos(phi), 0.1 * std::sin(theta) * std::sin(phi), 0.1 * std::cos(theta)});
             surface.values.push_back(100 * std::cos(theta));
         }
     }
@@ -144,7 +145,8 @@ TEST(ColourMaps, RunFromEndToEndAndAreCentred) {
 TEST(ColourMaps, TicksAreRound) {
     EXPECT_EQ(round_ticks(1, std::nextafter(1, 2), 6).size(), 1U);  // ended only with the memory
     EXPECT_EQ(drawn_range({1, std::nextafter(1, 2)}, ColourMap::viridis).first, 0.5);
-    EXPECT_THAT(round_ticks(-3.2, 7.1, 5), testing::Pointwise(testing::DoubleNear(1e-12), std::vector<double>{-2, 0, 2, 4, 6}));
+    EXPECT_THAT(round_ticks(-3.2, 7.1, 5),
+                testing::Pointwise(testing::DoubleNear(1e-12), std::vector<double>{-2, 0, 2, 4, 6}));
     EXPECT_EQ(round_below(0.037), 0.02);
     EXPECT_EQ(round_below(5.5), 5);
 }

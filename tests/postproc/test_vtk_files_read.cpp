@@ -17,8 +17,8 @@
 
 #include "core/file.h"
 #include "import_support.h"
-#include "postproc/loads.h"
-#include "postproc/vtk_files.h"
+#include "postproc/field/vtk_files.h"
+#include "postproc/loads/loads.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -37,9 +37,12 @@ fs::path written(const core::TemporaryFolder& folder, const std::string& name, c
 
 const std::string tetrahedron =
     "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>\n"
-    "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float64\" Name=\"Pressure\" format=\"ascii\">1 2 3 4</DataArray></PointData>\n"
-    "<CellData><DataArray type=\"Float32\" Name=\"U\" NumberOfComponents=\"3\" format=\"ascii\">5 6 7</DataArray></CellData>\n"
-    "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>\n"
+    "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float64\" Name=\"Pressure\" "
+    "format=\"ascii\">1 2 3 4</DataArray></PointData>\n"
+    "<CellData><DataArray type=\"Float32\" Name=\"U\" NumberOfComponents=\"3\" format=\"ascii\">5 6 "
+    "7</DataArray></CellData>\n"
+    "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 "
+    "1</DataArray></Points>\n"
     "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
     "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
     "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells>\n"
@@ -47,7 +50,8 @@ const std::string tetrahedron =
 
 const std::string ply =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-    "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 "
+    "3\n";
 
 const std::string legacy =
     "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
@@ -77,7 +81,8 @@ void expect_safe(const fs::path& path) {
 /// The faces of a tetrahedron as a grid, with a pressure of 1 + 2x + 3y + 4z at its corners.
 const std::string hull =
     "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
-    "CELLS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\nCELL_TYPES 4\n5 5 5 5\nPOINT_DATA 4\nSCALARS pressure double 1\nLOOKUP_TABLE default\n"
+    "CELLS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\nCELL_TYPES 4\n5 5 5 5\nPOINT_DATA 4\nSCALARS pressure double "
+    "1\nLOOKUP_TABLE default\n"
     "1 3 4 5\n";
 
 }  // namespace
@@ -104,10 +109,11 @@ TEST(VtkFiles, XmlLegacyAndStructuredGridsHaveTheirCellsAndArrays) {
     EXPECT_NE(xml.zones.at(0).find("velocity"), nullptr);
     const auto old = read_field(written(folder, "a.vtk", legacy));
     EXPECT_NEAR(test::volume_of(old), 1.0 / 6, 1e-15);
-    const auto grid = read_field(written(folder, "b.vtk",
-                                         "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
-                                         "X_COORDINATES 3 double\n0 1 3\nY_COORDINATES 2 double\n0 1\nZ_COORDINATES 2 double\n0 2\n"
-                                         "CELL_DATA 2\nSCALARS pressure double 1\nLOOKUP_TABLE default\n1 2\n"));
+    const auto grid =
+        read_field(written(folder, "b.vtk",
+                           "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
+                           "X_COORDINATES 3 double\n0 1 3\nY_COORDINATES 2 double\n0 1\nZ_COORDINATES 2 double\n0 2\n"
+                           "CELL_DATA 2\nSCALARS pressure double 1\nLOOKUP_TABLE default\n1 2\n"));
     EXPECT_EQ(test::cells_of(grid), 2);
     EXPECT_NEAR(test::volume_of(grid), 6, 1e-12);
     EXPECT_EQ(grid.zones.at(0).volume->GetCellData()->GetArray("pressure")->GetTuple1(1), 2);
@@ -154,14 +160,18 @@ TEST(VtkFiles, WhatImportWritesGivesTheSameLoadsOfTheSameBody) {
     const core::TemporaryFolder folder;
     // A body over a ground, whose zones have no kinds and not the same arrays.
     core::write_file(folder.path() / "body.csv",
-                     "[Name]\nhull\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Yplus\n0,0,1,1,5\n1,0,1,3,5\n0,1,1,4,5\n0,0,2,5,5\n[Faces]\n0,1,3\n1,2,3\n0,3,2\n\n"
-                     "[Name]\nbase\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n0,0,1,1\n1,0,1,3\n0,1,1,4\n[Faces]\n0,2,1\n\n"
-                     "[Name]\nground\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n-9,-9,0,1\n9,-9,0,1\n9,9,0,1\n-9,9,0,1\n[Faces]\n0,1,2,3\n");
-    const std::vector<std::pair<fs::path, std::vector<std::string>>> cases = {{folder.path() / "body.csv", {}},
-                                                                              {test::data_folder() / "fluent_legacy/ascii.dat", {"body"}},
-                                                                              {test::data_folder() / "openfoam/ascii", {"*Wall*"}},
-                                                                              {test::data_folder() / "cgns/cfx-like.cgns", {}},
-                                                                              {test::data_folder() / "cgns/polyhedra.cgns", {}}};
+                     "[Name]\nhull\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], "
+                     "Yplus\n0,0,1,1,5\n1,0,1,3,5\n0,1,1,4,5\n0,0,2,5,5\n[Faces]\n0,1,3\n1,2,3\n0,3,2\n\n"
+                     "[Name]\nbase\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa "
+                     "]\n0,0,1,1\n1,0,1,3\n0,1,1,4\n[Faces]\n0,2,1\n\n"
+                     "[Name]\nground\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa "
+                     "]\n-9,-9,0,1\n9,-9,0,1\n9,9,0,1\n-9,9,0,1\n[Faces]\n0,1,2,3\n");
+    const std::vector<std::pair<fs::path, std::vector<std::string>>> cases = {
+        {folder.path() / "body.csv", {}},
+        {test::data_folder() / "fluent_legacy/ascii.dat", {"body"}},
+        {test::data_folder() / "openfoam/ascii", {"*Wall*"}},
+        {test::data_folder() / "cgns/cfx-like.cgns", {}},
+        {test::data_folder() / "cgns/polyhedra.cgns", {}}};
     for (const auto& [file, zones] : cases) {
         const auto field = read_field(file);
         for (const char* ending : {".vtm", ".vtp", ".vtu"}) {
@@ -213,7 +223,9 @@ TEST(VtkFiles, FilesOfOursThatOthersChangedKeepWhatIsStillTrue) {
         clean->Update();
         data.ShallowCopy(clean->GetOutput());
     });
-    ASSERT_EQ(merged.zones.size(), static_cast<std::size_t>(std::count_if(field.zones.begin(), field.zones.end(), [](const auto& zone) { return zone.surface != nullptr; })));
+    ASSERT_EQ(merged.zones.size(),
+              static_cast<std::size_t>(std::count_if(field.zones.begin(), field.zones.end(),
+                                                     [](const auto& zone) { return zone.surface != nullptr; })));
     for (const auto& zone : merged.zones) {
         const auto* before = field.find(zone.name);
         ASSERT_NE(before, nullptr) << zone.name;
@@ -226,10 +238,13 @@ TEST(VtkFiles, FilesOfOursThatOthersChangedKeepWhatIsStillTrue) {
     EXPECT_EQ(unmarked.zones.size(), 1U);
     EXPECT_THAT(test::told(unmarked), HasSubstr("its cells no longer say which they are of"));
     // Marks that nobody knows, descriptions that are none: no harm.
-    const auto others = changed([](vtkPolyData& data) { data.GetCellData()->GetArray("zone")->SetComponent(0, 0, 4711); });
+    const auto others =
+        changed([](vtkPolyData& data) { data.GetCellData()->GetArray("zone")->SetComponent(0, 0, 4711); });
     EXPECT_NE(others.find("zone 4711"), nullptr);
     for (const char* text : {"", "{", "[]", "{\"version\": 1}", "{\"version\": 1, \"zones\": 3}"}) {
-        const auto damaged = changed([&](vtkPolyData& data) { vtkStringArray::SafeDownCast(data.GetFieldData()->GetAbstractArray("underbody"))->SetValue(0, text); });
+        const auto damaged = changed([&](vtkPolyData& data) {
+            vtkStringArray::SafeDownCast(data.GetFieldData()->GetAbstractArray("underbody"))->SetValue(0, text);
+        });
         EXPECT_EQ(damaged.zones.size(), 1U) << text;
     }
 }
@@ -291,7 +306,8 @@ TEST(VtkFiles, TheCellsOfAVolumeTellOnWhichSideOfItsWallsTheFluidIs) {
             const auto* same = right.find(zone.name);
             ASSERT_NE(same, nullptr) << zone.name;
             for (std::size_t k = 0; k < 3; ++k) {
-                EXPECT_NEAR(test::pressure_force(*zone.surface)[k], test::pressure_force(*same->surface)[k], 1e-12) << zone.name;
+                EXPECT_NEAR(test::pressure_force(*zone.surface)[k], test::pressure_force(*same->surface)[k], 1e-12)
+                    << zone.name;
             }
             ++walls;
         }
@@ -303,21 +319,29 @@ TEST(VtkFiles, GhostCellsOfAnotherProcessAreLeftOutAndStripsAreTriangles) {
     const core::TemporaryFolder folder;
     const auto surface = [](const std::string& cells, const std::string& data) {
         return "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData>\n"
-               "<Piece NumberOfPoints=\"4\" " + cells.substr(0, cells.find('|')) + ">\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
-               "0 0 0 1 0 0 0 1 0 1 1 0</DataArray></Points>\n" + cells.substr(cells.find('|') + 1) + "<CellData>" + data + "</CellData></Piece></PolyData></VTKFile>\n";
+               "<Piece NumberOfPoints=\"4\" " +
+               cells.substr(0, cells.find('|')) +
+               ">\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
+               "0 0 0 1 0 0 0 1 0 1 1 0</DataArray></Points>\n" +
+               cells.substr(cells.find('|') + 1) + "<CellData>" + data + "</CellData></Piece></PolyData></VTKFile>\n";
     };
     const auto array = [](const char* type, const char* name, const char* values) {
-        return std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values + "</DataArray>";
+        return std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values +
+               "</DataArray>";
     };
-    const auto ghosts = read_field(written(folder, "ghosts.vtp",
-                                           surface("NumberOfPolys=\"2\"|<Polys>" + array("Int64", "connectivity", "0 1 2 1 3 2") + array("Int64", "offsets", "3 6") + "</Polys>",
-                                                   array("UInt8", "vtkGhostType", "0 1") + array("Float64", "pressure", "5 7"))));
+    const auto ghosts =
+        read_field(written(folder, "ghosts.vtp",
+                           surface("NumberOfPolys=\"2\"|<Polys>" + array("Int64", "connectivity", "0 1 2 1 3 2") +
+                                       array("Int64", "offsets", "3 6") + "</Polys>",
+                                   array("UInt8", "vtkGhostType", "0 1") + array("Float64", "pressure", "5 7"))));
     EXPECT_NEAR(test::area_of(*ghosts.zones.at(0).surface), 0.5, 1e-12);
     EXPECT_EQ(test::range_of(*ghosts.zones[0].surface, "pressure").high, 5);
     EXPECT_EQ(ghosts.zones[0].arrays.size(), 1U);
-    const auto strip = read_field(written(folder, "strip.vtp",
-                                          surface("NumberOfStrips=\"1\"|<Strips>" + array("Int64", "connectivity", "0 1 2 3") + array("Int64", "offsets", "4") + "</Strips>",
-                                                  array("Float64", "pressure", "5"))));
+    const auto strip =
+        read_field(written(folder, "strip.vtp",
+                           surface("NumberOfStrips=\"1\"|<Strips>" + array("Int64", "connectivity", "0 1 2 3") +
+                                       array("Int64", "offsets", "4") + "</Strips>",
+                                   array("Float64", "pressure", "5"))));
     EXPECT_EQ(strip.zones.at(0).surface->GetNumberOfPolys(), 2);
     EXPECT_NEAR(test::area_of(*strip.zones[0].surface), 1, 1e-12);
     EXPECT_EQ(strip.zones[0].surface->GetCellData()->GetArray("pressure")->GetTuple1(1), 5);
@@ -326,7 +350,11 @@ TEST(VtkFiles, GhostCellsOfAnotherProcessAreLeftOutAndStripsAreTriangles) {
 TEST(VtkFiles, SurfacesInPlyObjAndBothKindsOfStlHaveTheirArea) {
     const core::TemporaryFolder folder;
     EXPECT_NEAR(test::area_of(*read_field(written(folder, "a.ply", ply)).zones.at(0).surface), 1, 1e-6);
-    EXPECT_NEAR(test::area_of(*read_field(written(folder, "a.obj", "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")).zones.at(0).surface), 1, 1e-6);
+    EXPECT_NEAR(test::area_of(
+                    *read_field(written(folder, "a.obj", "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"))
+                         .zones.at(0)
+                         .surface),
+                1, 1e-6);
     std::string stl(84 + 50, '\0');
     const std::uint32_t one = 1;
     const float corners[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -339,7 +367,8 @@ TEST(VtkFiles, SurfacesInPlyObjAndBothKindsOfStlHaveTheirArea) {
 TEST(VtkFiles, PAndWallShearStressOfOpenFoamWaitForTheirUnit) {
     const core::TemporaryFolder folder;
     const auto path = written(folder, "a.vtk",
-                              "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+                              "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 "
+                              "0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
                               "CELL_DATA 1\nFIELD attributes 2\np 1 1 double\n7\nwallShearStress 3 1 double\n1 2 3\n");
     const auto plain = read_field(path);
     EXPECT_EQ(plain.zones.at(0).find("pressure"), nullptr);
@@ -363,25 +392,31 @@ TEST(VtkFiles, PAndWallShearStressOfOpenFoamWaitForTheirUnit) {
 TEST(TecplotFiles, WithUnitsRepeatCountsOrSharedVariablesAreRefusedInWords) {
     const core::TemporaryFolder folder;
     const auto file = [&](const std::string& variables, const std::string& zone, const std::string& last) {
-        return written(folder, "a.dat", "TITLE = \"a\"\nVARIABLES = " + variables + "\nZONE T=\"hull\" N=4, E=2, F=FEPOINT, ET=TRIANGLE" + zone +
-                                            "\n0 0 0 7\n1 0 0 8\n0 1 0 9\n0 0 1 6\n1 2 3\n" + last);
+        return written(folder, "a.dat",
+                       "TITLE = \"a\"\nVARIABLES = " + variables +
+                           "\nZONE T=\"hull\" N=4, E=2, F=FEPOINT, ET=TRIANGLE" + zone +
+                           "\n0 0 0 7\n1 0 0 8\n0 1 0 9\n0 0 1 6\n1 2 3\n" + last);
     };
     const auto plain = read_field(file("\"X\" \"Y\" \"Z\" \"Pressure [ kPa ]\"", "", "1 2 4\n"));
     EXPECT_NEAR(test::area_of(*plain.zones.at(0).surface), 1, 1e-12);
     ASSERT_NE(plain.zones[0].find("pressure"), nullptr);
     EXPECT_EQ(plain.zones[0].find("pressure")->original_unit, "kPa");
     EXPECT_NEAR(plain.zones[0].surface->GetPointData()->GetArray("pressure")->GetTuple1(2), 9000, 1e-9);
-    EXPECT_THAT(test::refusal(file("\"X [ m ]\" \"Y [ m ]\" \"Z [ m ]\" \"Pressure\"", "", "1 2 4\n")), HasSubstr("'X [ m ]' is a coordinate"));
+    EXPECT_THAT(test::refusal(file("\"X [ m ]\" \"Y [ m ]\" \"Z [ m ]\" \"Pressure\"", "", "1 2 4\n")),
+                HasSubstr("'X [ m ]' is a coordinate"));
     EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", "", "3*1\n")), HasSubstr("repeat counts"));
     EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", "", "3*1\n")), HasSubstr("a.dat:9"));
-    EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", ", varsharelist=([1-3]=1)", "1 2 4\n")), HasSubstr("VARSHARELIST"));
+    EXPECT_THAT(test::refusal(file("\"X\" \"Y\" \"Z\" \"P\"", ", varsharelist=([1-3]=1)", "1 2 4\n")),
+                HasSubstr("VARSHARELIST"));
 }
 
 TEST(VtkFiles, BracketsBehindANameAreAUnitOrAnIndex) {
     const core::TemporaryFolder folder;
     const auto field = read_field(written(folder, "a.vtk",
-                                          "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
-                                          "CELL_DATA 1\nFIELD attributes 3\nspecies[2] 1 1 double\n7\nPressure[kPa] 1 1 double\n3\nspecies[3] 1 1 double\n8\n"));
+                                          "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS 3 "
+                                          "double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+                                          "CELL_DATA 1\nFIELD attributes 3\nspecies[2] 1 1 double\n7\nPressure[kPa] 1 "
+                                          "1 double\n3\nspecies[3] 1 1 double\n8\n"));
     const auto value = [&](const char* name) {
         auto* data = field.zones.at(0).surface->GetCellData()->GetArray(name);
         return data != nullptr ? data->GetComponent(0, 0) : std::nan("");
@@ -393,10 +428,11 @@ TEST(VtkFiles, BracketsBehindANameAreAUnitOrAnIndex) {
 
 TEST(VtkFiles, NumbersOnThePointsAndFacesOfAPlyAreArrays) {
     const core::TemporaryFolder folder;
-    const auto field = read_field(written(
-        folder, "a.ply",
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float Pressure\n"
-        "element face 1\nproperty list uchar int vertex_index\nproperty float quality\nend_header\n0 0 0 7\n2 0 0 8\n0 2 0 9\n3 0 1 2 0.5\n"));
+    const auto field = read_field(written(folder, "a.ply",
+                                          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+                                          "y\nproperty float z\nproperty float Pressure\n"
+                                          "element face 1\nproperty list uchar int vertex_index\nproperty float "
+                                          "quality\nend_header\n0 0 0 7\n2 0 0 8\n0 2 0 9\n3 0 1 2 0.5\n"));
     const auto& zone = field.zones.at(0);
     EXPECT_NEAR(test::area_of(*zone.surface), 2, 1e-12);
     ASSERT_NE(zone.find("pressure"), nullptr);
@@ -425,14 +461,18 @@ TEST(VtkFiles, WrongIndicesCountsAndOffsetsAreRefused) {
     };
     EXPECT_THAT(old("4 0 1 2 3", "4 0 1 2 77"), HasSubstr("names point 77 of 4"));
     EXPECT_NE(old("POINTS 4 double", "POINTS 400000000000 double"), "");
-    EXPECT_THAT(test::refusal(written(folder, "wrong.ply", replaced(ply, "3 0 2 3\n", "3 0 2 300\n"))), HasSubstr("names vertex 300"));
-    EXPECT_NE(test::refusal(written(folder, "wrong2.ply", replaced(ply, "element vertex 4", "element vertex 400000000"))), "");
+    EXPECT_THAT(test::refusal(written(folder, "wrong.ply", replaced(ply, "3 0 2 3\n", "3 0 2 300\n"))),
+                HasSubstr("names vertex 300"));
+    EXPECT_NE(
+        test::refusal(written(folder, "wrong2.ply", replaced(ply, "element vertex 4", "element vertex 400000000"))),
+        "");
     EXPECT_NE(test::refusal(written(folder, "wrong.obj", "v 0 0 0\nv 1 0 0\nf 1 2 30\n")), "");
 }
 
 TEST(VtkFiles, FilesCutAnywhereAreReadOrRefused) {
     const core::TemporaryFolder folder;
-    for (const auto& [name, text] : {std::pair<std::string, std::string>{"cut.vtu", tetrahedron}, {"cut.vtk", legacy}, {"cut.ply", ply}}) {
+    for (const auto& [name, text] :
+         {std::pair<std::string, std::string>{"cut.vtu", tetrahedron}, {"cut.vtk", legacy}, {"cut.ply", ply}}) {
         for (std::size_t size = 1; size < text.size(); size += text.size() / 60 + 1) {
             expect_safe(written(folder, name, text.substr(0, size)));
         }

@@ -53,7 +53,8 @@ TEST(BodyCommand, SaysTheOuterSizeAndWhatTheKeyHeightMeans) {
     const auto run = run_underbody({"body", shape("ellipse"), "--panels", "0"}, folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     EXPECT_THAT(run.output, testing::HasSubstr("length 203.2, width 152, height 126.875 mm over all"));
-    EXPECT_THAT(run.output, testing::HasSubstr("body.height, 145 mm, is that of the whole ellipsoid before its base is cut"));
+    EXPECT_THAT(run.output,
+                testing::HasSubstr("body.height, 145 mm, is that of the whole ellipsoid before its base is cut"));
     const auto json = run_underbody({"body", shape("ellipse"), "--panels", "0", "--json"}, folder.path());
     const nlohmann::json document = nlohmann::json::parse(json.output);
     EXPECT_NEAR(document.at("outer_size").at("height").get<double>(), 0.126875, 1e-9);
@@ -66,17 +67,21 @@ TEST(BodyCommand, PrintsTheTrimOfTheMassThatItMoved) {
         << "[body]\nlength='203.2 mm'\nwidth='152 mm'\nheight='145 mm'\nbase_cut=0.75\n[mass]\nhull='1.5 kg'\n"
            "[[mass.point]]\nname='lead'\nmass='0.7 kg'\nposition=['-20 mm','5 mm','12 mm']\n";
     for (const double wanted : {0.0, 1.0, -3.0}) {
-        const auto run = run_underbody({"body", "s.toml", "--panels", "0", "--ballast", "lead", "--trim-pitch", std::to_string(wanted) + "deg", "--json"}, folder.path());
+        const auto run = run_underbody({"body", "s.toml", "--panels", "0", "--ballast", "lead", "--trim-pitch",
+                                        std::to_string(wanted) + "deg", "--json"},
+                                       folder.path());
         ASSERT_EQ(run.exit_code, 0) << run.errors;
         const nlohmann::json document = nlohmann::json::parse(run.output);
         EXPECT_NEAR(document.at("trim").at("pitch").get<double>(), wanted * 3.14159265358979 / 180, 1e-9);
         EXPECT_NEAR(document.at("trim").at("roll").get<double>(), 0, 1e-9);
         EXPECT_FALSE(document.contains("remarks"));
     }
-    const auto text = run_underbody({"body", "s.toml", "--panels", "0", "--ballast", "lead", "--trim-pitch", "1deg"}, folder.path());
+    const auto text =
+        run_underbody({"body", "s.toml", "--panels", "0", "--ballast", "lead", "--trim-pitch", "1deg"}, folder.path());
     EXPECT_THAT(text.output, testing::HasSubstr("ballast     moved to"));
     EXPECT_THAT(text.output, testing::HasSubstr("pitch 1 deg, roll 0 deg"));
-    const auto steep = run_underbody({"body", "s.toml", "--panels", "0", "--ballast", "lead", "--trim-pitch", "25deg"}, folder.path());
+    const auto steep =
+        run_underbody({"body", "s.toml", "--panels", "0", "--ballast", "lead", "--trim-pitch", "25deg"}, folder.path());
     EXPECT_THAT(steep.output, testing::HasSubstr("its base no longer lies along the ground"));
     EXPECT_EQ(run_underbody({"body", "s.toml", "--panels", "0", "--trim-pitch", "1deg"}, folder.path()).exit_code, 2)
         << "a wanted trim without a ballast would do nothing";
@@ -86,20 +91,28 @@ TEST(BodyCommand, DoubtsAGapWithoutAUnitThatIsManyBodyLengths) {
     const core::TemporaryFolder folder;
     const auto run = run_underbody({"body", shape("ellipse"), "--panels", "0", "--gap", "4"}, folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
-    EXPECT_THAT(run.output, testing::HasSubstr("--gap 4 is 4000 mm, 19.7 lengths of the body: a bare number is in metres; for millimetres write --gap 4mm"));
+    EXPECT_THAT(run.output, testing::HasSubstr("--gap 4 is 4000 mm, 19.7 lengths of the body: a bare number is in "
+                                               "metres; for millimetres write --gap 4mm"));
     const auto json = run_underbody({"body", shape("ellipse"), "--panels", "0", "--gap", "4", "--json"}, folder.path());
-    EXPECT_THAT(nlohmann::json::parse(json.output).at("remarks").at(0).get<std::string>(), testing::HasSubstr("4000 mm"));
-    EXPECT_THAT(run_underbody({"body", shape("ellipse"), "--panels", "0", "--gap", "4mm"}, folder.path()).output, testing::Not(testing::HasSubstr("remark")));
-    const auto angle = run_underbody({"body", shape("ellipse"), "--panels", "0", "--gap", "4mm", "--pitch", "2"}, folder.path());
+    EXPECT_THAT(nlohmann::json::parse(json.output).at("remarks").at(0).get<std::string>(),
+                testing::HasSubstr("4000 mm"));
+    EXPECT_THAT(run_underbody({"body", shape("ellipse"), "--panels", "0", "--gap", "4mm"}, folder.path()).output,
+                testing::Not(testing::HasSubstr("remark")));
+    const auto angle =
+        run_underbody({"body", shape("ellipse"), "--panels", "0", "--gap", "4mm", "--pitch", "2"}, folder.path());
     EXPECT_EQ(angle.exit_code, 2);
     EXPECT_THAT(angle.errors, testing::HasSubstr("write 2deg"));
 }
 
 TEST(BodyCommand, SaysWhatTheFacetsOfASurfaceFileLeaveOut) {
     const core::TemporaryFolder folder;
-    ASSERT_EQ(run_underbody({"body", shape("ellipse"), "--out", "a.stl", "--triangles", "2000", "--panels", "0"}, folder.path()).exit_code, 0);
+    ASSERT_EQ(run_underbody({"body", shape("ellipse"), "--out", "a.stl", "--triangles", "2000", "--panels", "0"},
+                            folder.path())
+                  .exit_code,
+              0);
     const auto run = run_underbody({"body", "a.stl", "--unit", "m", "--panels", "0"}, folder.path());
-    EXPECT_THAT(run.output, testing::HasSubstr("of its facets; a smooth surface through their corners holds about 0.7"));
+    EXPECT_THAT(run.output,
+                testing::HasSubstr("of its facets; a smooth surface through their corners holds about 0.7"));
 }
 
 TEST(BodyCommand, RefusesAShapeThatCannotBe) {

@@ -59,13 +59,16 @@ TEST(CommandLine, AnswersAMistypedOptionWithTheNearest) {
         EXPECT_THAT(run.errors, HasSubstr(answer));
         EXPECT_EQ(run.output, "") << arguments[0];
     }
-    EXPECT_THAT(run_underbody({"loads", "a.csv", "--colour", "red"}).errors, HasSubstr("'underbody loads' has no option --colour"));
+    EXPECT_THAT(run_underbody({"loads", "a.csv", "--colour", "red"}).errors,
+                HasSubstr("'underbody loads' has no option --colour"));
 }
 
 TEST(CommandLine, AnswersAMistypedCommandWithTheNearest) {
     EXPECT_THAT(run_underbody({"lods", "a.csv"}).errors, HasSubstr("did you mean 'underbody loads'?"));
-    EXPECT_THAT(run_underbody({"--quiet", "simulat", "model.toml"}).errors, HasSubstr("did you mean 'underbody simulate'?"));
-    EXPECT_THAT(run_underbody({"table", "equilibra", "a.csv"}).errors, HasSubstr("did you mean 'underbody table equilibria'?"));
+    EXPECT_THAT(run_underbody({"--quiet", "simulat", "model.toml"}).errors,
+                HasSubstr("did you mean 'underbody simulate'?"));
+    EXPECT_THAT(run_underbody({"table", "equilibra", "a.csv"}).errors,
+                HasSubstr("did you mean 'underbody table equilibria'?"));
     EXPECT_EQ(run_underbody({"table", "equilibra", "a.csv"}).exit_code, 2);
     EXPECT_EQ(run_underbody({}).exit_code, 2);
     EXPECT_EQ(run_underbody({"xyzzy"}).exit_code, 2);
@@ -73,8 +76,12 @@ TEST(CommandLine, AnswersAMistypedCommandWithTheNearest) {
 
 TEST(CommandLine, GivesEveryErrorAsJsonWhenAskedTo) {
     const core::TemporaryFolder folder;
-    for (const auto& arguments : std::vector<std::vector<std::string>>{{"--json", "lods"}, {"loads", "a.csv", "--symetry", "y", "--json"}, {"loads", "none.csv", "--json"},
-                                                                       {"loads", "none.csv", "--threads", "many", "--json"}, {"table", "--json"}}) {
+    for (const auto& arguments :
+         std::vector<std::vector<std::string>>{{"--json", "lods"},
+                                               {"loads", "a.csv", "--symetry", "y", "--json"},
+                                               {"loads", "none.csv", "--json"},
+                                               {"loads", "none.csv", "--threads", "many", "--json"},
+                                               {"table", "--json"}}) {
         const auto run = run_underbody(arguments, folder.path());
         const json error = json::parse(run.output)["error"];
         EXPECT_TRUE(error["kind"].is_string());
@@ -108,8 +115,10 @@ TEST(CommandLine, TakesTheCommonOptionsBeforeAndAfterTheCommand) {
     core::write_file(folder.path() / "a.csv", test::cube_field(0.005, 100));
     const auto plain = run_underbody({"info", "a.csv", "--json"}, folder.path());
     ASSERT_EQ(plain.exit_code, 0) << plain.errors;
-    for (const auto& arguments : std::vector<std::vector<std::string>>{
-             {"--json", "--threads", "1", "info", "a.csv"}, {"info", "--quiet", "a.csv", "--json", "--threads", "2"}, {"--verbose", "info", "a.csv", "--json"}}) {
+    for (const auto& arguments :
+         std::vector<std::vector<std::string>>{{"--json", "--threads", "1", "info", "a.csv"},
+                                               {"info", "--quiet", "a.csv", "--json", "--threads", "2"},
+                                               {"--verbose", "info", "a.csv", "--json"}}) {
         const auto run = run_underbody(arguments, folder.path());
         EXPECT_EQ(run.exit_code, 0) << run.errors;
         EXPECT_EQ(run.output, plain.output);
@@ -133,25 +142,26 @@ TEST(CommandLine, AValueWithAWrongUnitIsAWrongCommandLine) {
 const std::set<std::string> without_files = {"theory", "new", "list"};
 
 /// How each command is given a file.
-const std::vector<std::vector<std::string>> with_file = {{"body", "FILE", "--out", "out.stl"},
-                                                         {"info", "FILE"},
-                                                         {"import", "FILE", "--out", "out.vtp"},
-                                                         {"loads", "FILE"},
-                                                         {"views", "FILE", "--out", "out"},
-                                                         {"probe", "FILE", "--point", "0,0,0"},
-                                                         {"discover", "FILE", "--data", ".", "--out", "out"},
-                                                         {"simulate", "FILE", "--from", "gap=0.1", "--for", "1", "--out", "out.csv"},
-                                                         {"predict", "FILE", "--data", ".", "--out", "out.csv"},
-                                                         {"region", "FILE", "--axes", "gap=0:1", "--out", "out.png"},
-                                                         {"table", "fit", "FILE"},
-                                                         {"export", "FILE", "--format", "c", "--out", "out.h"},
-                                                         {"study", "run", "FILE"},
-                                                         {"solve", "FILE"},
-                                                         {"sweep", "FILE"},
-                                                         {"learn", "FILE", "--out", "out.json"},
-                                                         {"estimate", "FILE", "--data", ".", "--out", "out.csv"},
-                                                         {"control", "FILE", "--hold", "20mm", "--from", "gap=0.1", "--out", "out.csv"},
-                                                         {"linear", "FILE", "--out", "out.png"}};
+const std::vector<std::vector<std::string>> with_file = {
+    {"body", "FILE", "--out", "out.stl"},
+    {"info", "FILE"},
+    {"import", "FILE", "--out", "out.vtp"},
+    {"loads", "FILE"},
+    {"views", "FILE", "--out", "out"},
+    {"probe", "FILE", "--point", "0,0,0"},
+    {"discover", "FILE", "--data", ".", "--out", "out"},
+    {"simulate", "FILE", "--from", "gap=0.1", "--for", "1", "--out", "out.csv"},
+    {"predict", "FILE", "--data", ".", "--out", "out.csv"},
+    {"region", "FILE", "--axes", "gap=0:1", "--out", "out.png"},
+    {"table", "fit", "FILE"},
+    {"export", "FILE", "--format", "c", "--out", "out.h"},
+    {"study", "run", "FILE"},
+    {"solve", "FILE"},
+    {"sweep", "FILE"},
+    {"learn", "FILE", "--out", "out.json"},
+    {"estimate", "FILE", "--data", ".", "--out", "out.csv"},
+    {"control", "FILE", "--hold", "20mm", "--from", "gap=0.1", "--out", "out.csv"},
+    {"linear", "FILE", "--out", "out.png"}};
 
 TEST(CommandLine, OfEveryCommandSaysWhatIsWrongWithItsFileAndWritesNothing) {
     std::set<std::string> tried;
@@ -182,7 +192,9 @@ TEST(CommandLine, LeavesFilesOfOthersAloneUnlessForced) {
     const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder.path() / name) << text; };
     const auto read = [&](const char* name) { return core::read_file(folder.path() / name); };
     write("lift.csv", "gap [mm], lift_force [N]\n1, 0.1\n2, 0.02\n5, -0.03\n10, -0.04\n20, -0.01\n50, 0.04\n");
-    write("model.toml", "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\n[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+    write("model.toml",
+          "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\n[[force]]\nquantity = \"lift_force\"\ntable "
+          "= \"lift.csv\"\n");
     const std::vector<std::vector<std::string>> writers = {
         {"region", "model.toml", "--grid", "5x5", "--for", "1", "--out"},
         {"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--plot"},
@@ -203,13 +215,25 @@ TEST(CommandLine, LeavesFilesOfOthersAloneUnlessForced) {
     }
     // The input itself, a file of the program's own that was changed since, and a fresh empty file.
     const std::string before = read("lift.csv");
-    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "lift.csv"}, folder.path()).exit_code, 3);
+    EXPECT_EQ(
+        run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "lift.csv"}, folder.path())
+            .exit_code,
+        3);
     EXPECT_EQ(read("lift.csv"), before);
-    ASSERT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "run.csv"}, folder.path()).exit_code, 0);
+    ASSERT_EQ(
+        run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "run.csv"}, folder.path())
+            .exit_code,
+        0);
     std::ofstream(folder.path() / "run.csv", std::ios::app) << "# my remark\n";
-    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "run.csv"}, folder.path()).exit_code, 3);
+    EXPECT_EQ(
+        run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "run.csv"}, folder.path())
+            .exit_code,
+        3);
     write("empty.csv", "");
-    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "empty.csv"}, folder.path()).exit_code, 0);
+    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=3mm", "--for", "1", "--out", "empty.csv"},
+                            folder.path())
+                  .exit_code,
+              0);
 }
 
 TEST(CommandLine, EndsWithThreeWhenTheResultCannotBeWritten) {
@@ -254,8 +278,11 @@ Interrupted interrupted(const std::vector<std::string>& arguments, const fs::pat
     int status = 0;
     rusage used{};
     ::wait4(child, &status, 0, &used);
-    const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
             seconds(used.ru_utime) + seconds(used.ru_stime)};
 }
 
@@ -264,7 +291,8 @@ TEST(CommandLine, EndsWith130OnCtrlCAndLeavesNothingHalfWritten) {
     core::write_file(folder.path() / "model.toml",
                      "[vehicle]\nmass = \"2 kg\"\nadded_mass_heave = \"2 kg\"\nnet_weight = \"0.35 N\"\n"
                      "[drag.heave]\nlinear = \"0.5 N s/m\"\nquadratic = \"10 N s^2/m^2\"\n");
-    core::write_file(folder.path() / "shape.toml", "[body]\nlength = \"200 mm\"\nwidth = \"150 mm\"\nheight = \"140 mm\"\nbase_cut = 0.75\n");
+    core::write_file(folder.path() / "shape.toml",
+                     "[body]\nlength = \"200 mm\"\nwidth = \"150 mm\"\nheight = \"140 mm\"\nbase_cut = 0.75\n");
     fs::copy(test::source_folder() / "cases" / "evie" / "heave", folder.path() / "runs", fs::copy_options::recursive);
     const auto entries = [&] {
         std::set<std::string> names;
@@ -275,7 +303,8 @@ TEST(CommandLine, EndsWith130OnCtrlCAndLeavesNothingHalfWritten) {
     };
     const auto before = entries();
     for (const auto& arguments : std::vector<std::vector<std::string>>{
-             {"region", "model.toml", "--axes", "gap=0.001:1,heave_velocity=-0.1:0.1", "--grid", "6000x6000", "--for", "10000", "--out", "map.png"},
+             {"region", "model.toml", "--axes", "gap=0.001:1,heave_velocity=-0.1:0.1", "--grid", "6000x6000", "--for",
+              "10000", "--out", "map.png"},
              {"simulate", "model.toml", "--from", "gap=100000", "--for", "1e7", "--step", "1e-3", "--out", "run.csv"},
              {"body", "shape.toml", "--triangles", "20000000", "--out", "body.stl"},
              {"discover", "runs/model.toml", "--data", "runs", "--out", "found"}}) {
@@ -343,7 +372,8 @@ std::vector<std::string> all_examples() {
         auto arguments = path;
         arguments.emplace_back("--help");
         const std::string help = run_underbody(arguments).output;
-        const auto more = examples_in(help.substr(help.find("Example") == std::string::npos ? help.size() : help.find("Example")), "");
+        const auto more = examples_in(
+            help.substr(help.find("Example") == std::string::npos ? help.size() : help.find("Example")), "");
         examples.insert(examples.end(), more.begin(), more.end());
         return commands_in(help);
     };
@@ -365,11 +395,14 @@ TEST(Examples, OfEveryHelpTextAreCommandLinesThatTheProgramUnderstands) {
         const auto run = run_underbody(arguments, empty.path());
         if (without_files.contains(arguments[0])) {
             // A template is never written over a file that an earlier example made.
-            EXPECT_TRUE(run.exit_code == 0 || (arguments[0] == "new" && run.exit_code == 3)) << example << "\n" << run.errors;
+            EXPECT_TRUE(run.exit_code == 0 || (arguments[0] == "new" && run.exit_code == 3)) << example << "\n"
+                                                                                             << run.errors;
             continue;
         }
         // There is no file here, so that they cannot succeed; but it must be the file that is missing.
-        EXPECT_TRUE(run.exit_code == 3 || run.errors.find("does not exist") != std::string::npos) << example << "\n" << run.exit_code << ": " << run.errors;
+        EXPECT_TRUE(run.exit_code == 3 || run.errors.find("does not exist") != std::string::npos)
+            << example << "\n"
+            << run.exit_code << ": " << run.errors;
         EXPECT_THAT(run.errors, testing::Not(HasSubstr("has no option"))) << example;
         EXPECT_THAT(run.errors, testing::Not(HasSubstr("not expected"))) << example;
     }

@@ -48,11 +48,13 @@ TEST(DiscoverCommand, ReducesTheLogOfALoadCellByItsPumpOffBlocks) {
     for (const double volt : {0.0, 8.0, 0.0}) {
         for (int k = 0; k < 20; ++k, ++row) {
             // a zero of 490 mN that drifts by 1 mN in 20 s, and 12 mN of lift
-            log += test::written(0.2 * row) + ", 5, " + test::written(volt) + ", " + test::written(490 + 0.01 * row + (volt > 0 ? 12 : 0)) + "\n";
+            log += test::written(0.2 * row) + ", 5, " + test::written(volt) + ", " +
+                   test::written(490 + 0.01 * row + (volt > 0 ? 12 : 0)) + "\n";
         }
     }
     core::write_file(folder.path() / "log.csv", log);
-    const test::ProgramRun run = test::run_underbody({"discover", "--reduce", "log.csv", "--out", "bench.csv", "--json"}, folder.path());
+    const test::ProgramRun run =
+        test::run_underbody({"discover", "--reduce", "log.csv", "--out", "bench.csv", "--json"}, folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const core::Table table = core::read_csv(folder.path() / "bench.csv");
     ASSERT_EQ(table.rows(), 1U);

@@ -18,10 +18,12 @@ protected:
     core::TemporaryFolder folder_;
     void SetUp() override {
         core::write_file(folder_.path() / "lift.csv",
-                         "gap [mm], lift_force [N]\n1, 0.1\n2, 0.02\n5, -0.03\n10, -0.04\n20, -0.01\n50, 0.04\n100, 0.05\n300, 0.01\n");
-        core::write_file(folder_.path() / "model.toml",
-                         "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\n[drag.heave]\nlinear = 0.3\nquadratic = 6\n"
-                         "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+                         "gap [mm], lift_force [N]\n1, 0.1\n2, 0.02\n5, -0.03\n10, -0.04\n20, -0.01\n50, 0.04\n100, "
+                         "0.05\n300, 0.01\n");
+        core::write_file(
+            folder_.path() / "model.toml",
+            "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\n[drag.heave]\nlinear = 0.3\nquadratic = 6\n"
+            "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
     }
     nlohmann::json json(std::vector<std::string> arguments) {
         arguments.emplace_back("--json");
@@ -32,7 +34,8 @@ protected:
 };
 
 TEST_F(DynamicsCommands, SimulateWritesTheMotionAndAPicture) {
-    const auto run = run_underbody({"simulate", "model.toml", "--from", "gap=10mm", "--for", "20", "--step", "0.1", "--out", "run.csv", "--plot", "run.png"},
+    const auto run = run_underbody({"simulate", "model.toml", "--from", "gap=10mm", "--for", "20", "--step", "0.1",
+                                    "--out", "run.csv", "--plot", "run.png"},
                                    folder_.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const core::Table table = core::read_csv(folder_.path() / "run.csv");
@@ -51,7 +54,8 @@ TEST_F(DynamicsCommands, SimulateRefusesAStartInTheGroundAndAStartWithoutAGap) {
 }
 
 TEST_F(DynamicsCommands, RegionGivesClassesFractionsAndTheEndsOfGivenStarts) {
-    const nlohmann::json map = json({"region", "model.toml", "--axes", "gap=0:0.3,heave_velocity=-0.1:0.1", "--grid", "60x60", "--out", "region.png"});
+    const nlohmann::json map = json({"region", "model.toml", "--axes", "gap=0:0.3,heave_velocity=-0.1:0.1", "--grid",
+                                     "60x60", "--out", "region.png"});
     double sum = 0;
     bool attractor = false;
     for (const auto& end : map["classes"]) {
@@ -71,7 +75,8 @@ TEST_F(DynamicsCommands, RegionGivesClassesFractionsAndTheEndsOfGivenStarts) {
 }
 
 TEST_F(DynamicsCommands, RegionWithFeedbackHoldsMore) {
-    const std::vector<std::string> open{"region", "model.toml", "--axes", "gap=1mm:40mm,heave_velocity=-0.05:0.05", "--grid", "40x40"};
+    const std::vector<std::string> open{"region", "model.toml", "--axes", "gap=1mm:40mm,heave_velocity=-0.05:0.05",
+                                        "--grid", "40x40"};
     std::vector<std::string> closed = open;
     closed.insert(closed.end(), {"--feedback", "gap_gain=20,velocity_gain=15,reference=10mm"});
     const auto safe = [](const nlohmann::json& map) {
@@ -94,24 +99,30 @@ TEST_F(DynamicsCommands, LinearNamesItsModes) {
 
 TEST_F(DynamicsCommands, SimulateFollowsEvieInEveryMotion) {
     const std::string evie = (source_folder() / "cases/evie/model.toml").string();
-    const nlohmann::json both = json({"simulate", evie, "--from", "gap=20mm,pitch=1deg", "--for", "2", "--step", "0.1", "--plot", "both.png"});
+    const nlohmann::json both =
+        json({"simulate", evie, "--from", "gap=20mm,pitch=1deg", "--for", "2", "--step", "0.1", "--plot", "both.png"});
     EXPECT_EQ(both["pitch"].size(), 21U);
     EXPECT_NEAR(both["pitch"][0].get<double>(), .0174533, 1e-6);
-    const nlohmann::json whole = json({"simulate", evie, "--motion", "body", "--from", "gap=20mm,speed=0.35m/s", "--thrust", "J1=0.2N,J2=0.2N", "--for", "1",
-                                       "--step", "0.1", "--out", "body.csv", "--plot", "body.png"});
+    const nlohmann::json whole =
+        json({"simulate", evie, "--motion", "body", "--from", "gap=20mm,speed=0.35m/s", "--thrust", "J1=0.2N,J2=0.2N",
+              "--for", "1", "--step", "0.1", "--out", "body.csv", "--plot", "body.png"});
     EXPECT_EQ(whole["p"].size(), 11U);
     EXPECT_NEAR(core::read_csv(folder_.path() / "body.csv").numbers("J1").back(), .2, 1e-9);
-    const nlohmann::json ground = json({"simulate", evie, "--motion", "surface", "--from", "speed=0.1m/s", "--hold", "heading=10deg,speed=0.1m/s", "--for", "20",
-                                        "--step", "0.5", "--plot", "surface.png"});
+    const nlohmann::json ground =
+        json({"simulate", evie, "--motion", "surface", "--from", "speed=0.1m/s", "--hold", "heading=10deg,speed=0.1m/s",
+              "--for", "20", "--step", "0.5", "--plot", "surface.png"});
     EXPECT_EQ(ground["end"], "time");
     EXPECT_NEAR(ground["psi"].back().get<double>(), .1745, .02);
     // Thrusts from a file, by the jets' names.
     core::write_file(folder_.path() / "thrusts.csv", "time [s], J1 [N], J2 [N]\n0, 0, 0\n1, 0.2, 0.1\n2, 0.2, 0.1\n");
-    const nlohmann::json driven = json({"simulate", evie, "--from", "gap=30mm", "--inputs", "thrusts.csv", "--for", "2", "--step", "0.5"});
+    const nlohmann::json driven =
+        json({"simulate", evie, "--from", "gap=30mm", "--inputs", "thrusts.csv", "--for", "2", "--step", "0.5"});
     EXPECT_LT(driven["r"].back().get<double>(), 0);  // the stronger starboard jet turns the bow to port
-    const auto mixed = run_underbody({"simulate", evie, "--motion", "heave", "--from", "gap=20mm", "--thrust", "J1=0.1N"}, folder_.path());
+    const auto mixed = run_underbody(
+        {"simulate", evie, "--motion", "heave", "--from", "gap=20mm", "--thrust", "J1=0.1N"}, folder_.path());
     EXPECT_EQ(mixed.exit_code, 2);
-    const auto typo = run_underbody({"simulate", evie, "--motion", "body", "--from", "gap=20mm", "--thrust", "J11=0.1N"}, folder_.path());
+    const auto typo = run_underbody(
+        {"simulate", evie, "--motion", "body", "--from", "gap=20mm", "--thrust", "J11=0.1N"}, folder_.path());
     EXPECT_NE(typo.exit_code, 0);
     EXPECT_NE(typo.errors.find("J1"), std::string::npos);
 }
@@ -125,12 +136,14 @@ TEST_F(DynamicsCommands, LqrHoldsHeaveWhereTheFreeMotionLeaves) {
     std::vector<std::string> two = held;
     two.insert(two.end(), {"--feedback", "gap_gain=1"});
     EXPECT_EQ(run_underbody(two, folder_.path()).exit_code, 2);
-    EXPECT_EQ(run_underbody({"simulate", "model.toml", "--from", "gap=15mm", "--lqr", "gap=4"}, folder_.path()).exit_code, 2);
+    EXPECT_EQ(
+        run_underbody({"simulate", "model.toml", "--from", "gap=15mm", "--lqr", "gap=4"}, folder_.path()).exit_code, 2);
 }
 
 TEST_F(DynamicsCommands, RegionsOfHeaveAndPitchSweepsAndStartsWithPitch) {
     const std::string evie = (source_folder() / "cases/evie/model.toml").string();
-    const nlohmann::json map = json({"region", evie, "--axes", "gap=1mm:30mm,pitch=-3deg:3deg", "--grid", "16x12", "--for", "20", "--safe", "--out", "pitch.png"});
+    const nlohmann::json map = json({"region", evie, "--axes", "gap=1mm:30mm,pitch=-3deg:3deg", "--grid", "16x12",
+                                     "--for", "20", "--safe", "--out", "pitch.png"});
     double sum = 0;
     for (const auto& end : map["classes"]) {
         sum += end["fraction"].get<double>();
@@ -141,8 +154,9 @@ TEST_F(DynamicsCommands, RegionsOfHeaveAndPitchSweepsAndStartsWithPitch) {
     EXPECT_EQ(run_underbody({"region", evie, "--starts", "starts.csv"}, folder_.path()).exit_code, 3);  // in the ground
     core::write_file(folder_.path() / "starts.csv", "gap [mm], pitch [deg]\n5, 3\n20, 0\n");
     EXPECT_EQ(json({"region", evie, "--starts", "starts.csv", "--for", "20"})["starts"].size(), 2U);
-    const nlohmann::json sweep = json({"region", "model.toml", "--axes", "gap=1mm:100mm,heave_velocity=-0.05:0.05", "--grid", "20x20", "--sweep",
-                                       "input_force=-0.01:0.01", "--steps", "3", "--out", "sweep.png", "--shares", "shares.png"});
+    const nlohmann::json sweep =
+        json({"region", "model.toml", "--axes", "gap=1mm:100mm,heave_velocity=-0.05:0.05", "--grid", "20x20", "--sweep",
+              "input_force=-0.01:0.01", "--steps", "3", "--out", "sweep.png", "--shares", "shares.png"});
     ASSERT_EQ(sweep["regions"].size(), 3U);
     EXPECT_NEAR(sweep["regions"][1]["value"].get<double>(), 0, 1e-12);
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "shares.png"));
@@ -150,7 +164,8 @@ TEST_F(DynamicsCommands, RegionsOfHeaveAndPitchSweepsAndStartsWithPitch) {
 
 TEST_F(DynamicsCommands, LinearSpeaksOfTheRunOnTheGroundAndOfTheJets) {
     const std::string evie = (source_folder() / "cases/evie/model.toml").string();
-    const nlohmann::json found = json({"linear", evie, "--conditions", "speed=0.1m/s", "--at", "gap=5mm", "--gamma-chart", "gamma.png"});
+    const nlohmann::json found =
+        json({"linear", evie, "--conditions", "speed=0.1m/s", "--at", "gap=5mm", "--gamma-chart", "gamma.png"});
     EXPECT_EQ(found["heave"].size(), 1U);
     EXPECT_NEAR(found["heave"][0]["gap"].get<double>(), .005, 1e-12);
     EXPECT_EQ(found["heave_pitch"][0]["lqr"]["poles"].size(), 4U);
@@ -164,7 +179,8 @@ TEST_F(DynamicsCommands, LinearSpeaksOfTheRunOnTheGroundAndOfTheJets) {
 }
 
 TEST_F(DynamicsCommands, WrongModelsAreRefusedWithWhatToDo) {
-    const auto errors = [&](const std::string& vehicle, const std::string& rest, const std::vector<std::string>& more = {}) {
+    const auto errors = [&](const std::string& vehicle, const std::string& rest,
+                            const std::vector<std::string>& more = {}) {
         core::write_file(folder_.path() / "wrong.toml", "[vehicle]\n" + vehicle + rest);
         std::vector<std::string> arguments{"simulate", "wrong.toml", "--from", "gap=10mm", "--for", "1"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -175,21 +191,30 @@ TEST_F(DynamicsCommands, WrongModelsAreRefusedWithWhatToDo) {
     EXPECT_NE(errors("mass = -2.2\n", "").find("accepted is"), std::string::npos);
     EXPECT_NE(errors("mass = \"2.2 N\"\n", "").find("kg"), std::string::npos);
     EXPECT_NE(errors("mass = 2.2\nlength = 203.2\nwidth = 152\n", "").find("mm"), std::string::npos);
-    EXPECT_NE(errors("mass = 2200\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\n", "").find("displaces"), std::string::npos);
-    EXPECT_NE(errors("mass = 2.2\nroll_inertia = 0.001\npitch_inertia = 0.002\nyaw_inertia = 0.002\ninertia_product_xz = 0.01\n", "").find("positive definite"),
+    EXPECT_NE(errors("mass = 2200\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\n", "").find("displaces"),
               std::string::npos);
+    EXPECT_NE(
+        errors(
+            "mass = 2.2\nroll_inertia = 0.001\npitch_inertia = 0.002\nyaw_inertia = 0.002\ninertia_product_xz = 0.01\n",
+            "")
+            .find("positive definite"),
+        std::string::npos);
     EXPECT_NE(errors("mass = 2.2\nmas = 2.2\n", "").find("mass"), std::string::npos);
     EXPECT_NE(errors("mass = 2.2\n", "[environment]\nkinematic_viscosity = 0.1\n").find("1.0e-6"), std::string::npos);
     EXPECT_NE(errors("mass = 2.2\n", "[contact]\nrestitution = 2\n").find("between 0"), std::string::npos);
     EXPECT_NE(errors("mass = 2.2\n", "[contact]\ngap = \"20 mm\"\n").find("ground"), std::string::npos);
     EXPECT_NE(errors("mass = 2.2\n", "", {"--motion", "body"}).find("inertia"), std::string::npos);
     // A film of ten micrometres is stiff, not fatal; a model without drag says that it never settles.
-    core::write_file(folder_.path() / "film.toml",
-                     "[vehicle]\nmass = 2.2\nnet_weight = 0.1\n[[effect]]\nname = \"squeeze_film_damping\"\ncoefficient = 1e-7\n");
+    core::write_file(
+        folder_.path() / "film.toml",
+        "[vehicle]\nmass = 2.2\nnet_weight = 0.1\n[[effect]]\nname = \"squeeze_film_damping\"\ncoefficient = 1e-7\n");
     const nlohmann::json film = json({"simulate", "film.toml", "--from", "gap=10e-6", "--for", "5"});
     EXPECT_LE(film["gap"].back().get<double>(), 1e-5);
-    core::write_file(folder_.path() / "free.toml", "[vehicle]\nmass = 2.2\n[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
-    const auto free = run_underbody({"region", "free.toml", "--axes", "gap=1mm:400mm,heave_velocity=-0.05:0.05", "--grid", "20x20"}, folder_.path());
+    core::write_file(folder_.path() / "free.toml",
+                     "[vehicle]\nmass = 2.2\n[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+    const auto free =
+        run_underbody({"region", "free.toml", "--axes", "gap=1mm:400mm,heave_velocity=-0.05:0.05", "--grid", "20x20"},
+                      folder_.path());
     EXPECT_NE(free.errors.find("never settles"), std::string::npos) << free.errors;
     EXPECT_NE(free.errors.find("outside the range"), std::string::npos) << free.errors;
     EXPECT_NE(free.output.find("cycle"), std::string::npos) << free.output;
@@ -211,7 +236,8 @@ TEST_F(DynamicsCommands, PredictSaysBesideTheErrorWhichColumnsItDidNotUse) {
 
 TEST_F(DynamicsCommands, RegionRefusesWhatItWouldPassOver) {
     core::write_file(folder_.path() / "other.toml", core::read_file(folder_.path() / "model.toml"));
-    const auto both = run_underbody({"region", "model.toml", "--draws", "5", "--with", "other.toml", "--out", "both.png"}, folder_.path());
+    const auto both = run_underbody(
+        {"region", "model.toml", "--draws", "5", "--with", "other.toml", "--out", "both.png"}, folder_.path());
     EXPECT_EQ(both.exit_code, 2);
     EXPECT_NE(both.errors.find("--draws and --with ask for two different maps"), std::string::npos) << both.errors;
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "both.png"));
@@ -233,7 +259,8 @@ TEST_F(DynamicsCommands, PredictGivesErrorsInUnitsOfNoise) {
 
 TEST_F(DynamicsCommands, LinearTakesAVehicleWithoutJets) {
     core::write_file(folder_.path() / "bare.toml",
-                     "[vehicle]\nmass = 2.2\nadded_mass_heave = 1.754\nroll_inertia = 0.005\npitch_inertia = 0.007\nyaw_inertia = 0.007\n"
+                     "[vehicle]\nmass = 2.2\nadded_mass_heave = 1.754\nroll_inertia = 0.005\npitch_inertia = "
+                     "0.007\nyaw_inertia = 0.007\n"
                      "base_depth = 0.05\nbase_half_length = 0.07\nnet_weight = 0.05\n[drag.heave]\nlinear = 0.3\n"
                      "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
     const nlohmann::json found = json({"linear", "bare.toml", "--at", "gap=10mm"});
@@ -250,13 +277,15 @@ TEST_F(DynamicsCommands, LinearSaysThatHeaveAloneHoldsThePitch) {
     EXPECT_NE(run.output.find("pitch held at 0"), std::string::npos) << run.output;
     EXPECT_NE(run.output.find("free to pitch"), std::string::npos) << run.output;
     const nlohmann::json found = json({"linear", evie});
-    const bool stable = std::any_of(found["heave_pitch"].begin(), found["heave_pitch"].end(), [](const auto& e) { return e["stable"].template get<bool>(); });
+    const bool stable = std::any_of(found["heave_pitch"].begin(), found["heave_pitch"].end(),
+                                    [](const auto& e) { return e["stable"].template get<bool>(); });
     EXPECT_EQ(found["stable_in_heave_and_pitch"].get<bool>(), stable);
     EXPECT_EQ(run.output.find("no balance is stable") != std::string::npos, !stable) << run.output;
 }
 
 TEST_F(DynamicsCommands, GivenStartsEndAsTheCellsOfTheMapDo) {
-    const nlohmann::json map = json({"region", "model.toml", "--axes", "gap=2mm:290mm,heave_velocity=-0.06:0.06", "--grid", "20x15", "--table", "cells.csv"});
+    const nlohmann::json map = json({"region", "model.toml", "--axes", "gap=2mm:290mm,heave_velocity=-0.06:0.06",
+                                     "--grid", "20x15", "--table", "cells.csv"});
     const core::Table cells = core::read_csv(folder_.path() / "cells.csv");
     core::Table starts;
     starts.add_numbers("gap", "m", cells.numbers("gap"));
@@ -273,8 +302,9 @@ TEST_F(DynamicsCommands, GivenStartsEndAsTheCellsOfTheMapDo) {
 
 TEST_F(DynamicsCommands, TheToleranceActsInEveryMotion) {
     const std::string evie = (source_folder() / "cases/evie/model.toml").string();
-    for (const std::vector<std::string>& motion : std::vector<std::vector<std::string>>{
-             {"--motion", "surface", "--from", "speed=0.1m/s,sway_velocity=0.02m/s"}, {"--motion", "body", "--from", "gap=20mm,speed=0.2m/s"}}) {
+    for (const std::vector<std::string>& motion :
+         std::vector<std::vector<std::string>>{{"--motion", "surface", "--from", "speed=0.1m/s,sway_velocity=0.02m/s"},
+                                               {"--motion", "body", "--from", "gap=20mm,speed=0.2m/s"}}) {
         const auto rows = [&](const char* tolerance) {
             std::vector<std::string> arguments{"simulate", evie, "--for", "2", "--tolerance", tolerance};
             arguments.insert(arguments.end(), motion.begin(), motion.end());

@@ -12,12 +12,12 @@
 #include "core/file.h"
 #include "core/file_format.h"
 #include "core/units.h"
-#include "geometry/body_shape.h"
-#include "geometry/loading.h"
-#include "geometry/variants.h"
-#include "surrogates/dynamics/effects/effect.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
+#include "geometry/body/body_shape.h"
+#include "geometry/body/variants.h"
+#include "geometry/water/loading.h"
+#include "surrogates/dynamics/model/effect.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
 #include "tests/support/support.h"
 
 namespace underbody::test {

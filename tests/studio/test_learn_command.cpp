@@ -81,17 +81,18 @@ TEST_F(LearnAndEstimate, PrintsTheModelWithTheKeysOthersRead) {
 }
 
 TEST_F(LearnAndEstimate, LearnsAlongTrajectoriesFromRunsAndFromAStreamedFile) {
-    for (const std::vector<std::string>& more : {std::vector<std::string>{"--method", "time", "--samples", "5000"},
-                                                 {"--data", "runs"},
-                                                 {"--auxiliaries", "total_force"},
-                                                 {"--samples-out", "s.npy"},
-                                                 {"--moments-of", "s.npy"},
-                                                 {"--method", "dmdc"},
-                                                 {"--method", "edmd", "--step", "0.05 s", "--compare", "--plot", "peers.png"},
-                                                 {"--data", "runs", "--compare", "--horizon", "5 s", "--auxiliaries", "total_force"},
-                                                 {"--data", "runs", "--method", "edmd", "--auxiliaries", "gap_squared"},
-                                                 {"--correction", "p3"},
-                                                 {"--offset", "equilibrium"}}) {
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"--method", "time", "--samples", "5000"},
+          {"--data", "runs"},
+          {"--auxiliaries", "total_force"},
+          {"--samples-out", "s.npy"},
+          {"--moments-of", "s.npy"},
+          {"--method", "dmdc"},
+          {"--method", "edmd", "--step", "0.05 s", "--compare", "--plot", "peers.png"},
+          {"--data", "runs", "--compare", "--horizon", "5 s", "--auxiliaries", "total_force"},
+          {"--data", "runs", "--method", "edmd", "--auxiliaries", "gap_squared"},
+          {"--correction", "p3"},
+          {"--offset", "equilibrium"}}) {
         std::vector<std::string> arguments{"learn", "model.toml", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const auto run = test::run_underbody(arguments, folder());
@@ -101,25 +102,38 @@ TEST_F(LearnAndEstimate, LearnsAlongTrajectoriesFromRunsAndFromAStreamedFile) {
 }
 
 TEST_F(LearnAndEstimate, HoldsAGapAndDrawsWhereTheSensorsAreBlind) {
-    const auto with = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--json"}, folder());
+    const auto with =
+        test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--json"}, folder());
     ASSERT_EQ(with.exit_code, 0) << with.errors;
     EXPECT_NEAR(nlohmann::json::parse(with.output).at("final_gap").get<double>(), 0.6, 1e-4);
-    const auto limited = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "reduced", "--limit",
-                                              "20 mN", "--lag", "0.1 s", "--gap-noise", "0.1 mm", "--out", "loop.csv"},
-                                             folder());
+    const auto limited =
+        test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "reduced",
+                             "--limit", "20 mN", "--lag", "0.1 s", "--gap-noise", "0.1 mm", "--out", "loop.csv"},
+                            folder());
     ASSERT_EQ(limited.exit_code, 0) << limited.errors;
     EXPECT_GT(core::read_csv(folder() / "loop.csv").rows(), 100U);
-    EXPECT_EQ(test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "ful"}, folder()).exit_code, 2);
-    const auto all = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--for", "40 s", "--compare", "--json"}, folder());
+    EXPECT_EQ(test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "ful"},
+                                  folder())
+                  .exit_code,
+              2);
+    const auto all = test::run_underbody(
+        {"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--for", "40 s", "--compare", "--json"},
+        folder());
     ASSERT_EQ(all.exit_code, 0) << all.errors;
     const auto estimators = nlohmann::json::parse(all.output).at("estimators");
     EXPECT_EQ(estimators.size(), 8U);
     for (const auto& e : estimators) {
-        EXPECT_NEAR(e.at("final_gap").get<double>(), 0.6, e.at("estimator") == "none" ? 5e-3 : 2e-4) << e.at("estimator");
+        EXPECT_NEAR(e.at("final_gap").get<double>(), 0.6, e.at("estimator") == "none" ? 5e-3 : 2e-4)
+            << e.at("estimator");
     }
-    const auto region = test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--observer", "extended", "--no-velocity",
-                                             "--limit", "20 mN", "--gap-noise", "0.1 mm", "--step", "0.1 s", "--columns", "8", "--rows", "6",
-                                             "--axes", "gap=0.3:0.9,heave_velocity=-0.02:0.02", "--region", "loop.png", "--json"},
+    const auto region = test::run_underbody({"control",    "model.toml", "--hold",
+                                             "0.6",        "--from",     "gap=0.5",
+                                             "--observer", "extended",   "--no-velocity",
+                                             "--limit",    "20 mN",      "--gap-noise",
+                                             "0.1 mm",     "--step",     "0.1 s",
+                                             "--columns",  "8",          "--rows",
+                                             "6",          "--axes",     "gap=0.3:0.9,heave_velocity=-0.02:0.02",
+                                             "--region",   "loop.png",   "--json"},
                                             folder());
     ASSERT_EQ(region.exit_code, 0) << region.errors;
     double sum = 0;
@@ -129,7 +143,8 @@ TEST_F(LearnAndEstimate, HoldsAGapAndDrawsWhereTheSensorsAreBlind) {
     }
     EXPECT_NEAR(sum, 1, 1e-9);
     EXPECT_TRUE(std::filesystem::exists(folder() / "loop.png"));
-    const auto blind = test::run_underbody({"estimate", "model.toml", "--data", "runs", "--blind-zones", "blind.png", "--json"}, folder());
+    const auto blind = test::run_underbody(
+        {"estimate", "model.toml", "--data", "runs", "--blind-zones", "blind.png", "--json"}, folder());
     ASSERT_EQ(blind.exit_code, 0) << blind.errors;
     EXPECT_TRUE(std::filesystem::exists(folder() / "blind.png"));
     EXPECT_TRUE(nlohmann::json::parse(blind.output).at("along_gap").at("consistency").contains("nees"));

@@ -1,5 +1,6 @@
-// Every oracle of docs/physics.md (docs/physics-oracles.csv) asked of the program itself, as a user would: a formula that no
-// command reaches is of no use to anybody. An oracle of the file that is neither asked nor listed as out of reach fails.
+// Every oracle of docs/physics.md (docs/physics-oracles.csv) asked of the program itself, as a user would: a formula
+// that no command reaches is of no use to anybody. An oracle of the file that is neither asked nor listed as out of
+// reach fails.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -90,19 +91,26 @@ protected:
 
     void write_reference_curve() {
         core::write_file(folder_.path() / "ref-a.csv",
-                         "gap [m], lift_force [mN]\n-0.05,40\n-0.04,28.4\n-0.03,18.8\n-0.02,11\n-0.01,4.9\n0,0\n0.01,-4.1\n0.02,-7.4\n0.03,-10\n0.04,-12\n0.05,-13.4\n"
-                         "0.06,-14.2\n0.07,-14.45\n0.08,-14.2\n0.09,-13.4\n0.10,-12.2\n0.12,-8.7\n0.14,-4.4\n0.16,0\n0.18,3.9\n0.20,7.3\n0.25,13.4\n0.30,17\n0.35,18.9\n"
-                         "0.40,19.75\n0.45,20\n0.50,19.8\n0.60,18.4\n0.70,16\n0.80,13.1\n0.90,10.2\n1.0,7.6\n1.1,5.5\n1.2,3.9\n1.3,2.7\n1.4,1.9\n1.6,.9\n1.8,.4\n");
+                         "gap [m], lift_force "
+                         "[mN]\n-0.05,40\n-0.04,28.4\n-0.03,18.8\n-0.02,11\n-0.01,4.9\n0,0\n0.01,-4.1\n0.02,-7.4\n0.03,"
+                         "-10\n0.04,-12\n0.05,-13.4\n"
+                         "0.06,-14.2\n0.07,-14.45\n0.08,-14.2\n0.09,-13.4\n0.10,-12.2\n0.12,-8.7\n0.14,-4.4\n0.16,0\n0."
+                         "18,3.9\n0.20,7.3\n0.25,13.4\n0.30,17\n0.35,18.9\n"
+                         "0.40,19.75\n0.45,20\n0.50,19.8\n0.60,18.4\n0.70,16\n0.80,13.1\n0.90,10.2\n1.0,7.6\n1.1,5."
+                         "5\n1.2,3.9\n1.3,2.7\n1.4,1.9\n1.6,.9\n1.8,.4\n");
         std::string sine = "gap [m], lift_force [N]\n";
         for (int i = -8; i <= 488; ++i) {  // beyond 0 to 1.2 m: at its own ends a held curve is flat
             const double h = i / 400.0;
-            sine += core::format_number(h, 17) + "," + core::format_number(0.02 * std::sin(6.283185307179586 * h), 17) + "\n";
+            sine += core::format_number(h, 17) + "," + core::format_number(0.02 * std::sin(6.283185307179586 * h), 17) +
+                    "\n";
         }
         core::write_file(folder_.path() / "sine.csv", sine);
         const auto model = [&](const std::string& name, const std::string& table, const std::string& drag) {
-            core::write_file(folder_.path() / (name + ".toml"),
-                             "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = " + core::format_number(1 / 0.2529 - 2.2, 17) + "\nnet_weight = 0\n[contact]\ngap = \"-40 mm\"\n[drag.heave]\n" + drag +
-                                 "[[force]]\nquantity = \"lift_force\"\ntable = \"" + table + "\"\nfit = \"spline\"\n");
+            core::write_file(
+                folder_.path() / (name + ".toml"),
+                "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = " + core::format_number(1 / 0.2529 - 2.2, 17) +
+                    "\nnet_weight = 0\n[contact]\ngap = \"-40 mm\"\n[drag.heave]\n" + drag +
+                    "[[force]]\nquantity = \"lift_force\"\ntable = \"" + table + "\"\nfit = \"spline\"\n");
         };
         model("ref-a", "ref-a.csv", "quadratic = 50.2\n");
         model("sine", "sine.csv", "quadratic = 50.2\n");
@@ -110,7 +118,9 @@ protected:
     }
 
     json learned(const std::string& model, const std::vector<std::string>& more) {
-        std::vector<std::string> words = {"learn", model + ".toml", "--mesh", "5x41x61", "--region", "gap=0:1.2,heave_velocity=-0.03:0.03", "--input-sigma", "0.01"};
+        std::vector<std::string> words = {"learn",         model + ".toml", "--mesh",
+                                          "5x41x61",       "--region",      "gap=0:1.2,heave_velocity=-0.03:0.03",
+                                          "--input-sigma", "0.01"};
         words.insert(words.end(), more.begin(), more.end());
         return ask(words);
     }
@@ -144,105 +154,230 @@ ByProgram::Questions ByProgram::questions_of_films() {
     return {
         {"O21", [=, this] { return theory("slider", slider, {"load_per_width"}); }},
         {"O22", [=, this] { return theory("slider", slider, {"peak_pressure"}); }},
-        {"O23", [=, this] { return theory("slider", slider, {"best_ratio", "best_load_coefficient"}); }},
+        {"O23",
+         [=, this] {
+             return theory("slider", slider, {"best_ratio", "best_load_coefficient"});
+         }},
         // The printed formula would leave this at the outlet: what is wanted is that it does not.
         {"O24", [=, this] { return Numbers{25 + theory("slider", slider, {"outlet_pressure"}).front()}; }},
         {"O25", [=, this] { return theory("slider", slider, {"centre_of_pressure_share"}); }},
-        {"O26", [=, this] { return theory("wedge", wedge + ",rear=50mm", {"load_per_width", "highest_pressure", "lowest_pressure"}); }},
+        {"O26",
+         [=, this] {
+             return theory("wedge", wedge + ",rear=50mm", {"load_per_width", "highest_pressure", "lowest_pressure"});
+         }},
         {"O27", [=, this] { return theory("wedge", wedge + ",rear=50mm,pitch=0.1deg", {"load_per_width"}); }},
-        {"O28", [=, this] { return theory("wedge", wedge, {"load_per_width", "land_pressure"}); }},
-        {"O36", [=, this] { return theory("jet", "thrust=0.036,diameter=5mm,density=1000", {"velocity", "flow", "reynolds"}); }},
-        {"O37", [=, this] { return theory("radial", plate, {"pressure", "viscous_load"}); }},
-        {"O38", [=, this] { return theory("radial", plate, {"inertial_load_inviscid", "inertial_load_laminar"}); }},
+        {"O28",
+         [=, this] {
+             return theory("wedge", wedge, {"load_per_width", "land_pressure"});
+         }},
+        {"O36",
+         [=, this] {
+             return theory("jet", "thrust=0.036,diameter=5mm,density=1000", {"velocity", "flow", "reynolds"});
+         }},
+        {"O37",
+         [=, this] {
+             return theory("radial", plate, {"pressure", "viscous_load"});
+         }},
+        {"O38",
+         [=, this] {
+             return theory("radial", plate, {"inertial_load_inviscid", "inertial_load_laminar"});
+         }},
         {"O39", [=, this] { return theory("radial", plate, {"gradient_factor"}); }},
         {"O40", [=, this] { return theory("jet_film", film + ",flow=20mL/s,gap=1mm", {"viscous_load"}); }},
         {"O41",
          [=, this] {
-             Numbers n = theory("jet_film", film + ",flow=26.587mL/s", {"zero_gap", "lowest_gap", "lowest_force", "stiffness"});
+             Numbers n =
+                 theory("jet_film", film + ",flow=26.587mL/s", {"zero_gap", "lowest_gap", "lowest_force", "stiffness"});
              n[0] *= 1e3;
              n[1] *= 1e3;
              return n;
          }},
-        {"O42", [=, this] { return theory("squeeze", "half_length=71.7mm,half_width=53.6mm,gap=1mm,viscosity=1e-3,density=1000", {"damping", "added_mass"}); }},
-        {"O43", [=, this] { return theory("squeeze", "half_length=60mm,half_width=60mm,gap=1mm,viscosity=1e-3", {"damping"}); }},
-        {"O44", [=, this] { return theory("jet", "thrust=0.036,diameter=5mm,density=1000,half_length=101.6mm,half_width=76mm", {"perimeter", "rim_reynolds"}); }},
+        {"O42",
+         [=, this] {
+             return theory("squeeze", "half_length=71.7mm,half_width=53.6mm,gap=1mm,viscosity=1e-3,density=1000",
+                           {"damping", "added_mass"});
+         }},
+        {"O43",
+         [=, this] {
+             return theory("squeeze", "half_length=60mm,half_width=60mm,gap=1mm,viscosity=1e-3", {"damping"});
+         }},
+        {"O44",
+         [=, this] {
+             return theory("jet", "thrust=0.036,diameter=5mm,density=1000,half_length=101.6mm,half_width=76mm",
+                           {"perimeter", "rim_reynolds"});
+         }},
     };
 }
 
 ByProgram::Questions ByProgram::questions_of_the_vehicle() {
-    const std::string jets = "J1=0.1,J2=0.08,J3=0.02,J4=0.03,J5=0.01,J6=0.04,J7=0.015,J8=0.025,bottom=0.036,alpha=20deg,beta=20deg,gamma=35deg,turn_x=0.08,turn_y=0.05,turn_z=0.03,pitch_x=0.06,"
-                             "pitch_upper=0.05,pitch_lower=0.04";
+    const std::string jets =
+        "J1=0.1,J2=0.08,J3=0.02,J4=0.03,J5=0.01,J6=0.04,J7=0.015,J8=0.025,bottom=0.036,alpha=20deg,beta=20deg,gamma="
+        "35deg,turn_x=0.08,turn_y=0.05,turn_z=0.03,pitch_x=0.06,"
+        "pitch_upper=0.05,pitch_lower=0.04";
     const std::string evie = "a=101.6mm,b=76mm,c=72.5mm,density=1000,mass=2.2";
     const std::string body = "length=203.2mm,width=152mm,height=145mm,speed=0.5,density=1000,kinematic_viscosity=1e-6";
     const std::string drag = "linear=0.05,quadratic=15,length=152mm,kinematic_viscosity=1e-6";
-    const auto ellipsoid = [=, this](const std::vector<std::string>& wanted) { return theory("ellipsoid", evie, wanted); };
+    const auto ellipsoid = [=, this](const std::vector<std::string>& wanted) {
+        return theory("ellipsoid", evie, wanted);
+    };
     const auto run = [=, this](const std::string& friction) {
         const Numbers n = ellipsoid({"added_mass_x", "added_mass_y", "added_inertia_yaw"});
         const double inertia = 2.2 / 5 * (.1016 * .1016 + .076 * .076);
-        return theory("surface", "mass=2.2,added_mass_x=" + core::format_number(n[0], 17) + ",added_mass_y=" + core::format_number(n[1], 17) + ",added_inertia_yaw=" + core::format_number(n[2], 17) +
-                                     ",yaw_inertia=" + core::format_number(inertia, 17) + ",speed=0.35,friction_force=" + friction,
+        return theory("surface",
+                      "mass=2.2,added_mass_x=" + core::format_number(n[0], 17) + ",added_mass_y=" +
+                          core::format_number(n[1], 17) + ",added_inertia_yaw=" + core::format_number(n[2], 17) +
+                          ",yaw_inertia=" + core::format_number(inertia, 17) + ",speed=0.35,friction_force=" + friction,
                       {"upper_pole", "lower_pole"});
     };
     return {
-        {"O01", [=, this] { return theory("jets", jets, {"force_x", "force_y", "force_z"}); }},
-        {"O02", [=, this] { return theory("jets", jets, {"moment_x", "moment_y", "moment_z"}); }},
-        {"O03", [=, this] { return theory("jets", "turn_x=80mm,turn_z=30mm,gamma=35deg", {"pitch_free_beta_degrees"}); }},
+        {"O01",
+         [=, this] {
+             return theory("jets", jets, {"force_x", "force_y", "force_z"});
+         }},
+        {"O02",
+         [=, this] {
+             return theory("jets", jets, {"moment_x", "moment_y", "moment_z"});
+         }},
+        {"O03",
+         [=, this] { return theory("jets", "turn_x=80mm,turn_z=30mm,gamma=35deg", {"pitch_free_beta_degrees"}); }},
         {"O04",
          [=, this] {
              const double beta = theory("jets", "turn_x=80mm,turn_z=30mm,gamma=35deg", {"pitch_free_beta"}).front();
-             return theory("jets", "J1=1,J2=1,turn_x=80mm,turn_z=30mm,gamma=35deg,beta=" + core::format_number(beta, 17), {"moment_y"});
+             return theory("jets",
+                           "J1=1,J2=1,turn_x=80mm,turn_z=30mm,gamma=35deg,beta=" + core::format_number(beta, 17),
+                           {"moment_y"});
          }},
-        {"O05", [=, this] { return theory("jets", "J1=1,J5=1,beta=20deg,gamma=35deg", {"force_x", "force_y", "moment_z"}); }},
+        {"O05",
+         [=, this] {
+             return theory("jets", "J1=1,J5=1,beta=20deg,gamma=35deg", {"force_x", "force_y", "moment_z"});
+         }},
         {"O06", [=, this] { return theory("ellipsoid", "a=1,b=1,c=1", {"k_x"}); }},
-        {"O07", [=, this] { return theory("ellipsoid", "a=2,b=1,c=1", {"k_x", "k_y", "k_pitch"}); }},
-        {"O08", [=, this] { return theory("ellipsoid", "a=1.5,b=1,c=1", {"k_x", "k_y"}); }},
-        {"O09", [=, this] { return theory("ellipsoid", "a=1000,b=2,c=1", {"k_y", "k_z"}); }},
-        {"O10", [=] { return ellipsoid({"integral_x", "integral_y", "integral_z"}); }},
-        {"O11", [=] { return ellipsoid({"volume", "displaced_mass"}); }},
-        {"O12", [=] { return ellipsoid({"added_mass_x", "added_mass_y", "added_mass_z"}); }},
-        {"O13", [=] { return ellipsoid({"added_inertia_roll", "added_inertia_pitch", "added_inertia_yaw"}); }},
-        {"O14", [=] { return ellipsoid({"munk_yaw", "munk_pitch"}); }},
+        {"O07",
+         [=, this] {
+             return theory("ellipsoid", "a=2,b=1,c=1", {"k_x", "k_y", "k_pitch"});
+         }},
+        {"O08",
+         [=, this] {
+             return theory("ellipsoid", "a=1.5,b=1,c=1", {"k_x", "k_y"});
+         }},
+        {"O09",
+         [=, this] {
+             return theory("ellipsoid", "a=1000,b=2,c=1", {"k_y", "k_z"});
+         }},
+        {"O10",
+         [=] {
+             return ellipsoid({"integral_x", "integral_y", "integral_z"});
+         }},
+        {"O11",
+         [=] {
+             return ellipsoid({"volume", "displaced_mass"});
+         }},
+        {"O12",
+         [=] {
+             return ellipsoid({"added_mass_x", "added_mass_y", "added_mass_z"});
+         }},
+        {"O13",
+         [=] {
+             return ellipsoid({"added_inertia_roll", "added_inertia_pitch", "added_inertia_yaw"});
+         }},
+        {"O14",
+         [=] {
+             return ellipsoid({"munk_yaw", "munk_pitch"});
+         }},
         {"O15",
          [=, this] {
              const Numbers n = ellipsoid({"added_mass_x", "added_mass_y"});
-             return theory("munk", "added_mass_x=" + core::format_number(n[0], 17) + ",added_mass_y=" + core::format_number(n[1], 17) + ",speed=0.35,sideslip=6deg", {"yaw_moment"});
+             return theory("munk",
+                           "added_mass_x=" + core::format_number(n[0], 17) +
+                               ",added_mass_y=" + core::format_number(n[1], 17) + ",speed=0.35,sideslip=6deg",
+                           {"yaw_moment"});
          }},
-        {"O16", [=] { return ellipsoid({"virtual_mass_x", "virtual_mass_y", "virtual_mass_z", "virtual_inertia_yaw"}); }},
+        {"O16",
+         [=] {
+             return ellipsoid({"virtual_mass_x", "virtual_mass_y", "virtual_mass_z", "virtual_inertia_yaw"});
+         }},
         {"O17", [=] { return Numbers{run("0").front()}; }},
         {"O18", [=] { return run("0.1"); }},
-        {"O19", [=, this] { return theory("kinematics", "u=0.3,v=0.1,w=-0.05,theta=0.2,psi=0.7", {"north", "east", "down"}); }},
+        {"O19",
+         [=, this] {
+             return theory("kinematics", "u=0.3,v=0.1,w=-0.05,theta=0.2,psi=0.7", {"north", "east", "down"});
+         }},
         {"O20",
          [=, this] {
-             core::write_file(folder_.path() / "free.toml", "[vehicle]\nmass = 2.2\nadded_mass_heave = " + core::format_number(1 / .2529 - 2.2, 17) + "\nnet_weight = 0\n");
-             const json gains = ask({"linear", "free.toml", "--at", "gap=100mm", "--weights", "1,100,1"}).at("heave").at(0).at("lqr");
+             core::write_file(folder_.path() / "free.toml",
+                              "[vehicle]\nmass = 2.2\nadded_mass_heave = " + core::format_number(1 / .2529 - 2.2, 17) +
+                                  "\nnet_weight = 0\n");
+             const json gains =
+                 ask({"linear", "free.toml", "--at", "gap=100mm", "--weights", "1,100,1"}).at("heave").at(0).at("lqr");
              return Numbers{gains.at("velocity_gain"), gains.at("gap_gain")};
          }},
-        {"O29", [=, this] { return theory("coefficients", body, {"plan_area", "cross_section", "printed_cross_section"}); }},
+        {"O29",
+         [=, this] {
+             return theory("coefficients", body, {"plan_area", "cross_section", "printed_cross_section"});
+         }},
         {"O30", [=, this] { return theory("coefficients", body + ",lift_force=0.65", {"lift_coefficient"}); }},
-        {"O31", [=, this] { return theory("spring", "stiffness=220,virtual_mass=2.2,angular_frequency=8.8", {"angular_frequency", "mass_of_frequency", "stiffness_of_frequency"}); }},
-        {"O32", [=, this] { return each("spring", {"stiffness=220,virtual_mass=2.2,gap=2mm,angular_frequency=8.8", "stiffness=220,virtual_mass=2.2,gap=2mm"}, "survivable_kick"); }},
-        {"O33", [=, this] { return theory("scaling", "size=2", {"force", "mass", "force_per_mass", "stiffness", "frequency", "gap", "kick"}); }},
-        {"O34", [=, this] { return theory("scaling", "speed=2", {"force", "stiffness", "frequency"}); }},
-        {"O35", [=, this] { return theory("coefficients", body, {"reynolds", "length_of_reynolds_40000"}); }},
-        {"O45", [=, this] { return theory("voltage", "low_thrust=0.7mN,high_thrust=36mN,low_voltage=3,high_voltage=12", {"exponent"}); }},
-        {"O46", [=, this] { return each("voltage", {"neutral_voltage=10,voltage=8", "neutral_voltage=10,voltage=4"}, "upwash"); }},
+        {"O31",
+         [=, this] {
+             return theory("spring", "stiffness=220,virtual_mass=2.2,angular_frequency=8.8",
+                           {"angular_frequency", "mass_of_frequency", "stiffness_of_frequency"});
+         }},
+        {"O32",
+         [=, this] {
+             return each("spring",
+                         {"stiffness=220,virtual_mass=2.2,gap=2mm,angular_frequency=8.8",
+                          "stiffness=220,virtual_mass=2.2,gap=2mm"},
+                         "survivable_kick");
+         }},
+        {"O33",
+         [=, this] {
+             return theory("scaling", "size=2",
+                           {"force", "mass", "force_per_mass", "stiffness", "frequency", "gap", "kick"});
+         }},
+        {"O34",
+         [=, this] {
+             return theory("scaling", "speed=2", {"force", "stiffness", "frequency"});
+         }},
+        {"O35",
+         [=, this] {
+             return theory("coefficients", body, {"reynolds", "length_of_reynolds_40000"});
+         }},
+        {"O45",
+         [=, this] {
+             return theory("voltage", "low_thrust=0.7mN,high_thrust=36mN,low_voltage=3,high_voltage=12", {"exponent"});
+         }},
+        {"O46",
+         [=, this] {
+             return each("voltage", {"neutral_voltage=10,voltage=8", "neutral_voltage=10,voltage=4"}, "upwash");
+         }},
         {"O47",
          [=, this] {
              Numbers n;
              for (const char* force : {"50 gf", "3 gf"}) {
-                 n.push_back(ask({"theory", "coefficients", body + ",lift_force=" + force}).at("inputs").at("lift_force"));
+                 n.push_back(
+                     ask({"theory", "coefficients", body + ",lift_force=" + force}).at("inputs").at("lift_force"));
              }
              return n;
          }},
-        {"O48", [=, this] { return theory("drag", drag, {"w1", "w2", "c0", "c1", "c2", "c3", "c4", "c5"}); }},
+        {"O48",
+         [=, this] {
+             return theory("drag", drag, {"w1", "w2", "c0", "c1", "c2", "c3", "c4", "c5"});
+         }},
         {"O49",
          [=, this] {
-             Numbers n = each("drag", {drag + ",velocity=2e-3", drag + ",velocity=5e-3", drag + ",velocity=0.02"}, "force");
+             Numbers n =
+                 each("drag", {drag + ",velocity=2e-3", drag + ",velocity=5e-3", drag + ",velocity=0.02"}, "force");
              n.push_back(theory("drag", drag + ",velocity=2e-3", {"slope"}).front());
              return n;
          }},
-        {"O50", [=, this] { return theory("drag", drag, {"gaussian_factor", "harmonic_factor_of_amplitude", "harmonic_factor"}); }},
-        {"O51", [=, this] { return theory("drag", drag, {"uniform_correlation", "uniform_cubic_on_linear", "uniform_cubic_on_quadratic"}); }},
+        {"O50",
+         [=, this] {
+             return theory("drag", drag, {"gaussian_factor", "harmonic_factor_of_amplitude", "harmonic_factor"});
+         }},
+        {"O51",
+         [=, this] {
+             return theory("drag", drag,
+                           {"uniform_correlation", "uniform_cubic_on_linear", "uniform_cubic_on_quadratic"});
+         }},
     };
 }
 
@@ -255,11 +390,16 @@ ByProgram::Questions ByProgram::questions_of_the_table() {
         Numbers n;
         const json answer = ask(words);  // lives as long as the loop
         for (const auto& value : answer.at("values")) {
-            n.push_back(std::string(what) == "slope" ? value.at("slope").at("gap").get<double>() : value.at("value").get<double>());
+            n.push_back(std::string(what) == "slope" ? value.at("slope").at("gap").get<double>()
+                                                     : value.at("value").get<double>());
         }
         return n;
     };
-    const auto equilibria = [this](const std::string& weight) { return ask({"table", "equilibria", "ref-a.csv", "--kind", "spline", "--weight", weight, "--mass", core::format_number(1 / .2529, 17)}).at("equilibria"); };
+    const auto equilibria = [this](const std::string& weight) {
+        return ask({"table", "equilibria", "ref-a.csv", "--kind", "spline", "--weight", weight, "--mass",
+                    core::format_number(1 / .2529, 17)})
+            .at("equilibria");
+    };
     const auto near = [](const json& list, double gap) {
         for (const auto& e : list) {
             if (std::abs(e.at("gap").get<double>() - gap) < 0.01) {
@@ -269,14 +409,21 @@ ByProgram::Questions ByProgram::questions_of_the_table() {
         return json();
     };
     return {
-        {"O52", [=] { return at({"0.005", "0.065", "0.155", "0.275", "0.75"}, "value"); }},
-        {"O53", [=] { return at({"0", "0.1", "0.25"}, "slope"); }},
+        {"O52",
+         [=] {
+             return at({"0.005", "0.065", "0.155", "0.275", "0.75"}, "value");
+         }},
+        {"O53",
+         [=] {
+             return at({"0", "0.1", "0.25"}, "slope");
+         }},
         {"O55",
          [=] {
              const Numbers slopes = at({"0", "0.16"}, "slope");
              const json list = equilibria("0");
              const double unstable = near(list, .16).at("stiffness");
-             return Numbers{slopes[0], slopes[1], 6.283185307179586 * near(list, 0).at("frequency").get<double>(), std::sqrt(-unstable * .2529)};
+             return Numbers{slopes[0], slopes[1], 6.283185307179586 * near(list, 0).at("frequency").get<double>(),
+                            std::sqrt(-unstable * .2529)};
          }},
         {"O57",
          [=] {
@@ -286,7 +433,8 @@ ByProgram::Questions ByProgram::questions_of_the_table() {
         {"O88",
          [=, this] {
              const json run = ask({"simulate", "ref-a.toml", "--from", "gap=25mm", "--for", "120", "--feedback",
-                                   "velocity_gain=" + core::format_number(2 / .2529, 17) + ",gap_gain=" + core::format_number(1 / .2529, 17) + ",reference=20mm"});
+                                   "velocity_gain=" + core::format_number(2 / .2529, 17) +
+                                       ",gap_gain=" + core::format_number(1 / .2529, 17) + ",reference=20mm"});
              return Numbers{run.at("gap").back()};
          }},
     };
@@ -312,7 +460,10 @@ ByProgram::Questions ByProgram::questions_of_learning() {
                 }
                 return n;
             };
-            all[name()] = [=, this] { return Numbers{apart(learned(model, {"--order", order, "--fit", "method1"}), learned(model, {"--order", order, "--fit", "method2"}))}; };
+            all[name()] = [=, this] {
+                return Numbers{apart(learned(model, {"--order", order, "--fit", "method1"}),
+                                     learned(model, {"--order", order, "--fit", "method2"}))};
+            };
         }
         all[name()] = [=, this] {
             const json m = learned(model, {"--fit", "least_squares"});
@@ -331,15 +482,34 @@ ByProgram::Questions ByProgram::questions_of_learning() {
 
 /// What no command gives, and why.
 const std::map<std::string, std::string>& out_of_reach() {
-    static const std::string printed = "about a matrix that is printed in the thesis: data of cases/thesis, judged there claim by claim (study run cases/thesis)";
+    static const std::string printed =
+        "about a matrix that is printed in the thesis: data of cases/thesis, judged there claim by claim (study run "
+        "cases/thesis)";
     static const std::map<std::string, std::string> list = {
-        {"O54", "the lowest and highest point of a curve are named in the remarks of table fit, and its zeros asked in O55 and O57; no JSON key holds all six numbers"},
-        {"O56", "table equilibria gives the smaller barrier of the two sides, which on this curve is that to the lower end of the table"},
-        {"O74", "a population without sampling error, of two inputs and midpoints of gap and velocity: learn takes meshes with their ends, or random samples"},
-        {"O75", printed}, {"O76", printed}, {"O77", printed}, {"O78", printed},
+        {"O54",
+         "the lowest and highest point of a curve are named in the remarks of table fit, and its zeros asked in O55 "
+         "and O57; no JSON key holds all six numbers"},
+        {"O56",
+         "table equilibria gives the smaller barrier of the two sides, which on this curve is that to the lower end of "
+         "the table"},
+        {"O74",
+         "a population without sampling error, of two inputs and midpoints of gap and velocity: learn takes meshes "
+         "with their ends, or random samples"},
+        {"O75", printed},
+        {"O76", printed},
+        {"O77", printed},
+        {"O78", printed},
         {"O79", "bounds of a matrix of one's own: learn gives them for what it learned"},
-        {"O80", printed}, {"O81", printed}, {"O82", printed}, {"O83", printed}, {"O84", printed}, {"O85", printed}, {"O86", printed},
-        {"O87", "the equations as printed, which no command integrates; what the program integrates is held to 1e-10 in tests of the rigid body"},
+        {"O80", printed},
+        {"O81", printed},
+        {"O82", printed},
+        {"O83", printed},
+        {"O84", printed},
+        {"O85", printed},
+        {"O86", printed},
+        {"O87",
+         "the equations as printed, which no command integrates; what the program integrates is held to 1e-10 in tests "
+         "of the rigid body"},
     };
     return list;
 }
@@ -347,7 +517,8 @@ const std::map<std::string, std::string>& out_of_reach() {
 TEST_F(ByProgram, EveryOracleOfThePhysicsNotesIsReached) {
     write_reference_curve();
     Questions questions;
-    for (auto& part : {questions_of_films(), questions_of_the_vehicle(), questions_of_the_table(), questions_of_learning()}) {
+    for (auto& part :
+         {questions_of_films(), questions_of_the_vehicle(), questions_of_the_table(), questions_of_learning()}) {
         questions.insert(part.begin(), part.end());
     }
     const auto all = oracles();
@@ -373,8 +544,10 @@ TEST_F(ByProgram, EveryOracleOfThePhysicsNotesIsReached) {
             // A printed number is known to its last digit, whatever tolerance the row asks.
             const double digits = 0.6 * std::pow(10, std::floor(std::log10(std::max(std::abs(want), 1e-300))) - 7);
             // What is nothing but rounding beside the other numbers of its row may be another nothing.
-            const double relative = oracle.tolerance * std::max({std::abs(want), 1e-3 * largest, want == 0 ? 1.0 : 0.0});
-            EXPECT_NEAR(got[i], want, std::max({oracle.absolute ? oracle.tolerance : relative, digits, 1e-12})) << "value " << i;
+            const double relative =
+                oracle.tolerance * std::max({std::abs(want), 1e-3 * largest, want == 0 ? 1.0 : 0.0});
+            EXPECT_NEAR(got[i], want, std::max({oracle.absolute ? oracle.tolerance : relative, digits, 1e-12}))
+                << "value " << i;
         }
     }
     for (const auto& [id, question] : questions) {
@@ -398,7 +571,9 @@ TEST_F(ByProgram, TheoryRefusesWhatItDoesNotTakeAndSaysWhereItEnds) {
     const json thick = ask({"theory", "squeeze", "half_length=71.7mm,half_width=53.6mm,gap=20mm"});
     EXPECT_FALSE(thick.at("valid").get<bool>());
     const auto text = run_underbody({"theory", "slider", "inlet=2mm,outlet=1mm,length=50mm,speed=0.5"});
-    EXPECT_THAT(text.output, testing::HasSubstr("OUTSIDE ITS RANGE: the water's inertia is left out: U h^2/(nu L) = 39.9, to be below 1"));
+    EXPECT_THAT(
+        text.output,
+        testing::HasSubstr("OUTSIDE ITS RANGE: the water's inertia is left out: U h^2/(nu L) = 39.9, to be below 1"));
     const json list = ask({"theory", "list"});
     EXPECT_GE(list.at("theories").size(), 16U);
 }

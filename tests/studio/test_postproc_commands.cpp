@@ -18,7 +18,8 @@ using test::run_underbody;
 
 /// A closed box of 2 x 1 x 0.5 m with p = 1 + z: lift is -1 N.
 const std::string box_csv =
-    "[Name]\nbase\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n0,0,0,1\n2,0,0,1\n2,1,0,1\n0,1,0,1\n\n[Faces]\n0,3,2,1\n"
+    "[Name]\nbase\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa "
+    "]\n0,0,0,1\n2,0,0,1\n2,1,0,1\n0,1,0,1\n\n[Faces]\n0,3,2,1\n"
     "\n[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n"
     "0,0,0,1\n2,0,0,1\n2,1,0,1\n0,1,0,1\n0,0,0.5,1.5\n2,0,0.5,1.5\n2,1,0.5,1.5\n0,1,0.5,1.5\n"
     "\n[Faces]\n0,1,5,4\n1,2,6,5\n2,3,7,6\n3,0,4,7\n4,5,6,7\n";
@@ -59,8 +60,11 @@ TEST_F(PostprocCommands, LoadsOfAFileThatIsCutWithinAFaceAreRefused) {
     EXPECT_EQ(cut(1).exit_code, 0);  // an editor may have left out the last line end
     const auto refused = cut(2);     // a triangle in the place of a rectangle
     EXPECT_EQ(refused.exit_code, 3);
-    EXPECT_THAT(refused.errors, testing::AllOf(testing::HasSubstr("cut.csv:33: the file does not end with a line end: it is cut short within its last face"),
-                                               testing::Not(testing::HasSubstr("warning"))));  // said once
+    EXPECT_THAT(
+        refused.errors,
+        testing::AllOf(testing::HasSubstr(
+                           "cut.csv:33: the file does not end with a line end: it is cut short within its last face"),
+                       testing::Not(testing::HasSubstr("warning"))));  // said once
     EXPECT_EQ(cut(2, {"--accept-problems"}).exit_code, 0);
     EXPECT_THAT(cut(4).errors, testing::HasSubstr("cut.csv:33:1: a row of 2 node numbers"));
 }
@@ -121,8 +125,10 @@ TEST_F(PostprocCommands, ABatchSaysOnceWhatItsFilesHaveAlike) {
     const auto batch = run({"loads", "o-h{gap:mm}.csv"});
     EXPECT_EQ(batch.exit_code, 0);
     EXPECT_EQ(count(batch.errors, "is not closed"), 1) << batch.errors;
-    EXPECT_THAT(batch.errors, testing::AllOf(testing::HasSubstr("o-h1.csv: the surface is not closed"), testing::HasSubstr("(and alike in 1 other file)"),
-                                             testing::HasSubstr("left out, for their names do not fit the pattern"), testing::HasSubstr("o-hO3.csv ('O3' is no number for {gap:mm})")));
+    EXPECT_THAT(batch.errors, testing::AllOf(testing::HasSubstr("o-h1.csv: the surface is not closed"),
+                                             testing::HasSubstr("(and alike in 1 other file)"),
+                                             testing::HasSubstr("left out, for their names do not fit the pattern"),
+                                             testing::HasSubstr("o-hO3.csv ('O3' is no number for {gap:mm})")));
     EXPECT_EQ(count(run({"--verbose", "loads", "o-h{gap:mm}.csv"}).errors, "is not closed"), 2);
     EXPECT_EQ(count(run({"loads", "o-h1.csv"}).errors, "alike"), 0);
 }
@@ -139,13 +145,16 @@ TEST_F(PostprocCommands, InfoSaysWhatAReportOfTheSolverHolds) {
     EXPECT_NEAR(history["monitor"]["columns"][1]["tail"]["mean"].get<double>(), 1.25, 1e-5);
     EXPECT_THAT(run({"info", "lift.out"}).output, testing::HasSubstr("Iteration 1 to 20"));
     core::write_file(folder_.path() / "a.xy",
-                     "(title \"Static Pressure\")\n(labels \"Position\" \"Static Pressure\")\n((xy/key/label \"wall\")\n0\t10\n0.5\t20\n1\t15\n)\n");
+                     "(title \"Static Pressure\")\n(labels \"Position\" \"Static Pressure\")\n((xy/key/label "
+                     "\"wall\")\n0\t10\n0.5\t20\n1\t15\n)\n");
     const json plot = run_json({"info", "a.xy"});
     EXPECT_EQ(plot["plot"]["curves"][0]["name"], "wall");
     EXPECT_EQ(plot["plot"]["curves"][0]["y"], json({10, 20, 15}));
     EXPECT_THAT(run({"info", "a.xy"}).output, testing::HasSubstr("10 .. 20"));
-    core::write_file(folder_.path() / "forces.txt", "Forces - Direction Vector (1 0 0)\n  Forces (n)   Coefficients\nZone Pressure Viscous Total Pressure Viscous Total\n"
-                                                    "hull 1 0.5 1.5 1 0.5 1.5\nNet 1 0.5 1.5 1 0.5 1.5\n");
+    core::write_file(folder_.path() / "forces.txt",
+                     "Forces - Direction Vector (1 0 0)\n  Forces (n)   Coefficients\nZone Pressure Viscous Total "
+                     "Pressure Viscous Total\n"
+                     "hull 1 0.5 1.5 1 0.5 1.5\nNet 1 0.5 1.5 1 0.5 1.5\n");
     EXPECT_EQ(run_json({"info", "forces.txt"})["force_reports"][0]["rows"][0]["viscous"], 0.5);
     EXPECT_THAT(run({"info", "forces.txt"}).output, testing::HasSubstr("forces [N] along (1 0 0)"));
 }
@@ -171,14 +180,17 @@ TEST_F(PostprocCommands, ContentThatNoImporterReadsIsNamed) {
     };
     EXPECT_THAT(hint("a.msh", "$MeshFormat\n4.1 0 8\n"), testing::HasSubstr("Gmsh"));
     EXPECT_THAT(hint("a.csv", std::string("\xFF\xFE[\0N\0", 6)), testing::HasSubstr("UTF-16"));
-    EXPECT_THAT(hint("a.vtk.series", "{\"file-series-version\": \"1.0\", \"files\": []}"), testing::HasSubstr("one of the files"));
+    EXPECT_THAT(hint("a.vtk.series", "{\"file-series-version\": \"1.0\", \"files\": []}"),
+                testing::HasSubstr("one of the files"));
     EXPECT_THAT(hint("a.prof", "((inlet point 2)\n(x 0 1)\n"), testing::HasSubstr("boundary profile"));
     EXPECT_THAT(hint("a.bin", std::string("\x01\x02\0\x03", 4)), testing::HasSubstr("known formats"));
-    EXPECT_THAT(hint("ragged.out", "\"l\"\n\"Iteration\" \"l\"\n(\"Iteration\" \"l\")\n1 2\n2 3 4\n3 4\n"), testing::HasSubstr("ragged.out:5: a row of 3 numbers where there are 2 columns"));
+    EXPECT_THAT(hint("ragged.out", "\"l\"\n\"Iteration\" \"l\"\n(\"Iteration\" \"l\")\n1 2\n2 3 4\n3 4\n"),
+                testing::HasSubstr("ragged.out:5: a row of 3 numbers where there are 2 columns"));
     std::string returns = box_csv;
     std::replace(returns.begin(), returns.end(), '\n', '\r');
     EXPECT_THAT(hint("mac.csv", returns), testing::HasSubstr("carriage returns alone"));
-    EXPECT_THAT(hint("mac.case", "FORMAT\rtype: ensight gold\rGEOMETRY\rmodel: a.geo\r"), testing::HasSubstr("carriage returns alone"));
+    EXPECT_THAT(hint("mac.case", "FORMAT\rtype: ensight gold\rGEOMETRY\rmodel: a.geo\r"),
+                testing::HasSubstr("carriage returns alone"));
     core::write_file(folder_.path() / "rooms/constant/air/polyMesh/owner", "");
     EXPECT_THAT(run({"info", "rooms"}).errors, testing::HasSubstr("regions air"));
     core::write_file(folder_.path() / "shares/processors4/constant/polyMesh/owner", "");
@@ -205,12 +217,16 @@ TEST_F(PostprocCommands, LoadsGiveOneResultOrATable) {
     EXPECT_EQ(core::read_csv(folder_.path() / "one.csv").rows(), 1U);
     core::write_file(folder_.path() / "list.csv", "file\na-h5.csv\n");
     EXPECT_EQ(run_json({"loads", "--manifest", "list.csv"})["files"].size(), 1U);
-    EXPECT_NEAR(run_json({"loads", "a-h5.csv", "--manifest", "list.csv"})["lift_force"].get<double>(), -1, 1e-12);  // a row without conditions
+    EXPECT_NEAR(run_json({"loads", "a-h5.csv", "--manifest", "list.csv"})["lift_force"].get<double>(), -1,
+                1e-12);  // a row without conditions
 }
 
 TEST_F(PostprocCommands, LoadsAreAManifestAgain) {
-    ASSERT_EQ(run({"loads", "{variant}-h{gap:mm}.csv", "--density", "1000", "--speed", "2", "--out", "first.csv"}).exit_code, 0);
-    const auto again = run({"loads", "--manifest", "first.csv", "--density", "1000", "--speed", "1", "--out", "second.csv"});
+    ASSERT_EQ(
+        run({"loads", "{variant}-h{gap:mm}.csv", "--density", "1000", "--speed", "2", "--out", "first.csv"}).exit_code,
+        0);
+    const auto again =
+        run({"loads", "--manifest", "first.csv", "--density", "1000", "--speed", "1", "--out", "second.csv"});
     ASSERT_EQ(again.exit_code, 0) << again.errors;
     const core::Table table = core::read_csv(folder_.path() / "second.csv");
     EXPECT_NEAR(table.numbers("lift_coefficient")[0], 4 * table.numbers("lift_coefficient_stated")[0], 1e-12);
@@ -238,7 +254,8 @@ TEST_F(PostprocCommands, LoadsOfABatchNameEveryFileThatCannotBeUsed) {
     std::string cut = box_csv;
     cut.resize(cut.size() - 12);
     core::write_file(folder_.path() / "c-h20.csv", cut + "4,5,6,99\n");
-    core::write_file(folder_.path() / "list.csv", "gap [mm], file\n5, a-h5.csv\n7, nowhere.csv\n10, b-h10.csv\n20, c-h20.csv\n");
+    core::write_file(folder_.path() / "list.csv",
+                     "gap [mm], file\n5, a-h5.csv\n7, nowhere.csv\n10, b-h10.csv\n20, c-h20.csv\n");
     const auto refused = run({"loads", "--manifest", "list.csv", "--out", "loads.csv"});
     EXPECT_EQ(refused.exit_code, 3);
     EXPECT_THAT(refused.errors, testing::HasSubstr("nowhere.csv"));
@@ -276,21 +293,33 @@ TEST_F(PostprocCommands, LoadsSayWhichRowOfAManifestIsWrong) {
         EXPECT_EQ(result.exit_code, 3) << result.output;
         return result.errors;
     };
-    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n7, \n"), testing::HasSubstr("row 2 of the manifest names no file"));
-    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n7, a-h5.csv\n", {"a-h5.csv"}), testing::HasSubstr("row 2 of the manifest lists 'a-h5.csv' once more"));
-    EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n, b-h10.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("b-h10.csv: 'cells' is missing"));
-    EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n0, b-h10.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("'cells' is 0"));
-    EXPECT_THAT(refusal("reference_x [m], reference_y [m], reference_z [m], file\n0, 0, , a-h5.csv\n"), testing::HasSubstr("needs reference_x, reference_y and reference_z"));
-    EXPECT_THAT(refusal("reference_x [s], reference_y [m], reference_z [m], file\n0, 0, 0, a-h5.csv\n"), testing::HasSubstr("'reference_x' is in s, not in m"));
+    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n7, \n"),
+                testing::HasSubstr("row 2 of the manifest names no file"));
+    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n7, a-h5.csv\n", {"a-h5.csv"}),
+                testing::HasSubstr("row 2 of the manifest lists 'a-h5.csv' once more"));
+    EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n, b-h10.csv\n", {"--mesh-study", "cells"}),
+                testing::HasSubstr("b-h10.csv: 'cells' is missing"));
+    EXPECT_THAT(refusal("cells [1], file\n1000, a-h5.csv\n0, b-h10.csv\n", {"--mesh-study", "cells"}),
+                testing::HasSubstr("'cells' is 0"));
+    EXPECT_THAT(refusal("reference_x [m], reference_y [m], reference_z [m], file\n0, 0, , a-h5.csv\n"),
+                testing::HasSubstr("needs reference_x, reference_y and reference_z"));
+    EXPECT_THAT(refusal("reference_x [s], reference_y [m], reference_z [m], file\n0, 0, 0, a-h5.csv\n"),
+                testing::HasSubstr("'reference_x' is in s, not in m"));
     EXPECT_THAT(refusal("density [m], file\n1000, a-h5.csv\n"), testing::HasSubstr("'density' is in m, not in kg/m^3"));
-    EXPECT_THAT(refusal("density [kg/m^3], file\n1000, a-h5.csv\n-1, b-h10.csv\n"), testing::HasSubstr("list.csv:3: the density is -1 kg/m^3"));
-    EXPECT_THAT(refusal("lift_force_scatter [N], file\n0.1, a-h5.csv\n-0.1, b-h10.csv\n"), testing::HasSubstr("list.csv:3: lift_force_scatter is -0.1 N"));
-    EXPECT_THAT(refusal("cells [m], file\n1000, a-h5.csv\n", {"--mesh-study", "cells"}), testing::HasSubstr("'cells' is in m, not in pure numbers"));
-    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n, b-h10.csv\n", {"--reference", "0,0,gap"}), testing::HasSubstr("b-h10.csv: this case has no value of 'gap'"));
+    EXPECT_THAT(refusal("density [kg/m^3], file\n1000, a-h5.csv\n-1, b-h10.csv\n"),
+                testing::HasSubstr("list.csv:3: the density is -1 kg/m^3"));
+    EXPECT_THAT(refusal("lift_force_scatter [N], file\n0.1, a-h5.csv\n-0.1, b-h10.csv\n"),
+                testing::HasSubstr("list.csv:3: lift_force_scatter is -0.1 N"));
+    EXPECT_THAT(refusal("cells [m], file\n1000, a-h5.csv\n", {"--mesh-study", "cells"}),
+                testing::HasSubstr("'cells' is in m, not in pure numbers"));
+    EXPECT_THAT(refusal("gap [mm], file\n5, a-h5.csv\n, b-h10.csv\n", {"--reference", "0,0,gap"}),
+                testing::HasSubstr("b-h10.csv: this case has no value of 'gap'"));
 }
 
 TEST_F(PostprocCommands, LoadsAreCheckedAgainstAManifest) {
-    core::write_file(folder_.path() / "stated.csv", "gap [mm], lift_force [N], drag_force [N], file\n5, -1.001, 0, a-h5.csv\n10, -1.2, 0, b-h10.csv\n");
+    core::write_file(
+        folder_.path() / "stated.csv",
+        "gap [mm], lift_force [N], drag_force [N], file\n5, -1.001, 0, a-h5.csv\n10, -1.2, 0, b-h10.csv\n");
     const auto wrong = run({"loads", "--manifest", "stated.csv", "--check", "0.01"});
     EXPECT_EQ(wrong.exit_code, 4);
     EXPECT_THAT(wrong.errors, testing::HasSubstr("b-h10.csv: lift_force is -1, stated -1.2"));
@@ -305,7 +334,9 @@ TEST_F(PostprocCommands, LoadsAreCheckedAgainstAManifest) {
 
 TEST_F(PostprocCommands, LoadsAreCheckedAgainstTheSolversOwnReport) {
     const auto report = [](const std::string& lift) {
-        return "Forces - Direction Vector (0 0 1)\nZone Pressure Viscous Total Pressure Viscous Total\nbase 2 0 2 0 0 0\nhull -3 0 -3 0 0 0\nNet " + lift + " 0 " + lift + " 0 0 0\n";
+        return "Forces - Direction Vector (0 0 1)\nZone Pressure Viscous Total Pressure Viscous Total\nbase 2 0 2 0 0 "
+               "0\nhull -3 0 -3 0 0 0\nNet " +
+               lift + " 0 " + lift + " 0 0 0\n";
     };
     core::write_file(folder_.path() / "right.txt", report("-1"));
     core::write_file(folder_.path() / "a-h5-forces.txt", report("-1.02"));  // found by its name
@@ -320,13 +351,15 @@ TEST_F(PostprocCommands, LoadsAreCheckedAgainstTheSolversOwnReport) {
     ASSERT_EQ(comparison.size(), 9U);
     EXPECT_NEAR(comparison[6]["difference"].get<double>(), 0.02, 1e-12);
     // Named as well, or twice, it counts once.
-    const auto once = run({"loads", "a-h5.csv", "--report", "a-h5-forces.txt", "--report", "./{stem}-forces.txt", "--report", "right.txt", "--report", "right.txt", "--json"});
+    const auto once = run({"loads", "a-h5.csv", "--report", "a-h5-forces.txt", "--report", "./{stem}-forces.txt",
+                           "--report", "right.txt", "--report", "right.txt", "--json"});
     EXPECT_EQ(json::parse(once.output)["comparison"].size(), 18U);
     const auto one_of_two = run({"loads", "a-h5.csv", "b-h10.csv", "--check", "5 %"});
     EXPECT_EQ(one_of_two.exit_code, 0);
     EXPECT_THAT(one_of_two.errors, testing::HasSubstr("b-h10.csv: compared with nothing"));
     EXPECT_EQ(run({"loads", "b-h10.csv", "--report", "right.txt", "--check", "0.1 %"}).exit_code, 0);
-    EXPECT_EQ(run({"loads", "b-h10.csv", "--report", "{stem}-forces.txt", "--check", "0.1 %"}).exit_code, 3);  // there is none
+    EXPECT_EQ(run({"loads", "b-h10.csv", "--report", "{stem}-forces.txt", "--check", "0.1 %"}).exit_code,
+              3);  // there is none
     const auto nothing = run({"loads", "b-h10.csv", "--check", "0.1 %"});
     EXPECT_EQ(nothing.exit_code, 3);
     EXPECT_THAT(nothing.errors, testing::HasSubstr("nothing to check against"));
@@ -339,27 +372,33 @@ TEST_F(PostprocCommands, LoadsTakeTheirScatterFromAMonitor) {
     }
     core::write_file(folder_.path() / "a-h5-lift.out", monitor);
     core::write_file(folder_.path() / "b-h10-lift.out", monitor);
-    const auto table = run({"loads", "{variant}-h{gap:mm}.csv", "--monitor", "lift_force={stem}-lift.out", "--out", "loads.csv"});
+    const auto table =
+        run({"loads", "{variant}-h{gap:mm}.csv", "--monitor", "lift_force={stem}-lift.out", "--out", "loads.csv"});
     EXPECT_EQ(table.exit_code, 0) << table.errors;
     const core::Table read = core::read_csv(folder_.path() / "loads.csv");
     EXPECT_NEAR(read.numbers("lift_force_sigma")[1], 0.01, 1e-3);
-    const auto elsewhere = run_underbody({"loads", (folder_.path() / "a-h5.csv").string(), "--monitor", "lift_force [N]= {stem}-lift.out:lift"}, "/");
+    const auto elsewhere = run_underbody(
+        {"loads", (folder_.path() / "a-h5.csv").string(), "--monitor", "lift_force [N]= {stem}-lift.out:lift"}, "/");
     EXPECT_EQ(elsewhere.exit_code, 0) << elsewhere.errors;
     EXPECT_THAT(elsewhere.output, testing::HasSubstr("a-h5-lift.out"));
     EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out", "--check", "0.5 %"}).exit_code, 4);
     EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out", "--check", "1.5 %"}).exit_code, 0);
     EXPECT_EQ(run({"loads", "a-h5.csv", "--monitor", "lift=a-h5-lift.out"}).exit_code, 2);
-    EXPECT_THAT(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out"}).output, testing::HasSubstr("sigma"));
+    EXPECT_THAT(run({"loads", "a-h5.csv", "--monitor", "lift_force=a-h5-lift.out"}).output,
+                testing::HasSubstr("sigma"));
 }
 
 TEST_F(PostprocCommands, LoadsSayTheirReferencePointAndTakeAStatedOne) {
-    EXPECT_THAT(run({"loads", "a-h5.csv"}).output, testing::HasSubstr("about 1, 0.5, 0 m: centre of the base (zone 'base')"));
+    EXPECT_THAT(run({"loads", "a-h5.csv"}).output,
+                testing::HasSubstr("about 1, 0.5, 0 m: centre of the base (zone 'base')"));
     EXPECT_NEAR(run_json({"loads", "a-h5.csv", "--reference", "0,0.5,5 mm"})["pitch_moment"].get<double>(), -1, 1e-12);
     const auto by_gap = run({"loads", "{variant}-h{gap:mm}.csv", "--reference", "0,0.5,gap"});
     EXPECT_EQ(by_gap.exit_code, 0) << by_gap.errors;
     const core::Table table = core::read_csv(by_gap.output, "stdout");
     EXPECT_NEAR(table.numbers("reference_z")[1], 0.01, 1e-12);
-    core::write_file(folder_.path() / "points.csv", "reference_x [mm], reference_y [mm], reference_z [mm], file\n0, 500, 0, a-h5.csv\n2000, 500, 0, b-h10.csv\n");
+    core::write_file(
+        folder_.path() / "points.csv",
+        "reference_x [mm], reference_y [mm], reference_z [mm], file\n0, 500, 0, a-h5.csv\n2000, 500, 0, b-h10.csv\n");
     const core::Table stated = core::read_csv(run({"loads", "--manifest", "points.csv"}).output, "stdout");
     EXPECT_NEAR(stated.numbers("pitch_moment")[0], -1, 1e-12);
     EXPECT_NEAR(stated.numbers("pitch_moment")[1], 1, 1e-12);
@@ -371,8 +410,10 @@ TEST_F(PostprocCommands, LoadsSayTheirReferencePointAndTakeAStatedOne) {
 TEST_F(PostprocCommands, LoadsOfThreeMeshesGetTheirUncertaintyFromPatterns) {
     UNDERBODY_NEEDS_SHARED("cfd/fields/ellipse-h5-p0-fine.csv");
     std::filesystem::create_directory_symlink(test::shared_folder() / "cfd" / "fields", folder_.path() / "fields");
-    const auto run_it = run({"loads", "fields/{variant}-h{gap:mm}-p{pitch:deg}.csv", "fields/{variant}-h{gap:mm}-p{pitch:deg}-coarse.csv",
-                             "fields/{variant}-h{gap:mm}-p{pitch:deg}-fine.csv", "--symmetry", "y", "--mesh-study", "faces", "--out", "loads.csv"});
+    const auto run_it =
+        run({"loads", "fields/{variant}-h{gap:mm}-p{pitch:deg}.csv",
+             "fields/{variant}-h{gap:mm}-p{pitch:deg}-coarse.csv", "fields/{variant}-h{gap:mm}-p{pitch:deg}-fine.csv",
+             "--symmetry", "y", "--mesh-study", "faces", "--out", "loads.csv"});
     EXPECT_EQ(run_it.exit_code, 0) << run_it.errors;
     EXPECT_THAT(run_it.errors, testing::HasSubstr("no convergence"));  // lift at 5 mm
     EXPECT_THAT(run_it.errors, testing::HasSubstr("GCI"));
@@ -406,11 +447,14 @@ TEST_F(PostprocCommands, InfoNamesTheFileOfTheUserAndSaysWhatItCounts) {
     const json info = run_json({"info", data});
     EXPECT_EQ(info["file"], data);
     EXPECT_TRUE(info.contains("points_counted"));
-    EXPECT_THAT(run({"info", data}).output, testing::AllOf(testing::StartsWith(data), testing::HasSubstr("points zone by zone")));
+    EXPECT_THAT(run({"info", data}).output,
+                testing::AllOf(testing::StartsWith(data), testing::HasSubstr("points zone by zone")));
     core::write_file(folder_.path() / "wall.vtk",
-                     "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\nCELL_DATA 1\n"
+                     "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 "
+                     "0\nPOLYGONS 1 4\n3 0 1 2\nCELL_DATA 1\n"
                      "VECTORS wallShearStress double\n1 2 3\n");
-    EXPECT_THAT(run({"info", "wall.vtk", "--unit", "wallShearStress=Pa", "--verbose"}).errors, testing::HasSubstr("turned round"));
+    EXPECT_THAT(run({"info", "wall.vtk", "--unit", "wallShearStress=Pa", "--verbose"}).errors,
+                testing::HasSubstr("turned round"));
 }
 
 TEST_F(PostprocCommands, OptionsThatAFileHasNoUseForAreTold) {
@@ -419,8 +463,10 @@ TEST_F(PostprocCommands, OptionsThatAFileHasNoUseForAreTold) {
         EXPECT_EQ(result.exit_code, 3) << result.output;
         return result.errors;
     };
-    EXPECT_THAT(refused({"loads", "a-h5.csv", "--unit", "Presure=kPa"}), testing::HasSubstr("did you mean 'Pressure'?"));
-    EXPECT_THAT(refused({"info", "a-h5.csv", "--unit", "Helicity=m/s^2"}), testing::HasSubstr("there is no variable 'Helicity'"));
+    EXPECT_THAT(refused({"loads", "a-h5.csv", "--unit", "Presure=kPa"}),
+                testing::HasSubstr("did you mean 'Pressure'?"));
+    EXPECT_THAT(refused({"info", "a-h5.csv", "--unit", "Helicity=m/s^2"}),
+                testing::HasSubstr("there is no variable 'Helicity'"));
     EXPECT_EQ(run({"loads", "a-h5.csv", "--unit", "pressure=Pa"}).exit_code, 0);
     EXPECT_EQ(run({"loads", "a-h5.csv", "--unit", "X=m"}).exit_code, 0);
     EXPECT_THAT(refused({"loads", "a-h5.csv", "--time", "3"}), testing::HasSubstr("of one time each"));
@@ -431,7 +477,8 @@ TEST_F(PostprocCommands, OptionsThatAFileHasNoUseForAreTold) {
     EXPECT_THAT(lengths.errors, testing::HasSubstr("its lengths are in m, as it says"));
     EXPECT_EQ(json::parse(lengths.output)["zones"][0]["bounding_box"][1][0], 2.0);
     const std::string box = (test::data_folder() / "openfoam/ascii").string();
-    EXPECT_THAT(run({"info", box, "--length-unit", "mm"}).errors, testing::HasSubstr("its lengths are in m, as it says"));
+    EXPECT_THAT(run({"info", box, "--length-unit", "mm"}).errors,
+                testing::HasSubstr("its lengths are in m, as it says"));
 }
 
 TEST_F(PostprocCommands, ImportLosesNoFile) {
@@ -455,7 +502,8 @@ TEST_F(PostprocCommands, ImportLosesNoFile) {
     const auto half = run({"import", "a-h5.csv", "bad.csv", "b-h10.csv", "--out", "half.vtp"});
     EXPECT_EQ(half.exit_code, 3);
     EXPECT_THAT(half.errors, testing::HasSubstr("written before: half-a-h5.vtp; the other 2 files were not"));
-    EXPECT_THAT(run({"import", "a-h5.csv", "--arrays", "presure", "--out", "slip.vtp"}).errors, testing::HasSubstr("there is no array 'presure'"));
+    EXPECT_THAT(run({"import", "a-h5.csv", "--arrays", "presure", "--out", "slip.vtp"}).errors,
+                testing::HasSubstr("there is no array 'presure'"));
 }
 
 TEST_F(PostprocCommands, ErrorsNameFileAndLine) {
@@ -477,9 +525,12 @@ TEST_F(PostprocCommands, ErrorsNameFileAndLine) {
 }
 
 TEST_F(PostprocCommands, ViewsAreDrawnWithoutADisplay) {
-    const auto result = run_underbody({"views", "a-h5.csv", "--out", "pictures", "--view", "pressure-underbody", "--json"}, folder_.path(), {{"DISPLAY", ""}});
+    const auto result =
+        run_underbody({"views", "a-h5.csv", "--out", "pictures", "--view", "pressure-underbody", "--json"},
+                      folder_.path(), {{"DISPLAY", ""}});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
-    EXPECT_THAT(core::read_file(folder_.path() / "pictures" / "pressure-underbody.png"), testing::StartsWith("\x89PNG"));
+    EXPECT_THAT(core::read_file(folder_.path() / "pictures" / "pressure-underbody.png"),
+                testing::StartsWith("\x89PNG"));
     EXPECT_EQ(json::parse(result.output)["views"][0]["name"], "pressure-underbody");
     EXPECT_EQ(run({"views", "a-h5.csv", "--view", "nothing"}).exit_code, 3);
 }
@@ -489,7 +540,8 @@ TEST_F(PostprocCommands, ViewsOfFilesOfOneNameAreKeptApart) {
         std::filesystem::create_directories(folder_.path() / folder);
         core::write_file(folder_.path() / folder / "case.csv", box_csv);
     }
-    const json views = run_json({"views", "a/case.csv", "b/case.csv", "a-h5.csv", "./a/case.csv", "--out", "pictures", "--view", "pressure-hull"})["views"];
+    const json views = run_json({"views", "a/case.csv", "b/case.csv", "a-h5.csv", "./a/case.csv", "--out", "pictures",
+                                 "--view", "pressure-hull"})["views"];
     ASSERT_EQ(views.size(), 3U);
     EXPECT_EQ(views[0]["file"], "pictures/a-case-pressure-hull.png");
     EXPECT_EQ(views[1]["file"], "pictures/b-case-pressure-hull.png");
@@ -503,7 +555,8 @@ TEST_F(PostprocCommands, ViewsOfFilesOfOneNameAreKeptApart) {
 
 TEST_F(PostprocCommands, ViewsSayWhatMeansNothingWithADifference) {
     const auto difference = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = {"views", "a-h5.csv", "b-h10.csv", "--difference", "pressure", "--out", "pictures"};
+        std::vector<std::string> arguments = {"views",    "a-h5.csv", "b-h10.csv", "--difference",
+                                              "pressure", "--out",    "pictures"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run(arguments).exit_code;
     };
@@ -514,12 +567,15 @@ TEST_F(PostprocCommands, ViewsSayWhatMeansNothingWithADifference) {
 }
 
 TEST_F(PostprocCommands, ATimeThatChoosesNothingIsSaid) {
-    EXPECT_THAT(run({"probe", "a-h5.csv", "--point", "0,0,0", "--time", "3"}).errors, testing::HasSubstr("states no times"));
-    EXPECT_THAT(run({"probe", "a-h5.csv", "--point", "0,0,0"}).errors, testing::Not(testing::HasSubstr("states no times")));
+    EXPECT_THAT(run({"probe", "a-h5.csv", "--point", "0,0,0", "--time", "3"}).errors,
+                testing::HasSubstr("states no times"));
+    EXPECT_THAT(run({"probe", "a-h5.csv", "--point", "0,0,0"}).errors,
+                testing::Not(testing::HasSubstr("states no times")));
 }
 
 TEST_F(PostprocCommands, ProbeLooksAtPointsAndLines) {
-    const json line = run_json({"probe", "a-h5.csv", "--line", "0,0,0:0,0,0.5", "--count", "3", "--arrays", "pressure"});
+    const json line =
+        run_json({"probe", "a-h5.csv", "--line", "0,0,0:0,0,0.5", "--count", "3", "--arrays", "pressure"});
     EXPECT_EQ(line["rows"], 3);
     for (const auto& column : line["columns"]) {
         if (column["name"] == "pressure") {

@@ -190,7 +190,10 @@ TEST_F(SolveCommands, SolveRunsACaseAndTellsItsForces) {
 }
 
 TEST_F(SolveCommands, SolveSaysWhatIsMissingAndWhatFailed) {
-    ASSERT_EQ(run({"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--gap", "10mm", "--out", "case"}).exit_code, 0);
+    ASSERT_EQ(run({"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--gap",
+                   "10mm", "--out", "case"})
+                  .exit_code,
+              0);
     const auto none = test::run_underbody({"solve", "case", "--json"}, folder_.path(), {{"PATH", "/nowhere"}});
     EXPECT_EQ(none.exit_code, 3);
     EXPECT_THAT(json::parse(none.output)["error"]["hint"].get<std::string>(), HasSubstr("apt install openfoam"));

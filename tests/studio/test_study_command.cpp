@@ -66,15 +66,20 @@ TEST_F(StudyCommand, TurnsFieldsIntoLoadsTableEquilibriaMapExportAndReport) {
 }
 
 TEST_F(StudyCommand, ReportShowsFilmTheoryBesideTheCfdAndLoadsSortedWithTheirConditions) {
-    core::write_file(study / "shape.toml", "[body]\nlength='203.2 mm'\nwidth='152 mm'\nheight='145 mm'\nbase_cut=0.75\n");
+    core::write_file(study / "shape.toml",
+                     "[body]\nlength='203.2 mm'\nwidth='152 mm'\nheight='145 mm'\nbase_cut=0.75\n");
     core::write_file(study / "fields" / "cube-h10.csv", cube_field(0.010, 290));
-    core::write_file(study / "study.toml", core::read_file(study / "study.toml") + "[[body]]\nname = \"cube\"\nshape = \"shape.toml\"\n");
+    core::write_file(study / "study.toml",
+                     core::read_file(study / "study.toml") + "[[body]]\nname = \"cube\"\nshape = \"shape.toml\"\n");
     ASSERT_EQ(run().exit_code, 0);
     const std::string report = core::read_file(study / "report" / "index.html");
     EXPECT_THAT(report, HasSubstr("squeeze damping (N s/m)"));
     // 12 mu G/h^3 of the elliptic base (half axes 67.2 and 50.3 mm) at the 3.5 mm where the lift holds the weight.
     const double a = 0.1016 * std::sqrt(1 - 0.75 * 0.75), b = 0.076 * std::sqrt(1 - 0.75 * 0.75), pi = 3.14159265358979;
-    const auto film = run_underbody({"theory", "squeeze", "half_length=" + core::format_number(a, 12) + ",half_width=" + core::format_number(b, 12) + ",gap=3.5mm", "--json"});
+    const auto film = run_underbody(
+        {"theory", "squeeze",
+         "half_length=" + core::format_number(a, 12) + ",half_width=" + core::format_number(b, 12) + ",gap=3.5mm",
+         "--json"});
     const double damping = json::parse(film.output).at("values").at("damping").get<double>();
     EXPECT_NEAR(damping, 12e-3 * pi * std::pow(a * b, 3) / (4 * (a * a + b * b)) / std::pow(3.5e-3, 3), 1e-9);
     EXPECT_THAT(report, HasSubstr(core::format_number(damping, 3)));
@@ -92,7 +97,8 @@ TEST_F(StudyCommand, AddRefusesAMistypedConditionAndSaysWhatItLeavesOut) {
     for (const char* name : {"box-h1.csv", "box-h2mm.csv"}) {
         core::write_file(study / "more" / name, cube_field(0.001, 300));
     }
-    const auto typo = run_underbody({"study", "add", "cube", "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "sped=0.5"}, scratch.path());
+    const auto typo = run_underbody(
+        {"study", "add", "cube", "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "sped=0.5"}, scratch.path());
     EXPECT_EQ(typo.exit_code, 2) << typo.errors;
     EXPECT_THAT(typo.errors, HasSubstr("did you mean 'speed'?"));
     EXPECT_THAT(typo.errors, HasSubstr("nothing was added to cube/study.toml\n"));
@@ -100,10 +106,13 @@ TEST_F(StudyCommand, AddRefusesAMistypedConditionAndSaysWhatItLeavesOut) {
     EXPECT_EQ(core::read_file(study / "study.toml"), before);
     const auto none = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-hh{gap:mm}.csv"});
     EXPECT_EQ(none.exit_code, 3);
-    EXPECT_THAT(none.errors, testing::AllOf(HasSubstr("no file fits"), HasSubstr("nothing was added"), testing::Not(HasSubstr("study.toml:"))));
-    const auto added = run_underbody({"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5"});
+    EXPECT_THAT(none.errors, testing::AllOf(HasSubstr("no file fits"), HasSubstr("nothing was added"),
+                                            testing::Not(HasSubstr("study.toml:"))));
+    const auto added = run_underbody(
+        {"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5"});
     ASSERT_EQ(added.exit_code, 0) << added.errors;
-    EXPECT_THAT(added.output, testing::AllOf(HasSubstr("1 cases added"), HasSubstr("1 file is left out"), HasSubstr("box-h2mm.csv: '2mm' carries its unit: write {gap:mm}mm")));
+    EXPECT_THAT(added.output, testing::AllOf(HasSubstr("1 cases added"), HasSubstr("1 file is left out"),
+                                             HasSubstr("box-h2mm.csv: '2mm' carries its unit: write {gap:mm}mm")));
 }
 
 TEST_F(StudyCommand, RecomputesNothingWhenNothingChangedAndOnlyWhatChangedOtherwise) {
@@ -203,7 +212,8 @@ TEST_F(StudyCommand, AKilledRunLosesNothingAndTheNextOneFinishes) {
             fs::remove_all(study / "report");
         }
         const pid_t child = start_run(study);
-        std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(std::exp(random.uniform(std::log(2e3), std::log(4e5))))));
+        std::this_thread::sleep_for(
+            std::chrono::microseconds(static_cast<int>(std::exp(random.uniform(std::log(2e3), std::log(4e5))))));
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
         if (fs::exists(study / "report" / "index.html")) {
@@ -250,7 +260,9 @@ TEST_F(StudyCommand, AStudyOnAReadOnlyDiskIsListedAndReported) {
     }
     fs::permissions(scratch.path(), fs::perms::group_all | fs::perms::others_all, fs::perm_options::add);
     for (const auto& entry : fs::recursive_directory_iterator(study)) {
-        fs::permissions(entry.path(), fs::perms::others_read | (entry.is_directory() ? fs::perms::others_exec : fs::perms::none), fs::perm_options::add);
+        fs::permissions(entry.path(),
+                        fs::perms::others_read | (entry.is_directory() ? fs::perms::others_exec : fs::perms::none),
+                        fs::perm_options::add);
     }
     std::vector<fs::path> folders = {study};
     for (const auto& entry : fs::recursive_directory_iterator(study)) {
@@ -260,7 +272,8 @@ TEST_F(StudyCommand, AStudyOnAReadOnlyDiskIsListedAndReported) {
     }
     const auto allow = [&](bool write) {
         for (const auto& folder : folders) {
-            fs::permissions(folder, fs::perms::owner_write | fs::perms::others_write, write ? fs::perm_options::add : fs::perm_options::remove);
+            fs::permissions(folder, fs::perms::owner_write | fs::perms::others_write,
+                            write ? fs::perm_options::add : fs::perm_options::remove);
         }
     };
     allow(false);
@@ -299,7 +312,8 @@ TEST_F(StudyCommand, AStoreOfGarbageIsRefusedInPlainWordsAndKept) {
 TEST_F(StudyCommand, HalfModelsAreToldInListAndRunAndAddTakesTheirPlaneAndZones) {
     const fs::path halves = scratch.path() / "halves";
     for (int gap = 2; gap <= 3; ++gap) {
-        core::write_file(halves / "fields" / ("half-h" + std::to_string(gap) + ".csv"), half_cube_field(1e-3 * gap, 500));
+        core::write_file(halves / "fields" / ("half-h" + std::to_string(gap) + ".csv"),
+                         half_cube_field(1e-3 * gap, 500));
     }
     const std::vector<std::string> add = {"study", "add", halves.string(), "--files", "fields/{variant}-h{gap:mm}.csv"};
     ASSERT_EQ(run_underbody(add).exit_code, 0);
@@ -309,15 +323,18 @@ TEST_F(StudyCommand, HalfModelsAreToldInListAndRunAndAddTakesTheirPlaneAndZones)
     const json listed = json::parse(run_underbody({"study", "list", halves.string(), "--json"}).output);
     EXPECT_THAT(listed.at("cases")[0].at("warnings").dump(), HasSubstr("half model"));
     EXPECT_NEAR(listed.at("cases")[0].at("lift_force").get<double>(), 0.25, 1e-9);
-    const json table = json::parse(run_underbody({"loads", (halves / "fields/half-h{gap:mm}.csv").string(), "--json"}).output);
+    const json table =
+        json::parse(run_underbody({"loads", (halves / "fields/half-h{gap:mm}.csv").string(), "--json"}).output);
     EXPECT_THAT(table.at("files")[0].at("problems").dump(), HasSubstr("half model"));
-    EXPECT_THAT(run_underbody({"loads", (halves / "fields/half-h{gap:mm}.csv").string()}).output, testing::ContainsRegex("# ?warning: [^\n]*half model"));
+    EXPECT_THAT(run_underbody({"loads", (halves / "fields/half-h{gap:mm}.csv").string()}).output,
+                testing::ContainsRegex("# ?warning: [^\n]*half model"));
     fs::remove(halves / "study.toml");
     std::vector<std::string> with_plane = add;
     with_plane.insert(with_plane.end(), {"--symmetry", "y", "--zones", "hull,base"});
     const ProgramRun added = run_underbody(with_plane);
     ASSERT_EQ(added.exit_code, 0) << added.errors;
-    EXPECT_THAT(core::read_file(halves / "study.toml"), testing::AllOf(HasSubstr("[frame]\nsymmetry = \"y\""), HasSubstr("zones = [\"hull\", \"base\"]")));
+    EXPECT_THAT(core::read_file(halves / "study.toml"),
+                testing::AllOf(HasSubstr("[frame]\nsymmetry = \"y\""), HasSubstr("zones = [\"hull\", \"base\"]")));
     const ProgramRun second = run_underbody({"study", "run", halves.string(), "--no-pictures"});
     EXPECT_THAT(second.output, testing::Not(HasSubstr("half model")));
     const json whole = json::parse(run_underbody({"study", "list", halves.string(), "--json"}).output);

@@ -15,15 +15,19 @@ namespace {
 using test::run_underbody;
 using ::testing::HasSubstr;
 
-constexpr const char* lift = "gap [mm], lift_force [N], lift_force_sigma [N]\n1, .66, .01\n2, .4, .01\n3, .296, .01\n5, .27, .01\n10, .297, .01\n20, .324, .01\n50, .346, .01\n100, .281, .01\n";
+constexpr const char* lift =
+    "gap [mm], lift_force [N], lift_force_sigma [N]\n1, .66, .01\n2, .4, .01\n3, .296, .01\n5, .27, .01\n10, .297, "
+    ".01\n20, .324, .01\n50, .346, .01\n100, .281, .01\n";
 
 TEST(TableCommand, GivesValuesEquilibriaAndTheirJson) {
     core::TemporaryFolder folder;
     core::write_file(folder.path() / "lift.csv", lift);
-    auto run = run_underbody({"--json", "table", "at", "lift.csv", "gap=5mm", "--kind", "interpolation"}, folder.path());
+    auto run =
+        run_underbody({"--json", "table", "at", "lift.csv", "gap=5mm", "--kind", "interpolation"}, folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     EXPECT_NEAR(nlohmann::json::parse(run.output)["value"].get<double>(), 0.27, 1e-12);
-    run = run_underbody({"table", "equilibria", "lift.csv", "--weight", "0.3 N", "--mass", "3.954 kg", "--json"}, folder.path());
+    run = run_underbody({"table", "equilibria", "lift.csv", "--weight", "0.3 N", "--mass", "3.954 kg", "--json"},
+                        folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const auto json = nlohmann::json::parse(run.output);
     ASSERT_EQ(json["equilibria"].size(), 3u) << run.output;
@@ -47,14 +51,17 @@ TEST(TableCommand, SaysWhatIsWrong) {
     EXPECT_EQ(run_underbody({"table", "fit", "one.csv"}, folder.path()).exit_code, 3);
     EXPECT_EQ(run_underbody({"table", "fit", "none.csv"}, folder.path()).exit_code, 3);
     EXPECT_EQ(run_underbody({"table", "fit", "lift.csv", "--kind", "magic"}, folder.path()).exit_code, 2);
-    const auto swapped = run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.6:0.2"}, folder.path());
+    const auto swapped =
+        run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.6:0.2"}, folder.path());
     EXPECT_EQ(swapped.exit_code, 2);
     EXPECT_THAT(swapped.errors, HasSubstr("swapped"));
     const auto outside = run_underbody({"table", "at", "lift.csv", "gap=200mm"}, folder.path());
     EXPECT_EQ(outside.exit_code, 0);
     EXPECT_THAT(outside.errors, HasSubstr("outside the table by 100 mm"));
     const auto bare = run_underbody({"table", "at", "lift.csv", "gap=5"}, folder.path());
-    EXPECT_THAT(bare.errors, HasSubstr("outside the table by 4900 mm: the end value is held; a bare number is SI, 5 mm would lie inside"));
+    EXPECT_THAT(
+        bare.errors,
+        HasSubstr("outside the table by 4900 mm: the end value is held; a bare number is SI, 5 mm would lie inside"));
     ASSERT_EQ(run_underbody({"export", "lift.csv", "--out", "lift.h"}, folder.path()).exit_code, 0);
     const auto header = run_underbody({"table", "at", "lift.h", "gap=5mm"}, folder.path());
     EXPECT_EQ(header.exit_code, 3);
@@ -70,27 +77,38 @@ TEST(TableCommand, SaysWhatIsWrong) {
     wrong({"table", "fit", "lift.csv", "--where", "gap=5mm,gap=6mm"}, "gap=a|b takes either");
     wrong({"export", "lift.csv", "--out", "l.h", "--points", "gap=5,gap=6"}, "'gap' is given twice");
     wrong({"export", "lift.csv", "--out", "l.foo"}, "or end it in .h, .csv, .json");
-    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8"}, "does not say at which speed it was made");
-    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "0"}, "must be positive");
-    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "1", "--exponent", "nan"}, "exponent a number");
+    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8"},
+          "does not say at which speed it was made");
+    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "0"},
+          "must be positive");
+    wrong({"table", "continue", "lift.csv", "--weight", "0.3", "--along", "speed=0.3:0.8", "--reference", "1",
+           "--exponent", "nan"},
+          "exponent a number");
     // A unit that is none of a force is a mistake of the command line.
     const auto unit = run_underbody({"table", "equilibria", "lift.csv", "--weight", "3 mm"}, folder.path());
     EXPECT_EQ(unit.exit_code, 2);
     EXPECT_THAT(unit.errors, HasSubstr("--weight"));
     EXPECT_EQ(run_underbody({"table", "equilibria", "lift.csv", "--mass", "heavy"}, folder.path()).exit_code, 2);
-    EXPECT_EQ(run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.2 kg:0.6"}, folder.path()).exit_code, 2);
+    EXPECT_EQ(
+        run_underbody({"table", "continue", "lift.csv", "--along", "net_weight=0.2 kg:0.6"}, folder.path()).exit_code,
+        2);
 }
 
 TEST(TableCommand, RefusesAnAxisUnderAnotherName) {
     core::TemporaryFolder folder;
-    for (const auto& [heading, name] : {std::pair{"Gap (mm)", "'gap [mm]'"}, {"Gap [mm]", "'gap [mm]'"}, {"trim angle [deg]", "'pitch [deg]'"}}) {
-        core::write_file(folder.path() / "f.csv", std::string("speed [m/s], ") + heading + ", lift_force [N]\n0.4,1,1\n0.4,2,2\n0.5,1,3\n0.5,2,4\n0.6,1,4\n0.6,2,5\n");
+    for (const auto& [heading, name] :
+         {std::pair{"Gap (mm)", "'gap [mm]'"}, {"Gap [mm]", "'gap [mm]'"}, {"trim angle [deg]", "'pitch [deg]'"}}) {
+        core::write_file(folder.path() / "f.csv",
+                         std::string("speed [m/s], ") + heading +
+                             ", lift_force [N]\n0.4,1,1\n0.4,2,2\n0.5,1,3\n0.5,2,4\n0.6,1,4\n0.6,2,5\n");
         const auto run = run_underbody({"table", "fit", "f.csv"}, folder.path());
         EXPECT_EQ(run.exit_code, 3);
-        EXPECT_THAT(run.errors, testing::AllOf(HasSubstr("which the table lacks"), HasSubstr(std::string("name it ") + name)));
+        EXPECT_THAT(run.errors,
+                    testing::AllOf(HasSubstr("which the table lacks"), HasSubstr(std::string("name it ") + name)));
     }
     // It may be something else: then the axes are named.
-    EXPECT_THAT(run_underbody({"table", "fit", "f.csv", "--axes", "speed"}, folder.path()).errors, testing::Not(HasSubstr("which the table lacks")));
+    EXPECT_THAT(run_underbody({"table", "fit", "f.csv", "--axes", "speed"}, folder.path()).errors,
+                testing::Not(HasSubstr("which the table lacks")));
 }
 
 TEST(TableCommand, TakesARangePolicyForEachAxis) {
@@ -113,21 +131,28 @@ TEST(TableCommand, TakesARangePolicyForEachAxis) {
     EXPECT_THAT(at("gap=5mm,pitch=3deg", "pich=clamp").output, HasSubstr("pitch"));
     EXPECT_EQ(at("gap=5mm,pitch=3deg", "gap=clam").exit_code, 2);
     // An exported table keeps the policies of its axes.
-    ASSERT_EQ(run_underbody({"export", "lift.csv", "--format", "json", "--out", "t.json", "--range", "gap=refuse"}, folder.path()).exit_code, 0);
+    ASSERT_EQ(run_underbody({"export", "lift.csv", "--format", "json", "--out", "t.json", "--range", "gap=refuse"},
+                            folder.path())
+                  .exit_code,
+              0);
     EXPECT_EQ(run_underbody({"table", "at", "t.json", "gap=6mm,pitch=0"}, folder.path()).exit_code, 3);
-    EXPECT_EQ(run_underbody({"table", "at", "t.json", "gap=6mm,pitch=0", "--range", "clamp"}, folder.path()).exit_code, 0);
+    EXPECT_EQ(run_underbody({"table", "at", "t.json", "gap=6mm,pitch=0", "--range", "clamp"}, folder.path()).exit_code,
+              0);
     const auto fit = run_underbody({"table", "fit", "t.json", "--json"}, folder.path());
     EXPECT_EQ(nlohmann::json::parse(fit.output)["tables"][0]["axes"][0]["range_policy"], "refuse");
 }
 
 TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     // Lift (1 - 2 (h - 0.5) + 3 p) v^2, moment (-0.5 p + 0.2 (h - 0.5)) v^2.
-    std::string text = "gap [m], pitch [rad], speed [m/s], lift_force [N], lift_force_sigma [N], pitch_moment [N m], pitch_moment_sigma [N m]\n";
+    std::string text =
+        "gap [m], pitch [rad], speed [m/s], lift_force [N], lift_force_sigma [N], pitch_moment [N m], "
+        "pitch_moment_sigma [N m]\n";
     for (const double h : {0.1, 0.3, 0.5, 0.7, 0.9}) {
         for (const double p : {-0.2, -0.1, 0.0, 0.1, 0.2}) {
             for (const double v : {1.0, 2.0}) {
                 std::ostringstream line;
-                line << h << ", " << p << ", " << v << ", " << (1 - 2 * (h - 0.5) + 3 * p) * v * v << ", 0.01, " << (-0.5 * p + 0.2 * (h - 0.5)) * v * v << ", 0.002\n";
+                line << h << ", " << p << ", " << v << ", " << (1 - 2 * (h - 0.5) + 3 * p) * v * v << ", 0.01, "
+                     << (-0.5 * p + 0.2 * (h - 0.5)) * v * v << ", 0.002\n";
                 text += line.str();
             }
         }
@@ -138,7 +163,8 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
         more.insert(more.begin(), {"table", "pitch", "t.csv", "--kind", "interpolation"});
         return run_underbody(more, folder.path());
     };
-    const auto run = pitch({"--held", "speed=2", "--weight", "4", "--trim", "80 mN m", "--mass", "2", "--inertia", "0.5", "--picture", "balance.png", "--json"});
+    const auto run = pitch({"--held", "speed=2", "--weight", "4", "--trim", "80 mN m", "--mass", "2", "--inertia",
+                            "0.5", "--picture", "balance.png", "--json"});
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const auto json = nlohmann::json::parse(run.output);
     ASSERT_EQ(json["equilibria"].size(), 1u) << run.output;
@@ -155,7 +181,8 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     EXPECT_THAT(both.output, HasSubstr("balance of heave and pitch at gap 0.5 m +- "));
     EXPECT_THAT(both.errors, HasSubstr("without --mass and --inertia"));
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "moment.png"));
-    // Where nothing balances, what torque would: at v = 2 lift holds 4 N on h - 0.5 = 1.5 p, with the moment -0.2 p v^2 there.
+    // Where nothing balances, what torque would: at v = 2 lift holds 4 N on h - 0.5 = 1.5 p, with the moment -0.2 p v^2
+    // there.
     const auto none = pitch({"--held", "speed=2", "--weight", "4", "--trim", "0.5"});
     EXPECT_THAT(none.output, HasSubstr("the trim torque would be -0.16 to 0.16 N m nose up"));
     EXPECT_THAT(pitch({"--held", "speed=2", "--weight", "400"}).output, HasSubstr("lift holds the weight nowhere"));

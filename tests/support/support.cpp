@@ -24,12 +24,12 @@ fs::path shared_folder() {
 }
 
 ProgramRun run_underbody(const std::vector<std::string>& arguments, const fs::path& folder,
-                  const std::map<std::string, std::string>& environment) {
+                         const std::map<std::string, std::string>& environment) {
     return run_program((program_folder() / "underbody").string(), arguments, folder, environment);
 }
 
 ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments, const fs::path& folder,
-                const std::map<std::string, std::string>& environment) {
+                       const std::map<std::string, std::string>& environment) {
     const core::TemporaryFolder scratch("underbody-test");
     const fs::path output = scratch.path() / "stdout";
     const fs::path errors = scratch.path() / "stderr";

@@ -20,8 +20,8 @@ std::filesystem::path shared_folder();
 std::filesystem::path program_folder();
 
 /// Skips the test, saying so, when a file below the shared folder is missing.
-#define UNDERBODY_NEEDS_SHARED(path)                                                                          \
-    if (!std::filesystem::exists(::underbody::test::shared_folder() / (path))) {                              \
+#define UNDERBODY_NEEDS_SHARED(path)                                                                              \
+    if (!std::filesystem::exists(::underbody::test::shared_folder() / (path))) {                                  \
         GTEST_SKIP() << "skipped: " << (path) << " is not here (set UNDERBODY_SHARED to the folder that has it)"; \
     }
 
@@ -33,8 +33,9 @@ struct ProgramRun {
 
 /// Runs `underbody` with the arguments in a folder; no shell between.
 ProgramRun run_underbody(const std::vector<std::string>& arguments, const std::filesystem::path& folder = {},
-                  const std::map<std::string, std::string>& environment = {});
+                         const std::map<std::string, std::string>& environment = {});
 ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
-                const std::filesystem::path& folder = {}, const std::map<std::string, std::string>& environment = {});
+                       const std::filesystem::path& folder = {},
+                       const std::map<std::string, std::string>& environment = {});
 
 }  // namespace underbody::test

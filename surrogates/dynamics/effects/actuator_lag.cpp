@@ -1,6 +1,6 @@
 // time_constant du/dt = u_recorded - u
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 

@@ -1,7 +1,7 @@
 // The kinds of effects, in the order of the catalogue.
 #pragma once
 
-#include "surrogates/dynamics/effects/effect.h"
+#include "surrogates/dynamics/model/effect.h"
 
 #define UNDERBODY_EFFECTS(X)    \
     X(constant_force)           \

@@ -1,6 +1,6 @@
 // M(h) = M + mass length/(h + length), with its Lagrangian term 1/2 M(h)' w^2
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 

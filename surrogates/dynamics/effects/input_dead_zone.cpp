@@ -1,6 +1,6 @@
 // u = sgn(u_recorded) max(0, |u_recorded| - width)
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 

@@ -1,6 +1,6 @@
 // F = amplitude sin(2 pi frequency t + phase)
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 
@@ -53,11 +53,13 @@ public:
 
     void before(StaticPoint& point, const EffectUse& use) const override {
         if (point.conditions.has(Channel::jet_voltage)) {
-            point.conditions[Channel::jet_voltage] = seen_by_the_law(point.conditions[Channel::jet_voltage], reference_voltage(*point.model), use);
+            point.conditions[Channel::jet_voltage] =
+                seen_by_the_law(point.conditions[Channel::jet_voltage], reference_voltage(*point.model), use);
         }
     }
 
-    /// A voltage that is held runs through the curve; one that varies in time gets the dead zone and the power (no saturation).
+    /// A voltage that is held runs through the curve; one that varies in time gets the dead zone and the power (no
+    /// saturation).
     void add_to(HeaveTerms& terms, const EffectUse& use, const Model& model) const override {
         for (HeaveSource& source : terms.sources) {
             for (HeaveSource::Scale& scale : source.scales) {
@@ -65,7 +67,8 @@ public:
                     const double reference = reference_voltage(model);
                     const double power = scale.exponent * (1 + use.values[2] / 2);
                     const double seen = seen_by_the_law(scale.held, reference, use) / reference;
-                    const double levelled = seen > 0 ? std::pow(seen / plain(scale.held, reference, use), scale.exponent) : 1;
+                    const double levelled =
+                        seen > 0 ? std::pow(seen / plain(scale.held, reference, use), scale.exponent) : 1;
                     source.factor *= levelled;
                     scale.dead_band = std::min(use.values[0], 0.99 * reference);
                     scale.exponent = power;

@@ -1,6 +1,6 @@
 // F = -coefficient (w - water velocity) |w - water velocity|
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 

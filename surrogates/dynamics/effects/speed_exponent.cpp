@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_terms.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 
@@ -27,11 +27,14 @@ ForceScale declared_speed_law(const Model& model, const std::string& quantity) {
 /// What a model's other sources (a jet) give, which do not know of the speed; nothing when no source is scaled by it.
 double part_without_speed(const Model& model, const std::string& quantity, const Conditions& seen) {
     const auto knows_speed = [](const ForceSource& source) {
-        return std::any_of(source.scales.begin(), source.scales.end(), [](const ForceScale& scale) { return scale.channel == Channel::speed; });
+        return std::any_of(source.scales.begin(), source.scales.end(),
+                           [](const ForceScale& scale) { return scale.channel == Channel::speed; });
     };
     const auto own = [&](const ForceSource& source) { return source.quantity == quantity; };
-    if (std::none_of(model.forces.begin(), model.forces.end(), [&](const ForceSource& source) { return own(source) && knows_speed(source); }) ||
-        std::all_of(model.forces.begin(), model.forces.end(), [&](const ForceSource& source) { return !own(source) || knows_speed(source); }) ||
+    if (std::none_of(model.forces.begin(), model.forces.end(),
+                     [&](const ForceSource& source) { return own(source) && knows_speed(source); }) ||
+        std::all_of(model.forces.begin(), model.forces.end(),
+                    [&](const ForceSource& source) { return !own(source) || knows_speed(source); }) ||
         model.coupling.kind != Coupling::Kind::sum) {
         return 0;
     }

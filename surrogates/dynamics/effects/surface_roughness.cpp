@@ -1,6 +1,6 @@
 // lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/heave_equation.h"
+#include "surrogates/dynamics/plant/heave_equation.h"
 
 namespace underbody::dynamics {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
-#include "surrogates/dynamics/model.h"
+#include "surrogates/dynamics/model/model.h"
 
 namespace underbody::dynamics {
 

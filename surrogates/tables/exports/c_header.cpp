@@ -27,7 +27,8 @@ Index index_of(const std::vector<double>& x) {
         shortest = std::min(shortest, x[i + 1] - x[i]);
     }
     const double wanted = std::ceil(span / shortest) + 1;
-    const auto buckets = static_cast<std::size_t>(std::clamp(wanted, static_cast<double>(cells), static_cast<double>(8 * cells)));
+    const auto buckets =
+        static_cast<std::size_t>(std::clamp(wanted, static_cast<double>(cells), static_cast<double>(8 * cells)));
     Index index;
     index.per_unit = static_cast<double>(buckets) / span;
     std::size_t i = 0;
@@ -75,11 +76,13 @@ private:
     }
     [[nodiscard]] std::string upper_name() const {
         std::string text = name_;
-        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        std::transform(text.begin(), text.end(), text.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
         return text;
     }
     [[nodiscard]] std::string index_type() const {
-        const bool small = std::all_of(g_.axes.begin(), g_.axes.end(), [](const ExportAxis& a) { return a.points.size() <= 65535; });
+        const bool small =
+            std::all_of(g_.axes.begin(), g_.axes.end(), [](const ExportAxis& a) { return a.points.size() <= 65535; });
         return small ? "unsigned short" : "unsigned";
     }
     /// Of an array of one quantity.
@@ -166,7 +169,8 @@ private:
                 members(q.unit);
             }
         }
-        out_ += "    " + name_ + "_real beyond[" + std::to_string(n_) + "];            /* how far outside each axis, signed; 0 inside */\n";
+        out_ += "    " + name_ + "_real beyond[" + std::to_string(n_) +
+                "];            /* how far outside each axis, signed; 0 inside */\n";
         out_ += "    int outside;                   /* 1 when the point lies outside the table */\n";
         out_ +=
             "    int refused;                   /* 1 when it lies outside an axis that refuses this: value and slopes "
@@ -235,18 +239,21 @@ private:
     }
 
     void helpers() {
-        out_ += "static inline unsigned " + name_ + "_cell(const " + name_ + "_real* x, const " + index_type() + "* first, unsigned cells, unsigned buckets, " +
-                name_ + "_real per_unit, " + name_ + "_real v) {\n";
-        out_ += "    unsigned b = (unsigned)((v - x[0]) * per_unit);\n    unsigned i = first[b < buckets ? b : buckets - 1u];\n";
+        out_ += "static inline unsigned " + name_ + "_cell(const " + name_ + "_real* x, const " + index_type() +
+                "* first, unsigned cells, unsigned buckets, " + name_ + "_real per_unit, " + name_ + "_real v) {\n";
+        out_ +=
+            "    unsigned b = (unsigned)((v - x[0]) * per_unit);\n    unsigned i = first[b < buckets ? b : buckets - "
+            "1u];\n";
         out_ += "    while (i + 1u < cells && v >= x[i + 1u]) {\n        ++i;\n    }\n    return i;\n}\n\n";
         // w: values and slopes of the four cubic Hermite functions.
-        out_ += "static inline void " + name_ + "_weights(" + name_ + "_real h, " + name_ + "_real t, " + name_ + "_real* w, " + name_ + "_real* d) {\n";
+        out_ += "static inline void " + name_ + "_weights(" + name_ + "_real h, " + name_ + "_real t, " + name_ +
+                "_real* w, " + name_ + "_real* d) {\n";
         const std::string one = number(1), two = number(2), three = number(3), six = number(6);
         out_ += "    const " + name_ + "_real r = " + one + " - t;\n";
         out_ += "    w[0] = r * r * (" + one + " + " + two + " * t);\n    w[1] = h * t * r * r;\n";
         out_ += "    w[2] = t * t * (" + three + " - " + two + " * t);\n    w[3] = -h * t * t * r;\n";
-        out_ += "    d[2] = " + six + " * t * r / h;\n    d[0] = -d[2];\n    d[1] = r * (" + one + " - " + three + " * t);\n    d[3] = t * (" + three +
-                " * t - " + two + ");\n}\n\n";
+        out_ += "    d[2] = " + six + " * t * r / h;\n    d[0] = -d[2];\n    d[1] = r * (" + one + " - " + three +
+                " * t);\n    d[3] = t * (" + three + " * t - " + two + ");\n}\n\n";
         if (!g_.support.empty()) {
             out_ += "/* cell between ascending lines; beyond them the nearest */\nstatic inline unsigned " + name_ +
                     "_between(const " + name_ + "_real* x, unsigned cells, " + name_ +
@@ -263,7 +270,8 @@ private:
     void evaluation() {
         const std::string real = name_ + "_real";
         const std::string n = std::to_string(n_);
-        out_ += "/* Everything at a point. */\nstatic inline void " + name_ + "_at(const " + real + "* point, " + name_ + "_result* result) {\n";
+        out_ += "/* Everything at a point. */\nstatic inline void " + name_ + "_at(const " + real + "* point, " +
+                name_ + "_result* result) {\n";
         out_ += "    " + real + " w[" + n + "][4], d[" + n + "][4], t[" + n + "], over[" + n + "];\n";
         out_ += "    unsigned cell[" + n + "];\n    int held[" + n + "];\n";
         out_ += "    result->outside = 0;\n";
@@ -294,9 +302,11 @@ private:
         out_ += "    {\n        const " + real + " v = point[" + id + "];\n        " + real + " p = v;\n";
         out_ += "        result->beyond[" + id + "] = " + number(0) + ";\n        over[" + id + "] = " + number(0) +
                 ";\n        held[" + id + "] = 0;\n";
-        out_ += "        if (!(v >= " + x + "[0])) {\n            p = " + x + "[0];\n            held[" + id + "] = 1;\n";
+        out_ +=
+            "        if (!(v >= " + x + "[0])) {\n            p = " + x + "[0];\n            held[" + id + "] = 1;\n";
         out_ += "            over[" + id + "] = v - p;\n";
-        out_ += "        } else if (v > " + last + ") {\n            p = " + last + ";\n            held[" + id + "] = 1;\n";
+        out_ += "        } else if (v > " + last + ") {\n            p = " + last + ";\n            held[" + id +
+                "] = 1;\n";
         out_ += "            over[" + id + "] = v - p;\n        }\n";
         const std::string lower = axis.ends_with_range() ? x + "[0]" : number(axis.lower),
                           upper = axis.ends_with_range() ? last : number(axis.upper);
@@ -304,12 +314,13 @@ private:
                 ";\n            result->outside = 1;\n";
         out_ += "        } else if (v > " + upper + ") {\n            result->beyond[" + id + "] = v - " + upper +
                 ";\n            result->outside = 1;\n        }\n";
-        out_ += "        cell[" + id + "] = " + name_ + "_cell(" + x + ", " + name_ + "_first" + id + ", " + std::to_string(cells) + "u, " +
-                std::to_string(buckets_[k]) + "u, " + number(per_unit_[k]) + ", p);\n";
-        out_ += "        {\n            const " + real + " h = " + x + "[cell[" + id + "] + 1u] - " + x + "[cell[" + id + "]];\n";
+        out_ += "        cell[" + id + "] = " + name_ + "_cell(" + x + ", " + name_ + "_first" + id + ", " +
+                std::to_string(cells) + "u, " + std::to_string(buckets_[k]) + "u, " + number(per_unit_[k]) + ", p);\n";
+        out_ += "        {\n            const " + real + " h = " + x + "[cell[" + id + "] + 1u] - " + x + "[cell[" +
+                id + "]];\n";
         // Not a number: v < x[0] is false, v - v carries it on.
-        out_ += "            t[" + id + "] = (p - " + x + "[cell[" + id + "]]) / h;\n            if (!(v >= " + x + "[0]) && !(v < " + x + "[0])) {\n                t[" + id +
-                "] = v - v;\n            }\n";
+        out_ += "            t[" + id + "] = (p - " + x + "[cell[" + id + "]]) / h;\n            if (!(v >= " + x +
+                "[0]) && !(v < " + x + "[0])) {\n                t[" + id + "] = v - v;\n            }\n";
         out_ += "            " + name_ + "_weights(h, t[" + id + "], w[" + id + "], d[" + id + "]);\n";
         if (axis.range == RangePolicy::extrapolate) {
             // The functions of the end cell go on along their tangents.
@@ -343,11 +354,14 @@ private:
             const std::string columns = std::to_string(g_.axes[1].points.size()) + "u";
             out_ +=
                 "    {\n        const " + real + "* a = " + data + " + 4u * (cell[0] * " + columns + " + cell[1]);\n";
-            out_ += "        const " + real + "* b = a + 4u * " + columns + ";\n        " + real + " g[4], s[4];\n        unsigned i;\n";
+            out_ += "        const " + real + "* b = a + 4u * " + columns + ";\n        " + real +
+                    " g[4], s[4];\n        unsigned i;\n";
             out_ += "        /* along axis 0, for value and axis-1 slope at both ends of axis 1 */\n";
             out_ += "        for (i = 0; i < 4u; ++i) {\n            const unsigned j = 2u * i;\n";
             out_ += "            g[i] = w[0][0] * a[j] + w[0][1] * a[j + 1u] + w[0][2] * b[j] + w[0][3] * b[j + 1u];\n";
-            out_ += "            s[i] = d[0][0] * a[j] + d[0][1] * a[j + 1u] + d[0][2] * b[j] + d[0][3] * b[j + 1u];\n        }\n";
+            out_ +=
+                "            s[i] = d[0][0] * a[j] + d[0][1] * a[j + 1u] + d[0][2] * b[j] + d[0][3] * b[j + 1u];\n     "
+                "   }\n";
             out_ += "        " + value + " = w[1][0] * g[0] + w[1][1] * g[1] + w[1][2] * g[2] + w[1][3] * g[3];\n";
             out_ += "        " + slope + "[0] = w[1][0] * s[0] + w[1][1] * s[1] + w[1][2] * s[2] + w[1][3] * s[3];\n";
             out_ += "        " + slope +
@@ -359,18 +373,23 @@ private:
         out_ += "    {\n        unsigned corner, mask, k, j;\n        " + value + " = " + number(0) + ";\n";
         out_ +=
             "        for (j = 0; j < " + n + "; ++j) {\n            " + slope + "[j] = " + number(0) + ";\n        }\n";
-        out_ += "        for (corner = 0; corner < " + width + "; ++corner) {\n            unsigned node = 0;\n            const " + real + "* a;\n";
+        out_ += "        for (corner = 0; corner < " + width +
+                "; ++corner) {\n            unsigned node = 0;\n            const " + real + "* a;\n";
         for (std::size_t k = 0; k < n_; ++k) {
-            out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" + std::to_string(k) + "] + (corner >> " +
-                    std::to_string(k) + " & 1u);\n";
+            out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" +
+                    std::to_string(k) + "] + (corner >> " + std::to_string(k) + " & 1u);\n";
         }
         out_ += "            a = " + data + " + " + width + " * node;\n";
         out_ += "            for (mask = 0; mask < " + width + "; ++mask) {\n";
         out_ += "                " + real + " product = a[mask];\n";
-        out_ += "                for (k = 0; k < " + n + "; ++k) {\n                    product *= w[k][2u * (corner >> k & 1u) + (mask >> k & 1u)];\n                }\n";
+        out_ += "                for (k = 0; k < " + n +
+                "; ++k) {\n                    product *= w[k][2u * (corner >> k & 1u) + (mask >> k & 1u)];\n          "
+                "      }\n";
         out_ += "                " + value + " += product;\n                for (j = 0; j < " + n +
                 "; ++j) {\n                    " + real + " part = a[mask];\n";
-        out_ += "                    for (k = 0; k < " + n + "; ++k) {\n                        part *= (k == j ? d : w)[k][2u * (corner >> k & 1u) + (mask >> k & 1u)];\n";
+        out_ += "                    for (k = 0; k < " + n +
+                "; ++k) {\n                        part *= (k == j ? d : w)[k][2u * (corner >> k & 1u) + (mask >> k & "
+                "1u)];\n";
         out_ += "                    }\n                    " + slope +
                 "[j] += part;\n                }\n            }\n        }\n    }\n";
     }
@@ -385,8 +404,10 @@ private:
             out_ += "            unsigned node = 0;\n            " + real + " weight = " + one + ";\n";
             for (std::size_t k = 0; k < n_; ++k) {
                 const std::string id = std::to_string(k);
-                out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" + id + "] + (corner >> " + id + " & 1u);\n";
-                out_ += "            weight *= (corner >> " + id + " & 1u) ? t[" + id + "] : " + one + " - t[" + id + "];\n";
+                out_ += "            node = node * " + std::to_string(g_.axes[k].points.size()) + "u + cell[" + id +
+                        "] + (corner >> " + id + " & 1u);\n";
+                out_ += "            weight *= (corner >> " + id + " & 1u) ? t[" + id + "] : " + one + " - t[" + id +
+                        "];\n";
             }
             out_ += "            sigma += weight * " + name_ + "_" + own(q, "sigma_data") + "[node];\n        }\n";
         }
@@ -460,8 +481,8 @@ private:
             parameters += (k == 0 ? "" : ", ") + name_ + "_real " + id;
             fill += "    point[" + std::to_string(k) + "] = " + id + ";\n";
         }
-        const std::string begin = "    " + name_ + "_real point[" + std::to_string(n_) + "];\n    " + name_ + "_result result;\n" + fill + "    " + name_ +
-                                  "_at(point, &result);\n";
+        const std::string begin = "    " + name_ + "_real point[" + std::to_string(n_) + "];\n    " + name_ +
+                                  "_result result;\n" + fill + "    " + name_ + "_at(point, &result);\n";
         for (const auto& q : g_.quantities) {
             const std::string of = many_ ? "_" + identifier(q.name) : "", inner = many_ ? identifier(q.name) + "." : "";
             out_ += "static inline " + name_ + "_real " + name_ + of + "_value(" + parameters + ") {\n" + begin +

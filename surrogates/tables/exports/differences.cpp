@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surrogates/tables/error_model.h"
 #include "surrogates/tables/exports/export_grid.h"
+#include "surrogates/tables/fit/error_model.h"
 
 namespace underbody::tables {
 
@@ -18,7 +18,8 @@ std::vector<double> sample_points(const std::vector<double>& lines, std::size_t 
     std::vector<double> result;
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
         for (std::size_t j = 0; j < a_cell; ++j) {
-            result.push_back(lines[i] + (lines[i + 1] - lines[i]) * static_cast<double>(j) / static_cast<double>(a_cell));
+            result.push_back(lines[i] +
+                             (lines[i + 1] - lines[i]) * static_cast<double>(j) / static_cast<double>(a_cell));
         }
     }
     result.push_back(lines.back());
@@ -33,7 +34,8 @@ void point_of(const std::vector<std::vector<double>>& coordinates, std::size_t i
     }
 }
 
-/// margin times the largest size of f over all points of the grid that these coordinates span, and around the worst of them.
+/// margin times the largest size of f over all points of the grid that these coordinates span, and around the worst of
+/// them.
 template <class F>
 double largest(const std::vector<std::vector<double>>& coordinates, core::Progress& progress, F&& f) {
     std::size_t count = 1;
@@ -57,7 +59,8 @@ double largest(const std::vector<std::vector<double>>& coordinates, core::Progre
     for (double share = 0.5; share > 1e-3; share /= 2) {
         for (std::size_t k = 0; k < coordinates.size(); ++k) {
             const auto& x = coordinates[k];
-            const auto above = static_cast<std::size_t>(std::upper_bound(x.begin() + 1, x.end() - 1, at[k]) - x.begin());
+            const auto above =
+                static_cast<std::size_t>(std::upper_bound(x.begin() + 1, x.end() - 1, at[k]) - x.begin());
             for (const double step : {share * (x[above - 1] - x[above]), share * (x[above] - x[above - 1])}) {
                 const double here = at[k];
                 at[k] = std::clamp(here + step, x.front(), x.back());
@@ -72,10 +75,12 @@ double largest(const std::vector<std::vector<double>>& coordinates, core::Progre
 
 }  // namespace
 
-double largest_difference_along(std::size_t axis, const CubicGrid& fine, const CubicGrid& coarse, core::Progress& progress) {
+double largest_difference_along(std::size_t axis, const CubicGrid& fine, const CubicGrid& coarse,
+                                core::Progress& progress) {
     auto coordinates = coarse.points();
     coordinates[axis] = sample_points(fine.axis(axis).points(), fine.dimensions());
-    return largest(coordinates, progress, [&](const double* at) { return fine.value(at, nullptr) - coarse.value(at, nullptr); });
+    return largest(coordinates, progress,
+                   [&](const double* at) { return fine.value(at, nullptr) - coarse.value(at, nullptr); });
 }
 
 Resampled resampled(const CubicGrid& fine, std::vector<std::vector<double>> points, core::Progress& progress) {
@@ -87,7 +92,8 @@ Resampled resampled(const CubicGrid& fine, std::vector<std::vector<double>> poin
     for (auto& x : coordinates) {
         x = sample_points(x, coordinates.size());
     }
-    const double difference = largest(coordinates, progress, [&](const double* at) { return fine.value(at, nullptr) - coarse.value(at, nullptr); });
+    const double difference = largest(
+        coordinates, progress, [&](const double* at) { return fine.value(at, nullptr) - coarse.value(at, nullptr); });
     return {std::move(coarse), difference};
 }
 
@@ -96,7 +102,8 @@ Resampled straight_resampled(const CubicGrid& fine, std::vector<std::vector<doub
     auto coordinates = fine.points();
     for (std::size_t k = 0; k < n; ++k) {
         std::vector<double> lines;
-        std::set_union(coordinates[k].begin(), coordinates[k].end(), points[k].begin(), points[k].end(), std::back_inserter(lines));
+        std::set_union(coordinates[k].begin(), coordinates[k].end(), points[k].begin(), points[k].end(),
+                       std::back_inserter(lines));
         coordinates[k] = sample_points(lines, n);
     }
     CubicGrid coarse = fine.resampled(points);
@@ -105,7 +112,8 @@ Resampled straight_resampled(const CubicGrid& fine, std::vector<std::vector<doub
         values.push_back(coarse.hermite()[i << n]);
     }
     const ErrorModel straight(std::move(points), std::move(values));  // multilinear between the nodes
-    const double difference = largest(coordinates, progress, [&](const double* at) { return straight.sigma(at, nullptr) - fine.value(at, nullptr); });
+    const double difference = largest(
+        coordinates, progress, [&](const double* at) { return straight.sigma(at, nullptr) - fine.value(at, nullptr); });
     return {std::move(coarse), difference};
 }
 

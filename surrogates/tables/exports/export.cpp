@@ -24,7 +24,11 @@ const std::vector<Exporter>& exporters() {
         {{"csv", ".csv", "table with slopes and error that this program reads back exactly"}, export_csv},
         {{"json", ".json", "grid, Hermite data and error"}, export_json},
         {{"mat", ".mat", "MATLAB and Octave: .mat and a .m that looks it up"}, export_mat, false, mat_function},
-        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"}, export_jsbsim, true, nullptr, 3},
+        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"},
+         export_jsbsim,
+         true,
+         nullptr,
+         3},
         {{"fmu", ".fmu", "FMU 2.0, model exchange and co-simulation, Linux x86-64, source included"}, export_fmu},
     };
     return all;
@@ -34,7 +38,8 @@ const std::vector<Exporter>& exporters() {
 bool is_export(const std::filesystem::path& path) {
     const core::MappedFile file(path);
     const std::string_view head = file.bytes().substr(0, 4096);
-    return file.bytes().empty() || head.find("orce table by Underbody") != std::string_view::npos || head.find("Underbody force table") != std::string_view::npos;
+    return file.bytes().empty() || head.find("orce table by Underbody") != std::string_view::npos ||
+           head.find("Underbody force table") != std::string_view::npos;
 }
 
 /// A file that is there is replaced only if it is an export, and not the one that the table was made of.
@@ -50,11 +55,12 @@ void check_path(const std::filesystem::path& path, const ForceTable& table, bool
         return;
     }
     if (std::filesystem::equivalent(path, table.source(), ignored)) {
-        throw core::InputError("exists", "the table is made of this file: the export would replace its points", {path.string(), {}, {}, {}}, "choose another name");
+        throw core::InputError("exists", "the table is made of this file: the export would replace its points",
+                               {path.string(), {}, {}, {}}, "choose another name");
     }
     if (!overwrite && !is_export(path)) {
-        throw core::InputError("exists", "the file is there and is no force table that Underbody wrote", {path.string(), {}, {}, {}},
-                               "choose another name, or say --overwrite");
+        throw core::InputError("exists", "the file is there and is no force table that Underbody wrote",
+                               {path.string(), {}, {}, {}}, "choose another name, or say --overwrite");
     }
 }
 
@@ -71,20 +77,22 @@ const std::vector<ExportFormat>& export_formats() {
     return formats;
 }
 
-ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path, const ExportOptions& options,
-                          core::Progress& progress) {
+ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path,
+                          const ExportOptions& options, core::Progress& progress) {
     return export_tables({table}, format, path, options, progress);
 }
 
 ExportResult export_tables(const std::vector<ForceTable>& tables, const std::string& format,
                            const std::filesystem::path& path, const ExportOptions& options, core::Progress& progress) {
-    const auto found = std::find_if(exporters().begin(), exporters().end(), [&](const Exporter& e) { return e.format.name == format; });
+    const auto found = std::find_if(exporters().begin(), exporters().end(),
+                                    [&](const Exporter& e) { return e.format.name == format; });
     if (found == exporters().end()) {
         std::vector<std::string> names;
         for (const auto& f : export_formats()) {
             names.push_back(f.name);
         }
-        throw core::UsageError("format", "there is no export format '" + format + "'", {}, core::did_you_mean(format, names));
+        throw core::UsageError("format", "there is no export format '" + format + "'", {},
+                               core::did_you_mean(format, names));
     }
     const std::size_t axes = tables.front().axes().size();
     if (axes > found->most_axes) {

@@ -11,23 +11,24 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::tables {
 
 /// Sign convention of what is written.
 enum class Frame {
     up,  ///< as inside the program: lift positive up, drag against the motion
-    ned  ///< body axes x forward, y starboard, z down: z_force = -lift_force, x_force = -drag_force, w = -heave_velocity
+    ned  ///< body axes x forward, y starboard, z down: z_force = -lift_force, x_force = -drag_force, w =
+         ///< -heave_velocity
 };
 
 struct ExportOptions {
-    std::string name;                   ///< prefix of C identifiers, model name; empty: that of the file
-    bool single_precision = false;      ///< C: float instead of double
+    std::string name;               ///< prefix of C identifiers, model name; empty: that of the file
+    bool single_precision = false;  ///< C: float instead of double
     Frame frame = Frame::up;
-    double max_error = 0;               ///< > 0: thin the grid to the smallest that stays within this share of the force's range
+    double max_error = 0;  ///< > 0: thin the grid to the smallest that stays within this share of the force's range
     std::vector<std::pair<std::string, std::size_t>> points;  ///< axis -> that many evenly spaced points
-    bool overwrite = false;             ///< also files that this program did not write
+    bool overwrite = false;                                   ///< also files that this program did not write
     bool self_test = false;  ///< C: beside the header NAME_test.c, a program that compares it with what this program
                              ///< says at many points
     /// Where the forces act: from the centre of gravity to the centre of the base, x forward, y starboard, z down, m.
@@ -50,8 +51,9 @@ struct ExportFormat {
 };
 const std::vector<ExportFormat>& export_formats();
 
-/// Throws core::UsageError for an unknown format, an axis that is none, a share that makes no sense; core::InputError (kind "exists")
-/// when the path holds something this program did not write, or the file that the table was made of; core::SystemError when it cannot be written. Whole files by rename.
+/// Throws core::UsageError for an unknown format, an axis that is none, a share that makes no sense; core::InputError
+/// (kind "exists") when the path holds something this program did not write, or the file that the table was made of;
+/// core::SystemError when it cannot be written. Whole files by rename.
 ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path,
                           const ExportOptions& options = {}, core::Progress& progress = core::Progress::none());
 /// Several forces and moments in one file, on one grid, looked up by one call. At least one; the same axes.

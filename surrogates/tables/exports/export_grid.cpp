@@ -9,10 +9,10 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "surrogates/tables/force_table_impl.h"
-#include "surrogates/tables/hull.h"
-#include "surrogates/tables/line.h"
-#include "surrogates/tables/select.h"
+#include "surrogates/tables/fit/force_table_impl.h"
+#include "surrogates/tables/fit/hull.h"
+#include "surrogates/tables/fit/line.h"
+#include "surrogates/tables/points/select.h"
 
 namespace underbody::tables {
 
@@ -33,18 +33,21 @@ constexpr Turned turned_axes[] = {
     {"input_force", "input_force_down", ""},
 };
 
-std::vector<std::vector<double>> chosen_points(const ForceTable& table, const CubicGrid& surface, const ExportOptions& options) {
+std::vector<std::vector<double>> chosen_points(const ForceTable& table, const CubicGrid& surface,
+                                               const ExportOptions& options) {
     auto points = surface.points();
     for (const auto& [name, count] : options.points) {
         const std::size_t k = axis_index(table, name);
         if (count < 2 || count > 100000) {
-            throw core::UsageError("range", "axis '" + name + "' needs 2 to 100000 points, not " + std::to_string(count));
+            throw core::UsageError("range",
+                                   "axis '" + name + "' needs 2 to 100000 points, not " + std::to_string(count));
         }
         const double low = points[k].front();
         const double high = points[k].back();
         points[k].resize(count);
         for (std::size_t i = 0; i < count; ++i) {
-            points[k][i] = i + 1 == count ? high : low + (high - low) * static_cast<double>(i) / static_cast<double>(count - 1);
+            points[k][i] =
+                i + 1 == count ? high : low + (high - low) * static_cast<double>(i) / static_cast<double>(count - 1);
         }
     }
     return points;
@@ -89,25 +92,32 @@ ErrorModel mirrored_error(const ErrorModel& error, const CubicGrid& to, unsigned
     return result;
 }
 
-/// Columns of one value that are neither axes nor conditions nor forces: the mass and the size of the body, the variant, the mesh ...
+/// Columns of one value that are neither axes nor conditions nor forces: the mass and the size of the body, the
+/// variant, the mesh ...
 std::vector<std::string> other_constants(const ForceTable& table) {
     std::vector<std::string> lines;
     const core::Table& points = table.points();
     const auto forces = force_columns(points);
     for (const auto& column : points.columns()) {
-        const bool axis = std::any_of(table.axes().begin(), table.axes().end(), [&](const TableAxis& a) { return a.name == column.name; });
-        const bool condition = std::any_of(table.conditions().begin(), table.conditions().end(), [&](const auto& c) { return c.first == column.name; });
-        const bool force = std::find(forces.begin(), forces.end(), column.name) != forces.end() || column.name.ends_with("_sigma") || column.name.starts_with(table.quantity());
+        const bool axis = std::any_of(table.axes().begin(), table.axes().end(),
+                                      [&](const TableAxis& a) { return a.name == column.name; });
+        const bool condition = std::any_of(table.conditions().begin(), table.conditions().end(),
+                                           [&](const auto& c) { return c.first == column.name; });
+        const bool force = std::find(forces.begin(), forces.end(), column.name) != forces.end() ||
+                           column.name.ends_with("_sigma") || column.name.starts_with(table.quantity());
         if (axis || condition || force || points.rows() == 0) {
             continue;
         }
         if (column.is_text()) {
             const auto& text = column.text;
-            if (std::all_of(text.begin(), text.end(), [&](const std::string& t) { return t == text.front(); }) && !text.front().empty()) {
+            if (std::all_of(text.begin(), text.end(), [&](const std::string& t) { return t == text.front(); }) &&
+                !text.front().empty()) {
                 lines.push_back("Of " + column.name + " " + text.front());
             }
-        } else if (std::all_of(column.numbers.begin(), column.numbers.end(), [&](double v) { return v == column.numbers.front(); })) {
-            lines.push_back("Of " + column.name + " = " + core::format_number(column.numbers.front(), 9) + (column.unit == "1" ? "" : " " + column.unit));
+        } else if (std::all_of(column.numbers.begin(), column.numbers.end(),
+                               [&](double v) { return v == column.numbers.front(); })) {
+            lines.push_back("Of " + column.name + " = " + core::format_number(column.numbers.front(), 9) +
+                            (column.unit == "1" ? "" : " " + column.unit));
         }
     }
     return lines;
@@ -150,7 +160,8 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
     }
     for (const auto& [name, value] : grid.conditions) {
         const auto* known = core::find_quantity(name);
-        lines.push_back("Holds for " + name + " = " + core::format_number(value, 9) + (known != nullptr ? " " + known->unit : ""));
+        lines.push_back("Holds for " + name + " = " + core::format_number(value, 9) +
+                        (known != nullptr ? " " + known->unit : ""));
     }
     for (const auto& line : other_constants(tables.front())) {
         lines.push_back(line);
@@ -160,8 +171,9 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
             "The points do not fill the box of the axes: where none lie around, the value is an extrapolation, sigma "
             "says how far to trust it, and no_data is 1");
     }
-    lines.push_back(options.frame == Frame::ned ? "Frame: body axes, x forward, y starboard, z down (NED); pitch and pitch_moment nose up"
-                                                : "Frame: lift positive up, drag positive against the motion; pitch and pitch_moment nose up");
+    lines.push_back(options.frame == Frame::ned
+                        ? "Frame: body axes, x forward, y starboard, z down (NED); pitch and pitch_moment nose up"
+                        : "Frame: lift positive up, drag positive against the motion; pitch and pitch_moment nose up");
     for (std::size_t i = 0; i < tables.size(); ++i) {
         const auto& q = grid.quantities[i];
         if (q.difference > 0) {
@@ -171,7 +183,8 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
                             core::format_number(q.difference, 3) + " " + q.unit + what);
         }
     }
-    lines.push_back("sigma is one standard deviation: errors of the points and of the fit between them; 0 where none are known");
+    lines.push_back(
+        "sigma is one standard deviation: errors of the points and of the fit between them; 0 where none are known");
 }
 
 }  // namespace
@@ -196,28 +209,34 @@ std::size_t most_points(std::size_t axes, bool asked) {
 }
 
 /// For straight lines between the points.
-Resampled straight_surface(const ForceTable::Impl& full, const CubicGrid& surface, const ExportOptions& options, double allowed, core::Progress& progress) {
+Resampled straight_surface(const ForceTable::Impl& full, const CubicGrid& surface, const ExportOptions& options,
+                           double allowed, core::Progress& progress) {
     const std::size_t most = most_points(surface.dimensions(), options.max_error > 0);
     if (options.max_error <= 0) {
-        return straight_resampled(full.surface, points_for_straight_lines(surface, 1e-3 * range_of_points(full), most, progress), progress);
+        return straight_resampled(
+            full.surface, points_for_straight_lines(surface, 1e-3 * range_of_points(full), most, progress), progress);
     }
     Resampled thin = thinned_for_straight_lines(full.surface, surface, allowed, most, progress);
     if (thin.difference > allowed) {
         throw core::UsageError("range",
-                               "straight lines between the points, as this format draws them, stay within " + core::format_number(thin.difference, 3) + " " + full.unit +
-                                   " of the table on at most " + std::to_string(most) + " points an axis, not within " + core::format_number(allowed, 3) + " " + full.unit,
+                               "straight lines between the points, as this format draws them, stay within " +
+                                   core::format_number(thin.difference, 3) + " " + full.unit +
+                                   " of the table on at most " + std::to_string(most) + " points an axis, not within " +
+                                   core::format_number(allowed, 3) + " " + full.unit,
                                {}, "allow a larger error, or take a format with cubics, such as c, json or fmu");
     }
     return thin;
 }
 
 /// The function on the points that the options ask for.
-Resampled chosen_surface(const ForceTable& table, const ExportOptions& options, bool straight, core::Problems& remarks, core::Progress& progress) {
+Resampled chosen_surface(const ForceTable& table, const ExportOptions& options, bool straight, core::Problems& remarks,
+                         core::Progress& progress) {
     const ForceTable::Impl& full = table.impl();
     Resampled chosen{full.surface, 0};
     if (!options.points.empty()) {
         auto points = chosen_points(table, full.surface, options);
-        chosen = straight && options.max_error <= 0 ? straight_resampled(full.surface, std::move(points), progress) : resampled(full.surface, std::move(points), progress);
+        chosen = straight && options.max_error <= 0 ? straight_resampled(full.surface, std::move(points), progress)
+                                                    : resampled(full.surface, std::move(points), progress);
     }
     if (options.max_error <= 0) {
         return straight && options.points.empty() ? straight_surface(full, chosen.grid, options, 0, progress) : chosen;
@@ -225,26 +244,33 @@ Resampled chosen_surface(const ForceTable& table, const ExportOptions& options, 
     const double allowed = options.max_error * range_of_points(full);
     if (!options.points.empty() && chosen.difference >= allowed) {
         remarks.push_back({core::Problem::Severity::warning,
-                           "the points asked for are too few for the error asked for: their grid is off by " + core::format_number(chosen.difference, 3) + " " + full.unit,
+                           "the points asked for are too few for the error asked for: their grid is off by " +
+                               core::format_number(chosen.difference, 3) + " " + full.unit,
                            {}});
         return straight ? straight_resampled(full.surface, chosen.grid.points(), progress) : chosen;
     }
-    return straight ? straight_surface(full, chosen.grid, options, allowed, progress) : thinned(full.surface, chosen.grid, allowed, progress);
+    return straight ? straight_surface(full, chosen.grid, options, allowed, progress)
+                    : thinned(full.surface, chosen.grid, allowed, progress);
 }
 
-/// Thinning moves the value: so much more of an error between the lines of each axis. Its parts over the axes make up the whole.
+/// Thinning moves the value: so much more of an error between the lines of each axis. Its parts over the axes make up
+/// the whole.
 void add_thinning(ErrorModel& error, const CubicGrid& full, const Resampled& thin, core::Progress& progress) {
     const std::size_t n = full.dimensions();
     std::array<double, CubicGrid::max_axes> along{};
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        along[k] = full.axis(k).points() == thin.grid.axis(k).points() ? 0 : largest_difference_along(k, full, thin.grid, progress);
+        along[k] = full.axis(k).points() == thin.grid.axis(k).points()
+                       ? 0
+                       : largest_difference_along(k, full, thin.grid, progress);
         sum += along[k];
     }
     for (std::size_t k = 0; k < n && sum > 0; ++k) {
-        std::vector<double> cells = error.cell_error(k).empty() ? std::vector<double>(thin.grid.axis(k).size() - 1, 0.0) : error.cell_error(k);
+        std::vector<double> cells =
+            error.cell_error(k).empty() ? std::vector<double>(thin.grid.axis(k).size() - 1, 0.0) : error.cell_error(k);
         for (double& c : cells) {
-            c += 1.2 * along[k] * std::max(1.0, thin.difference / sum);  // differences of cubics lean to one side of the parabola
+            c += 1.2 * along[k] *
+                 std::max(1.0, thin.difference / sum);  // differences of cubics lean to one side of the parabola
         }
         error.set_cell_error(k, std::move(cells));
     }
@@ -421,9 +447,10 @@ std::vector<std::string> outside_lines(const ExportGrid& grid) {
     std::vector<std::string> lines;
     for (const auto& axis : grid.axes) {
         lines.push_back("Outside the range of " + axis.name + " " +
-                        (axis.range == RangePolicy::clamp    ? "it holds its end value with slope zero, and says so"
-                         : axis.range == RangePolicy::refuse ? "it refuses: value and slopes are not numbers there"
-                                                             : "it goes on along its tangent with growing sigma, and says so"));
+                        (axis.range == RangePolicy::clamp ? "it holds its end value with slope zero, and says so"
+                         : axis.range == RangePolicy::refuse
+                             ? "it refuses: value and slopes are not numbers there"
+                             : "it goes on along its tangent with growing sigma, and says so"));
     }
     return lines;
 }

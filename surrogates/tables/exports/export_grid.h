@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "surrogates/tables/error_model.h"
 #include "surrogates/tables/exports/export.h"
-#include "surrogates/tables/grid.h"
-#include "surrogates/tables/support.h"
+#include "surrogates/tables/fit/error_model.h"
+#include "surrogates/tables/fit/grid.h"
+#include "surrogates/tables/fit/support.h"
 
 namespace underbody::tables {
 
@@ -44,11 +44,13 @@ struct ExportGrid {
     std::vector<ExportAxis> axes;
     std::vector<ExportQuantity> quantities;  ///< at least one, all on the same grid
     Frame frame = Frame::up;
-    /// Where it came from, line by line: program, source and its hash, kind, points, range, conditions, frame, thinning, remarks.
+    /// Where it came from, line by line: program, source and its hash, kind, points, range, conditions, frame,
+    /// thinning, remarks.
     std::vector<std::string> origin;
     std::vector<std::pair<std::string, double>> conditions;  ///< that the table holds for, SI
-    std::vector<std::vector<double>> hull;  ///< points around which the table knows something; empty: all of the axes' box
-    Support support;                        ///< where it has data
+    std::vector<std::vector<double>>
+        hull;         ///< points around which the table knows something; empty: all of the axes' box
+    Support support;  ///< where it has data
     std::optional<Lever> lever;
     core::Problems remarks;
     bool single_precision = false;
@@ -68,21 +70,26 @@ ExportGrid export_grid(const std::vector<ForceTable>& tables, const ExportOption
 /// A function taken on other grid lines, with its slopes, and how far it is from what it was taken of.
 struct Resampled {
     CubicGrid grid;
-    double difference = 0;  ///< largest, sampled in the cells too, with a margin of a fiftieth for what lies between the samples
+    double difference =
+        0;  ///< largest, sampled in the cells too, with a margin of a fiftieth for what lies between the samples
 };
 Resampled resampled(const CubicGrid& fine, std::vector<std::vector<double>> points, core::Progress& progress);
 /// Likewise for a consumer that draws straight lines between the values: `difference` is that of the lines.
 Resampled straight_resampled(const CubicGrid& fine, std::vector<std::vector<double>> points, core::Progress& progress);
 /// The difference on the grid lines of `coarse` along one axis.
-double largest_difference_along(std::size_t axis, const CubicGrid& fine, const CubicGrid& coarse, core::Progress& progress);
+double largest_difference_along(std::size_t axis, const CubicGrid& fine, const CubicGrid& coarse,
+                                core::Progress& progress);
 
-/// A small grid, out of the grid lines of `surface`, whose cubic with the same slopes stays within `allowed` of `full`: along each axis the fewest lines
-/// for its share of the error. `surface` as it is where none does.
+/// A small grid, out of the grid lines of `surface`, whose cubic with the same slopes stays within `allowed` of `full`:
+/// along each axis the fewest lines for its share of the error. `surface` as it is where none does.
 Resampled thinned(const CubicGrid& full, const CubicGrid& surface, double allowed, core::Progress& progress);
-/// For consumers that draw straight lines between the points: the grid lines of `surface` with cells halved until those lines stay within `allowed` of it,
-/// or `most` points an axis are reached; and a small grid out of a denser set that stays within `allowed` of `full`, or the dense set where none does.
-std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress);
-Resampled thinned_for_straight_lines(const CubicGrid& full, const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress);
+/// For consumers that draw straight lines between the points: the grid lines of `surface` with cells halved until those
+/// lines stay within `allowed` of it, or `most` points an axis are reached; and a small grid out of a denser set that
+/// stays within `allowed` of `full`, or the dense set where none does.
+std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most,
+                                                           core::Progress& progress);
+Resampled thinned_for_straight_lines(const CubicGrid& full, const CubicGrid& surface, double allowed, std::size_t most,
+                                     core::Progress& progress);
 /// What the file does outside its axes, one line for each; for formats that follow every policy.
 std::vector<std::string> outside_lines(const ExportGrid& grid);
 /// origin, then these lines.

@@ -1,5 +1,6 @@
 // FMU 2.0 for model exchange and co-simulation: the C header of the table with the standard's functions around it.
-// FMI Specification 2.0.4. Inputs are the axes; outputs the value, its slopes, its error and whether the point lies outside.
+// FMI Specification 2.0.4. Inputs are the axes; outputs the value, its slopes, its error and whether the point lies
+// outside.
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -323,7 +324,8 @@ std::string interval_function(const ExportGrid& grid) {
 
 std::string source(const ExportGrid& grid, const std::string& guid) {
     const std::size_t n = grid.axes.size(), quantities = grid.quantities.size();
-    std::string text = "/* " + grid.origin.front() + "; FMU 2.0, model exchange and co-simulation. */\n#include \"table.h\"\n";
+    std::string text =
+        "/* " + grid.origin.front() + "; FMU 2.0, model exchange and co-simulation. */\n#include \"table.h\"\n";
     text +=
         "#define GUID \"" + guid + "\"\n#define AXES " + std::to_string(n) + "u\n#define QUANTITIES " +
         std::to_string(quantities) +
@@ -338,7 +340,8 @@ std::string source(const ExportGrid& grid, const std::string& guid) {
         "(AXES + 2u) <= AXES; }\n";
     text += "/* 1 when the point is refused. */\nstatic int evaluate(const double* input, double* out) {\n    " +
             grid.name + "_real point[AXES];\n    " + grid.name + "_result r;\n    unsigned k;\n";
-    text += "    for (k = 0; k < AXES; ++k) {\n        point[k] = (" + grid.name + "_real)input[k];\n    }\n    " + grid.name + "_at(point, &r);\n";
+    text += "    for (k = 0; k < AXES; ++k) {\n        point[k] = (" + grid.name + "_real)input[k];\n    }\n    " +
+            grid.name + "_at(point, &r);\n";
     for (std::size_t q = 0; q < quantities; ++q) {
         const std::string of = quantities > 1 ? identifier(grid.quantities[q].name) + "." : "",
                           at = std::to_string(q * (n + 2)) + "u";
@@ -357,18 +360,24 @@ std::string description(const ExportGrid& grid, const std::string& guid) {
         origin += (origin.empty() ? "" : ". ") + line;
     }
     const auto escaped = [](const std::string& t) { return core::escape_html(t); };
-    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"2.0\" modelName=\"" + grid.name + "\" guid=\"" + guid +
-                      "\" description=\"" + escaped(origin) + "\" generationTool=\"Underbody\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">\n";
+    std::string xml =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"2.0\" modelName=\"" + grid.name +
+        "\" guid=\"" + guid + "\" description=\"" + escaped(origin) +
+        "\" generationTool=\"Underbody\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">\n";
     for (const char* kind : {"ModelExchange", "CoSimulation"}) {
-        xml += std::string("  <") + kind + " modelIdentifier=\"" + grid.name + "\" providesDirectionalDerivative=\"true\" canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\"" +
-               (kind[0] == 'C' ? " canHandleVariableCommunicationStepSize=\"true\"" : "") + ">\n    <SourceFiles>\n      <File name=\"fmu.c\"/>\n    </SourceFiles>\n  </" + kind + ">\n";
+        xml += std::string("  <") + kind + " modelIdentifier=\"" + grid.name +
+               "\" providesDirectionalDerivative=\"true\" canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\"" +
+               (kind[0] == 'C' ? " canHandleVariableCommunicationStepSize=\"true\"" : "") +
+               ">\n    <SourceFiles>\n      <File name=\"fmu.c\"/>\n    </SourceFiles>\n  </" + kind + ">\n";
     }
     std::vector<std::string> units;
     std::string variables;
     std::size_t reference = 0;
-    const auto variable = [&](const std::string& name, const std::string& unit, const std::string& what, bool input, double start) {
-        variables += "    <ScalarVariable name=\"" + name + "\" valueReference=\"" + std::to_string(reference++) + "\" description=\"" + escaped(what) + "\" causality=\"" +
-                     (input ? "input" : "output") + "\" variability=\"continuous\">\n      <Real unit=\"" + escaped(unit) + "\"" +
+    const auto variable = [&](const std::string& name, const std::string& unit, const std::string& what, bool input,
+                              double start) {
+        variables += "    <ScalarVariable name=\"" + name + "\" valueReference=\"" + std::to_string(reference++) +
+                     "\" description=\"" + escaped(what) + "\" causality=\"" + (input ? "input" : "output") +
+                     "\" variability=\"continuous\">\n      <Real unit=\"" + escaped(unit) + "\"" +
                      (input ? " start=\"" + core::format_number(start) + "\"" : "") + "/>\n    </ScalarVariable>\n";
         for (const auto& known : units) {
             if (known == unit) {
@@ -397,7 +406,8 @@ std::string description(const ExportGrid& grid, const std::string& guid) {
     for (const auto& unit : units) {
         xml += "    <Unit name=\"" + escaped(unit) + "\"/>\n";
     }
-    xml += "  </UnitDefinitions>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"/>\n  <ModelVariables>\n" + variables + "  </ModelVariables>\n  <ModelStructure>\n";
+    xml += "  </UnitDefinitions>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"/>\n  <ModelVariables>\n" +
+           variables + "  </ModelVariables>\n  <ModelStructure>\n";
     for (const char* list : {"Outputs", "InitialUnknowns"}) {
         xml += std::string("    <") + list + ">\n";
         for (std::size_t i = n + 1; i <= reference; ++i) {
@@ -412,9 +422,11 @@ std::string description(const ExportGrid& grid, const std::string& guid) {
     return xml + "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 
-/// Compiles in a folder with relative names, so that the bytes do not depend on where. False when there is no compiler or it failed.
+/// Compiles in a folder with relative names, so that the bytes do not depend on where. False when there is no compiler
+/// or it failed.
 bool compiled(const std::filesystem::path& folder) {
-    std::string script = "cd \"$0\" && exec cc -std=c99 -O2 -fPIC -shared -fvisibility=hidden -Wl,--build-id=none -s -o table.so fmu.c";
+    std::string script =
+        "cd \"$0\" && exec cc -std=c99 -O2 -fPIC -shared -fvisibility=hidden -Wl,--build-id=none -s -o table.so fmu.c";
     std::string shell = "sh";
     std::string option = "-c";
     std::string where = folder.string();
@@ -440,7 +452,8 @@ void export_fmu(const ExportGrid& asked, const std::filesystem::path& path, Expo
     export_c(grid, folder.path() / "table.h", ignored);
     const std::string header = core::read_file(folder.path() / "table.h");
     const std::string hash = core::content_hash(header);
-    const std::string guid = "{" + hash.substr(0, 8) + "-" + hash.substr(8, 4) + "-" + hash.substr(12, 4) + "-" + hash.substr(16, 4) + "-" + hash.substr(20, 12) + "}";
+    const std::string guid = "{" + hash.substr(0, 8) + "-" + hash.substr(8, 4) + "-" + hash.substr(12, 4) + "-" +
+                             hash.substr(16, 4) + "-" + hash.substr(20, 12) + "}";
     const std::string code = source(grid, guid);
     core::write_file(folder.path() / "fmu.c", code);
     std::vector<std::pair<std::string, std::string>> entries = {{"modelDescription.xml", description(grid, guid)}};
@@ -448,11 +461,14 @@ void export_fmu(const ExportGrid& asked, const std::filesystem::path& path, Expo
     if (compiled(folder.path())) {
         entries.emplace_back("binaries/linux64/" + grid.name + ".so", core::read_file(folder.path() / "table.so"));
     } else {
-        result.remarks.push_back({core::Problem::Severity::warning,
-                                  "there is no working C compiler 'cc': the FMU holds its source only (sources/), no binary for Linux", {}});
+        result.remarks.push_back(
+            {core::Problem::Severity::warning,
+             "there is no working C compiler 'cc': the FMU holds its source only (sources/), no binary for Linux",
+             {}});
     }
 #else
-    result.remarks.push_back({core::Problem::Severity::warning, "this machine is not x86-64: the FMU holds its source only (sources/)", {}});
+    result.remarks.push_back(
+        {core::Problem::Severity::warning, "this machine is not x86-64: the FMU holds its source only (sources/)", {}});
 #endif
     entries.emplace_back("sources/fmu.c", code);
     entries.emplace_back("sources/table.h", header);

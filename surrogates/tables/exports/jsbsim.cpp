@@ -156,7 +156,8 @@ private:
             out += "   <tableData>\n" + block(f, 1, 0) + "   </tableData>\n";
         } else {
             for (std::size_t i = 0; i < x(2).size(); ++i) {
-                out += "   <tableData breakPoint=\"" + core::format_number(x(2)[i]) + "\">\n" + block(f, x(2).size(), i) + "   </tableData>\n";
+                out += "   <tableData breakPoint=\"" + core::format_number(x(2)[i]) + "\">\n" +
+                       block(f, x(2).size(), i) + "   </tableData>\n";
             }
         }
         function(name, what, out + "  </table>");

@@ -1,5 +1,5 @@
-// The smallest grid that keeps an error: axis by axis a shortest path over the grid lines there are; for consumers that evaluate the cubic, and for
-// those that draw straight lines between the points.
+// The smallest grid that keeps an error: axis by axis a shortest path over the grid lines there are; for consumers that
+// evaluate the cubic, and for those that draw straight lines between the points.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,7 +47,8 @@ double hermite(double t, double h, double a, double b, double sa, double sb) {
 
 enum class Between { cubic, straight };
 
-/// Does one cubic, or one straight line, from point i to point j stay within `allowed` of the fine function on every line?
+/// Does one cubic, or one straight line, from point i to point j stay within `allowed` of the fine function on every
+/// line?
 bool joins(const Lines& lines, Between between, std::size_t i, std::size_t j, double allowed) {
     const double h = lines.x[j] - lines.x[i];
     const std::size_t m = lines.x.size();
@@ -60,7 +61,9 @@ bool joins(const Lines& lines, Between between, std::size_t i, std::size_t j, do
                 const double x = lines.x[cell] + part * width;
                 const double fine = hermite(part, width, value[cell], value[cell + 1], slope[cell], slope[cell + 1]);
                 const double t = (x - lines.x[i]) / h;
-                const double coarse = between == Between::straight ? (1 - t) * value[i] + t * value[j] : hermite(t, h, value[i], value[j], slope[i], slope[j]);
+                const double coarse = between == Between::straight
+                                          ? (1 - t) * value[i] + t * value[j]
+                                          : hermite(t, h, value[i], value[j], slope[i], slope[j]);
                 if (std::abs(fine - coarse) > allowed) {
                     return false;
                 }
@@ -101,9 +104,11 @@ std::vector<double> fewest_points(const Lines& lines, Between between, double al
     return kept;
 }
 
-/// Fewest of the surface's lines an axis such that what `made` makes of them stays within `allowed`; all of them when none fits.
+/// Fewest of the surface's lines an axis such that what `made` makes of them stays within `allowed`; all of them when
+/// none fits.
 template <class Make>
-Resampled fewest_lines(const CubicGrid& surface, Between between, double allowed, Make&& made, core::Progress& progress) {
+Resampled fewest_lines(const CubicGrid& surface, Between between, double allowed, Make&& made,
+                       core::Progress& progress) {
     std::vector<Lines> lines;
     for (std::size_t k = 0; k < surface.dimensions(); ++k) {
         lines.push_back(lines_along(surface, k));
@@ -151,11 +156,14 @@ bool bends(const CubicGrid& surface, std::size_t k, double low, double high, dou
 }  // namespace
 
 Resampled thinned(const CubicGrid& full, const CubicGrid& surface, double allowed, core::Progress& progress) {
-    const auto made = [&](std::vector<std::vector<double>> points) { return resampled(full, std::move(points), progress); };
+    const auto made = [&](std::vector<std::vector<double>> points) {
+        return resampled(full, std::move(points), progress);
+    };
     return fewest_lines(surface, Between::cubic, allowed, made, progress);
 }
 
-std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress) {
+std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surface, double allowed, std::size_t most,
+                                                           core::Progress& progress) {
     auto points = surface.points();
     const std::size_t n = surface.dimensions();
     for (std::size_t k = 0; k < n; ++k) {
@@ -179,10 +187,13 @@ std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surf
     return points;
 }
 
-Resampled thinned_for_straight_lines(const CubicGrid& full, const CubicGrid& surface, double allowed, std::size_t most, core::Progress& progress) {
+Resampled thinned_for_straight_lines(const CubicGrid& full, const CubicGrid& surface, double allowed, std::size_t most,
+                                     core::Progress& progress) {
     // Candidates twice as dense as they need be.
     const CubicGrid fine = surface.resampled(points_for_straight_lines(surface, allowed / 4, most, progress));
-    const auto made = [&](std::vector<std::vector<double>> points) { return straight_resampled(full, std::move(points), progress); };
+    const auto made = [&](std::vector<std::vector<double>> points) {
+        return straight_resampled(full, std::move(points), progress);
+    };
     return fewest_lines(fine, Between::straight, allowed, made, progress);
 }
 

@@ -22,7 +22,8 @@ std::string zip_archive(const std::vector<std::pair<std::string, std::string>>& 
     std::string archive;
     std::string directory;
     for (const auto& [name, content] : entries) {
-        const auto checksum = static_cast<std::uint32_t>(::crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size())));
+        const auto checksum = static_cast<std::uint32_t>(
+            ::crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size())));
         const auto size = static_cast<std::uint32_t>(content.size());
         std::string common;
         put(common, 20, 2);

@@ -7,7 +7,8 @@
 
 namespace underbody::tables {
 
-/// (name, content) in the order given; names with forward slashes. APPNOTE 6.3.3, version 2.0, method 0, dates 1980-01-01.
+/// (name, content) in the order given; names with forward slashes. APPNOTE 6.3.3, version 2.0, method 0, dates
+/// 1980-01-01.
 std::string zip_archive(const std::vector<std::pair<std::string, std::string>>& entries, const std::string& comment);
 
 }  // namespace underbody::tables

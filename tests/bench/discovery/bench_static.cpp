@@ -9,19 +9,24 @@ using namespace underbody;
 namespace {
 
 const char* const usage =
-    "bench_discovery_static [--family glide|towed|jet|both] [--kind single|clean|unknown|pair|noise] [--only EFFECT] [--level X]\n"
+    "bench_discovery_static [--family glide|towed|jet|both] [--kind single|clean|unknown|pair|noise] [--only EFFECT] "
+    "[--level X]\n"
     "                       [--seeds N] [--first-seed N] [--threads N] [--no-peers] [--markdown] [--verbose]\n"
     "Constants of the program were set on seeds 1 to 99; figures are quoted from seeds 1000 and up.\n";
 
-double noise_of(const bench::Case& wanted, const std::string& channel) { return bench::static_noise(wanted.family, channel); }
+double noise_of(const bench::Case& wanted, const std::string& channel) {
+    return bench::static_noise(wanted.family, channel);
+}
 
 void run(bench::Campaign& campaign, const bench::Case& wanted, const dynamics::Model& model, const std::string& kind) {
     campaign.run(
         kind, wanted, model, noise_of,
-        [&](const bench::Sample& sample, const dynamics::Measurements&, const discovery::Discovery& found, bench::Outcome& one) {
+        [&](const bench::Sample& sample, const dynamics::Measurements&, const discovery::Discovery& found,
+            bench::Outcome& one) {
             const std::string channel = found.error.front().channel;
             one.best = bench::static_oracle(wanted, sample).at(channel) / noise_of(wanted, channel);
-            if (one.right() && sample.names.size() == 1 && one.verdict == "effect" && std::isfinite(sample.in_catalogue_terms)) {
+            if (one.right() && sample.names.size() == 1 && one.verdict == "effect" &&
+                std::isfinite(sample.in_catalogue_terms)) {
                 const discovery::FoundParameter& p = found.effects.front().parameters.front();
                 one.pull = p.sigma > 0 ? (p.value - sample.in_catalogue_terms) / p.sigma : std::nan("");
             }
@@ -34,7 +39,8 @@ void run(bench::Campaign& campaign, const bench::Case& wanted, const dynamics::M
             return std::map<std::string, bench::PeerAnswer>{
                 {"sparse regression (STLSQ)", bench::sparse_regression(model, sample.train, sample.test, sigma)},
                 {"polynomial residual", bench::polynomial_residual(model, sample.train, sample.test, sigma)},
-                {"Gaussian-process discrepancy", bench::gaussian_process_discrepancy(model, sample.train, sample.test, sigma)}};
+                {"Gaussian-process discrepancy",
+                 bench::gaussian_process_discrepancy(model, sample.train, sample.test, sigma)}};
         });
 }
 
@@ -47,7 +53,8 @@ int main(int argc, char** argv) {
     for (const std::string family : {"glide", "towed", "jet", "both"}) {
         if (o.family != "all" && o.family != family) continue;
         const dynamics::Model model = dynamics::read_model(bench::write_declared_model(family, folder.path() / family));
-        const auto cases = [&](const std::string& kind, const std::vector<std::string>& names, const std::string& law, double level, int shift = 0) {
+        const auto cases = [&](const std::string& kind, const std::vector<std::string>& names, const std::string& law,
+                               double level, int shift = 0) {
             if (!campaign.wants(kind, names, law, level)) return;
             for (int s = 0; s < o.seeds; ++s) {
                 bench::Case wanted;
@@ -57,12 +64,17 @@ int main(int argc, char** argv) {
                 wanted.level = level;
                 wanted.seed = o.first_seed + static_cast<std::uint64_t>(s + shift);
                 wanted.coloured = wanted.seed % 4 == 1;
-                wanted.declared_noise = kind.rfind("noise", 0) == 0 ? (wanted.seed % 3 == 0 ? 0 : wanted.seed % 3 == 1 ? 0.5 : 2) : wanted.seed % 5 == 4 ? 0 : 1;
+                wanted.declared_noise = kind.rfind("noise", 0) == 0 ? (wanted.seed % 3 == 0   ? 0
+                                                                       : wanted.seed % 3 == 1 ? 0.5
+                                                                                              : 2)
+                                        : wanted.seed % 5 == 4      ? 0
+                                                                    : 1;
                 run(campaign, wanted, model, kind);
             }
         };
         for (const double level : {1.0, 2.0}) {
-            for (const std::string& name : bench::effects_of(family)) cases(level == 1 ? "single 1x" : "single 2x", {name}, "", level);
+            for (const std::string& name : bench::effects_of(family))
+                cases(level == 1 ? "single 1x" : "single 2x", {name}, "", level);
         }
         for (const std::string& law : bench::unknown_laws(family)) cases("unknown", {"unknown"}, law, 3);
         for (int k = 0; k < 5; ++k) cases("clean", {}, "", 0, 101 * k);

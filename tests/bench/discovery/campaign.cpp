@@ -30,8 +30,9 @@ void describe(const Case& wanted, const Outcome& one, const discovery::Discovery
     for (const std::string& name : found.depends_on) {
         on += name + " ";
     }
-    std::printf("   %-60s -> %s %.2f gate %.2g: %s; dep %s; err %.2f -> %.2f (best %.2f) pull %.1f; %.1f s\n", wanted.text().c_str(), one.verdict.c_str(), one.stated,
-                found.gate, said.c_str(), on.c_str(), one.before, one.after, one.best, one.pull, one.seconds);
+    std::printf("   %-60s -> %s %.2f gate %.2g: %s; dep %s; err %.2f -> %.2f (best %.2f) pull %.1f; %.1f s\n",
+                wanted.text().c_str(), one.verdict.c_str(), one.stated, found.gate, said.c_str(), on.c_str(),
+                one.before, one.after, one.best, one.pull, one.seconds);
     std::fflush(stdout);
 }
 
@@ -54,19 +55,32 @@ Options read_options(int argc, char** argv, const char* usage) {
     Options o;
     for (int i = 1; i < argc; ++i) {
         const auto value = [&](const char* key) { return std::strcmp(argv[i], key) == 0 && i + 1 < argc; };
-        if (value("--family")) o.family = argv[++i];
-        else if (value("--kind")) o.kind = argv[++i];
-        else if (value("--only")) o.only = argv[++i];
-        else if (value("--seeds")) o.seeds = std::atoi(argv[++i]);
-        else if (value("--first-seed")) o.first_seed = static_cast<std::uint64_t>(std::atoll(argv[++i]));
-        else if (value("--level")) o.level = std::atof(argv[++i]);
-        else if (value("--rate")) o.rate = std::atof(argv[++i]);
-        else if (value("--coloured")) o.coloured = std::atoi(argv[++i]);
-        else if (value("--velocity")) o.velocity = std::atoi(argv[++i]);
-        else if (value("--threads")) o.threads = std::atoi(argv[++i]);
-        else if (std::strcmp(argv[i], "--verbose") == 0) o.verbose = true;
-        else if (std::strcmp(argv[i], "--markdown") == 0) o.markdown = true;
-        else if (std::strcmp(argv[i], "--no-peers") == 0) o.peers = false;
+        if (value("--family"))
+            o.family = argv[++i];
+        else if (value("--kind"))
+            o.kind = argv[++i];
+        else if (value("--only"))
+            o.only = argv[++i];
+        else if (value("--seeds"))
+            o.seeds = std::atoi(argv[++i]);
+        else if (value("--first-seed"))
+            o.first_seed = static_cast<std::uint64_t>(std::atoll(argv[++i]));
+        else if (value("--level"))
+            o.level = std::atof(argv[++i]);
+        else if (value("--rate"))
+            o.rate = std::atof(argv[++i]);
+        else if (value("--coloured"))
+            o.coloured = std::atoi(argv[++i]);
+        else if (value("--velocity"))
+            o.velocity = std::atoi(argv[++i]);
+        else if (value("--threads"))
+            o.threads = std::atoi(argv[++i]);
+        else if (std::strcmp(argv[i], "--verbose") == 0)
+            o.verbose = true;
+        else if (std::strcmp(argv[i], "--markdown") == 0)
+            o.markdown = true;
+        else if (std::strcmp(argv[i], "--no-peers") == 0)
+            o.peers = false;
         else {
             std::printf("%s", usage);
             std::exit(2);
@@ -76,19 +90,23 @@ Options read_options(int argc, char** argv, const char* usage) {
     return o;
 }
 
-bool Campaign::wants(const std::string& kind, const std::vector<std::string>& names, const std::string& law, double level) const {
+bool Campaign::wants(const std::string& kind, const std::vector<std::string>& names, const std::string& law,
+                     double level) const {
     const std::string word = kind.substr(0, kind.find(' '));
     if (options_.kind != "all" && options_.kind != word) {
         return false;
     }
-    if (!options_.only.empty() && std::find(names.begin(), names.end(), options_.only) == names.end() && law != options_.only) {
+    if (!options_.only.empty() && std::find(names.begin(), names.end(), options_.only) == names.end() &&
+        law != options_.only) {
         return false;
     }
     return options_.level <= 0 || level == options_.level;
 }
 
-void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::Model& model, double (*noise_of)(const Case&, const std::string&),
-                   const std::function<void(const Sample&, const dynamics::Measurements&, const discovery::Discovery&, Outcome&)>& fill,
+void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::Model& model,
+                   double (*noise_of)(const Case&, const std::string&),
+                   const std::function<void(const Sample&, const dynamics::Measurements&, const discovery::Discovery&,
+                                            Outcome&)>& fill,
                    const std::function<std::map<std::string, PeerAnswer>(const Sample&)>& peers) {
     const Sample sample = make_sample(wanted);
     dynamics::Measurements data = sample.train;
@@ -98,7 +116,7 @@ void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::
     const std::clock_t begin = std::clock();
     const discovery::Discovery found = discovery::discover(model, data, settings);
     Outcome one = outcome_of(found, sample.names, sample.depends_on);
-    one.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;   // of all threads: fair on a busy machine
+    one.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;  // of all threads: fair on a busy machine
     const std::string channel = found.error.front().channel;
     const double noise = noise_of(wanted, channel);
     one.before = found.error.front().before.rmse / noise;
@@ -107,7 +125,8 @@ void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::
     if (options_.verbose || (!one.right() && !one.tied()) || one.after > 1.15 * one.best) {
         describe(wanted, one, found);
     }
-    const std::string own = wanted.family + "   " + (wanted.names.empty() ? "clean" : wanted.names.front()) + " " + wanted.law;
+    const std::string own =
+        wanted.family + "   " + (wanted.names.empty() ? "clean" : wanted.names.front()) + " " + wanted.law;
     for (const std::string& key : {kind, wanted.family + " " + kind, own}) {
         tallies_[key][own_method].outcomes.push_back(one);
     }
@@ -127,17 +146,24 @@ Tally Campaign::tally(const std::string& kind, const std::string& method) const 
 }
 
 void Campaign::print_markdown() const {
-    std::printf("\n| method | one effect at 1x: named (wrong) | at 2x: named (wrong) | clean: false | outside the catalogue: said so, with its variables | held-out error over the best "
-                "reachable, 2x |\n|---|---|---|---|---|---|\n");
-    for (const char* method : {own_method, "sparse regression (STLSQ)", "polynomial residual", "Gaussian-process discrepancy"}) {
+    std::printf(
+        "\n| method | one effect at 1x: named (wrong) | at 2x: named (wrong) | clean: false | outside the catalogue: "
+        "said so, with its variables | held-out error over the best "
+        "reachable, 2x |\n|---|---|---|---|---|---|\n");
+    for (const char* method :
+         {own_method, "sparse regression (STLSQ)", "polynomial residual", "Gaussian-process discrepancy"}) {
         const auto named = [](const Tally& t) {
             return share(t.count([](const Outcome& o) { return o.right() || o.tied(); }), t.count()) + ", " +
                    std::to_string(t.count([](const Outcome& o) { return o.wrong(); })) + " wrong";
         };
-        const Tally clean = tally("clean", method), unknown = tally("unknown", method), strong = tally("single 2x", method);
-        std::printf("| %s | %s | %s | %s | %s | %.2f |\n", method, named(tally("single 1x", method)).c_str(), named(strong).c_str(),
-                    share(clean.count([](const Outcome& o) { return !o.right(); }), clean.count()).c_str(),
-                    share(unknown.count([](const Outcome& o) { return o.right() && o.variables; }), unknown.count()).c_str(), strong.oracle_gap());
+        const Tally clean = tally("clean", method), unknown = tally("unknown", method),
+                    strong = tally("single 2x", method);
+        std::printf(
+            "| %s | %s | %s | %s | %s | %.2f |\n", method, named(tally("single 1x", method)).c_str(),
+            named(strong).c_str(),
+            share(clean.count([](const Outcome& o) { return !o.right(); }), clean.count()).c_str(),
+            share(unknown.count([](const Outcome& o) { return o.right() && o.variables; }), unknown.count()).c_str(),
+            strong.oracle_gap());
     }
 }
 
@@ -149,7 +175,7 @@ void Campaign::print() const {
         for (const auto& [method, tally] : methods) {
             std::printf("%-40s %-28s %s\n", kind.c_str(), method.c_str(), tally.line().c_str());
         }
-        if (kind.find("   ") != std::string::npos) {   // each data set stands in one of these
+        if (kind.find("   ") != std::string::npos) {  // each data set stands in one of these
             const auto& outcomes = methods.at(own_method).outcomes;
             all.insert(all.end(), outcomes.begin(), outcomes.end());
         }
@@ -159,8 +185,9 @@ void Campaign::print() const {
     }
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
-    std::printf("\n%s%s%zu data sets; longest verdict %.1f s of all threads; most memory the process held %.0f MB\n", calibration_lines(all).c_str(),
-                coverage_line(all).c_str(), all.size(), longest, static_cast<double>(used.ru_maxrss) / 1024);
+    std::printf("\n%s%s%zu data sets; longest verdict %.1f s of all threads; most memory the process held %.0f MB\n",
+                calibration_lines(all).c_str(), coverage_line(all).c_str(), all.size(), longest,
+                static_cast<double>(used.ru_maxrss) / 1024);
     if (options_.markdown) {
         print_markdown();
     }

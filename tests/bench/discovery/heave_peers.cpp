@@ -8,8 +8,8 @@
 #include <set>
 
 #include "core/units.h"
-#include "surrogates/discovery/heave_error.h"
-#include "surrogates/discovery/heave_experiment.h"
+#include "surrogates/discovery/heave/heave_error.h"
+#include "surrogates/discovery/heave/heave_experiment.h"
 #include "tests/bench/discovery/peer_fits.h"
 
 namespace underbody::bench {
@@ -22,7 +22,7 @@ using discovery::Hypothesis;
 
 namespace {
 
-constexpr std::size_t thinned = 25;   // steps of 0.04 s: neighbours nearer than a second tell one story
+constexpr std::size_t thinned = 25;  // steps of 0.04 s: neighbours nearer than a second tell one story
 constexpr std::array<const char*, 4> variables{"gap", "heave_velocity", "time", "input_force"};
 
 HeaveExperiment all_of(const dynamics::Model& model, const HeaveRecords& records) {
@@ -34,12 +34,14 @@ HeaveExperiment all_of(const dynamics::Model& model, const HeaveRecords& records
 double error_of(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise) {
     std::vector<double> square, count;
     discovery::horizon_errors(test, uses, noise, 2, square, count);
-    return std::sqrt(std::accumulate(square.begin(), square.end(), 0.0) / std::accumulate(count.begin(), count.end(), 0.0));
+    return std::sqrt(std::accumulate(square.begin(), square.end(), 0.0) /
+                     std::accumulate(count.begin(), count.end(), 0.0));
 }
 
 /// A force as a correction table over the variables of these numbers, on a grid between `low` and `high`.
-dynamics::EffectUse correction(const std::vector<std::size_t>& over, const std::vector<double>& low, const std::vector<double>& high,
-                               const std::vector<std::size_t>& nodes, const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& force) {
+dynamics::EffectUse correction(const std::vector<std::size_t>& over, const std::vector<double>& low,
+                               const std::vector<double>& high, const std::vector<std::size_t>& nodes,
+                               const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& force) {
     std::size_t count = 1;
     for (const std::size_t n : nodes) {
         count *= n;
@@ -58,7 +60,8 @@ dynamics::EffectUse correction(const std::vector<std::size_t>& over, const std::
     table.source = "correction.csv";
     for (std::size_t v = 0; v < over.size(); ++v) {
         const Eigen::VectorXd column = at.col(static_cast<Eigen::Index>(v));
-        table.add_numbers(variables[over[v]], core::find_quantity(variables[over[v]])->unit, {column.begin(), column.end()});
+        table.add_numbers(variables[over[v]], core::find_quantity(variables[over[v]])->unit,
+                          {column.begin(), column.end()});
     }
     table.add_numbers("lift_force", "N", {values.begin(), values.end()});
     dynamics::EffectUse use = dynamics::neutral_use("unknown");
@@ -75,14 +78,17 @@ struct HeavePeers::Data {
     HeaveRecords records, test_records;
     HeaveExperiment train, test;
     HeaveNoise noise;
-    Eigen::MatrixXd at;          ///< the four variables
-    Eigen::VectorXd residual;    ///< N, thinned
-    Eigen::VectorXd sigma;       ///< N, what sensor noise leaves of it
+    Eigen::MatrixXd at;        ///< the four variables
+    Eigen::VectorXd residual;  ///< N, thinned
+    Eigen::VectorXd sigma;     ///< N, what sensor noise leaves of it
     std::vector<double> low, high;
 
     Data(const dynamics::Model& m, const Sample& sample)
-        : model(m), records(discovery::prepare_heave_records(m, sample.train)), test_records(discovery::prepare_heave_records(m, sample.test)),
-          train(all_of(m, records)), test(all_of(m, test_records)) {
+        : model(m),
+          records(discovery::prepare_heave_records(m, sample.train)),
+          test_records(discovery::prepare_heave_records(m, sample.test)),
+          train(all_of(m, records)),
+          test(all_of(m, test_records)) {
         noise.gap = heave_noise;
         std::vector<std::array<double, 6>> rows;
         std::vector<double> input;
@@ -112,8 +118,11 @@ struct HeavePeers::Data {
         }
     }
 
-    [[nodiscard]] std::size_t index(const HeaveRecord& record) const { return static_cast<std::size_t>(&record - records.records.data()); }
-    [[nodiscard]] discovery::SmoothedRun smoothed(const HeaveRecord& record, const discovery::HeaveExplanation& explanation) const {
+    [[nodiscard]] std::size_t index(const HeaveRecord& record) const {
+        return static_cast<std::size_t>(&record - records.records.data());
+    }
+    [[nodiscard]] discovery::SmoothedRun smoothed(const HeaveRecord& record,
+                                                  const discovery::HeaveExplanation& explanation) const {
         return discovery::smooth_with_force(record, explanation, noise, 0.001 * record.plant->terms.mass);
     }
     [[nodiscard]] Eigen::VectorXd in_noise() const { return residual.cwiseQuotient(sigma); }
@@ -132,7 +141,7 @@ struct HeavePeers::Data {
         Eigen::Index i = 0;
         for (const HeaveRecord& record : records.records) {
             HeaveRecord read = record;
-            if (late != 0) {   // the smoother knows no late sensor: the reading is what it would be without it
+            if (late != 0) {  // the smoother knows no late sensor: the reading is what it would be without it
                 const discovery::SmoothedRun own = smoothed(record, train.explanation(index(record), {}));
                 for (std::size_t k = 0; k < read.gap.size(); ++k) {
                     read.gap[k] += late * own.velocity[k];
@@ -153,7 +162,8 @@ struct HeavePeers::Data {
             Eigen::MatrixXd wave(y.size(), 2);
             wave.col(0) = (6.283185307179586 * f * at.col(2).array()).sin();
             wave.col(1) = (6.283185307179586 * f * at.col(2).array()).cos();
-            const double gain = (wave.transpose() * y).dot((wave.transpose() * wave).ldlt().solve(wave.transpose() * y));
+            const double gain =
+                (wave.transpose() * y).dot((wave.transpose() * wave).ldlt().solve(wave.transpose() * y));
             if (gain > best) {
                 best = gain;
                 place = f;
@@ -163,7 +173,8 @@ struct HeavePeers::Data {
     }
 };
 
-HeavePeers::HeavePeers(const dynamics::Model& model, const Sample& sample) : data_(std::make_unique<Data>(model, sample)) {}
+HeavePeers::HeavePeers(const dynamics::Model& model, const Sample& sample)
+    : data_(std::make_unique<Data>(model, sample)) {}
 HeavePeers::~HeavePeers() = default;
 
 PeerAnswer HeavePeers::sparse_regression() const {
@@ -172,7 +183,7 @@ PeerAnswer HeavePeers::sparse_regression() const {
         const Hypothesis* hypothesis;
         std::vector<double> start;
         std::size_t parameter;
-        double per_unit;   ///< the number over the coefficient of the unit column
+        double per_unit;  ///< the number over the coefficient of the unit column
     };
     std::vector<Hypothesis> list = discovery::heave_hypotheses(d.model, {});
     std::erase_if(list, [](const Hypothesis& h) { return h.uses.size() > 1; });
@@ -182,7 +193,8 @@ PeerAnswer HeavePeers::sparse_regression() const {
         std::vector<double> moved = start;
         moved[j] += step;
         const bool late = h.names.front() == "gap_sensor_delay";
-        const Eigen::VectorXd column = d.taken_by(late ? std::vector<dynamics::EffectUse>{} : h.with(moved), late ? step : 0) / step;
+        const Eigen::VectorXd column =
+            d.taken_by(late ? std::vector<dynamics::EffectUse>{} : h.with(moved), late ? step : 0) / step;
         if (!column.allFinite() || column.norm() < 1e-9) {
             return;
         }
@@ -219,7 +231,8 @@ PeerAnswer HeavePeers::sparse_regression() const {
         std::vector<double> numbers = term.start;
         const discovery::FitParameter& p = term.hypothesis->parameters[term.parameter];
         const bool turned = p.lower >= 0 && coefficient < 0 && term.hypothesis->names.front() == "periodic_disturbance";
-        numbers[term.parameter] = turned ? -coefficient : std::clamp(numbers[term.parameter] + coefficient, p.lower, p.upper);
+        numbers[term.parameter] =
+            turned ? -coefficient : std::clamp(numbers[term.parameter] + coefficient, p.lower, p.upper);
         if (turned) {
             numbers[2] += 3.141592653589793;
         }
@@ -241,7 +254,9 @@ PeerAnswer HeavePeers::polynomial() const {
     std::vector<dynamics::EffectUse> uses;
     if (fit.degree >= 0) {
         const double sigma = d.sigma.mean();
-        uses.push_back(correction({0, 1, 2, 3}, d.low, d.high, {9, 9, 9, 9}, [&](const Eigen::MatrixXd& x) { return Eigen::VectorXd(sigma * fit.at(d.scaled(x))); }));
+        uses.push_back(correction({0, 1, 2, 3}, d.low, d.high, {9, 9, 9, 9}, [&](const Eigen::MatrixXd& x) {
+            return Eigen::VectorXd(sigma * fit.at(d.scaled(x)));
+        }));
     }
     answer.rmse["gap"] = error_of(d.test, uses, d.noise);
     return answer;
@@ -262,7 +277,9 @@ PeerAnswer HeavePeers::gaussian_process() const {
             }
             nodes.push_back(fit.depends_on(v) ? 13 : 5);
         }
-        uses.push_back(correction({0, 1, 2, 3}, d.low, d.high, nodes, [&](const Eigen::MatrixXd& x) { return Eigen::VectorXd(sigma * fit.at(d.scaled(x))); }));
+        uses.push_back(correction({0, 1, 2, 3}, d.low, d.high, nodes, [&](const Eigen::MatrixXd& x) {
+            return Eigen::VectorXd(sigma * fit.at(d.scaled(x)));
+        }));
     }
     answer.rmse["gap"] = error_of(d.test, uses, d.noise);
     return answer;
@@ -282,7 +299,8 @@ double heave_best(const dynamics::Model& model, const Case& wanted, const Sample
         std::vector<std::size_t> over, nodes;
         std::vector<double> from, to;
         for (std::size_t v = 0; v < 4; ++v) {
-            if (std::find(sample.depends_on.begin(), sample.depends_on.end(), variables[v]) != sample.depends_on.end()) {
+            if (std::find(sample.depends_on.begin(), sample.depends_on.end(), variables[v]) !=
+                sample.depends_on.end()) {
                 over.push_back(v);
                 from.push_back(low[v]);
                 to.push_back(high[v]);
@@ -311,7 +329,9 @@ double heave_best(const dynamics::Model& model, const Case& wanted, const Sample
     double best = 1e300;
     HeaveExperiment::Result chosen;
     std::vector<Hypothesis> list = discovery::heave_hypotheses(model, {});
-    std::erase_if(list, [&](const Hypothesis& h) { return std::find(wanted.names.begin(), wanted.names.end(), h.names.front()) == wanted.names.end(); });
+    std::erase_if(list, [&](const Hypothesis& h) {
+        return std::find(wanted.names.begin(), wanted.names.end(), h.names.front()) == wanted.names.end();
+    });
     for (Hypothesis& h : list) {
         if (h.names.front() == "periodic_disturbance") {
             h.starts = train.periodic_starts({}, noise, 2);
@@ -324,7 +344,8 @@ double heave_best(const dynamics::Model& model, const Case& wanted, const Sample
     }
     if (wanted.names.size() == 2) {
         const auto of = [&](const std::string& name) {
-            return *std::find_if(list.begin(), list.end(), [&](const Hypothesis& h) { return h.names.front() == name; });
+            return *std::find_if(list.begin(), list.end(),
+                                 [&](const Hypothesis& h) { return h.names.front() == name; });
         };
         const Hypothesis a = of(wanted.names[0]), b = of(wanted.names[1]);
         chosen = train.fit(discovery::joined(a, a.starts.front(), b, b.starts.front()), noise);

@@ -11,8 +11,9 @@ namespace underbody::bench {
 /// One standard deviation of a gap reading of the heave plant, m.
 inline constexpr double heave_noise = 2e-4;
 
-/// The peers of peers.h on the residual force of the same smoother that `underbody residual` draws, one value a second, each told the true
-/// noise; then their force goes into the declared model, and its error is that of discover(): windows of two seconds on the test runs.
+/// The peers of peers.h on the residual force of the same smoother that `underbody residual` draws, one value a second,
+/// each told the true noise; then their force goes into the declared model, and its error is that of discover():
+/// windows of two seconds on the test runs.
 class HeavePeers {
 public:
     HeavePeers(const dynamics::Model& model, const Sample& sample);
@@ -31,8 +32,8 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-/// Error on the test runs of the true law: its numbers fitted with the catalogue's form where it has one, else (unknown laws) the law itself
-/// as a fine table; with the true sensor noise. m.
+/// Error on the test runs of the true law: its numbers fitted with the catalogue's form where it has one, else (unknown
+/// laws) the law itself as a fine table; with the true sensor noise. m.
 double heave_best(const dynamics::Model& model, const Case& wanted, const Sample& sample);
 
 }  // namespace underbody::bench

@@ -18,7 +18,8 @@ Eigen::MatrixXd columns_of(const Eigen::MatrixXd& library, const std::vector<Eig
 }
 
 /// The columns that stay above the threshold, round after round.
-std::vector<Eigen::Index> survivors(const Eigen::MatrixXd& library, const Eigen::VectorXd& y, double threshold, double ridge) {
+std::vector<Eigen::Index> survivors(const Eigen::MatrixXd& library, const Eigen::VectorXd& y, double threshold,
+                                    double ridge) {
     std::vector<Eigen::Index> kept;
     for (Eigen::Index k = 0; k < library.cols(); ++k) {
         kept.push_back(k);
@@ -68,7 +69,8 @@ double twice_log_evidence(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, co
 /// All products of the columns of `x` up to a degree.
 Eigen::MatrixXd monomials(const Eigen::MatrixXd& x, int degree) {
     std::vector<Eigen::VectorXd> columns;
-    const std::function<void(Eigen::Index, int, Eigen::VectorXd)> grow = [&](Eigen::Index from, int left, const Eigen::VectorXd& product) {
+    const std::function<void(Eigen::Index, int, Eigen::VectorXd)> grow = [&](Eigen::Index from, int left,
+                                                                             const Eigen::VectorXd& product) {
         columns.push_back(product);
         for (Eigen::Index k = from; left > 0 && k < x.cols(); ++k) {
             grow(k, left - 1, product.cwiseProduct(x.col(k)));
@@ -92,12 +94,14 @@ Eigen::VectorXd thresholded_least_squares(const Eigen::MatrixXd& library, const 
             const std::vector<Eigen::Index> kept = survivors(library, y, threshold, ridge);
             Eigen::VectorXd full = Eigen::VectorXd::Zero(library.cols());
             if (!kept.empty()) {
-                const Eigen::VectorXd c = columns_of(library, kept).colPivHouseholderQr().solve(y);  // what is kept, fitted freely
+                const Eigen::VectorXd c =
+                    columns_of(library, kept).colPivHouseholderQr().solve(y);  // what is kept, fitted freely
                 for (std::size_t k = 0; k < kept.size(); ++k) {
                     full(kept[k]) = c(static_cast<Eigen::Index>(k));
                 }
             }
-            const double criterion = (y - library * full).squaredNorm() + static_cast<double>(kept.size()) * std::log(static_cast<double>(y.size()));
+            const double criterion = (y - library * full).squaredNorm() +
+                                     static_cast<double>(kept.size()) * std::log(static_cast<double>(y.size()));
             if (criterion < best) {
                 best = criterion;
                 chosen = full;
@@ -108,7 +112,8 @@ Eigen::VectorXd thresholded_least_squares(const Eigen::MatrixXd& library, const 
 }
 
 Eigen::VectorXd Polynomial::at(const Eigen::MatrixXd& x) const {
-    return degree < 0 ? Eigen::VectorXd(Eigen::VectorXd::Zero(x.rows())) : Eigen::VectorXd(monomials(x, degree) * coefficients);
+    return degree < 0 ? Eigen::VectorXd(Eigen::VectorXd::Zero(x.rows()))
+                      : Eigen::VectorXd(monomials(x, degree) * coefficients);
 }
 
 Polynomial fit_polynomial(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
@@ -120,7 +125,8 @@ Polynomial fit_polynomial(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
             break;
         }
         const Eigen::VectorXd c = basis.colPivHouseholderQr().solve(y);
-        const double criterion = (y - basis * c).squaredNorm() + static_cast<double>(basis.cols()) * std::log(static_cast<double>(basis.rows()));
+        const double criterion = (y - basis * c).squaredNorm() +
+                                 static_cast<double>(basis.cols()) * std::log(static_cast<double>(basis.rows()));
         if (criterion < least) {
             least = criterion;
             best = {degree, c};

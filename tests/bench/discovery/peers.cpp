@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "surrogates/dynamics/predict.h"
+#include "surrogates/dynamics/simulate/predict.h"
 #include "tests/bench/discovery/peer_fits.h"
 
 namespace underbody::bench {
@@ -19,7 +19,8 @@ struct Data {
     Eigen::VectorXd residual;
 };
 
-Data data_of(const dynamics::Model& model, const dynamics::Measurements& set, const std::string& quantity, double sigma) {
+Data data_of(const dynamics::Model& model, const dynamics::Measurements& set, const std::string& quantity,
+             double sigma) {
     const dynamics::StaticModel predicted(model, quantity);
     const dynamics::MeasuredRun& run = set.runs.front();
     const std::vector<double>& measured = run.table.numbers(quantity);
@@ -86,11 +87,14 @@ struct Scaled {
     }
 };
 
-double rmse(const Eigen::VectorXd& residual, double sigma) { return sigma * std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size())); }
+double rmse(const Eigen::VectorXd& residual, double sigma) {
+    return sigma * std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
+}
 
 }  // namespace
 
-PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measurements& train, const dynamics::Measurements& test, const Noise& sigma) {
+PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measurements& train,
+                             const dynamics::Measurements& test, const Noise& sigma) {
     PeerAnswer answer;
     const std::vector<std::string> quantities = quantities_of(train);
     std::vector<Data> data, other;
@@ -104,7 +108,8 @@ PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measu
     const std::vector<Channel> channels = varying(data.front());
     std::vector<std::string> names;
     Eigen::MatrixXd library(rows, 0), there(test_rows, 0);
-    const auto fill = [&](const dynamics::Model& moved, double step, const std::vector<Data>& sets, Eigen::Index count) {
+    const auto fill = [&](const dynamics::Model& moved, double step, const std::vector<Data>& sets,
+                          Eigen::Index count) {
         Eigen::VectorXd column(count);
         Eigen::Index begin = 0;
         for (std::size_t q = 0; q < quantities.size(); ++q) {
@@ -117,7 +122,8 @@ PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measu
     };
     for (const dynamics::Effect* effect : dynamics::effects()) {
         const dynamics::EffectInfo& info = effect->info();
-        if (info.seen_in == dynamics::SeenIn::time_series || info.takes_table || info.takes_parameter || info.name == "cable_buoyancy") {
+        if (info.seen_in == dynamics::SeenIn::time_series || info.takes_table || info.takes_parameter ||
+            info.name == "cable_buoyancy") {
             continue;  // a cable's column is a strut's
         }
         std::vector<std::string> meant{""};
@@ -173,7 +179,8 @@ PeerAnswer sparse_regression(const dynamics::Model& model, const dynamics::Measu
     return answer;
 }
 
-PeerAnswer polynomial_residual(const dynamics::Model& model, const dynamics::Measurements& train, const dynamics::Measurements& test, const Noise& sigma) {
+PeerAnswer polynomial_residual(const dynamics::Model& model, const dynamics::Measurements& train,
+                               const dynamics::Measurements& test, const Noise& sigma) {
     PeerAnswer answer;
     answer.verdict = "none";
     for (const std::string& quantity : quantities_of(train)) {
@@ -189,8 +196,8 @@ PeerAnswer polynomial_residual(const dynamics::Model& model, const dynamics::Mea
     return answer;
 }
 
-PeerAnswer gaussian_process_discrepancy(const dynamics::Model& model, const dynamics::Measurements& train, const dynamics::Measurements& test,
-                                        const Noise& sigma) {
+PeerAnswer gaussian_process_discrepancy(const dynamics::Model& model, const dynamics::Measurements& train,
+                                        const dynamics::Measurements& test, const Noise& sigma) {
     PeerAnswer answer;
     answer.verdict = "none";
     for (const std::string& quantity : quantities_of(train)) {
@@ -206,7 +213,8 @@ PeerAnswer gaussian_process_discrepancy(const dynamics::Model& model, const dyna
         answer.rmse[quantity] = rmse(other.residual - fit.at(scaled(other)), sigma.at(quantity));
         for (std::size_t v = 0; v < scaled.channels.size(); ++v) {
             const std::string name = dynamics::channel_name(scaled.channels[v]);
-            if (fit.depends_on(v) && std::find(answer.depends_on.begin(), answer.depends_on.end(), name) == answer.depends_on.end()) {
+            if (fit.depends_on(v) &&
+                std::find(answer.depends_on.begin(), answer.depends_on.end(), name) == answer.depends_on.end()) {
                 answer.depends_on.push_back(name);
             }
         }

@@ -15,10 +15,10 @@ constexpr double fine = 0.004;  // s, step of the plant (second-order, midpoint)
 /// All that a plant may have beyond the declared model, in forms of its own.
 struct Extra {
     std::string name;
-    double a = 0;   ///< strength
-    double b = 0;   ///< a shape, drawn by seed
+    double a = 0;  ///< strength
+    double b = 0;  ///< a shape, drawn by seed
     double c = 0;
-    double form = 0;   ///< 0..1: which form of the law
+    double form = 0;  ///< 0..1: which form of the law
 };
 
 struct Plant {
@@ -51,31 +51,54 @@ struct Plant {
         double felt = u;
         for (const Extra& e : extras) {
             const std::string& n = e.name;
-            if (n == "ambient_heave_current") relative = w - e.a;
-            else if (n == "surface_roughness") lift *= 1 + e.a * (e.b - h) / (e.b + h);
-            else if (n == "declared_parameter") lift *= 1 + e.a;
-            else if (n == "constant_force") f += e.a;
-            else if (n == "coulomb_friction") f -= e.a * (1 + 0.3 * e.form * std::exp(-w * w / 1.6e-5)) * std::tanh(w / (4e-4 + 1.2e-3 * e.c));
-            else if (n == "linear_damping") f -= e.a * w / (1 + 3 * e.form * std::abs(w));
-            else if (n == "quadratic_damping") f -= e.a * std::copysign(std::pow(std::abs(w), 1.88 + 0.2 * e.form), w);
-            else if (n == "squeeze_film_damping") f -= e.a * w / std::pow(h + 1e-3 * e.form, 2.8 + 0.3 * e.c);
-            else if (n == "tether_stiffness") f -= e.a * (h - e.b) * (1 + 0.1 * (h - e.b));
-            else if (n == "periodic_disturbance") f += e.a * (std::sin(2 * pi * e.b * t + e.c) + 0.08 * std::sin(4 * pi * e.b * t));
-            else if (n == "input_gain") felt *= 1 + e.a;
+            if (n == "ambient_heave_current")
+                relative = w - e.a;
+            else if (n == "surface_roughness")
+                lift *= 1 + e.a * (e.b - h) / (e.b + h);
+            else if (n == "declared_parameter")
+                lift *= 1 + e.a;
+            else if (n == "constant_force")
+                f += e.a;
+            else if (n == "coulomb_friction")
+                f -= e.a * (1 + 0.3 * e.form * std::exp(-w * w / 1.6e-5)) * std::tanh(w / (4e-4 + 1.2e-3 * e.c));
+            else if (n == "linear_damping")
+                f -= e.a * w / (1 + 3 * e.form * std::abs(w));
+            else if (n == "quadratic_damping")
+                f -= e.a * std::copysign(std::pow(std::abs(w), 1.88 + 0.2 * e.form), w);
+            else if (n == "squeeze_film_damping")
+                f -= e.a * w / std::pow(h + 1e-3 * e.form, 2.8 + 0.3 * e.c);
+            else if (n == "tether_stiffness")
+                f -= e.a * (h - e.b) * (1 + 0.1 * (h - e.b));
+            else if (n == "periodic_disturbance")
+                f += e.a * (std::sin(2 * pi * e.b * t + e.c) + 0.08 * std::sin(4 * pi * e.b * t));
+            else if (n == "input_gain")
+                felt *= 1 + e.a;
             else if (n == "input_dead_zone") {
                 const double x = std::abs(felt) / e.a;
-                felt = std::copysign(x > 1.6 ? std::abs(felt) - e.a : e.a * 0.6 * std::pow(std::max(0.0, (x - 0.4) / 1.2), 2), felt);
-            } else if (n == "bump") f += e.a * std::exp(-std::pow((h - e.b) / 0.03, 2));
-            else if (n == "wiggle") f += e.a * std::sin(w / 0.012 * (1 + e.b));
-            else if (n == "cross") f += e.a * w * std::sin(h / 0.035);
-            else if (n == "warming") f += e.a * std::tanh((t - 18 - 10 * e.b) / 4);
-            else if (n == "one_sided") f -= e.a * std::max(0.0, w) * (1 + 20 * std::max(0.0, w));
-            else if (n == "rectifier") f += e.a * std::abs(u - 0.035) / 0.03;
-            else if (n == "ripple") f += e.a * std::sin(h / (0.018 + 0.01 * e.b) + 6 * e.form);
-            else if (n == "film_cell") f += e.a * w * std::exp(-std::pow((h - 0.1 - 0.08 * e.b) / 0.035, 2));
-            else if (n == "above_a_speed") f -= e.a * 0.5 * (std::tanh((w - 0.012) / 0.003) + std::tanh((w + 0.012) / 0.003));
-            else if (n == "thrust_near_wall") f += e.a * (u - 0.03) * std::exp(-std::pow((h - 0.09) / 0.04, 2));
-            else if (n == "jump_in_gap") f += e.a * std::tanh((h - 0.1 - 0.06 * e.b) / 0.008);
+                felt = std::copysign(
+                    x > 1.6 ? std::abs(felt) - e.a : e.a * 0.6 * std::pow(std::max(0.0, (x - 0.4) / 1.2), 2), felt);
+            } else if (n == "bump")
+                f += e.a * std::exp(-std::pow((h - e.b) / 0.03, 2));
+            else if (n == "wiggle")
+                f += e.a * std::sin(w / 0.012 * (1 + e.b));
+            else if (n == "cross")
+                f += e.a * w * std::sin(h / 0.035);
+            else if (n == "warming")
+                f += e.a * std::tanh((t - 18 - 10 * e.b) / 4);
+            else if (n == "one_sided")
+                f -= e.a * std::max(0.0, w) * (1 + 20 * std::max(0.0, w));
+            else if (n == "rectifier")
+                f += e.a * std::abs(u - 0.035) / 0.03;
+            else if (n == "ripple")
+                f += e.a * std::sin(h / (0.018 + 0.01 * e.b) + 6 * e.form);
+            else if (n == "film_cell")
+                f += e.a * w * std::exp(-std::pow((h - 0.1 - 0.08 * e.b) / 0.035, 2));
+            else if (n == "above_a_speed")
+                f -= e.a * 0.5 * (std::tanh((w - 0.012) / 0.003) + std::tanh((w + 0.012) / 0.003));
+            else if (n == "thrust_near_wall")
+                f += e.a * (u - 0.03) * std::exp(-std::pow((h - 0.09) / 0.04, 2));
+            else if (n == "jump_in_gap")
+                f += e.a * std::tanh((h - 0.1 - 0.06 * e.b) / 0.008);
         }
         const double drag = linear * relative + quadratic * relative * std::abs(relative);
         double slope = 0;
@@ -85,8 +108,8 @@ struct Plant {
 };
 
 struct Track {
-    std::vector<double> time, gap, velocity, input;   ///< at the sampling times; true gap and velocity
-    std::vector<double> sensed, sensed_velocity;      ///< what a perfect reading would be
+    std::vector<double> time, gap, velocity, input;  ///< at the sampling times; true gap and velocity
+    std::vector<double> sensed, sensed_velocity;     ///< what a perfect reading would be
 };
 
 /// One closed-loop run. `style` 0: steps under a soft controller; 1: sines under a stiffer one.
@@ -109,9 +132,10 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
     double next_step = 2 + 6 * random.uniform();
     Track track;
     std::vector<double> past_h, past_w;
-    // Basset's memory by exponentials, rates a factor of three apart from a period of hours to one of milliseconds; what is faster is a mass
+    // Basset's memory by exponentials, rates a factor of three apart from a period of hours to one of milliseconds;
+    // what is faster is a mass
     constexpr int parts = 13;
-    constexpr double slowest = 3e-4;   // 1/s
+    constexpr double slowest = 3e-4;  // 1/s
     double memory[parts] = {};
     double history = 0;
     for (const Extra& e : plant.extras) {
@@ -134,7 +158,8 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
         estimate += slope * dt + 0.15 * innovation * dt * 50;
         slope += 0.25 * innovation * dt * 50;
         integral = std::clamp(integral + 0.02 * (reference - estimate) * dt, -0.05, 0.05);
-        double u = weight - 0.7 * jet_lift(std::max(estimate, 0.003)) + stiff * std::clamp(reference - estimate, -0.08, 0.08) - damp * slope + integral;
+        double u = weight - 0.7 * jet_lift(std::max(estimate, 0.003)) +
+                   stiff * std::clamp(reference - estimate, -0.08, 0.08) - damp * slope + integral;
         u += 0.006 * std::sin(rates[4] * 3 * t + phases[4]) + 0.004 * std::sin(rates[5] * 5 * t + phases[5]);
         u = std::clamp(u, -0.2, 0.25);
         commands.push_back(u);
@@ -156,16 +181,18 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
             felt = held;
             if (plant.lag > 0) {
                 const double rise = 1 - std::exp(-step / plant.lag);
-                felt = held + (lagged - held) * rise * plant.lag / step;   // mean over the step
+                felt = held + (lagged - held) * rise * plant.lag / step;  // mean over the step
                 lagged += (held - lagged) * rise;
             }
             double slope_of_mass = 0;
-            const double extra_mass = history * std::log(3.0) / std::sqrt(slowest * std::pow(3.0, parts) * pi) / (1 - 1 / std::sqrt(3.0));
-            const auto basset = [&](double later, double a) {   // force with the memory that an acceleration leads to
+            const double extra_mass =
+                history * std::log(3.0) / std::sqrt(slowest * std::pow(3.0, parts) * pi) / (1 - 1 / std::sqrt(3.0));
+            const auto basset = [&](double later, double a) {  // force with the memory that an acceleration leads to
                 double sum = 0, rate_of = slowest;
                 for (int i = 0; i < parts && history > 0; ++i, rate_of *= 3) {
                     const double decay = std::exp(-rate_of * later);
-                    sum -= history * std::log(3.0) * std::sqrt(rate_of / pi) * (memory[i] * decay + a * (1 - decay) / rate_of);
+                    sum -= history * std::log(3.0) * std::sqrt(rate_of / pi) *
+                           (memory[i] * decay + a * (1 - decay) / rate_of);
                 }
                 return sum;
             };
@@ -180,7 +207,7 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
                 double rate_of = slowest;
                 for (double& m : memory) {
                     const double decay = std::exp(-rate_of * step);
-                    m = m * decay + a2 * (1 - decay) / rate_of;   // integral of a exp(-rate (t-s))
+                    m = m * decay + a2 * (1 - decay) / rate_of;  // integral of a exp(-rate (t-s))
                     rate_of *= 3;
                 }
             }
@@ -219,7 +246,8 @@ double declared_error(const std::vector<Track>& tracks) {
     for (const Track& track : tracks) {
         const double dt = track.time[1] - track.time[0];
         const int window = static_cast<int>(2 / dt);
-        for (int first = static_cast<int>(1 / dt); first + window < static_cast<int>(track.time.size()); first += window) {
+        for (int first = static_cast<int>(1 / dt); first + window < static_cast<int>(track.time.size());
+             first += window) {
             const auto f = static_cast<std::size_t>(first);
             double h = track.sensed[f], w = (track.sensed[f + 1] - track.sensed[f - 1]) / (2 * dt);
             for (int k = 0; k < window; ++k) {
@@ -238,23 +266,34 @@ double declared_error(const std::vector<Track>& tracks) {
     return std::sqrt(sum / std::max(count, 1.0));
 }
 
-Plant plant_of(const std::vector<std::string>& names, const std::vector<double>& strength, const std::vector<double>& shape) {
+Plant plant_of(const std::vector<std::string>& names, const std::vector<double>& strength,
+               const std::vector<double>& shape) {
     Plant plant;
     for (std::size_t i = 0; i < names.size(); ++i) {
         const double a = strength[i], r = shape[i];
-        if (names[i] == "input_delay") plant.input_delay = std::abs(a);
-        else if (names[i] == "actuator_lag") plant.lag = std::abs(a);
-        else if (names[i] == "gap_sensor_delay") plant.sensor_delay = std::abs(a);
-        else if (names[i] == "gap_sensor_bias") plant.bias = a;
-        else if (names[i] == "gap_dependent_added_mass") plant.extras.push_back({names[i], std::abs(a), 0.03 + 0.05 * r, 0});
-        else if (names[i] == "surface_roughness") plant.extras.push_back({names[i], std::abs(a), 0.06 + 0.08 * r, 0});
-        else if (names[i] == "tether_stiffness") plant.extras.push_back({names[i], std::abs(a), 0.05 + 0.15 * r, 0});
-        else if (names[i] == "periodic_disturbance") plant.extras.push_back({names[i], std::abs(a), 0.15 + 1.2 * r * r, 6.28 * r});
-        else if (names[i] == "bump") plant.extras.push_back({names[i], a, 0.06 + 0.12 * r, 0});
-        else if (names[i] == "constant_force" || names[i] == "ambient_heave_current" || names[i] == "added_mass" || names[i] == "input_gain" ||
-                 names[i] == "declared_parameter")
+        if (names[i] == "input_delay")
+            plant.input_delay = std::abs(a);
+        else if (names[i] == "actuator_lag")
+            plant.lag = std::abs(a);
+        else if (names[i] == "gap_sensor_delay")
+            plant.sensor_delay = std::abs(a);
+        else if (names[i] == "gap_sensor_bias")
+            plant.bias = a;
+        else if (names[i] == "gap_dependent_added_mass")
+            plant.extras.push_back({names[i], std::abs(a), 0.03 + 0.05 * r, 0});
+        else if (names[i] == "surface_roughness")
+            plant.extras.push_back({names[i], std::abs(a), 0.06 + 0.08 * r, 0});
+        else if (names[i] == "tether_stiffness")
+            plant.extras.push_back({names[i], std::abs(a), 0.05 + 0.15 * r, 0});
+        else if (names[i] == "periodic_disturbance")
+            plant.extras.push_back({names[i], std::abs(a), 0.15 + 1.2 * r * r, 6.28 * r});
+        else if (names[i] == "bump")
+            plant.extras.push_back({names[i], a, 0.06 + 0.12 * r, 0});
+        else if (names[i] == "constant_force" || names[i] == "ambient_heave_current" || names[i] == "added_mass" ||
+                 names[i] == "input_gain" || names[i] == "declared_parameter")
             plant.extras.push_back({names[i], a, r, 0});
-        else plant.extras.push_back({names[i], std::abs(a), r, 0});
+        else
+            plant.extras.push_back({names[i], std::abs(a), r, 0});
     }
     for (std::size_t i = 0; i < plant.extras.size(); ++i) {
         plant.extras[i].form = std::fmod(7.31 * shape.front() + 0.37 * static_cast<double>(i), 1.0);
@@ -267,9 +306,10 @@ Plant plant_of(const std::vector<std::string>& names, const std::vector<double>&
 
 /// Whether the catalogue's first number means what the plant's strength does: the same law in the same terms.
 bool means_the_same(const std::string& name) {
-    return name == "constant_force" || name == "added_mass" || name == "input_gain" || name == "input_delay" || name == "actuator_lag" ||
-           name == "gap_sensor_delay" || name == "gap_sensor_bias" || name == "ambient_heave_current" || name == "declared_parameter" ||
-           name == "periodic_disturbance" || name == "coulomb_friction";
+    return name == "constant_force" || name == "added_mass" || name == "input_gain" || name == "input_delay" ||
+           name == "actuator_lag" || name == "gap_sensor_delay" || name == "gap_sensor_bias" ||
+           name == "ambient_heave_current" || name == "declared_parameter" || name == "periodic_disturbance" ||
+           name == "coulomb_friction";
 }
 
 core::Table table_of(const Track& track, const Case& wanted, core::Random& random) {
@@ -298,7 +338,8 @@ core::Table table_of(const Track& track, const Case& wanted, core::Random& rando
 }  // namespace
 
 double jet_lift(double h) {
-    return 0.05 * std::exp(-h / 0.003) - 0.038 * std::exp(-std::pow((h - 0.026) / 0.055, 2)) + 0.0082 * std::exp(-std::pow((h - 0.46) / 0.24, 2));
+    return 0.05 * std::exp(-h / 0.003) - 0.038 * std::exp(-std::pow((h - 0.026) / 0.055, 2)) +
+           0.0082 * std::exp(-std::pow((h - 0.46) / 0.24, 2));
 }
 
 Sample make_heave(const Case& wanted) {
@@ -317,7 +358,8 @@ Sample make_heave(const Case& wanted) {
             laws[i] == "gap_dependent_added_mass" || laws[i] == "linear_damping" || laws[i] == "declared_parameter" ||
             laws[i] == "input_gain" || laws[i] == "surface_roughness") {
             strength[i] = sign * 0.02;
-        } else if (laws[i] == "quadratic_damping" || laws[i] == "one_sided" || laws[i] == "cross" || laws[i] == "film_cell" || laws[i] == "thrust_near_wall" || laws[i] == "history_force") {
+        } else if (laws[i] == "quadratic_damping" || laws[i] == "one_sided" || laws[i] == "cross" ||
+                   laws[i] == "film_cell" || laws[i] == "thrust_near_wall" || laws[i] == "history_force") {
             strength[i] = sign * 0.3;
         } else if (laws[i] == "squeeze_film_damping") {
             strength[i] = sign * 3e-6;
@@ -340,17 +382,22 @@ Sample make_heave(const Case& wanted) {
     sample.names = wanted.names;
     sample.in_catalogue_terms = std::nan("");
     if (laws.size() == 1 && means_the_same(laws.front())) {
-        sample.in_catalogue_terms = plant.lag + plant.input_delay + plant.sensor_delay + plant.bias + (plant.extras.empty() ? 0 : plant.extras.front().a) +
+        sample.in_catalogue_terms = plant.lag + plant.input_delay + plant.sensor_delay + plant.bias +
+                                    (plant.extras.empty() ? 0 : plant.extras.front().a) +
                                     (laws.front() == "input_gain" || laws.front() == "declared_parameter" ? 1 : 0);
     }
     if (!laws.empty() && wanted.names.front() == "unknown") {
-        sample.depends_on = wanted.law == "bump" || wanted.law == "ripple" || wanted.law == "jump_in_gap" ? std::vector<std::string>{"gap"}
+        sample.depends_on = wanted.law == "bump" || wanted.law == "ripple" || wanted.law == "jump_in_gap"
+                                ? std::vector<std::string>{"gap"}
                             : wanted.law == "thrust_near_wall" ? std::vector<std::string>{"gap", "input_force"}
-                            : wanted.law == "cross" || wanted.law == "film_cell" ? std::vector<std::string>{"gap", "heave_velocity"}
-                            : wanted.law == "warming" ? std::vector<std::string>{"time"}
+                            : wanted.law == "cross" || wanted.law == "film_cell"
+                                ? std::vector<std::string>{"gap", "heave_velocity"}
+                            : wanted.law == "warming"   ? std::vector<std::string>{"time"}
                             : wanted.law == "rectifier" ? std::vector<std::string>{"input_force"}
                                                         : std::vector<std::string>{"heave_velocity"};
-        sample.missing = [plant](double t, double h, double w, double u) { return plant.force(t, h, w, u) - Plant().force(t, h, w, u); };
+        sample.missing = [plant](double t, double h, double w, double u) {
+            return plant.force(t, h, w, u) - Plant().force(t, h, w, u);
+        };
     }
     for (const int style : {0, 1}) {
         dynamics::Measurements& data = style == 0 ? sample.train : sample.test;

@@ -14,7 +14,8 @@ namespace {
 constexpr double reference_temperature = 293.15;
 
 struct Point {
-    double gap = 0, speed = 0, voltage = 0, temperature = reference_temperature, time = 0, direction = 0, pitch = 0, depth = 0;
+    double gap = 0, speed = 0, voltage = 0, temperature = reference_temperature, time = 0, direction = 0, pitch = 0,
+           depth = 0;
 };
 
 struct Forces {
@@ -35,7 +36,9 @@ double viscosity(double kelvin) {
 
 double towed_lift(double gap, double pitch) { return glide_lift(gap) + 1.6 * pitch * (0.3 + std::exp(-gap / 0.02)); }
 double towed_drag(double gap, double pitch) { return glide_drag(gap) + 4 * pitch * pitch; }
-double towed_moment(double gap, double pitch) { return 0.02 * std::exp(-gap / 0.02) + 0.11 * pitch * (0.5 + std::exp(-gap / 0.015)); }
+double towed_moment(double gap, double pitch) {
+    return 0.02 * std::exp(-gap / 0.02) + 0.11 * pitch * (0.5 + std::exp(-gap / 0.015));
+}
 
 Forces declared(const std::string& family, const Point& p) {
     const double s = p.speed * p.speed / 0.25;
@@ -81,9 +84,11 @@ void push(const Law& law, const std::string& family, const Point& set, const Poi
         f.moment += law.mode == 1 ? 0.1 * force : 0;
     };
     if (name == "speed_exponent" || name == "temperature") {
-        const double still = name == "speed_exponent" && family == "both" ? jet_lift(p.gap) * p.voltage * p.voltage / 100 : 0;
-        const double factor = name == "temperature" ? std::pow(viscosity(p.temperature) / viscosity(reference_temperature), a)
-                                                    : std::pow(p.speed / 0.5, a);
+        const double still =
+            name == "speed_exponent" && family == "both" ? jet_lift(p.gap) * p.voltage * p.voltage / 100 : 0;
+        const double factor = name == "temperature"
+                                  ? std::pow(viscosity(p.temperature) / viscosity(reference_temperature), a)
+                                  : std::pow(p.speed / 0.5, a);
         f = {still + (f.lift - still) * factor, f.drag * factor, f.moment * factor};
     }
     if (name == "pitch_misalignment" && family == "glide") {
@@ -95,11 +100,14 @@ void push(const Law& law, const std::string& family, const Point& set, const Poi
     if (name == "sensor_gain") scale(1 + a);
     if (name == "force_bias") add(a);
     if (name == "drift") add(a * set.time / 3600);
-    if (name == "strut_buoyancy" || name == "cable_buoyancy") f.lift += a * (family == "towed" ? set.depth - 0.6 : set.gap - 0.05 * law.r);
+    if (name == "strut_buoyancy" || name == "cable_buoyancy")
+        f.lift += a * (family == "towed" ? set.depth - 0.6 : set.gap - 0.05 * law.r);
     if (name == "guide_friction") f.lift += a * set.direction * (1 + 0.1 * std::tanh(set.gap / 0.1));
     if (name == "surface_roughness") f.lift *= 1 - std::abs(a) * std::tanh(std::log(set.gap / (0.006 + 0.02 * law.r)));
     // outside the catalogue
-    if (name == "ring") f.lift += a * std::exp(-std::pow((set.gap - 0.012) / 0.005, 2)) * (set.voltage > 0 ? set.voltage / 8 : set.speed / 0.5);
+    if (name == "ring")
+        f.lift += a * std::exp(-std::pow((set.gap - 0.012) / 0.005, 2)) *
+                  (set.voltage > 0 ? set.voltage / 8 : set.speed / 0.5);
     if (name == "hump") f.lift += a * std::exp(-std::pow(std::log(set.gap / 0.01), 2) / 0.3);
     if (name == "resonance") f.lift += a * std::exp(-std::pow((set.speed - 0.6) / 0.1, 2));
     if (name == "diurnal") add(a * std::sin(set.time / 3600 * 1.9 + 6 * law.r));
@@ -130,9 +138,11 @@ void shuffle(std::vector<Point>& points, core::Random& random) {
 /// Sweeps over gap in one direction, the voltages in drawn order.
 std::vector<Point> jet_points(bool test, core::Random& random) {
     const std::vector<double> gaps = test ? std::vector<double>{3e-3, 5e-3, 8e-3, 0.012, 0.025, 0.055, 0.12, 0.26, 0.6}
-                                          : std::vector<double>{2e-3, 4e-3, 6e-3, 9e-3, 0.014, 0.02, 0.03, 0.045, 0.07, 0.1, 0.15, 0.22, 0.3, 0.45, 0.7, 1};
+                                          : std::vector<double>{2e-3, 4e-3, 6e-3, 9e-3, 0.014, 0.02, 0.03, 0.045,
+                                                                0.07, 0.1,  0.15, 0.22, 0.3,   0.45, 0.7,  1};
     std::vector<std::pair<double, double>> sweeps;
-    for (const double v : test ? std::vector<double>{4.5, 7.5, 10.5, 11.5} : std::vector<double>{4, 5, 6, 7, 8, 9, 10, 11, 12}) {
+    for (const double v :
+         test ? std::vector<double>{4.5, 7.5, 10.5, 11.5} : std::vector<double>{4, 5, 6, 7, 8, 9, 10, 11, 12}) {
         sweeps.emplace_back(v, 1);
         sweeps.emplace_back(v, -1);
     }
@@ -165,21 +175,25 @@ std::vector<Point> drawn_points(const std::string& family, bool test, core::Rand
     const double between = test ? 0.05 : 0;
     if (family == "glide") {
         for (const double gap : test ? std::vector<double>{1.2e-3, 3.5e-3, 8e-3, 0.013, 0.03}
-                                     : std::vector<double>{1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 5e-3, 6.5e-3, 0.01, 0.016, 0.025, 0.04, 0.07}) {
+                                     : std::vector<double>{1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 5e-3, 6.5e-3, 0.01, 0.016,
+                                                           0.025, 0.04, 0.07}) {
             for (int v = 2; v <= 10; ++v) {
                 add(gap, 0.1 * v - between, 0, 0, 2);
             }
         }
     } else if (family == "towed") {
-        for (const double gap : test ? std::vector<double>{2e-3, 5e-3, 0.013, 0.03} : std::vector<double>{1.5e-3, 2.5e-3, 4e-3, 6.5e-3, 0.01, 0.016, 0.04}) {
-            for (const double pitch : test ? std::vector<double>{-0.02, 0.01, 0.045} : std::vector<double>{-0.05, -0.025, 0, 0.025, 0.05}) {
+        for (const double gap : test ? std::vector<double>{2e-3, 5e-3, 0.013, 0.03}
+                                     : std::vector<double>{1.5e-3, 2.5e-3, 4e-3, 6.5e-3, 0.01, 0.016, 0.04}) {
+            for (const double pitch :
+                 test ? std::vector<double>{-0.02, 0.01, 0.045} : std::vector<double>{-0.05, -0.025, 0, 0.025, 0.05}) {
                 for (const double speed : {0.25, 0.4, 0.6, 0.8, 1.0}) {
                     add(gap, speed - between, 0, pitch, 1);
                 }
             }
         }
     } else {
-        for (const double gap : test ? std::vector<double>{3e-3, 8e-3, 0.02, 0.05} : std::vector<double>{2e-3, 4e-3, 6e-3, 0.01, 0.016, 0.025, 0.04, 0.07}) {
+        for (const double gap : test ? std::vector<double>{3e-3, 8e-3, 0.02, 0.05}
+                                     : std::vector<double>{2e-3, 4e-3, 6e-3, 0.01, 0.016, 0.025, 0.04, 0.07}) {
             for (const double speed : {0.3, 0.6, 0.9}) {
                 for (const double voltage : {4.0, 6.0, 8.0, 10.0, 12.0}) {
                     add(gap, speed - between, voltage - 10 * between, 0, 2);
@@ -217,7 +231,7 @@ dynamics::Measurements measure(const Case& wanted, const std::vector<Law>& laws,
     data.kind = dynamics::MeasurementKind::steady;
     data.title = wanted.text();
     const std::vector<Point> points = set_points(wanted.family, test, random);
-    const auto column = [&](double Point::* member) {
+    const auto column = [&](double Point::*member) {
         std::vector<double> values;
         for (const Point& p : points) {
             values.push_back(p.*member);
@@ -275,20 +289,22 @@ double size_in_noise(const std::string& family, const std::vector<Law>& laws, co
 }
 
 double first_guess(const std::string& law, double sigma) {
-    if (law == "current" || law == "speed_exponent" || law == "temperature" || law == "sensor_gain" || law == "surface_roughness" ||
-        law == "declared_parameter") {
+    if (law == "current" || law == "speed_exponent" || law == "temperature" || law == "sensor_gain" ||
+        law == "surface_roughness" || law == "declared_parameter") {
         return 0.05;
     }
     return law == "gap_offset" ? 2e-4 : law == "pump_curve" ? 0.3 : law == "pitch_misalignment" ? 0.005 : sigma;
 }
 
-/// What the catalogue's first parameter should come out as; NaN where the bench's law has another form than the catalogue's.
+/// What the catalogue's first parameter should come out as; NaN where the bench's law has another form than the
+/// catalogue's.
 double in_catalogue_terms(const Law& law) {
     if (law.name == "speed_exponent") return 2 + law.a;
     if (law.name == "sensor_gain") return 1 + law.a;
     if (law.name == "declared_parameter") return 1 + law.a;
     if (law.name == "drift") return law.a / 3600;
-    if (law.name == "pump_curve" || law.name == "surface_roughness" || law.name == "guide_friction") return std::nan("");
+    if (law.name == "pump_curve" || law.name == "surface_roughness" || law.name == "guide_friction")
+        return std::nan("");
     return law.a;
 }
 
@@ -328,7 +344,7 @@ std::vector<Law> laws_of(const Case& wanted) {
 std::vector<Point> points_of(const dynamics::Measurements& data) {
     const core::Table& table = data.runs.front().table;
     std::vector<Point> points(table.rows());
-    const auto take = [&](const char* name, double Point::* member) {
+    const auto take = [&](const char* name, double Point::*member) {
         if (const core::Column* column = table.find(name)) {
             for (std::size_t i = 0; i < points.size(); ++i) {
                 points[i].*member = column->numbers[i];
@@ -348,7 +364,9 @@ std::vector<Point> points_of(const dynamics::Measurements& data) {
 
 }  // namespace
 
-double glide_lift(double h) { return 0.9 * std::exp(-h / 6e-4) - 0.62 * std::exp(-h / 0.021) * (1 - 0.45 * std::exp(-h / 0.0017)) + 0.053; }
+double glide_lift(double h) {
+    return 0.9 * std::exp(-h / 6e-4) - 0.62 * std::exp(-h / 0.021) * (1 - 0.45 * std::exp(-h / 0.0017)) + 0.053;
+}
 double glide_drag(double h) { return 0.16 + 0.19 * std::exp(-h / 0.0029); }
 
 Sample make_static(const Case& wanted) {
@@ -374,12 +392,15 @@ std::map<std::string, double> static_oracle(const Case& wanted, const Sample& sa
         for (int q = 0; q < quantities_of(wanted.family); ++q) {
             const std::vector<double>& measured = table.numbers(quantity_names[q]);
             for (std::size_t i = 0; i < points.size(); ++i) {
-                r.push_back((measured[i] - part(with(wanted.family, trial, points[i]), q)) / noise_of(wanted.family, q));
+                r.push_back((measured[i] - part(with(wanted.family, trial, points[i]), q)) /
+                            noise_of(wanted.family, q));
             }
         }
         return r;
     };
-    const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
+    const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
+        return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+    };
     for (int round = 0; round < 6; ++round) {
         // Gauss and Newton, one strength after the other
         for (std::size_t k = 0; k < laws.size(); ++k) {
@@ -411,7 +432,9 @@ std::map<std::string, double> static_oracle(const Case& wanted, const Sample& sa
     return rmse;
 }
 
-double static_noise(const std::string& family, const std::string& quantity) { return noise_of(family, quantity == "pitch_moment" ? 2 : 0); }
+double static_noise(const std::string& family, const std::string& quantity) {
+    return noise_of(family, quantity == "pitch_moment" ? 2 : 0);
+}
 
 namespace {
 
@@ -438,9 +461,11 @@ std::string source(const std::string& quantity, const std::string& table, const 
 }  // namespace
 
 std::filesystem::path write_declared_model(const std::string& family, const std::filesystem::path& folder) {
-    std::string text = "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\nnet_weight = \"0.03 N\"\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\n"
-                       "[environment]\ndensity = \"998 kg/m^3\"\nkinematic_viscosity = \"1.0e-6 m^2/s\"\ntemperature = \"20 degC\"\n"
-                       "[drag.heave]\nlinear = \"0.02 N s/m\"\nquadratic = \"6.0 N s^2/m^2\"\n";
+    std::string text =
+        "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\nnet_weight = \"0.03 N\"\nlength = \"203.2 "
+        "mm\"\nwidth = \"152 mm\"\n"
+        "[environment]\ndensity = \"998 kg/m^3\"\nkinematic_viscosity = \"1.0e-6 m^2/s\"\ntemperature = \"20 degC\"\n"
+        "[drag.heave]\nlinear = \"0.02 N s/m\"\nquadratic = \"6.0 N s^2/m^2\"\n";
     const std::string by_speed = "scale.speed = { reference = \"0.5 m/s\", exponent = 2 }\n";
     const std::string by_voltage = "scale.jet_voltage = { reference = \"10 V\", exponent = 2 }\n";
     std::string glide = "gap [m], lift_force [N], drag_force [N]\n";
@@ -457,11 +482,13 @@ std::filesystem::path write_declared_model(const std::string& family, const std:
     if (family == "towed") {
         for (const double h : logarithmic(2e-4, 0.12, 121)) {
             for (int k = -8; k <= 8; ++k) {
-                towed += numbers({h, 0.015 * k, towed_lift(h, 0.015 * k), towed_drag(h, 0.015 * k), towed_moment(h, 0.015 * k)});
+                towed += numbers(
+                    {h, 0.015 * k, towed_lift(h, 0.015 * k), towed_drag(h, 0.015 * k), towed_moment(h, 0.015 * k)});
             }
         }
         core::write_file(folder / "table.csv", towed);
-        text += source("lift_force", "table.csv", by_speed) + source("drag_force", "table.csv", by_speed) + source("pitch_moment", "table.csv", by_speed);
+        text += source("lift_force", "table.csv", by_speed) + source("drag_force", "table.csv", by_speed) +
+                source("pitch_moment", "table.csv", by_speed);
     } else if (family == "glide") {
         core::write_file(folder / "table.csv", glide);
         text += source("lift_force", "table.csv", by_speed) + source("drag_force", "table.csv", by_speed);
@@ -482,33 +509,53 @@ std::string Case::text() const {
     for (const std::string& name : names) {
         out += name + " ";
     }
-    return out + law + " " + core::format_number(level, 3) + "x" + (coloured ? " coloured" : "") + (velocity ? " velocity" : "") +
-           (declared_noise != 1 ? " noise x" + core::format_number(declared_noise, 2) : "") + " seed " + std::to_string(seed);
+    return out + law + " " + core::format_number(level, 3) + "x" + (coloured ? " coloured" : "") +
+           (velocity ? " velocity" : "") +
+           (declared_noise != 1 ? " noise x" + core::format_number(declared_noise, 2) : "") + " seed " +
+           std::to_string(seed);
 }
 
 Sample make_sample(const Case& wanted) { return wanted.family == "heave" ? make_heave(wanted) : make_static(wanted); }
 
 std::vector<std::string> effects_of(const std::string& family) {
     if (family == "heave") {
-        return {"constant_force", "coulomb_friction", "linear_damping", "quadratic_damping", "squeeze_film_damping", "added_mass",
-                "gap_dependent_added_mass", "tether_stiffness", "ambient_heave_current", "periodic_disturbance", "input_gain",
-                "input_dead_zone", "input_delay", "actuator_lag", "gap_sensor_bias", "gap_sensor_delay", "surface_roughness",
-                "history_force", "declared_parameter"};
+        return {"constant_force",
+                "coulomb_friction",
+                "linear_damping",
+                "quadratic_damping",
+                "squeeze_film_damping",
+                "added_mass",
+                "gap_dependent_added_mass",
+                "tether_stiffness",
+                "ambient_heave_current",
+                "periodic_disturbance",
+                "input_gain",
+                "input_dead_zone",
+                "input_delay",
+                "actuator_lag",
+                "gap_sensor_bias",
+                "gap_sensor_delay",
+                "surface_roughness",
+                "history_force",
+                "declared_parameter"};
     }
     if (family == "jet") {
-        return {"gap_offset", "force_bias", "sensor_gain", "drift", "cable_buoyancy", "guide_friction", "pump_curve", "surface_roughness"};
+        return {"gap_offset",     "force_bias",     "sensor_gain", "drift",
+                "cable_buoyancy", "guide_friction", "pump_curve",  "surface_roughness"};
     }
     if (family == "both") {
         return {"declared_parameter", "sensor_gain", "pump_curve", "current", "gap_offset", "speed_exponent"};
     }
-    std::vector<std::string> list{"gap_offset", "force_bias",  "sensor_gain",    "drift",             "speed_exponent",
-                                  "current",    "temperature", "strut_buoyancy", "surface_roughness", "pitch_misalignment"};
+    std::vector<std::string> list{"gap_offset",        "force_bias",        "sensor_gain", "drift",
+                                  "speed_exponent",    "current",           "temperature", "strut_buoyancy",
+                                  "surface_roughness", "pitch_misalignment"};
     return list;
 }
 
 std::vector<std::string> unknown_laws(const std::string& family) {
     if (family == "heave") {
-        return {"bump", "wiggle", "cross", "warming", "one_sided", "rectifier", "ripple", "film_cell", "above_a_speed", "thrust_near_wall", "jump_in_gap"};
+        return {"bump",   "wiggle",    "cross",         "warming",          "one_sided",  "rectifier",
+                "ripple", "film_cell", "above_a_speed", "thrust_near_wall", "jump_in_gap"};
     }
     if (family == "towed") {
         return {"stall", "slope", "hump"};

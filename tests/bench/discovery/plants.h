@@ -1,5 +1,5 @@
-// Data sets with known truth for the bench of discovery. The plants, their integrator and the form of each law are this bench's own:
-// nothing of the program's catalogue is used, only its types for measurements and tables.
+// Data sets with known truth for the bench of discovery. The plants, their integrator and the form of each law are this
+// bench's own: nothing of the program's catalogue is used, only its types for measurements and tables.
 #pragma once
 
 #include <cstdint>
@@ -9,30 +9,31 @@
 #include <string>
 #include <vector>
 
-#include "surrogates/dynamics/measurements.h"
+#include "surrogates/dynamics/model/measurements.h"
 
 namespace underbody::bench {
 
 struct Case {
-    std::string family;                    ///< heave; static: glide, towed (with pitch and depth), jet, both (glide and jet at once)
-    std::vector<std::string> names;        ///< true effects; empty: clean; "unknown": out of the catalogue
-    std::string law;                       ///< which out-of-catalogue law
-    double level = 1;                      ///< strength in units of the noise (heave: error of a 2 s prediction; static: RMS)
-    bool velocity = false;                 ///< heave velocity measured as well
-    bool coloured = false;                 ///< sensor noise with a correlation time of 0.3 s beside the white
-    double declared_noise = 1;             ///< declared noise over the true one; 0: not declared
-    double rate = 50;                      ///< Hz
+    std::string family;  ///< heave; static: glide, towed (with pitch and depth), jet, both (glide and jet at once)
+    std::vector<std::string> names;  ///< true effects; empty: clean; "unknown": out of the catalogue
+    std::string law;                 ///< which out-of-catalogue law
+    double level = 1;                ///< strength in units of the noise (heave: error of a 2 s prediction; static: RMS)
+    bool velocity = false;           ///< heave velocity measured as well
+    bool coloured = false;           ///< sensor noise with a correlation time of 0.3 s beside the white
+    double declared_noise = 1;       ///< declared noise over the true one; 0: not declared
+    double rate = 50;                ///< Hz
     std::uint64_t seed = 1;
     [[nodiscard]] std::string text() const;
 };
 
 struct Sample {
     dynamics::Measurements train;
-    dynamics::Measurements test;           ///< another controller and excitation (heave), other set points (static)
+    dynamics::Measurements test;  ///< another controller and excitation (heave), other set points (static)
     std::vector<std::string> names;
-    std::vector<std::string> depends_on;   ///< of an unknown law
-    double in_catalogue_terms = 0;         ///< what the catalogue's first parameter should come out as; NaN: another form
-    std::function<double(double t, double h, double w, double u)> missing;   ///< heave, unknown laws: the force that the model lacks, N
+    std::vector<std::string> depends_on;  ///< of an unknown law
+    double in_catalogue_terms = 0;  ///< what the catalogue's first parameter should come out as; NaN: another form
+    std::function<double(double t, double h, double w, double u)>
+        missing;  ///< heave, unknown laws: the force that the model lacks, N
 };
 
 /// Writes model.toml and its tables for a family into a folder; returns the model file.
@@ -42,7 +43,8 @@ Sample make_sample(const Case& wanted);
 Sample make_heave(const Case& wanted);
 Sample make_static(const Case& wanted);
 
-/// The best that can be reached: the true law with its strength refitted to the training data; RMSE on the test data by quantity.
+/// The best that can be reached: the true law with its strength refitted to the training data; RMSE on the test data by
+/// quantity.
 std::map<std::string, double> static_oracle(const Case& wanted, const Sample& sample);
 /// One standard deviation of a reading of the static plants.
 double static_noise(const std::string& family, const std::string& quantity);

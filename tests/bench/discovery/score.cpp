@@ -43,10 +43,12 @@ bool Outcome::tied() const {
     if (names.size() == 1 && same_law(names.front(), truth.front())) {
         return true;
     }
-    return std::any_of(rivals.begin(), rivals.end(), [&](const auto& rival) { return rival.second > 0.2 && rival.first == truth.front(); });
+    return std::any_of(rivals.begin(), rivals.end(),
+                       [&](const auto& rival) { return rival.second > 0.2 && rival.first == truth.front(); });
 }
 
-Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::string>& truth, const std::vector<std::string>& depends_on) {
+Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::string>& truth,
+                   const std::vector<std::string>& depends_on) {
     Outcome one;
     one.truth = truth;
     one.verdict = found.verdict;
@@ -69,7 +71,8 @@ Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::str
 
 std::string share(std::size_t of, std::size_t all) {
     const discovery::Interval w = discovery::wilson_interval(of, all);
-    return text("%zu/%zu %.2f (%.2f-%.2f)", of, all, all > 0 ? static_cast<double>(of) / static_cast<double>(all) : 0.0, w.low, w.high);
+    return text("%zu/%zu %.2f (%.2f-%.2f)", of, all, all > 0 ? static_cast<double>(of) / static_cast<double>(all) : 0.0,
+                w.low, w.high);
 }
 
 double Tally::after() const {
@@ -109,9 +112,11 @@ std::string Tally::line() const {
     for (const Outcome& one : outcomes) {
         seconds += one.seconds;
     }
-    return text("%-26s tied %2zu wrong %2zu none %2zu unknown %2zu | variables %zu | error %.2f -> %.2f noise, over best %.3f | %.2f s",
-                share(right + tied, count()).c_str(), tied, wrong, none, unknown, variables, before(), after(), oracle_gap(),
-                seconds / static_cast<double>(std::max<std::size_t>(count(), 1)));
+    return text(
+        "%-26s tied %2zu wrong %2zu none %2zu unknown %2zu | variables %zu | error %.2f -> %.2f noise, over best %.3f "
+        "| %.2f s",
+        share(right + tied, count()).c_str(), tied, wrong, none, unknown, variables, before(), after(), oracle_gap(),
+        seconds / static_cast<double>(std::max<std::size_t>(count(), 1)));
 }
 
 std::string calibration_lines(const std::vector<Outcome>& outcomes) {
@@ -134,7 +139,8 @@ std::string calibration_lines(const std::vector<Outcome>& outcomes) {
             total += n;
         }
     }
-    return lines + text("mean difference between stated and frequency, weighted by count: %.3f\n", total > 0 ? weighted / total : 0.0);
+    return lines + text("mean difference between stated and frequency, weighted by count: %.3f\n",
+                        total > 0 ? weighted / total : 0.0);
 }
 
 std::string coverage_line(const std::vector<Outcome>& outcomes) {

@@ -13,15 +13,15 @@ namespace underbody::bench {
 
 /// One data set, one method.
 struct Outcome {
-    std::vector<std::string> truth;      ///< names; empty: clean; {"unknown"}
-    std::string verdict;                 ///< none, effect, unknown
+    std::vector<std::string> truth;  ///< names; empty: clean; {"unknown"}
+    std::string verdict;             ///< none, effect, unknown
     std::vector<std::string> names;
     std::vector<std::pair<std::string, double>> rivals;
-    bool variables = false;              ///< those of an unknown law were named rightly
-    double stated = std::nan("");        ///< probability of the verdict
-    double before = 0, after = 0;        ///< held-out RMSE of the chief quantity, in noise
-    double best = std::nan("");          ///< the same with the true law refitted
-    double pull = std::nan("");          ///< (estimate - truth)/sigma of the first number of a rightly named effect
+    bool variables = false;        ///< those of an unknown law were named rightly
+    double stated = std::nan("");  ///< probability of the verdict
+    double before = 0, after = 0;  ///< held-out RMSE of the chief quantity, in noise
+    double best = std::nan("");    ///< the same with the true law refitted
+    double pull = std::nan("");    ///< (estimate - truth)/sigma of the first number of a rightly named effect
     double seconds = 0;
 
     [[nodiscard]] bool right() const;
@@ -31,7 +31,8 @@ struct Outcome {
 };
 
 /// Outcome of discover(), without the error of the oracle and the pull.
-Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::string>& truth, const std::vector<std::string>& depends_on);
+Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::string>& truth,
+                   const std::vector<std::string>& depends_on);
 
 /// "31/32 0.97 (0.84-0.99)", the interval by Wilson.
 std::string share(std::size_t of, std::size_t all);
@@ -57,7 +58,8 @@ struct Tally {
     [[nodiscard]] double before() const;
 };
 
-/// Stated probabilities against frequencies in bins, and their largest and mean difference; parameters within 1.96 sigma.
+/// Stated probabilities against frequencies in bins, and their largest and mean difference; parameters within 1.96
+/// sigma.
 std::string calibration_lines(const std::vector<Outcome>& outcomes);
 std::string coverage_line(const std::vector<Outcome>& outcomes);
 

@@ -13,9 +13,9 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/text.h"
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/dynamics/ode.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/dynamics/simulate/ode.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace {

@@ -1,6 +1,6 @@
-// Speed of learning and estimating. Goals: covariance and model of 9 x 4,000,000 samples in 0.2 s on two cores, no slower than NumPy's
-// covariance and ten times scikit-learn's PCA; a truncation scan in 10 ms; 50,000 time-evolved columns in 1 s; an observer step in
-// 200 ns without allocation.
+// Speed of learning and estimating. Goals: covariance and model of 9 x 4,000,000 samples in 0.2 s on two cores, no
+// slower than NumPy's covariance and ten times scikit-learn's PCA; a truncation scan in 10 ms; 50,000 time-evolved
+// columns in 1 s; an observer step in 200 ns without allocation.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "core/random.h"
-#include "surrogates/estimator/augmented_model.h"
-#include "surrogates/estimator/extended_filter.h"
-#include "surrogates/estimator/observer.h"
-#include "surrogates/estimator/published.h"
-#include "surrogates/estimator/training.h"
+#include "surrogates/estimator/model/augmented_model.h"
+#include "surrogates/estimator/model/training.h"
+#include "surrogates/estimator/observe/extended_filter.h"
+#include "surrogates/estimator/observe/observer.h"
+#include "surrogates/estimator/thesis/published.h"
 
 namespace {
 std::size_t allocations = 0;
@@ -52,7 +52,8 @@ const std::filesystem::path& file() {
     static const std::filesystem::path path = [] {
         auto p = std::filesystem::temp_directory_path() / "underbody-bench-samples.npy";
         write_npy(p, samples().values.data(), samples().count, 9);
-        std::atexit([] { std::filesystem::remove(std::filesystem::temp_directory_path() / "underbody-bench-samples.npy"); });
+        std::atexit(
+            [] { std::filesystem::remove(std::filesystem::temp_directory_path() / "underbody-bench-samples.npy"); });
         return p;
     }();
     return path;
@@ -123,7 +124,8 @@ void time_evolved_set_of_50000(benchmark::State& state) {
 BENCHMARK(time_evolved_set_of_50000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void observer_step(benchmark::State& state) {
-    const AugmentedModel m = corrected(published_8_47(), Correction::p3, heave_rows(Layout::heave(), thesis_virtual_mass(), 0));
+    const AugmentedModel m =
+        corrected(published_8_47(), Correction::p3, heave_rows(Layout::heave(), thesis_virtual_mass(), 0));
     const std::vector<std::string> sensors{"heave_velocity", "gap"};
     const bool full = state.range(0) != 0;
     FilterRunner run(full ? kalman_observer(m, sensors, {0, 0, 1e-6, 1e-6}, {1e-4, 1e-3}, 0.02).filter
@@ -161,9 +163,11 @@ BENCHMARK(extended_filter_2000_samples)->Unit(benchmark::kMillisecond);
 // The peers, in the same run, by Debian's own Python; skipped aloud where a package is missing.
 void peer(benchmark::State& state, const char* name, const char* imports, const char* work) {
     const auto script = std::filesystem::temp_directory_path() / "underbody-bench-peer.py";
-    std::ofstream(script) << "import time\nimport numpy as np\n" << imports << "\nx = np.ascontiguousarray(np.load('" << file().string()
-                          << "').T)\ny = np.ascontiguousarray(x.T)\nbest = 1e9\nfor i in range(3):\n    t = time.perf_counter()\n    " << work
-                          << "\n    best = min(best, time.perf_counter() - t)\nprint(best)\n";
+    std::ofstream(script)
+        << "import time\nimport numpy as np\n"
+        << imports << "\nx = np.ascontiguousarray(np.load('" << file().string()
+        << "').T)\ny = np.ascontiguousarray(x.T)\nbest = 1e9\nfor i in range(3):\n    t = time.perf_counter()\n    "
+        << work << "\n    best = min(best, time.perf_counter() - t)\nprint(best)\n";
     const std::string command = "/usr/bin/python3 " + script.string() + " 2>/dev/null";
     for (auto _ : state) {
         double seconds = 0;

@@ -2,9 +2,9 @@
 #include <benchmark/benchmark.h>
 
 #include "core/parallel.h"
-#include "geometry/added_mass.h"
-#include "geometry/body_surface.h"
-#include "geometry/certificate.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/certificate.h"
+#include "geometry/water/added_mass.h"
 
 namespace {
 

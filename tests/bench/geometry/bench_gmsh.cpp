@@ -11,10 +11,10 @@
 #include <string>
 
 #include "core/file.h"
-#include "geometry/body_surface.h"
-#include "geometry/certificate.h"
-#include "geometry/mesh_file.h"
-#include "geometry/mesh_reader.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/certificate.h"
+#include "geometry/mesh/mesh_file.h"
+#include "geometry/mesh/mesh_reader.h"
 
 namespace {
 

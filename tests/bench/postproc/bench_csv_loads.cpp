@@ -22,14 +22,16 @@
 
 #include "core/file.h"
 #include "core/parallel.h"
-#include "postproc/loads.h"
+#include "postproc/loads/loads.h"
 
 namespace underbody::postproc {
 namespace {
 
 /// An ellipsoid of rings x 2 rings quads with pressure and shear, as CFD-Post writes it.
 std::string csv_of(int rings) {
-    std::string text = "\n[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa ], Wall Shear Z [ Pa ], Yplus\n";
+    std::string text =
+        "\n[Name]\nhull\n\n[Data]\nX [ m ], Y [ m ], Z [ m ], Pressure [ Pa ], Wall Shear X [ Pa ], Wall Shear Y [ Pa "
+        "], Wall Shear Z [ Pa ], Yplus\n";
     const int around = 2 * rings;
     char line[256];
     for (int i = 0; i <= rings; ++i) {
@@ -39,7 +41,8 @@ std::string csv_of(int rings) {
             const double x = 0.1 * std::sin(theta) * std::cos(phi);
             const double y = 0.08 * std::sin(theta) * std::sin(phi);
             const double z = 0.06 * std::cos(theta);
-            const int size = std::snprintf(line, sizeof line, "%.8e, %.8e, %.8e, %.6e, %.6e, %.6e, %.6e, %.4e\n", x, y, z, -9806 * z, 0.3 * x, -0.2 * y, 0.1 * z, 0.9 + x);
+            const int size = std::snprintf(line, sizeof line, "%.8e, %.8e, %.8e, %.6e, %.6e, %.6e, %.6e, %.4e\n", x, y,
+                                           z, -9806 * z, 0.3 * x, -0.2 * y, 0.1 * z, 0.9 + x);
             text.append(line, static_cast<std::size_t>(size));
         }
     }
@@ -100,8 +103,11 @@ void numpy_reader(benchmark::State& state, const char* function) {
     const auto from = whole.find('\n', whole.find("[Data]") + 7) + 1;
     const std::string rows = whole.substr(from, whole.find("\n[Faces]") - from);
     std::ofstream(folder.path() / "rows.csv", std::ios::binary) << rows;
-    const std::string script = "import numpy,time;numpy." + std::string(function) + "('" + (folder.path() / "rows.csv").string() + "',delimiter=',',max_rows=10);t=time.perf_counter();numpy." +
-                               function + "('" + (folder.path() / "rows.csv").string() + "',delimiter=',');open('" + (folder.path() / "t").string() + "','w').write(str(time.perf_counter()-t))";
+    const std::string script = "import numpy,time;numpy." + std::string(function) + "('" +
+                               (folder.path() / "rows.csv").string() +
+                               "',delimiter=',',max_rows=10);t=time.perf_counter();numpy." + function + "('" +
+                               (folder.path() / "rows.csv").string() + "',delimiter=',');open('" +
+                               (folder.path() / "t").string() + "','w').write(str(time.perf_counter()-t))";
     for (auto _ : state) {
         if (std::system(("/usr/bin/python3 -c \"" + script + "\"").c_str()) != 0) {
             state.SkipWithError("numpy failed");
@@ -112,7 +118,10 @@ void numpy_reader(benchmark::State& state, const char* function) {
     state.SetBytesProcessed(static_cast<std::int64_t>(rows.size()) * state.iterations());
 }
 BENCHMARK_CAPTURE(numpy_reader, loadtxt, "loadtxt")->UseManualTime()->Iterations(3)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(numpy_reader, genfromtxt, "genfromtxt")->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(numpy_reader, genfromtxt, "genfromtxt")
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 /// The same surface made in memory: 5 million faces.
 Field big_surface(int rings) {
@@ -132,7 +141,8 @@ Field big_surface(int rings) {
         for (int j = 0; j < around; ++j) {
             const double theta = M_PI * (i + 0.01) / (rings + 0.02);
             const double phi = 2 * M_PI * j / around;
-            const double p[3] = {0.1 * std::sin(theta) * std::cos(phi), 0.08 * std::sin(theta) * std::sin(phi), 0.06 * std::cos(theta)};
+            const double p[3] = {0.1 * std::sin(theta) * std::cos(phi), 0.08 * std::sin(theta) * std::sin(phi),
+                                 0.06 * std::cos(theta)};
             const vtkIdType n = static_cast<vtkIdType>(i) * around + j;
             places->SetTuple(n, p);
             pressure->SetValue(n, -9806 * p[2]);
@@ -170,7 +180,8 @@ Field big_surface(int rings) {
     zone.surface->SetPolys(cells);
     zone.surface->GetPointData()->AddArray(pressure);
     zone.surface->GetPointData()->AddArray(shear);
-    zone.arrays = {{"pressure", "Pa", "Pressure", "Pa", Location::nodes, 1}, {"wall_shear", "Pa", "Wall Shear X", "Pa", Location::nodes, 3}};
+    zone.arrays = {{"pressure", "Pa", "Pressure", "Pa", Location::nodes, 1},
+                   {"wall_shear", "Pa", "Wall Shear X", "Pa", Location::nodes, 3}};
     Field field;
     field.files = {"made"};
     field.zones.push_back(std::move(zone));

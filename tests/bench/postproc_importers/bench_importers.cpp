@@ -1,5 +1,5 @@
-// Legacy Fluent files against VTK 9.1's reader on the same file, HDF5 against the library alone and against the disk: time
-// and peak memory, each reading in its own process. bench_postproc_importers --help says how.
+// Legacy Fluent files against VTK 9.1's reader on the same file, HDF5 against the library alone and against the disk:
+// time and peak memory, each reading in its own process. bench_postproc_importers --help says how.
 #include <fcntl.h>
 #include <hdf5.h>
 #include <malloc.h>
@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "core/file.h"
-#include "postproc/field.h"
+#include "postproc/field/field.h"
 
 namespace {
 
@@ -44,7 +44,8 @@ struct Cost {
 constexpr int repetitions = 9;
 
 /// Several runs, each in a fresh process.
-Cost cost_of(const std::function<long long()>& read, long long expected, const std::function<void()>& before = [] {}) {
+Cost cost_of(
+    const std::function<long long()>& read, long long expected, const std::function<void()>& before = [] {}) {
     std::vector<Cost> runs;
     for (int i = 0; i < repetitions; ++i) {
         before();
@@ -64,14 +65,18 @@ Cost cost_of(const std::function<long long()>& read, long long expected, const s
         rusage usage{};
         ::wait4(child, &status, 0, &usage);
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
-        runs.push_back({time.count(), 0, seconds(usage.ru_utime) + seconds(usage.ru_stime), static_cast<double>(usage.ru_maxrss) / 1024,
-                        WIFEXITED(status) && WEXITSTATUS(status) == 0});
+        const auto seconds = [](const timeval& t) {
+            return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+        };
+        runs.push_back({time.count(), 0, seconds(usage.ru_utime) + seconds(usage.ru_stime),
+                        static_cast<double>(usage.ru_maxrss) / 1024, WIFEXITED(status) && WEXITSTATUS(status) == 0});
     }
     std::sort(runs.begin(), runs.end(), [](const Cost& a, const Cost& b) { return a.seconds < b.seconds; });
     Cost cost = runs[runs.size() / 2];
     cost.best = runs.front().seconds;
-    cost.processor = std::min_element(runs.begin(), runs.end(), [](const Cost& a, const Cost& b) { return a.processor < b.processor; })->processor;
+    cost.processor = std::min_element(runs.begin(), runs.end(), [](const Cost& a, const Cost& b) {
+                         return a.processor < b.processor;
+                     })->processor;
     return cost;
 }
 
@@ -245,7 +250,8 @@ void write_hdf5(const fs::path& path, std::uint32_t n, bool deflated) {
     std::vector<std::uint32_t> beside[2];
     for (const auto* list : {&inner, &outer}) {
         for (std::size_t i = 0; i < list->size(); i += 6) {
-            corners.insert(corners.end(), list->begin() + static_cast<std::ptrdiff_t>(i), list->begin() + static_cast<std::ptrdiff_t>(i) + 4);
+            corners.insert(corners.end(), list->begin() + static_cast<std::ptrdiff_t>(i),
+                           list->begin() + static_cast<std::ptrdiff_t>(i) + 4);
             beside[0].push_back((*list)[i + 4]);
             if (list == &inner) {
                 beside[1].push_back((*list)[i + 5]);
@@ -315,7 +321,8 @@ long long read_by_library(const fs::path& path) {
             const hid_t space = H5Dget_space(set);
             const hid_t type = H5Dget_type(set);
             std::vector<double> memory(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-            H5Dread(set, H5Tget_class(type) == H5T_FLOAT ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, memory.data());
+            H5Dread(set, H5Tget_class(type) == H5T_FLOAT ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL,
+                    H5P_DEFAULT, memory.data());
             *static_cast<long long*>(total) += static_cast<long long>(memory.size());
             H5Tclose(type);
             H5Sclose(space);
@@ -373,8 +380,10 @@ std::uint32_t edge_from(int count, char** arguments) {
     }
     const bool help = count == 2 && (text == "--help" || text == "-h");
     std::fprintf(help ? stdout : stderr,
-                 "bench_postproc_importers [EDGE]: reads made files of EDGE x EDGE x EDGE hexahedra and five fields, Fluent legacy (ASCII, binary) beside\n"
-                 "VTK's reader and Fluent HDF5 (plain, deflated) beside the library alone; median time and memory of each, in its own process.\n"
+                 "bench_postproc_importers [EDGE]: reads made files of EDGE x EDGE x EDGE hexahedra and five fields, "
+                 "Fluent legacy (ASCII, binary) beside\n"
+                 "VTK's reader and Fluent HDF5 (plain, deflated) beside the library alone; median time and memory of "
+                 "each, in its own process.\n"
                  "  EDGE  cells along an edge, 2 to %u; default %u (README: 110)\n",
                  longest_edge, default_edge);
     std::exit(help ? 0 : 2);
@@ -387,8 +396,10 @@ int main(int count, char** arguments) {
     const core::TemporaryFolder folder;
     double load = 0;
     ::getloadavg(&load, 1);
-    std::printf("%u hexahedra, five fields; median of %d, memory above that of a process that reads nothing; load average at the start %.1f\n", n * n * n, repetitions,
-                load);
+    std::printf(
+        "%u hexahedra, five fields; median of %d, memory above that of a process that reads nothing; load average at "
+        "the start %.1f\n",
+        n * n * n, repetitions, load);
     // A child begins with what its parent holds: that is told right before, and kept small.
     const auto bare_process = [] {
         ::malloc_trim(0);
@@ -404,12 +415,15 @@ int main(int count, char** arguments) {
         const Cost surface = cost_of([&] { return read_ours(path, true); }, 6LL * n * n);
         const Cost vtk = cost_of([&] { return read_by_vtk(path); }, cells);
         const auto memory = [&](const Cost& cost) { return cost.megabytes - nothing; };
-        std::printf("%s: VTK %.3f s (best %.3f, processor %.3f) %.0f MB%s\n", binary ? "binary" : "ASCII", vtk.seconds, vtk.best, vtk.processor, memory(vtk),
-                    vtk.good ? "" : " (failed)");
-        std::printf("  ours %.3f s (best %.3f, processor %.3f) %.0f MB: %.1f times faster by the medians, %.1f by the best, %.1f by processor time; %.2f of the memory\n",
-                    ours.seconds, ours.best, ours.processor, memory(ours), vtk.seconds / ours.seconds, vtk.best / ours.best, vtk.processor / ours.processor,
-                    memory(ours) / memory(vtk));
-        std::printf("  surface alone %.3f s (best %.3f, processor %.3f) %.0f MB\n", surface.seconds, surface.best, surface.processor, memory(surface));
+        std::printf("%s: VTK %.3f s (best %.3f, processor %.3f) %.0f MB%s\n", binary ? "binary" : "ASCII", vtk.seconds,
+                    vtk.best, vtk.processor, memory(vtk), vtk.good ? "" : " (failed)");
+        std::printf(
+            "  ours %.3f s (best %.3f, processor %.3f) %.0f MB: %.1f times faster by the medians, %.1f by the best, "
+            "%.1f by processor time; %.2f of the memory\n",
+            ours.seconds, ours.best, ours.processor, memory(ours), vtk.seconds / ours.seconds, vtk.best / ours.best,
+            vtk.processor / ours.processor, memory(ours) / memory(vtk));
+        std::printf("  surface alone %.3f s (best %.3f, processor %.3f) %.0f MB\n", surface.seconds, surface.best,
+                    surface.processor, memory(surface));
         good = good && ours.good && surface.good;
     }
     for (const bool deflated : {false, true}) {
@@ -424,16 +438,25 @@ int main(int count, char** arguments) {
         const Cost surface = cost_of([&] { return read_ours(path, true); }, 6LL * n * n);
         const auto memory = [&](const Cost& cost) { return cost.megabytes - nothing; };
         const auto rate = [&](double seconds) { return static_cast<double>(bytes) / 1e6 / seconds; };
-        std::printf("HDF5, %s, %.0f MB: the library alone %.3f s (best %.3f, processor %.3f), the bytes out of the disk's cache %.3f s\n",
-                    deflated ? "deflated" : "plain", static_cast<double>(bytes) / 1e6, library.seconds, library.best, library.processor, plain.seconds);
-        std::printf("  ours %.3f s (best %.3f: %.0f MB/s, processor %.3f) %.0f MB: %.2f times the library's by the medians, %.2f by the best, %.2f by processor time\n",
-                    ours.seconds, ours.best, rate(ours.best), ours.processor, memory(ours), ours.seconds / library.seconds, ours.best / library.best,
-                    ours.processor / library.processor);
-        std::printf("  surface alone %.3f s (best %.3f, processor %.3f) %.0f MB\n", surface.seconds, surface.best, surface.processor, memory(surface));
+        std::printf(
+            "HDF5, %s, %.0f MB: the library alone %.3f s (best %.3f, processor %.3f), the bytes out of the disk's "
+            "cache %.3f s\n",
+            deflated ? "deflated" : "plain", static_cast<double>(bytes) / 1e6, library.seconds, library.best,
+            library.processor, plain.seconds);
+        std::printf(
+            "  ours %.3f s (best %.3f: %.0f MB/s, processor %.3f) %.0f MB: %.2f times the library's by the medians, "
+            "%.2f by the best, %.2f by processor time\n",
+            ours.seconds, ours.best, rate(ours.best), ours.processor, memory(ours), ours.seconds / library.seconds,
+            ours.best / library.best, ours.processor / library.processor);
+        std::printf("  surface alone %.3f s (best %.3f, processor %.3f) %.0f MB\n", surface.seconds, surface.best,
+                    surface.processor, memory(surface));
         const Cost disk = cost_of([&] { return read_bytes(path); }, bytes, [&] { forget(path); });
         const Cost from_disk = cost_of([&] { return read_ours(path, false); }, cells, [&] { forget(path); });
-        std::printf("  from the disk: the bytes alone %.3f s (%.0f MB/s), ours %.3f s: %.2f times by the medians, %.2f by the best\n", disk.seconds, rate(disk.seconds),
-                    from_disk.seconds, from_disk.seconds / disk.seconds, from_disk.best / disk.best);
+        std::printf(
+            "  from the disk: the bytes alone %.3f s (%.0f MB/s), ours %.3f s: %.2f times by the medians, %.2f by the "
+            "best\n",
+            disk.seconds, rate(disk.seconds), from_disk.seconds, from_disk.seconds / disk.seconds,
+            from_disk.best / disk.best);
         good = good && ours.good && surface.good && library.good;
     }
     return good ? 0 : 1;

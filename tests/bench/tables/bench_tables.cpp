@@ -11,8 +11,8 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "surrogates/tables/exports/export.h"
-#include "surrogates/tables/force_table.h"
-#include "surrogates/tables/many_points.h"
+#include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/table_batch.h"
 
 #ifdef UNDERBODY_HAS_OPENTURNS
 #include <openturns/OT.hxx>
@@ -79,7 +79,8 @@ void look_up_many_at_once(benchmark::State& state) {
 BENCHMARK(look_up_many_at_once)->Arg(20)->Arg(100);
 
 /// The peer: linear values only, by Debian's own Python; median of seven, in
-/// processor time, because a shared machine has little other. After it as many by the library, value and both slopes, likewise.
+/// processor time, because a shared machine has little other. After it as many by the library, value and both slopes,
+/// likewise.
 void scipy_regular_grid_interpolator(benchmark::State& state) {
     const char* script =
         "/usr/bin/python3 -c \"import numpy as np,time\n"
@@ -162,7 +163,8 @@ core::Table scattered(int count) {
         g.push_back(0.001 * std::pow(100.0, random.uniform()));
         p.push_back(random.uniform(-0.07, 0.07));
         u.push_back(random.uniform(0.3, 1));
-        f.push_back(u.back() * u.back() * (1 + 5e-4 / g.back() + 8 * p.back() / (1 + 30 * g.back())) + random.normal(0, 0.01));
+        f.push_back(u.back() * u.back() * (1 + 5e-4 / g.back() + 8 * p.back() / (1 + 30 * g.back())) +
+                    random.normal(0, 0.01));
         s.push_back(0.01);
     }
     core::Table table;
@@ -188,7 +190,8 @@ void means_and_variances_after_tabulation(benchmark::State& state) {
     core::Random random(5);
     std::vector<double> points;
     for (int i = 0; i < 4096; ++i) {
-        points.insert(points.end(), {random.uniform(0.002, 0.09), random.uniform(-0.06, 0.06), random.uniform(0.35, 0.95)});
+        points.insert(points.end(),
+                      {random.uniform(0.002, 0.09), random.uniform(-0.06, 0.06), random.uniform(0.35, 0.95)});
     }
     double sum = 0;
     for (auto _ : state) {
@@ -212,7 +215,8 @@ void openturns_kriging_of_500_points_in_three_axes(benchmark::State& state) {
         y(i, 0) = table.numbers("lift_force")[i];
     }
     for (auto _ : state) {
-        OT::KrigingAlgorithm kriging(x, y, OT::MaternModel(OT::Point(3, 1.0), 2.5), OT::ConstantBasisFactory(3).build());
+        OT::KrigingAlgorithm kriging(x, y, OT::MaternModel(OT::Point(3, 1.0), 2.5),
+                                     OT::ConstantBasisFactory(3).build());
         kriging.setNoise(OT::Point(500, 1e-4));
         kriging.run();
         benchmark::DoNotOptimize(kriging.getResult());

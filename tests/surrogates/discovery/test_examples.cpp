@@ -16,7 +16,8 @@ void expect_truth(const std::string& name) {
     const nlohmann::json truth = nlohmann::json::parse(core::read_file(folder / "truth.json"));
     discovery::DiscoverOptions options;
     options.figures = options.consequence = false;
-    const discovery::Discovery found = discovery::discover(dynamics::read_model(folder / "model.toml"), dynamics::read_measurements(folder), options);
+    const discovery::Discovery found =
+        discovery::discover(dynamics::read_model(folder / "model.toml"), dynamics::read_measurements(folder), options);
     std::vector<std::string> names;
     for (const discovery::FoundEffect& effect : found.effects) {
         names.push_back(effect.name);

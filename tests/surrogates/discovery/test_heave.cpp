@@ -1,14 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
 #include <nlohmann/json.hpp>
 
 #include "make_data.h"
 #include "surrogates/discovery/discovery.h"
-#include "surrogates/discovery/heave_experiment.h"
+#include "surrogates/discovery/heave/heave_experiment.h"
 #include "surrogates/discovery/residual.h"
-#include "surrogates/dynamics/predict.h"
+#include "surrogates/dynamics/simulate/predict.h"
 
 using namespace underbody;
 using namespace underbody::discovery;
@@ -49,18 +48,21 @@ TEST(HeaveDiscovery, NamesFrictionInsideTheClosedLoop) {
     EXPECT_GT(found.consequence.estimator_after, 0);
     EXPECT_LT(found.consequence.estimator_after, 0.7 * found.consequence.estimator_before);
     EXPECT_EQ(to_json(found)["consequence"]["estimator"]["rmse_after"], found.consequence.estimator_after);
-    EXPECT_NE(report_html(found, found.model, test::heave_runs(friction, 4, 50, 2), {}).find("state estimator"), std::string::npos);
+    EXPECT_NE(report_html(found, found.model, test::heave_runs(friction, 4, 50, 2), {}).find("state estimator"),
+              std::string::npos);
 }
 
 TEST(HeaveDiscovery, NamesADampingWhosePowerIsNearlyTwo) {
-    const Discovery found = found_on([](double, double, double w) { return -12 * std::copysign(std::pow(std::abs(w), 1.9), w); }, 6);
+    const Discovery found =
+        found_on([](double, double, double w) { return -12 * std::copysign(std::pow(std::abs(w), 1.9), w); }, 6);
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
     EXPECT_EQ(found.effects.at(0).name, "quadratic_damping");
 }
 
 TEST(HeaveDiscovery, FindsAFastLineBetweenTheStepsOfACoarseScan) {
     // coherent over thirty seconds: a line at 1.3 Hz is a fortieth of that wide
-    const Discovery found = found_on([](double t, double, double) { return 0.02 * std::sin(2 * 3.14159265 * 1.317 * t + 0.7); }, 8);
+    const Discovery found =
+        found_on([](double t, double, double) { return 0.02 * std::sin(2 * 3.14159265 * 1.317 * t + 0.7); }, 8);
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
     EXPECT_EQ(found.effects.at(0).name, "periodic_disturbance");
     EXPECT_NEAR(found.effects.at(0).parameters.at(0).value, 0.02, 4e-3);
@@ -74,7 +76,8 @@ TEST(HeaveDiscovery, CallsASlowWarmingNoPeriod) {
 }
 
 TEST(HeaveDiscovery, NamesRoughnessWhoseLawHasAnotherForm) {
-    // numbers from the other runs miss each run a little where the law's form does: that is no reason to take it for nothing
+    // numbers from the other runs miss each run a little where the law's form does: that is no reason to take it for
+    // nothing
     const auto rough = [](double, double h, double) { return lift_of(h) * 0.35 * (0.09 - h) / (0.09 + h); };
     const Discovery found = found_on(rough, 10);
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
@@ -84,7 +87,9 @@ TEST(HeaveDiscovery, NamesRoughnessWhoseLawHasAnotherForm) {
 TEST(HeaveExperiment, LeavesARunOutAsIfItHadNeverBeenThere) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
-    const auto rough = [](double, double h, double) { return lift_of(h) * (0.3 - 0.2 * std::pow(h / 0.1, 2)) / (1 + std::pow(h / 0.1, 2)); };
+    const auto rough = [](double, double h, double) {
+        return lift_of(h) * (0.3 - 0.2 * std::pow(h / 0.1, 2)) / (1 + std::pow(h / 0.1, 2));
+    };
     const dynamics::Measurements data = test::heave_runs(rough, 4, 50, 10);
     const HeaveRecords records = prepare_heave_records(model, data);
     const HeaveExperiment experiment(model, records, {0, 1, 2, 3}, 2e-4, {});
@@ -100,10 +105,12 @@ TEST(HeaveExperiment, LeavesARunOutAsIfItHadNeverBeenThere) {
         std::vector<std::size_t> others{0, 1, 2, 3};
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
         list.front().starts = {all.fitted.fit.parameters};
-        const HeaveExperiment::Result refitted = HeaveExperiment(model, records, others, 2e-4, {}).fit(list.front(), all.noise);
+        const HeaveExperiment::Result refitted =
+            HeaveExperiment(model, records, others, 2e-4, {}).fit(list.front(), all.noise);
         const HeaveExperiment alone(model, records, {out}, 2e-4, {});
         std::vector<double> innovations;
-        const double cost = alone.evaluate(list.front().with(refitted.fitted.fit.parameters), nullptr, all.noise, innovations);
+        const double cost =
+            alone.evaluate(list.front().with(refitted.fitted.fit.parameters), nullptr, all.noise, innovations);
         long_way += cost - all.fitted.cost_of_group[out];
         EXPECT_GT(all.fitted.held_out[out], all.fitted.cost_of_group[out] - 1) << out;
     }
@@ -122,7 +129,8 @@ TEST(HeaveDiscovery, GivesTheSameVerdictAtFiveHundredHertz) {
 }
 
 TEST(HeaveDiscovery, CallsALawOutsideTheCatalogueUnknownOverItsVariable) {
-    const Discovery found = found_on([](double, double h, double) { return 0.006 * std::exp(-std::pow((h - 0.14) / 0.025, 2)); }, 4);
+    const Discovery found =
+        found_on([](double, double h, double) { return 0.006 * std::exp(-std::pow((h - 0.14) / 0.025, 2)); }, 4);
     EXPECT_EQ(found.verdict, "unknown") << found.sentence;
     EXPECT_EQ(found.depends_on, std::vector<std::string>{"gap"});
     EXPECT_LT(found.error.front().after.rmse, 0.6 * found.error.front().before.rmse);
@@ -134,7 +142,8 @@ TEST(HeaveDiscovery, DoesNotTakeASlowChangeForAWave) {
     for (const FoundEffect& effect : found.effects) {
         EXPECT_NE(effect.name, "periodic_disturbance") << found.sentence;
     }
-    const Discovery wave = found_on([](double t, double, double) { return 0.002 * std::sin(2 * 3.14159265 * 0.3 * t + 1); }, 7);
+    const Discovery wave =
+        found_on([](double t, double, double) { return 0.002 * std::sin(2 * 3.14159265 * 0.3 * t + 1); }, 7);
     ASSERT_EQ(wave.verdict, "effect") << wave.sentence;
     EXPECT_EQ(wave.effects.at(0).name, "periodic_disturbance");
 }
@@ -142,7 +151,8 @@ TEST(HeaveDiscovery, DoesNotTakeASlowChangeForAWave) {
 TEST(HeaveDiscovery, CannotSeeADelayOfTheGapWithoutARecordedInput) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
-    dynamics::Measurements data = test::heave_runs([](double, double, double) { return 0.0; }, 2, 50, 5, {.seconds = 10});
+    dynamics::Measurements data =
+        test::heave_runs([](double, double, double) { return 0.0; }, 2, 50, 5, {.seconds = 10});
     for (dynamics::MeasuredRun& run : data.runs) {
         core::Table table;
         table.source = run.table.source;
@@ -179,7 +189,8 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
     const HeaveRecords one_left = prepare_heave_records(model, wrong);
     EXPECT_EQ(one_left.records.size(), 1U);
     ASSERT_FALSE(one_left.problems.empty());
-    EXPECT_NE(one_left.problems.front().message.find("thousand"), std::string::npos) << one_left.problems.front().message;
+    EXPECT_NE(one_left.problems.front().message.find("thousand"), std::string::npos)
+        << one_left.problems.front().message;
     wrong.runs.pop_back();
     try {
         (void)prepare_heave_records(model, wrong);
@@ -189,7 +200,7 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
         EXPECT_NE(error.hint().find("mm"), std::string::npos);
     }
     for (double& value : millimetres) {
-        value *= 1e-6;   // metres in a column labelled mm
+        value *= 1e-6;  // metres in a column labelled mm
     }
     core::Table small;
     small.source = "run-1.csv";
@@ -242,10 +253,12 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
 namespace {
 
 /// Two short runs, changed by `change` before the loop sees them.
-Discovery found_on_changed(const std::function<void(dynamics::Measurements&)>& change, int runs = 4, double extra = 0.0, bool with_velocity = false) {
+Discovery found_on_changed(const std::function<void(dynamics::Measurements&)>& change, int runs = 4, double extra = 0.0,
+                           bool with_velocity = false) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
-    dynamics::Measurements data = test::heave_runs([extra](double, double, double) { return extra; }, runs, 50, 11, {.velocity = with_velocity});
+    dynamics::Measurements data =
+        test::heave_runs([extra](double, double, double) { return extra; }, runs, 50, 11, {.velocity = with_velocity});
     change(data);
     DiscoverOptions options;
     options.figures = options.consequence = false;
@@ -253,10 +266,12 @@ Discovery found_on_changed(const std::function<void(dynamics::Measurements&)>& c
 }
 
 bool says(const core::Problems& problems, const std::string& words) {
-    return std::any_of(problems.begin(), problems.end(), [&](const core::Problem& p) { return p.message.find(words) != std::string::npos; });
+    return std::any_of(problems.begin(), problems.end(),
+                       [&](const core::Problem& p) { return p.message.find(words) != std::string::npos; });
 }
 
-core::Table with_column(const core::Table& table, const std::string& name, const std::function<double(std::size_t, double)>& of) {
+core::Table with_column(const core::Table& table, const std::string& name,
+                        const std::function<double(std::size_t, double)>& of) {
     core::Table changed;
     changed.source = table.source;
     for (const core::Column& column : table.columns()) {
@@ -296,12 +311,15 @@ TEST(HeaveInput, AVelocityOfAnotherSignOrScaleIsSaidAndNamesNoEffect) {
         return found_on_changed(
             [factor](dynamics::Measurements& data) {
                 for (auto& run : data.runs) {
-                    run.table = with_column(run.table, "heave_velocity", [factor](std::size_t, double w) { return factor * w; });
+                    run.table = with_column(run.table, "heave_velocity",
+                                            [factor](std::size_t, double w) { return factor * w; });
                 }
             },
             4, 0, true);
     };
-    for (const auto& [factor, words] : {std::pair{-1.0, "opposite sign"}, {1000.0, "a unit wrong by a thousand"}, {1.3, "is the scale of one of the two wrong"}}) {
+    for (const auto& [factor, words] : {std::pair{-1.0, "opposite sign"},
+                                        {1000.0, "a unit wrong by a thousand"},
+                                        {1.3, "is the scale of one of the two wrong"}}) {
         const Discovery found = found_with_velocity_times(factor);
         EXPECT_TRUE(says(found.problems, words)) << factor << ": " << found.sentence;
         EXPECT_EQ(found.verdict, "none") << factor << ": " << found.sentence;
@@ -314,7 +332,8 @@ TEST(HeaveInput, AVelocityBesideADelayedGapIsKept) {
         [](dynamics::Measurements& data) {
             for (auto& run : data.runs) {
                 const std::vector<double> gap = run.table.numbers("gap");
-                run.table = with_column(run.table, "gap", [&gap](std::size_t i, double) { return gap[i - std::min<std::size_t>(i, 5)]; });
+                run.table = with_column(run.table, "gap",
+                                        [&gap](std::size_t i, double) { return gap[i - std::min<std::size_t>(i, 5)]; });
             }
         },
         4, 0, true);
@@ -330,11 +349,14 @@ TEST(HeaveInput, OfAContinuousControllerIsNoDamping) {
     DiscoverOptions options;
     options.figures = options.consequence = false;
     for (const double rate : {20.0, 50.0, 100.0}) {
-        const Discovery found = discover(model, test::heave_runs([](double, double, double) { return 0.0; }, 6, rate, 23, {.continuous = true}), options);
+        const Discovery found = discover(
+            model, test::heave_runs([](double, double, double) { return 0.0; }, 6, rate, 23, {.continuous = true}),
+            options);
         EXPECT_EQ(found.verdict, "none") << rate << ": " << found.sentence;
     }
     // and a damping of just that size under a controller that holds its force is one
-    const Discovery found = discover(model, test::heave_runs([](double, double, double w) { return -0.0078 * w; }, 6, 50, 23), options);
+    const Discovery found =
+        discover(model, test::heave_runs([](double, double, double w) { return -0.0078 * w; }, 6, 50, 23), options);
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
     EXPECT_EQ(found.effects.at(0).name, "linear_damping") << found.sentence;
 }
@@ -348,7 +370,8 @@ TEST(HeaveInput, RunsOutsideTheDeclaredTablesAreRefusedWithTheirGaps) {
         });
         FAIL() << "accepted";
     } catch (const core::InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("lies outside the tables of the declared model"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("lies outside the tables of the declared model"), std::string::npos)
+            << error.what();
     }
 }
 
@@ -356,7 +379,8 @@ TEST(HeaveInput, AClockThatRunsBehindIsAligned) {
     const Discovery found = found_on_changed([](dynamics::Measurements& data) {
         for (auto& run : data.runs) {
             const std::vector<double> u = run.table.numbers("input_force");
-            run.table = with_column(run.table, "input_force", [&](std::size_t i, double) { return u[i >= 10 ? i - 10 : 0]; });
+            run.table =
+                with_column(run.table, "input_force", [&](std::size_t i, double) { return u[i >= 10 ? i - 10 : 0]; });
         }
     });
     EXPECT_TRUE(says(found.problems, "clocks")) << found.sentence;
@@ -474,7 +498,8 @@ TEST(HeaveInput, BodiesThatHardlyMoveAreSaidToTellLittle) {
 TEST(HeaveResidual, IsTheForceThatWasLeftOut) {
     core::TemporaryFolder folder("heave");
     const dynamics::Model model = test::heave_model(folder.path());
-    const std::vector<Residual> residual = measured_residual(model, test::heave_runs([](double, double, double) { return 0.005; }, 3, 50, 6));
+    const std::vector<Residual> residual =
+        measured_residual(model, test::heave_runs([](double, double, double) { return 0.005; }, 3, 50, 6));
     ASSERT_EQ(residual.size(), 1U);
     EXPECT_NEAR(residual.front().mean, 0.005, 5e-4);
     ASSERT_EQ(residual.front().curves.size(), 2U);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/discovery/load_cell.h"
+#include "surrogates/discovery/static/load_cell.h"
 
 using namespace underbody;
 using namespace underbody::discovery;
@@ -14,7 +14,8 @@ namespace {
 struct Log {
     std::vector<double> time, gap, voltage, direction, force;
 
-    void block(double h, double v, double way, double value, double drift, double noise, core::Random& random, int rows = 100) {
+    void block(double h, double v, double way, double value, double drift, double noise, core::Random& random,
+               int rows = 100) {
         for (int k = 0; k < rows; ++k) {
             const double t = time.empty() ? 0 : time.back() + 0.2;
             time.push_back(t);
@@ -59,7 +60,8 @@ TEST(LoadCell, TakesPreloadAndALinearDriftOutExactlyWhenThereIsNoNoise) {
     const LoadCellReduction reduction = reduce_load_cell(measured(1e-5, 0, 0, 1).table());
     ASSERT_EQ(reduction.table.rows(), 12U);
     for (std::size_t i = 0; i < 12; ++i) {
-        EXPECT_NEAR(reduction.table.numbers("lift_force")[i], lift(reduction.table.numbers("gap")[i], reduction.table.numbers("jet_voltage")[i]), 1e-12);
+        EXPECT_NEAR(reduction.table.numbers("lift_force")[i],
+                    lift(reduction.table.numbers("gap")[i], reduction.table.numbers("jet_voltage")[i]), 1e-12);
     }
     EXPECT_NEAR(reduction.drift_rate, 1e-5, 1e-9);
     EXPECT_NEAR(reduction.friction, 0, 1e-12);
@@ -72,7 +74,8 @@ TEST(LoadCell, StatesSigmasThatTheErrorsKeep) {
         const LoadCellReduction reduction = reduce_load_cell(measured(1e-5, 1e-3, 0, seed).table());
         EXPECT_NEAR(reduction.noise, 1e-3, 2e-4);
         for (std::size_t i = 0; i < reduction.table.rows(); ++i) {
-            const double error = reduction.table.numbers("lift_force")[i] - lift(reduction.table.numbers("gap")[i], reduction.table.numbers("jet_voltage")[i]);
+            const double error = reduction.table.numbers("lift_force")[i] -
+                                 lift(reduction.table.numbers("gap")[i], reduction.table.numbers("jet_voltage")[i]);
             square += std::pow(error / reduction.table.numbers("lift_force_sigma")[i], 2);
             ++count;
         }
@@ -85,7 +88,8 @@ TEST(LoadCell, FindsTheFrictionOfTheSlideBetweenTheTwoWays) {
     // two readings at +f and -f: their standard deviation is f sqrt 2
     EXPECT_NEAR(reduction.friction, 2e-3 * std::sqrt(2.0), 2e-4);
     EXPECT_NEAR(reduction.hysteresis, 2e-3, 1e-4);
-    EXPECT_NE(reduction_text(reduction).find("hysteresis of the slide +-2"), std::string::npos) << reduction_text(reduction);
+    EXPECT_NE(reduction_text(reduction).find("hysteresis of the slide +-2"), std::string::npos)
+        << reduction_text(reduction);
     EXPECT_GT(reduction.table.numbers("lift_force_sigma")[0], 2e-3);
 }
 
@@ -95,7 +99,8 @@ TEST(LoadCell, CanTakeTheThrustOfTheFreeJetOff) {
     const LoadCellReduction reduction = reduce_load_cell(measured(0, 0, 0, 1).table(), options);
     for (std::size_t i = 0; i < reduction.table.rows(); ++i) {
         const double v = reduction.table.numbers("jet_voltage")[i];
-        EXPECT_NEAR(reduction.table.numbers("lift_force")[i], lift(reduction.table.numbers("gap")[i], v) - lift(0.1, v), 1e-12);
+        EXPECT_NEAR(reduction.table.numbers("lift_force")[i], lift(reduction.table.numbers("gap")[i], v) - lift(0.1, v),
+                    1e-12);
     }
 }
 

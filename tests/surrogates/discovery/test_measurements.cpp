@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/file.h"
-#include "surrogates/dynamics/measurements.h"
+#include "surrogates/dynamics/model/measurements.h"
 
 using namespace underbody;
 using namespace underbody::dynamics;
@@ -26,14 +26,16 @@ protected:
 }  // namespace
 
 TEST_F(MeasurementFiles, AreReadWithUnitsNoiseAndConditionsOfEachRun) {
-    write("dataset.toml", "kind = \"time_series\"\n[noise]\ngap = \"0.2 mm\"\ntemperature = \"0.1 degC\"\n[conditions]\nspeed = \"0.5 m/s\"\njet_voltage = \"9 V\"\n"
-                          "[[run]]\nfile = \"a.csv\"\nconditions.jet_voltage = \"10 V\"\nuse = \"test\"\n[[run]]\nfile = \"b.csv\"\n");
+    write("dataset.toml",
+          "kind = \"time_series\"\n[noise]\ngap = \"0.2 mm\"\ntemperature = \"0.1 degC\"\n[conditions]\nspeed = \"0.5 "
+          "m/s\"\njet_voltage = \"9 V\"\n"
+          "[[run]]\nfile = \"a.csv\"\nconditions.jet_voltage = \"10 V\"\nuse = \"test\"\n[[run]]\nfile = \"b.csv\"\n");
     write("a.csv", "time [s], gap [mm], input_force [mN]\n0, 10, 1\n0.02, 11,\n0.04, , 3\n");
     write("b.csv", "time [s], gap [m]\n0, 1\n0.02, 1.1\n0.05, 1.2\n");
     const Measurements data = read_measurements(folder_.path());
     ASSERT_EQ(data.runs.size(), 2U);
     EXPECT_DOUBLE_EQ(*data.declared_noise("gap"), 2e-4);
-    EXPECT_NEAR(*data.declared_noise("temperature"), 0.1, 1e-12);   // a difference, not a point on the scale
+    EXPECT_NEAR(*data.declared_noise("temperature"), 0.1, 1e-12);  // a difference, not a point on the scale
     EXPECT_FALSE(data.declared_noise("heave_velocity"));
     EXPECT_EQ(data.runs[0].use, RunUse::test);
     EXPECT_EQ(data.runs[1].use, RunUse::automatic);
@@ -49,7 +51,9 @@ TEST_F(MeasurementFiles, TellColumnsThatNobodyReadsAndRefuseARunWhoseInputWouldV
     for (const char* name : {"force_in [mN]", "inputforce [N]", "Input Force (N) [N]"}) {
         write("a.csv", std::string("time [s], gap [mm], ") + name + "\n0, 10, 1\n0.02, 11, 2\n0.04, 12, 3\n");
         const core::InputError error = failure();
-        EXPECT_NE(error.message().find("looks like input_force, which the run lacks: its input would be taken as zero"), std::string::npos) << error.what();
+        EXPECT_NE(error.message().find("looks like input_force, which the run lacks: its input would be taken as zero"),
+                  std::string::npos)
+            << error.what();
         EXPECT_NE(error.hint().find("name it 'input_force ["), std::string::npos) << error.what();
         EXPECT_EQ(error.place().column, 3);
     }
@@ -58,7 +62,9 @@ TEST_F(MeasurementFiles, TellColumnsThatNobodyReadsAndRefuseARunWhoseInputWouldV
     write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"b.csv\"\n");
     const Measurements data = read_measurements(folder_.path());
     ASSERT_EQ(data.problems.size(), 2U);
-    EXPECT_EQ(data.problems[0].message, "the column 'vz' is not used: if it is heave_velocity, name it 'heave_velocity [mm/s]' (alike in 1 other run)");
+    EXPECT_EQ(
+        data.problems[0].message,
+        "the column 'vz' is not used: if it is heave_velocity, name it 'heave_velocity [mm/s]' (alike in 1 other run)");
     EXPECT_EQ(data.problems[1].message, "the column 'battery' is not used, for no quantity has that name");
     // With its right name beside it, the other column is just another.
     write("a.csv", "time [s], gap [mm], input_force [N], force_in [mN]\n0, 10, 1, 1\n0.02, 11, 2, 1\n0.04, 12, 3, 1\n");

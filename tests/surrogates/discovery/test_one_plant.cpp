@@ -1,13 +1,14 @@
-// One heave equation: simulation, coupled motions, discovery's filter and the estimator agree for every effect of the catalogue.
+// One heave equation: simulation, coupled motions, discovery's filter and the estimator agree for every effect of the
+// catalogue.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/discovery/heave_filter.h"
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/estimator/training.h"
+#include "surrogates/discovery/heave/heave_filter.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/estimator/model/training.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::discovery {
@@ -75,7 +76,8 @@ std::vector<EffectUse> every_effect() {
 
 /// REF-A with drag, a current and the inertia that a pitching body needs.
 Model base_model(bool mixed) {
-    Model model = test::ref_a_model(0.02, 6, 0.01).with_effect(make_use("ambient_heave_current", {{"velocity", 0.013}}));
+    Model model =
+        test::ref_a_model(0.02, 6, 0.01).with_effect(make_use("ambient_heave_current", {{"velocity", 0.013}}));
     model.vehicle.pitch_inertia = 0.02;
     model.vehicle.base_depth = 0.05;
     model.vehicle.base_half_length = 0.07;
@@ -94,7 +96,8 @@ struct Told {
 void expect_same(const Told& one, const Told& other, const std::string& who) {
     const double size = std::abs(one.acceleration) + 1e-3;
     EXPECT_NEAR(other.acceleration, one.acceleration, 1e-12 * size) << who;
-    EXPECT_NEAR(other.slopes.gap, one.slopes.gap, 1e-12 * (std::abs(one.slopes.gap) + 1)) << who << ": slope along the gap";
+    EXPECT_NEAR(other.slopes.gap, one.slopes.gap, 1e-12 * (std::abs(one.slopes.gap) + 1))
+        << who << ": slope along the gap";
     EXPECT_NEAR(other.slopes.velocity, one.slopes.velocity, 1e-12 * (std::abs(one.slopes.velocity) + 1))
         << who << ": slope along the velocity";
 }
@@ -115,7 +118,8 @@ void compare_at(const Model& model, const std::string& name, double t, double h,
     explanation.terms = plant.terms;
     Told filter;
     filter.acceleration = acceleration_of(record, explanation, t, h, w, u, filter.slopes);
-    if (history) {  // the memory follows the velocity in the filter's steps: its slope belongs to the simulator's law alone
+    if (history) {  // the memory follows the velocity in the filter's steps: its slope belongs to the simulator's law
+                    // alone
         double weights = 0;
         for (const double weight : history_kernel().weight) {
             weights += weight;
@@ -138,11 +142,13 @@ void compare_at(const Model& model, const std::string& name, double t, double h,
     if (plant.autonomous()) {
         double slope = 0;
         const double mass = plant.inertia(h, slope);
-        const double moved = plant.static_force(h, {t, u}) + plant.resistance(h, 0) - plant.resistance(h, w) - 0.5 * slope * w * w;
+        const double moved =
+            plant.static_force(h, {t, u}) + plant.resistance(h, 0) - plant.resistance(h, w) - 0.5 * slope * w * w;
         const bool both = std::any_of(plant.terms.corrections.begin(), plant.terms.corrections.end(),
                                       [](const auto& c) { return c.curve.empty(); });
         if (!both) {
-            EXPECT_NEAR(moved / mass, simulation.acceleration, 1e-12 * (std::abs(simulation.acceleration) + 1e-3)) << who;
+            EXPECT_NEAR(moved / mass, simulation.acceleration, 1e-12 * (std::abs(simulation.acceleration) + 1e-3))
+                << who;
         }
     }
 
@@ -153,12 +159,15 @@ void compare_at(const Model& model, const std::string& name, double t, double h,
     around.input = u;
     around.memory = kept;
     pitch.rate({h, w, 0, 0}, ContactState::free, rate, around);
-    EXPECT_NEAR(rate[1], simulation.acceleration, 1e-8 * (std::abs(simulation.acceleration) + 1e-3)) << who << ", heave and pitch";
+    EXPECT_NEAR(rate[1], simulation.acceleration, 1e-8 * (std::abs(simulation.acceleration) + 1e-3))
+        << who << ", heave and pitch";
 
     // The slopes are those of the acceleration.
     const auto a = [&](double gap, double velocity) { return plant.acceleration(gap, velocity, {t, u}, kept); };
     const double dh = 1e-5 * h, dw = 1e-7;
-    EXPECT_NEAR((a(h + dh, w) - a(h - dh, w)) / (2 * dh), simulation.slopes.gap, 2e-5 * (std::abs(simulation.slopes.gap) + 0.1)) << who;
+    EXPECT_NEAR((a(h + dh, w) - a(h - dh, w)) / (2 * dh), simulation.slopes.gap,
+                2e-5 * (std::abs(simulation.slopes.gap) + 0.1))
+        << who;
     EXPECT_NEAR((a(h, w + dw) - a(h, w - dw)) / (2 * dw), simulation.slopes.velocity,
                 2e-5 * (std::abs(simulation.slopes.velocity) + 0.1))
         << who;
@@ -170,8 +179,8 @@ TEST(OnePlant, SimulationDiscoveryAndEstimatorAgreeForEveryEffect) {
         for (const bool mixed : {false, true}) {
             const Model model = base_model(mixed).with_effect(use);
             for (int i = 0; i < 12; ++i) {
-                compare_at(model, use.name, random.uniform(0, 20), random.uniform(0.002, 0.35), random.uniform(-0.08, 0.08),
-                           random.uniform(-0.02, 0.02));
+                compare_at(model, use.name, random.uniform(0, 20), random.uniform(0.002, 0.35),
+                           random.uniform(-0.08, 0.08), random.uniform(-0.02, 0.02));
             }
         }
     }
@@ -216,7 +225,8 @@ TEST(OnePlant, TheEstimatorMovesAsTheSimulatorDoes) {
 
 TEST(OnePlant, TheFilterRunsAtTenthsOfAMillimetreThroughAFilm) {
     // 12 mu G of a base of 71.7 x 53.6 mm: at 0.1 mm the film stops the body within 0.1 ms.
-    const Model model = test::free_model(4, 0.02, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", 6.7e-8}}));
+    const Model model =
+        test::free_model(4, 0.02, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", 6.7e-8}}));
     for (const double start : {3e-4, 1.5e-4, 1e-4, 5e-5}) {
         InputSignals inputs;
         for (int i = 0; i <= 200; ++i) {

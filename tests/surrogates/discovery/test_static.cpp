@@ -16,7 +16,8 @@ Discovery found_on(const std::function<double(double, double)>& truth, std::uint
     test::write_bench(folder.path(), truth, seed);
     DiscoverOptions options;
     options.figures = figures;
-    return discover(dynamics::read_model(folder.path() / "model.toml"), dynamics::read_measurements(folder.path()), options);
+    return discover(dynamics::read_model(folder.path() / "model.toml"), dynamics::read_measurements(folder.path()),
+                    options);
 }
 
 double declared(double gap, double voltage) { return test::lift_of(gap) * voltage * voltage / 100; }
@@ -53,7 +54,9 @@ TEST(StaticDiscovery, NamesABiasAGapOffsetAndADeadZoneWithTheirSizes) {
 }
 
 TEST(StaticDiscovery, CallsWhatTheCatalogueLacksUnknownAndSaysOnWhatItDepends) {
-    const Discovery found = found_on([](double h, double v) { return declared(h, v) + 0.006 * std::exp(-std::pow(std::log(h / 0.03), 2) / 0.15); }, 6, true);
+    const Discovery found = found_on(
+        [](double h, double v) { return declared(h, v) + 0.006 * std::exp(-std::pow(std::log(h / 0.03), 2) / 0.15); },
+        6, true);
     EXPECT_EQ(found.verdict, "unknown");
     EXPECT_EQ(found.depends_on, std::vector<std::string>{"gap"});
     EXPECT_LT(found.error.front().after.rmse, found.error.front().before.rmse);
@@ -66,7 +69,7 @@ TEST(StaticDiscovery, FindsOutThatADeclaredNoiseIsWrong) {
     core::TemporaryFolder folder("static");
     test::write_bench(folder.path(), declared, 8);
     dynamics::Measurements data = dynamics::read_measurements(folder.path());
-    data.noise["lift_force"] = 0.0005;   // half the truth: everything would look real
+    data.noise["lift_force"] = 0.0005;  // half the truth: everything would look real
     const Discovery found = discover(dynamics::read_model(folder.path() / "model.toml"), data);
     EXPECT_EQ(found.verdict, "none");
     EXPECT_NE(found.noise.at("lift_force").from.find("wrong"), std::string::npos);
@@ -75,13 +78,15 @@ TEST(StaticDiscovery, FindsOutThatADeclaredNoiseIsWrong) {
 
 TEST(StaticDiscovery, WritesEverythingAndItsModelIsReadBack) {
     core::TemporaryFolder folder("static");
-    test::write_bench(folder.path(), [](double h, double v) { return declared(h, v) + 0.004; }, 3);
+    test::write_bench(
+        folder.path(), [](double h, double v) { return declared(h, v) + 0.004; }, 3);
     const dynamics::Model model = dynamics::read_model(folder.path() / "model.toml");
     const dynamics::Measurements data = dynamics::read_measurements(folder.path());
     const Discovery found = discover(model, data);
     write_discovery(found, model, data, folder.path() / "found", {});
     const nlohmann::json json = nlohmann::json::parse(core::read_file(folder.path() / "found" / "discovery.json"));
-    for (const char* key : {"verdict", "effects", "alternatives", "depends_on", "noise", "error", "consequence", "next_experiment"}) {
+    for (const char* key :
+         {"verdict", "effects", "alternatives", "depends_on", "noise", "error", "consequence", "next_experiment"}) {
         EXPECT_TRUE(json.contains(key)) << key;
     }
     EXPECT_EQ(json["effects"][0]["name"], "force_bias");
@@ -103,19 +108,23 @@ TEST(StaticDiscovery, CountsHowOftenResampledSetPointsGiveTheSameVerdict) {
     // a bias at the edge of what can be seen: some draws of the same set points show it, others do not
     const Discovery faint = found_on([](double h, double v) { return declared(h, v) + 0.0004; }, 5);
     EXPECT_LT(faint.stability, 1);
-    const auto bump = [](double h, double v) { return declared(h, v) + 0.012 * std::exp(-std::pow((h - 0.025) / 0.015, 2)); };
+    const auto bump = [](double h, double v) {
+        return declared(h, v) + 0.012 * std::exp(-std::pow((h - 0.025) / 0.015, 2));
+    };
     const Discovery unknown = found_on(bump, 5);
     ASSERT_EQ(unknown.verdict, "unknown") << unknown.sentence;
     EXPECT_GT(unknown.stability, 0.8);
 }
 
 TEST(StaticDiscovery, DrawsABumpThatOnlyAFewGapsShow) {
-    const auto bump = [](double h, double v) { return declared(h, v) + 0.012 * std::exp(-std::pow((h - 0.025) / 0.015, 2)) * v / 8; };
+    const auto bump = [](double h, double v) {
+        return declared(h, v) + 0.012 * std::exp(-std::pow((h - 0.025) / 0.015, 2)) * v / 8;
+    };
     const Discovery found = found_on(bump, 6);
     ASSERT_EQ(found.verdict, "unknown") << found.sentence;
     const dynamics::StaticModel corrected(found.model, "lift_force");
     double largest = 0;
-    for (const double gap : {0.005, 0.01, 0.02, 0.04, 0.07, 0.1}) {   // at voltages between the measured ones
+    for (const double gap : {0.005, 0.01, 0.02, 0.04, 0.07, 0.1}) {  // at voltages between the measured ones
         for (const double volts : {5.0, 8.0, 11.0}) {
             dynamics::Conditions at;
             at[dynamics::Channel::gap] = gap;
@@ -148,11 +157,13 @@ TEST(StaticDiscovery, SaysWhetherAnEffectBelongsToTheRigOrGoesWithTheVehicle) {
 
 TEST(StaticDiscovery, RunsItsPlaceboOnTwinsWithNothingMissing) {
     core::TemporaryFolder folder("static");
-    test::write_bench(folder.path(), [](double h, double v) { return declared(h, v) + 0.004; }, 3);
+    test::write_bench(
+        folder.path(), [](double h, double v) { return declared(h, v) + 0.004; }, 3);
     DiscoverOptions options;
     options.figures = options.consequence = false;
     options.placebo_twins = 4;
-    const Discovery found = discover(dynamics::read_model(folder.path() / "model.toml"), dynamics::read_measurements(folder.path()), options);
+    const Discovery found = discover(dynamics::read_model(folder.path() / "model.toml"),
+                                     dynamics::read_measurements(folder.path()), options);
     EXPECT_EQ(found.verdict, "effect");
     EXPECT_EQ(found.placebo.twins, 4U);
     EXPECT_LE(found.placebo.alarms, 1U);

@@ -60,9 +60,10 @@ TEST(OddStaticData, OneSetPointShowsThatSomethingIsMissingButNotWhat) {
     ASSERT_EQ(found.verdict, "effect") << found.sentence;
     EXPECT_LT(found.effects.front().probability, 0.5) << found.sentence;
     for (const char* name : {"force_bias", "sensor_gain"}) {
-        EXPECT_TRUE(found.effects.front().name == name ||
-                    std::any_of(found.alternatives.begin(), found.alternatives.end(),
-                                [&](const FoundEffect& rival) { return rival.name == name && rival.probability > 0.3; }))
+        EXPECT_TRUE(
+            found.effects.front().name == name ||
+            std::any_of(found.alternatives.begin(), found.alternatives.end(),
+                        [&](const FoundEffect& rival) { return rival.name == name && rival.probability > 0.3; }))
             << name << ": " << found.sentence;
     }
 }
@@ -92,7 +93,8 @@ TEST(OddStaticData, AGapInTheWrongUnitIsRefusedWithTheFactor) {
         (void)bench.found();
         FAIL() << "nothing was refused";
     } catch (const core::InputError& error) {
-        EXPECT_NE(error.message().find("outside the range of the declared tables"), std::string::npos) << error.message();
+        EXPECT_NE(error.message().find("outside the range of the declared tables"), std::string::npos)
+            << error.message();
         EXPECT_NE(error.hint().find("1000 times too large"), std::string::npos) << error.hint();
     }
 }
@@ -124,7 +126,8 @@ TEST(OddStaticData, RunsThatContradictEachOtherAreNamed) {
     Bench bench;
     bench.data.runs.push_back(bench.data.runs.front());
     bench.data.runs.back().name = "second";
-    bench.change("lift_force", [](std::size_t i, double value) { return value + (i < 45 ? 0.01 : -0.008); }, 1);
+    bench.change(
+        "lift_force", [](std::size_t i, double value) { return value + (i < 45 ? 0.01 : -0.008); }, 1);
     EXPECT_TRUE(says(bench.found(), "contradict"));
 }
 
@@ -139,7 +142,8 @@ TEST(OddStaticData, SwappedColumnsAreNamed) {
     Bench bench;
     core::write_file(bench.folder.path() / "drag.csv", "gap [m], drag_force [N]\n0.001, 0.5\n0.1, 0.3\n1.6, 0.2\n");
     const std::string text = core::read_file(bench.folder.path() / "model.toml");
-    core::write_file(bench.folder.path() / "both.toml", text + "[[force]]\nquantity = \"drag_force\"\ntable = \"drag.csv\"\n");
+    core::write_file(bench.folder.path() / "both.toml",
+                     text + "[[force]]\nquantity = \"drag_force\"\ntable = \"drag.csv\"\n");
     bench.model = dynamics::read_model(bench.folder.path() / "both.toml");
     const dynamics::StaticModel drag(bench.model, "drag_force");
     std::vector<double> lifts = bench.data.runs[0].table.numbers("lift_force"), drags;
@@ -158,7 +162,8 @@ TEST(OddStaticData, ADeclaredModelWithoutTheMeasuredQuantityIsRefusedWithWhatToD
     core::Table table;
     table.source = "bench.csv";
     for (const core::Column& column : bench.data.runs[0].table.columns()) {
-        table.add_numbers(column.name == "lift_force" ? "pitch_moment" : column.name, column.name == "lift_force" ? "N m" : column.unit, column.numbers);
+        table.add_numbers(column.name == "lift_force" ? "pitch_moment" : column.name,
+                          column.name == "lift_force" ? "N m" : column.unit, column.numbers);
     }
     bench.data.runs[0].table = std::move(table);
     try {
@@ -172,7 +177,9 @@ TEST(OddStaticData, ADeclaredModelWithoutTheMeasuredQuantityIsRefusedWithWhatToD
 
 TEST(OddStaticData, AChannelThatRanWithAnotherIsNamed) {
     Bench bench;
-    bench.change("time", [&](std::size_t i, double) { return 1e4 * bench.data.runs[0].table.numbers("gap")[i] + 0.01 * static_cast<double>(i); });
+    bench.change("time", [&](std::size_t i, double) {
+        return 1e4 * bench.data.runs[0].table.numbers("gap")[i] + 0.01 * static_cast<double>(i);
+    });
     EXPECT_TRUE(says(bench.found(), "ran together"));
 }
 

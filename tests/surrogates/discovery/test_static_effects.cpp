@@ -1,11 +1,12 @@
-// Every static effect of the catalogue once through the loop: named, written, read back, and better on data that nobody fitted.
+// Every static effect of the catalogue once through the loop: named, written, read back, and better on data that nobody
+// fitted.
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "make_data.h"
 #include "surrogates/discovery/discovery.h"
-#include "surrogates/dynamics/predict.h"
+#include "surrogates/dynamics/simulate/predict.h"
 
 using namespace underbody;
 using namespace underbody::discovery;
@@ -20,7 +21,8 @@ dynamics::Model rig(const std::filesystem::path& folder, const std::string& kind
     std::string jet = "gap [m], lift_force [N]\n";
     for (int k = 0; k <= 120; ++k) {
         const double h = 0.0005 * std::pow(600.0, k / 120.0);
-        glide += test::written(h) + ", " + test::written(0.05 - 0.6 * std::exp(-h / 0.02) * (1 - 0.5 * std::exp(-h / 0.002))) + ", " +
+        glide += test::written(h) + ", " +
+                 test::written(0.05 - 0.6 * std::exp(-h / 0.02) * (1 - 0.5 * std::exp(-h / 0.002))) + ", " +
                  test::written(0.15 + 0.2 * std::exp(-h / 0.003)) + "\n";
         jet += test::written(h) + ", " + test::written(2 * test::lift_of(h)) + "\n";
     }
@@ -35,13 +37,16 @@ dynamics::Model rig(const std::filesystem::path& folder, const std::string& kind
         text += "[[force]]\nquantity = \"drag_force\"\ntable = \"glide.csv\"\n" + by_speed;
     }
     if (kind != "glide") {
-        text += "[[force]]\nquantity = \"lift_force\"\ntable = \"jet.csv\"\nscale.jet_voltage = { reference = \"10 V\", exponent = 2 }\n";
+        text +=
+            "[[force]]\nquantity = \"lift_force\"\ntable = \"jet.csv\"\nscale.jet_voltage = { reference = \"10 V\", "
+            "exponent = 2 }\n";
     }
     core::write_file(folder / "model.toml", text);
     return dynamics::read_model(folder / "model.toml");
 }
 
-dynamics::Measurements measure(const dynamics::Model& truth, const std::string& kind, std::uint64_t seed, double shift) {
+dynamics::Measurements measure(const dynamics::Model& truth, const std::string& kind, std::uint64_t seed,
+                               double shift) {
     core::Random random(seed);
     std::vector<double> time, gap, speed, voltage, temperature, way, lift, drag;
     const dynamics::StaticModel lifts(truth, "lift_force");
@@ -131,15 +136,17 @@ TEST_P(EveryStaticEffect, IsNamedAndItsModelPredictsNewSetPointsToTheNoise) {
     EXPECT_LT(after, 1.3 * noise);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfTheCatalogue, EveryStaticEffect,
-                         testing::Values(Wanted{"glide", "gap_offset", {{"offset", 6e-4, 0}}}, Wanted{"jet", "force_bias", {{"bias", 0.004, 0}}},
-                                         Wanted{"glide", "sensor_gain", {{"gain", 1.05, 0}}}, Wanted{"jet", "drift", {{"rate", 1.5e-6, 0}}},
-                                         Wanted{"glide", "speed_exponent", {{"exponent", 2.12, 0}}}, Wanted{"glide", "current", {{"velocity", 0.015, 0}}},
-                                         Wanted{"glide", "temperature", {{"sensitivity", 0.9, 0}}},
-                                         Wanted{"glide", "strut_buoyancy", {{"slope", 0.08, 0}}, "", "cable_buoyancy"},
-                                         Wanted{"jet", "cable_buoyancy", {{"slope", 0.08, 0}}, "", "strut_buoyancy"},
-                                         Wanted{"jet", "guide_friction", {{"friction", 0.003, 0}}}, Wanted{"jet", "pump_curve", {{"dead_zone", 1.2, 0}}},
-                                         Wanted{"glide", "pitch_misalignment", {{"angle", 0.012, 0}}},
-                                         Wanted{"glide", "surface_roughness", {{"near", 0.12, 0}, {"far", 0.12, 0}, {"length", 0.012, 0}}},
-                                         Wanted{"two", "declared_parameter", {{"value", 1.25, 0}}, "force.2.factor"}),
-                         [](const testing::TestParamInfo<Wanted>& one) { return std::string(one.param.kind) + "_" + one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    OfTheCatalogue, EveryStaticEffect,
+    testing::Values(
+        Wanted{"glide", "gap_offset", {{"offset", 6e-4, 0}}}, Wanted{"jet", "force_bias", {{"bias", 0.004, 0}}},
+        Wanted{"glide", "sensor_gain", {{"gain", 1.05, 0}}}, Wanted{"jet", "drift", {{"rate", 1.5e-6, 0}}},
+        Wanted{"glide", "speed_exponent", {{"exponent", 2.12, 0}}},
+        Wanted{"glide", "current", {{"velocity", 0.015, 0}}}, Wanted{"glide", "temperature", {{"sensitivity", 0.9, 0}}},
+        Wanted{"glide", "strut_buoyancy", {{"slope", 0.08, 0}}, "", "cable_buoyancy"},
+        Wanted{"jet", "cable_buoyancy", {{"slope", 0.08, 0}}, "", "strut_buoyancy"},
+        Wanted{"jet", "guide_friction", {{"friction", 0.003, 0}}}, Wanted{"jet", "pump_curve", {{"dead_zone", 1.2, 0}}},
+        Wanted{"glide", "pitch_misalignment", {{"angle", 0.012, 0}}},
+        Wanted{"glide", "surface_roughness", {{"near", 0.12, 0}, {"far", 0.12, 0}, {"length", 0.012, 0}}},
+        Wanted{"two", "declared_parameter", {{"value", 1.25, 0}}, "force.2.factor"}),
+    [](const testing::TestParamInfo<Wanted>& one) { return std::string(one.param.kind) + "_" + one.param.name; });

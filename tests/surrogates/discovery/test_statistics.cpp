@@ -7,14 +7,14 @@
 #include "surrogates/discovery/flexible.h"
 #include "surrogates/discovery/least_squares.h"
 #include "surrogates/discovery/statistics.h"
-#include "surrogates/dynamics/sensor_noise.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
 
 using namespace underbody;
 using namespace underbody::discovery;
 
 TEST(Statistics, WilsonIntervalAgreesWithItsFormula) {
     const Interval i = wilson_interval(8, 10);
-    EXPECT_NEAR(i.low, 0.4901625, 1e-6);   // Wilson 1927, computed by hand
+    EXPECT_NEAR(i.low, 0.4901625, 1e-6);  // Wilson 1927, computed by hand
     EXPECT_NEAR(i.high, 0.9433178, 1e-6);
     EXPECT_DOUBLE_EQ(wilson_interval(0, 0).high, 1);
 }
@@ -174,7 +174,7 @@ TEST(Flexible, GroupsThatDisagreeWidenTheError) {
     jacobian.values.assign(40, 1.0);
     std::vector<double> residuals(40);
     for (std::size_t i = 0; i < 40; ++i) {
-        residuals[i] = i < 20 ? 1.0 : -1.0;   // two halves pull the mean apart
+        residuals[i] = i < 20 ? 1.0 : -1.0;  // two halves pull the mean apart
     }
     const double alone = 1.0 / 40;
     EXPECT_NEAR(grouped_variances(jacobian, residuals, {0, 40})[0], alone, 1e-9);
@@ -203,7 +203,8 @@ TEST(Flexible, SlopesOfASumAreItsDifferences) {
         double up[2] = {at[0], at[1]}, down[2] = {at[0], at[1]}, unused[2];
         up[v] += 1e-5;
         down[v] -= 1e-5;
-        const double expected = (basis.sum(coefficients.data(), up, unused) - basis.sum(coefficients.data(), down, unused)) / 2e-5;
+        const double expected =
+            (basis.sum(coefficients.data(), up, unused) - basis.sum(coefficients.data(), down, unused)) / 2e-5;
         EXPECT_NEAR(slopes[v], expected, 1e-5 * (1 + std::abs(expected))) << v;
     }
 }

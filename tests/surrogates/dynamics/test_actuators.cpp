@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "core/random.h"
-#include "surrogates/dynamics/feedback.h"
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/simulate/feedback.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -20,9 +20,12 @@ struct Case {
 };
 
 std::vector<Case> actuators() {
-    const EffectUse gain = make_use("input_gain", {{"gain", 0.6}}), zone = make_use("input_dead_zone", {{"width", 0.002}}),
-                    delay = make_use("input_delay", {{"delay", 0.7}}), lag = make_use("actuator_lag", {{"time_constant", 0.9}});
-    return {{"gain", {gain}}, {"dead zone", {zone}}, {"delay", {delay}}, {"lag", {lag}}, {"all", {gain, zone, delay, lag}}};
+    const EffectUse gain = make_use("input_gain", {{"gain", 0.6}}),
+                    zone = make_use("input_dead_zone", {{"width", 0.002}}),
+                    delay = make_use("input_delay", {{"delay", 0.7}}),
+                    lag = make_use("actuator_lag", {{"time_constant", 0.9}});
+    return {
+        {"gain", {gain}}, {"dead zone", {zone}}, {"delay", {delay}}, {"lag", {lag}}, {"all", {gain, zone, delay, lag}}};
 }
 
 Model with(const Model& base, const std::vector<EffectUse>& uses) {
@@ -65,7 +68,8 @@ TEST(Actuators, ActUnderFeedbackAndWithAConstantInputBesideIt) {
                     TrajectoryOptions options;
                     options.duration = 15;
                     options.output_step = step;
-                    const Trajectory motion = simulate(model, 0.12, 0, inputs, options, core::Progress::none(), &feedback);
+                    const Trajectory motion =
+                        simulate(model, 0.12, 0, inputs, options, core::Progress::none(), &feedback);
                     EXPECT_NEAR(motion.gap.back(), by_hand(model, feedback, constant, 0.12, 15), 2e-5)
                         << one.name << ", limit " << feedback.limit << ", constant " << constant << ", step " << step;
                 }
@@ -78,7 +82,8 @@ TEST(Actuators, ActUnderFeedbackAndWithAConstantInputBesideIt) {
 }
 
 TEST(Actuators, ActOnAConstantInputInEveryMotion) {
-    const Model model = with(test::ref_a_model(0.05, 6), {make_use("input_gain", {{"gain", 0.5}}), make_use("input_dead_zone", {{"width", 0.002}})});
+    const Model model = with(test::ref_a_model(0.05, 6), {make_use("input_gain", {{"gain", 0.5}}),
+                                                          make_use("input_dead_zone", {{"width", 0.002}})});
     Conditions held;
     held[Channel::input_force] = 0.01;  // 0.5 (0.010 - 0.002) reach the body
     Conditions felt;
@@ -100,8 +105,8 @@ TEST(Actuators, ActOnAConstantInputInEveryMotion) {
     duration.duration = 5;
     InputSignals direct;
     direct.held = felt;
-    EXPECT_NEAR(simulate(model, 0.1, 0, inputs, duration).gap.back(), simulate(test::ref_a_model(0.05, 6), 0.1, 0, direct, duration).gap.back(),
-                1e-9);
+    EXPECT_NEAR(simulate(model, 0.1, 0, inputs, duration).gap.back(),
+                simulate(test::ref_a_model(0.05, 6), 0.1, 0, direct, duration).gap.back(), 1e-9);
 }
 
 TEST(Actuators, ADelayChangesTheMapAndItsClassesAreThoseOfTheMotion) {
@@ -114,7 +119,8 @@ TEST(Actuators, ADelayChangesTheMapAndItsClassesAreThoseOfTheMotion) {
     options.refine = false;
     options.feedback = std::make_shared<HeaveFeedback>(HeaveFeedback{1.5, 2.0, 0.1, 0.02});
     const StabilityRegion bare = stability_region(base, options);
-    for (const Case& one : {Case{"delay", {make_use("input_delay", {{"delay", 3.0}})}}, Case{"lag", {make_use("actuator_lag", {{"time_constant", 3.0}})}}}) {
+    for (const Case& one : {Case{"delay", {make_use("input_delay", {{"delay", 3.0}})}},
+                            Case{"lag", {make_use("actuator_lag", {{"time_constant", 3.0}})}}}) {
         const Model model = with(base, one.uses);
         const StabilityRegion slow = stability_region(model, options);
         int differ = 0, wrong = 0, asked = 0;
@@ -124,14 +130,19 @@ TEST(Actuators, ADelayChangesTheMapAndItsClassesAreThoseOfTheMotion) {
             if (k % 7 != 0) {
                 continue;
             }
-            const double gap = 0.02 + 0.48 * (static_cast<double>(k % 16) + 0.5) / 16, velocity = -0.08 + 0.16 * (static_cast<double>(k / 16) + 0.5) / 12;
+            const double gap = 0.02 + 0.48 * (static_cast<double>(k % 16) + 0.5) / 16,
+                         velocity = -0.08 + 0.16 * (static_cast<double>(k / 16) + 0.5) / 12;
             TrajectoryOptions motion;
             motion.duration = 60;
             motion.stop_at_contact = true;
             motion.escape_gap = slow.escape_gap;
-            const std::string ends = simulate(model, gap, velocity, {}, motion, core::Progress::none(), options.feedback.get()).end;
+            const std::string ends =
+                simulate(model, gap, velocity, {}, motion, core::Progress::none(), options.feedback.get()).end;
             ++asked;
-            wrong += (ends == "contact") != (end.kind == EndKind::contact) || (ends == "escape") != (end.kind == EndKind::escape) ? 1 : 0;
+            wrong += (ends == "contact") != (end.kind == EndKind::contact) ||
+                             (ends == "escape") != (end.kind == EndKind::escape)
+                         ? 1
+                         : 0;
         }
         EXPECT_GT(differ, 8) << one.name;
         EXPECT_LE(wrong, 1) << one.name << " of " << asked;
@@ -173,7 +184,10 @@ TEST(Actuators, HeaveAndPitchClosesTheSameLoop) {
         for (std::size_t k = 0; k < alone.index.size(); ++k) {
             const EndKind a = alone.classes[static_cast<std::size_t>(alone.index[k])].kind,
                           b = together.classes[static_cast<std::size_t>(together.index[k])].kind;
-            differ += (a == EndKind::contact) != (b == EndKind::contact) || (a == EndKind::escape) != (b == EndKind::escape) ? 1 : 0;
+            differ +=
+                (a == EndKind::contact) != (b == EndKind::contact) || (a == EndKind::escape) != (b == EndKind::escape)
+                    ? 1
+                    : 0;
         }
         EXPECT_EQ(differ, 0) << one.name;
     }

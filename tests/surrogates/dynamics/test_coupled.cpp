@@ -1,14 +1,15 @@
-// Heave alone, heave and pitch, and the whole body agree where they describe the same motion; effects, inputs, coupling.
+// Heave alone, heave and pitch, and the whole body agree where they describe the same motion; effects, inputs,
+// coupling.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/dynamics/dormand_prince.h"
-#include "surrogates/dynamics/feedback.h"
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/dynamics/region.h"
-#include "surrogates/dynamics/rigid_body.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/simulate/dormand_prince.h"
+#include "surrogates/dynamics/simulate/feedback.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/dynamics/simulate/rigid_body.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -19,13 +20,22 @@ namespace {
 /// from a level start stays in heave.
 Model level_model(const std::string& more = "") {
     Model model = read_model_text(
-        "[vehicle]\nmass = 2.2\nadded_mass_surge = 0.8\nadded_mass_sway = 1.3\nadded_mass_heave = 1.754\nnet_weight = 0.01\n"
-        "roll_inertia = 0.00485\npitch_inertia = 0.00685\nyaw_inertia = 0.00708\nbase_depth = 0.03\nbase_half_length = 0.0717\n"
-        "buoyancy_height = 0.01\n[drag.heave]\nlinear = 0.2\nquadratic = 12\n[drag.pitch]\nlinear = 0.01\n" + more,
+        "[vehicle]\nmass = 2.2\nadded_mass_surge = 0.8\nadded_mass_sway = 1.3\nadded_mass_heave = 1.754\nnet_weight = "
+        "0.01\n"
+        "roll_inertia = 0.00485\npitch_inertia = 0.00685\nyaw_inertia = 0.00708\nbase_depth = 0.03\nbase_half_length = "
+        "0.0717\n"
+        "buoyancy_height = 0.01\n[drag.heave]\nlinear = 0.2\nquadratic = 12\n[drag.pitch]\nlinear = 0.01\n" +
+            more,
         "level.toml", ".");
     tables::FitOptions options;
     options.kind = tables::FitOptions::Kind::interpolation;
-    model.forces.push_back({"lift_force", "ref-a.csv", "ref-a.csv", tables::ForceTable::fit(test::ref_a_table(), "lift_force", options), {Channel::gap}, {}, 1.0});
+    model.forces.push_back({"lift_force",
+                            "ref-a.csv",
+                            "ref-a.csv",
+                            tables::ForceTable::fit(test::ref_a_table(), "lift_force", options),
+                            {Channel::gap},
+                            {},
+                            1.0});
     return model;
 }
 
@@ -101,7 +111,8 @@ TEST(Coupled, RecordedInputsMoveAllThreeMotionsAlike) {
     options.duration = 10;
     options.output_step = 1;
     const Trajectory heave = simulate(model, .2, 0, inputs, options);
-    const PitchTrajectory both = simulate(HeavePitch(model, {}, {Channel::input_force}), {.2, 0, 0, 0}, options, core::Progress::none(), inputs);
+    const PitchTrajectory both =
+        simulate(HeavePitch(model, {}, {Channel::input_force}), {.2, 0, 0, 0}, options, core::Progress::none(), inputs);
     const RigidBody body(model, {}, {Channel::input_force});
     BodyState start{};
     start[state_z] = body.height_for_gap(.2, 0);
@@ -196,8 +207,10 @@ TEST(Coupled, EnergyStaysWithAddedMassOverTheGap) {
 
 TEST(Coupled, ProductsOfInertiaKeepEnergyAndInVacuumTheMomentum) {
     Model model = read_model_text(
-        "[vehicle]\nmass = 2.2\nroll_inertia = 0.005\npitch_inertia = 0.007\nyaw_inertia = 0.0075\ninertia_product_xy = 0.0008\n"
-        "inertia_product_xz = -0.0011\ninertia_product_yz = 0.0006\nbase_depth = 0.05\nbase_half_length = 0.07\nnet_weight = 0\n",
+        "[vehicle]\nmass = 2.2\nroll_inertia = 0.005\npitch_inertia = 0.007\nyaw_inertia = 0.0075\ninertia_product_xy "
+        "= 0.0008\n"
+        "inertia_product_xz = -0.0011\ninertia_product_yz = 0.0006\nbase_depth = 0.05\nbase_half_length = "
+        "0.07\nnet_weight = 0\n",
         "tensor.toml", ".");
     BodyState y{};
     y[state_u] = .2;
@@ -249,8 +262,11 @@ TEST(Coupled, TheCentresOfMassAndBuoyancySetTheTrim) {
     plant.statics(.1, std::atan2(-3, 10), force, moment);
     EXPECT_NEAR(force, 0, 1e-12);
     EXPECT_NEAR(moment, 0, 1e-12);
-    const auto text = [](const std::string& more) { return "[vehicle]\nmass = 2.2\nlength = 0.2\nwidth = 0.15\n" + more; };
-    EXPECT_THROW(read_model_text(text("buoyancy_height = 0.01\ncentre_of_gravity = [0, 0, 0.01]\n"), "m", "."), core::InputError);
+    const auto text = [](const std::string& more) {
+        return "[vehicle]\nmass = 2.2\nlength = 0.2\nwidth = 0.15\n" + more;
+    };
+    EXPECT_THROW(read_model_text(text("buoyancy_height = 0.01\ncentre_of_gravity = [0, 0, 0.01]\n"), "m", "."),
+                 core::InputError);
     EXPECT_THROW(read_model_text(text("centre_of_gravity = [20, 0, 0]\n"), "m", "."), core::InputError);
 }
 
@@ -296,8 +312,10 @@ TEST(Coupled, ImpactsKeepMomentumAboutTheContactAndNeverAddEnergy) {
             EXPECT_NEAR(plant.kinetic_energy(after) / plant.kinetic_energy(y), 1, 1e-12);
         }
         // The impulse passes through the edge: it turns nothing about it.
-        const double arm = (-model.vehicle.centre_of_gravity->at(0) + (which == 0 ? .0717 : -.0717)) * std::cos(y[2]) + .03 * std::sin(y[2]);
-        EXPECT_NEAR(plant.inertia() * (after[3] - y[3]), arm * plant.mass() * (plant.centre_velocity(after) - plant.centre_velocity(y)), 1e-12);
+        const double arm = (-model.vehicle.centre_of_gravity->at(0) + (which == 0 ? .0717 : -.0717)) * std::cos(y[2]) +
+                           .03 * std::sin(y[2]);
+        EXPECT_NEAR(plant.inertia() * (after[3] - y[3]),
+                    arm * plant.mass() * (plant.centre_velocity(after) - plant.centre_velocity(y)), 1e-12);
     }
 }
 
@@ -330,7 +348,8 @@ TEST(Integrators, TheErrorOfCvodeFollowsItsTolerance) {
         options.tolerance = tolerance;
         const Trajectory motion = simulate(model, .15, 0, {}, options);
         const double a = .3 / 8, w = std::sqrt(5 - a * a), t = 10;
-        errors.push_back(std::abs(motion.gap.back() - .1 - .05 * std::exp(-a * t) * (std::cos(w * t) + a / w * std::sin(w * t))));
+        errors.push_back(
+            std::abs(motion.gap.back() - .1 - .05 * std::exp(-a * t) * (std::cos(w * t) + a / w * std::sin(w * t))));
     }
     for (std::size_t i = 0; i + 1 < errors.size(); ++i) {
         EXPECT_LT(errors[i + 1], .1 * errors[i] + 1e-12);
@@ -361,11 +380,13 @@ TEST(Coupled, HeaveVelocityIsHowFastTheGapGrowsInEveryMotion) {
     const PitchTrajectory motion = simulate(plant, {.11, .01, .05, .3}, options);
     double worst = 0;
     for (std::size_t i = 1; i + 1 < motion.time.size(); ++i) {
-        const double slope = (motion.state[i + 1][0] - motion.state[i - 1][0]) / (motion.time[i + 1] - motion.time[i - 1]);
+        const double slope =
+            (motion.state[i + 1][0] - motion.state[i - 1][0]) / (motion.time[i + 1] - motion.time[i - 1]);
         worst = std::max(worst, std::abs(slope - motion.state[i][1]));
     }
     EXPECT_LT(worst, 1e-5);  // the difference over 2 ms itself
-    EXPECT_GT(std::abs(plant.centre_velocity({.11, .01, .05, .3}) - .01), 1e-3);  // that of the centre of mass is another
+    EXPECT_GT(std::abs(plant.centre_velocity({.11, .01, .05, .3}) - .01),
+              1e-3);  // that of the centre of mass is another
     const RigidBody body(model);
     BodyState start{};
     start[state_u] = .2;
@@ -434,7 +455,8 @@ TEST(Coupled, ImpactsSlideWithFrictionOrStickAndNeverAddEnergy) {
     y[state_z] = body.height_for_gap(0, 0);
     const BodyState after = body.impact(y, ContactState::flat);
     double slope = 0;
-    const double fall = body.vertical().inertia(0, slope) * .05, mass = model.vehicle.mass + model.vehicle.added_mass_surge;
+    const double fall = body.vertical().inertia(0, slope) * .05,
+                 mass = model.vehicle.mass + model.vehicle.added_mass_surge;
     EXPECT_NEAR(after[state_u], .35 - .4 * fall / mass, 1e-6);
 }
 
@@ -444,7 +466,8 @@ TEST(Coupled, EveryModeOfTheWholeBodyHasAName) {
     trim[state_u] = .1;
     trim[state_z] = body.height_for_gap(.11, 0);
     const LinearSystem system = linearise_body(body, trim, {});
-    const auto found = modes(system, {"surge", "sway", "heave", "pitch", "yaw", "pitch", "heading", "north", "east", "heave"});
+    const auto found =
+        modes(system, {"surge", "sway", "heave", "pitch", "yaw", "pitch", "heading", "north", "east", "heave"});
     EXPECT_GE(found.size(), 6U);
     for (const Mode& mode : found) {
         EXPECT_FALSE(mode.name.empty()) << mode.value;

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "surrogates/dynamics/force_points.h"
+#include "surrogates/dynamics/model/force_points.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -21,8 +21,8 @@ std::string all_remarks(const ForcePoints& found) {
 /// REF-A through its points without overshoot, as models take tables by default.
 Model monotone_model() {
     Model model = test::ref_a_model();
-    model.forces[0].table = tables::ForceTable::fit(test::ref_a_table(), "lift_force",
-                                                    {.kind = tables::FitOptions::Kind::interpolation, .range = {}, .axes = {}});
+    model.forces[0].table = tables::ForceTable::fit(
+        test::ref_a_table(), "lift_force", {.kind = tables::FitOptions::Kind::interpolation, .range = {}, .axes = {}});
     return model;
 }
 
@@ -58,7 +58,8 @@ TEST(ForcePoints, AreDenseEnoughForATableThatIsNoMonotoneInterpolation) {
 
 TEST(ForcePoints, HaveTheRoughnessOfTheGroundInThemAndPointsBetween) {
     const Model smooth = test::ref_a_model();
-    const Model rough = smooth.with_effect(make_use("surface_roughness", {{"near", 0.3}, {"far", 0.1}, {"length", 0.05}}));
+    const Model rough =
+        smooth.with_effect(make_use("surface_roughness", {{"near", 0.3}, {"far", 0.1}, {"length", 0.05}}));
     const ForcePoints found = force_points(rough);
     const std::vector<double>& gap = found.points.numbers("gap");
     ASSERT_EQ(gap.size(), 4 * (test::ref_a_table().rows() - 1) + 1);

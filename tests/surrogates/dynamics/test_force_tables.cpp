@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/dynamics/force_error.h"
-#include "surrogates/dynamics/force_tables.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/tables/many_points.h"
+#include "surrogates/dynamics/model/force_error.h"
+#include "surrogates/dynamics/model/force_tables.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/tables/fit/table_batch.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {

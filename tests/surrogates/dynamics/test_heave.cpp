@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/plant/heave.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -39,7 +39,8 @@ TEST(Heave, DecaysAsALinearDamperSays) {
     const double rate = 2.0 / 8, omega = std::sqrt(25 - rate * rate);
     for (std::size_t i = 0; i < motion.time.size(); ++i) {
         const double t = motion.time[i];
-        const double expected = 0.1 + 0.01 * std::exp(-rate * t) * (std::cos(omega * t) + rate / omega * std::sin(omega * t));
+        const double expected =
+            0.1 + 0.01 * std::exp(-rate * t) * (std::cos(omega * t) + rate / omega * std::sin(omega * t));
         EXPECT_NEAR(motion.gap[i], expected, 2e-8);
     }
 }
@@ -121,7 +122,9 @@ TEST(Heave, KeepsEnergyWithAddedMassThatGrowsTowardTheGround) {
     options.duration = 10;
     options.tolerance = 1e-11;
     const Trajectory motion = simulate(model, 0.17, 0, {}, options);
-    const auto energy = [](double h, double w) { return 0.5 * (2.0 + 5.0 * 0.02 / (h + 0.02)) * w * w + 25 * (h - 0.1) * (h - 0.1); };
+    const auto energy = [](double h, double w) {
+        return 0.5 * (2.0 + 5.0 * 0.02 / (h + 0.02)) * w * w + 25 * (h - 0.1) * (h - 0.1);
+    };
     const double start = energy(0.17, 0);
     for (std::size_t i = 0; i < motion.time.size(); ++i) {
         EXPECT_NEAR(energy(motion.gap[i], motion.heave_velocity[i]) / start, 1, 5e-8);
@@ -185,7 +188,8 @@ TEST(Heave, RungeKuttaOfTheFastRunIsOfFourthOrder) {
         std::vector<double> gap(2);
         run.simulate(plant, 0, 1, 0.11, 0, gap, {});
         const double rate = 1.0 / 8, omega = std::sqrt(25 - rate * rate);
-        return std::abs(gap[1] - 0.1 - 0.01 * std::exp(-rate * 2) * (std::cos(omega * 2) + rate / omega * std::sin(omega * 2)));
+        return std::abs(gap[1] - 0.1 -
+                        0.01 * std::exp(-rate * 2) * (std::cos(omega * 2) + rate / omega * std::sin(omega * 2)));
     };
     const double order = std::log2(error(0.02) / error(0.01));
     EXPECT_NEAR(order, 4, 0.1);

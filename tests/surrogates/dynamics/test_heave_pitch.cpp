@@ -3,16 +3,18 @@
 
 #include <cmath>
 
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
 
 namespace {
 
-/// Lift and moment over (gap, pitch): a spring about 10 mm of gap and about `trim` of pitch, given on a grid and so exact for the table.
-Model spring_plate(double stiffness, double pitch_stiffness, double damping, double pitch_damping, double trim = 0, double weight = 0) {
+/// Lift and moment over (gap, pitch): a spring about 10 mm of gap and about `trim` of pitch, given on a grid and so
+/// exact for the table.
+Model spring_plate(double stiffness, double pitch_stiffness, double damping, double pitch_damping, double trim = 0,
+                   double weight = 0) {
     std::vector<double> gap, pitch, lift, moment;
     for (int i = 0; i <= 30; ++i) {
         for (int j = 0; j <= 20; ++j) {
@@ -28,14 +30,23 @@ Model spring_plate(double stiffness, double pitch_stiffness, double damping, dou
     table.add_numbers("pitch", "rad", pitch);
     table.add_numbers("lift_force", "N", lift);
     table.add_numbers("pitch_moment", "N m", moment);
-    Model model = read_model_text("[vehicle]\nmass = 2.2\nadded_mass_heave = 1.754\npitch_inertia = 0.00685\nadded_inertia_pitch = 0.0005\nbase_depth = 0.0514\n"
-                                  "base_half_length = 0.0717\nnet_weight = " + test::number(weight) + "\n[drag.heave]\nlinear = " + test::number(damping) +
-                                      "\n[drag.pitch]\nlinear = " + test::number(pitch_damping) + "\n",
-                                  "plate.toml", ".");
+    Model model = read_model_text(
+        "[vehicle]\nmass = 2.2\nadded_mass_heave = 1.754\npitch_inertia = 0.00685\nadded_inertia_pitch = "
+        "0.0005\nbase_depth = 0.0514\n"
+        "base_half_length = 0.0717\nnet_weight = " +
+            test::number(weight) + "\n[drag.heave]\nlinear = " + test::number(damping) +
+            "\n[drag.pitch]\nlinear = " + test::number(pitch_damping) + "\n",
+        "plate.toml", ".");
     tables::FitOptions options;
     options.kind = tables::FitOptions::Kind::interpolation;
     for (const char* quantity : {"lift_force", "pitch_moment"}) {
-        model.forces.push_back({quantity, "plate.csv", "plate.csv", tables::ForceTable::fit(table, quantity, options), {Channel::gap, Channel::pitch}, {}, 1.0});
+        model.forces.push_back({quantity,
+                                "plate.csv",
+                                "plate.csv",
+                                tables::ForceTable::fit(table, quantity, options),
+                                {Channel::gap, Channel::pitch},
+                                {},
+                                1.0});
     }
     return model;
 }
@@ -114,9 +125,11 @@ TEST(HeavePitch, ItsRegionAgreesWithCvodeAndIsSymmetric) {
             const EndClass& found = region.classes[static_cast<std::size_t>(region.index[j * 30 + i])];
             odd += region.index[j * 30 + i] != region.index[(29 - j) * 30 + i] ? 1 : 0;
             if ((i + 7 * j) % 11 == 0) {
-                const PitchState start{.001 * (static_cast<double>(i) + .5), 0, -.1 + .2 / 30 * (static_cast<double>(j) + .5), 0};
+                const PitchState start{.001 * (static_cast<double>(i) + .5), 0,
+                                       -.1 + .2 / 30 * (static_cast<double>(j) + .5), 0};
                 const auto gaps = plant.edge_gaps(start);
-                const std::string expected = std::min(gaps[0], gaps[1]) <= 0 ? "contact" : simulate(plant, start, one).end;
+                const std::string expected =
+                    std::min(gaps[0], gaps[1]) <= 0 ? "contact" : simulate(plant, start, one).end;
                 EXPECT_EQ(found.kind == EndKind::contact ? "contact" : "time", expected);
             }
         }

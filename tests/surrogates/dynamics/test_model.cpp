@@ -7,10 +7,10 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "core/text.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/model.h"
-#include "surrogates/dynamics/predict.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/tables/exports/export.h"
 #include "tests/support/support.h"
 #include "tests/surrogates/dynamics/models.h"
@@ -22,9 +22,11 @@ namespace {
 constexpr const char* plain =
     "# declared\n[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\nnet_weight = \"0.03 N\"\n"
     "[drag.heave]\nlinear = \"0.02 N s/m\"\nquadratic = \"6.0 N s^2/m^2\"\n"
-    "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\nscale.speed = { reference = \"0.5 m/s\", exponent = 2 }\n";
+    "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\nscale.speed = { reference = \"0.5 m/s\", exponent = 2 "
+    "}\n";
 
-constexpr const char* lift = "gap [mm], lift_force [N]\n1, 0.1\n2, 0.02\n5, -0.03\n20, -0.01\n50, 0.04\n100, 0.05\n300, 0.01\n";
+constexpr const char* lift =
+    "gap [mm], lift_force [N]\n1, 0.1\n2, 0.02\n5, -0.03\n20, -0.01\n50, 0.04\n100, 0.05\n300, 0.01\n";
 
 class ModelFile : public testing::Test {
 protected:
@@ -67,7 +69,9 @@ TEST_F(ModelFile, TakesAnExportedTableAsItWasButHoldsItsEnds) {
         text += core::format_number(i) + ", " + core::format_number(std::sin(0.1 * i) + 3.0 / i) + "\n";
     }
     core::write_file(folder_.path() / "many.csv", text);
-    const auto many = tables::ForceTable::read(folder_.path() / "many.csv", "lift_force", {.kind = tables::FitOptions::Kind::interpolation, .range = tables::RangePolicy::refuse, .axes = {}});
+    const auto many = tables::ForceTable::read(
+        folder_.path() / "many.csv", "lift_force",
+        {.kind = tables::FitOptions::Kind::interpolation, .range = tables::RangePolicy::refuse, .axes = {}});
     tables::ExportOptions thin;
     thin.max_error = 0.01;
     const auto result = export_table(many, "csv", folder_.path() / "thin.csv", thin);
@@ -85,7 +89,9 @@ TEST_F(ModelFile, TakesAnExportedTableAsItWasButHoldsItsEnds) {
     point[Channel::gap] = 0.2;
     EXPECT_NEAR(static_value(model, "lift_force", point), many.value(&end), 1e-12);
     ASSERT_EQ(model.remarks.size(), 1u);
-    EXPECT_NE(model.remarks[0].message.find("asks to refuse beyond the ends of gap: in a model every table holds its end values"), std::string::npos);
+    EXPECT_NE(model.remarks[0].message.find(
+                  "asks to refuse beyond the ends of gap: in a model every table holds its end values"),
+              std::string::npos);
 }
 
 TEST_F(ModelFile, RefusesMistakesAndNamesThem) {
@@ -97,13 +103,19 @@ TEST_F(ModelFile, RefusesMistakesAndNamesThem) {
     EXPECT_NE(refusal(with("net_weight", "net_wieght")).find("net_weight"), std::string::npos);
     EXPECT_NE(refusal(with("\"2.2 kg\"", "-2.2")).find("vehicle.mass"), std::string::npos);
     EXPECT_NE(refusal(with("\"2.2 kg\"", "\"2.2 m\"")).find("mass"), std::string::npos);
-    EXPECT_NE(refusal(with("mass = \"2.2 kg\"", "mass = 2200\nlength = \"203 mm\"\nwidth = \"152 mm\"")).find("kilograms"), std::string::npos);
+    EXPECT_NE(
+        refusal(with("mass = \"2.2 kg\"", "mass = 2200\nlength = \"203 mm\"\nwidth = \"152 mm\"")).find("kilograms"),
+        std::string::npos);
     EXPECT_NE(refusal(with("mass = \"2.2 kg\"", "mass = 2.2\nlength = 203.2")).find("203.2 mm"), std::string::npos);
     EXPECT_NE(refusal(with("lift_force", "lift_farce")).find("lift_force"), std::string::npos);
     EXPECT_NE(refusal(with("scale.speed", "scale.sped")).find("speed"), std::string::npos);
-    EXPECT_NE(refusal(std::string(plain) + "[[effect]]\nname = \"coulomb_frictoin\"\nforce = 1\n").find("coulomb_friction"), std::string::npos);
-    EXPECT_NE(refusal(std::string(plain) + "[[effect]]\nname = \"coulomb_friction\"\n").find("force"), std::string::npos);
-    EXPECT_NE(refusal(std::string(plain) + "[[effect]]\nname = \"coulomb_friction\"\nforce = -1\n").find("outside"), std::string::npos);
+    EXPECT_NE(
+        refusal(std::string(plain) + "[[effect]]\nname = \"coulomb_frictoin\"\nforce = 1\n").find("coulomb_friction"),
+        std::string::npos);
+    EXPECT_NE(refusal(std::string(plain) + "[[effect]]\nname = \"coulomb_friction\"\n").find("force"),
+              std::string::npos);
+    EXPECT_NE(refusal(std::string(plain) + "[[effect]]\nname = \"coulomb_friction\"\nforce = -1\n").find("outside"),
+              std::string::npos);
     EXPECT_NE(refusal(std::string(plain) + "[[effect]]\nname = \"added_mass\"\nmass = \"-20 kg\"\n"), "");
     const Model light = read(std::string(plain) + "[[effect]]\nname = \"added_mass\"\nmass = \"-20 kg\"\n");
     EXPECT_THROW(HeavePlant{light}, core::InputError);
@@ -135,7 +147,8 @@ TEST_F(ModelFile, WritesItselfBackWithEffectsTablesAndLineage) {
     EXPECT_EQ(core::read_file(other.path() / "new" / "model.toml").find("# declared"), 0U);
     // Once more: the same text.
     write_model(again, other.path() / "twice" / "model.toml");
-    EXPECT_EQ(core::read_file(other.path() / "new" / "model.toml"), core::read_file(other.path() / "twice" / "model.toml"));
+    EXPECT_EQ(core::read_file(other.path() / "new" / "model.toml"),
+              core::read_file(other.path() / "twice" / "model.toml"));
 }
 
 TEST_F(ModelFile, EveryEffectIsNeutralAtItsNeutralValuesAndSurvivesTheFile) {
@@ -175,11 +188,14 @@ TEST_F(ModelFile, StaticEffectsDoWhatTheySay) {
     Conditions point;
     point[Channel::gap] = .004;
     point[Channel::speed] = 1;
-    const auto value = [&](const EffectUse& use, const Conditions& at) { return static_value(model.with_effect(use), "lift_force", at); };
+    const auto value = [&](const EffectUse& use, const Conditions& at) {
+        return static_value(model.with_effect(use), "lift_force", at);
+    };
     const double base = static_value(model, "lift_force", point);
     Conditions moved = point;
     moved[Channel::gap] = .0045;
-    EXPECT_NEAR(value(make_use("gap_offset", {{"offset", 5e-4}}), point), static_value(model, "lift_force", moved), 1e-15);
+    EXPECT_NEAR(value(make_use("gap_offset", {{"offset", 5e-4}}), point), static_value(model, "lift_force", moved),
+                1e-15);
     EXPECT_NEAR(value(make_use("force_bias", {{"bias", .01}}), point), base + .01, 1e-15);
     EXPECT_NEAR(value(make_use("speed_exponent", {{"exponent", 1.8}}), point), base * std::pow(2, -.2), 1e-14);
     EXPECT_NEAR(value(make_use("current", {{"velocity", .1}}), point), base * 1.21, 1e-14);
@@ -230,12 +246,20 @@ TEST(RandomModels, NeverCrashAndNeverReturnNanInSilence) {
         table.source = "random.csv";
         table.add_numbers("gap", "m", gap);
         table.add_numbers("lift_force", "N", force);
-        Model model = test::free_model(std::exp(random.uniform(-2, 3)), random.uniform(-.1, .1), random.uniform(0, 1), random.uniform(0, 30));
+        Model model = test::free_model(std::exp(random.uniform(-2, 3)), random.uniform(-.1, .1), random.uniform(0, 1),
+                                       random.uniform(0, 30));
         tables::FitOptions options;
         options.kind = tables::FitOptions::Kind::interpolation;
-        model.forces.push_back({"lift_force", "random.csv", "random.csv", tables::ForceTable::fit(table, "lift_force", options), {Channel::gap}, {}, 1.0});
+        model.forces.push_back({"lift_force",
+                                "random.csv",
+                                "random.csv",
+                                tables::ForceTable::fit(table, "lift_force", options),
+                                {Channel::gap},
+                                {},
+                                1.0});
         for (const Effect* kind : effects()) {
-            if (random.uniform() < .15 && !kind->info().takes_table && !kind->info().takes_parameter && kind->info().seen_in != SeenIn::static_set) {
+            if (random.uniform() < .15 && !kind->info().takes_table && !kind->info().takes_parameter &&
+                kind->info().seen_in != SeenIn::static_set) {
                 EffectUse use = neutral_use(kind->info().name);
                 for (std::size_t i = 0; i < use.values.size(); ++i) {
                     const EffectParameter& p = kind->info().parameters[i];
@@ -259,7 +283,8 @@ TEST(RandomModels, NeverCrashAndNeverReturnNanInSilence) {
             run.duration = 5;
             run.output_step = .1;
             run.tolerance = 1e-6;
-            const Trajectory motion = simulate(model, gap.back() * random.uniform(.05, 1), random.uniform(-.05, .05), {}, run);
+            const Trajectory motion =
+                simulate(model, gap.back() * random.uniform(.05, 1), random.uniform(-.05, .05), {}, run);
             for (const double h : motion.gap) {
                 EXPECT_TRUE(std::isfinite(h));
             }
@@ -272,17 +297,20 @@ TEST(RandomModels, NeverCrashAndNeverReturnNanInSilence) {
 TEST(Predict, IsAsGoodAsTheNoiseWhereTheModelIsRight) {
     UNDERBODY_NEEDS_SHARED("examples/loop/example-02/model.toml");
     const auto folder = ::underbody::test::shared_folder() / "examples/loop";
-    const Prediction right = predict(read_model(folder / "example-02/model.toml"), read_measurements(folder / "example-02"));
+    const Prediction right =
+        predict(read_model(folder / "example-02/model.toml"), read_measurements(folder / "example-02"));
     ASSERT_EQ(right.channels.size(), 1U);
     EXPECT_LT(right.channels[0].in_noise, 1.1);
     EXPECT_GT(right.channels[0].in_noise, .95);
     const Model lacking = read_model(folder / "example-00/model.toml");
     const Measurements data = read_measurements(folder / "example-00");
     const double before = predict(lacking, data).channels[0].in_noise;
-    const double after = predict(lacking.with_effect(make_use("coulomb_friction", {{"force", .01}})), data).channels[0].in_noise;
+    const double after =
+        predict(lacking.with_effect(make_use("coulomb_friction", {{"force", .01}})), data).channels[0].in_noise;
     EXPECT_GT(before, 5);
     EXPECT_LT(after, 1.2);
-    const Prediction bench = predict(read_model(folder / "example-05/model.toml"), read_measurements(folder / "example-05"));
+    const Prediction bench =
+        predict(read_model(folder / "example-05/model.toml"), read_measurements(folder / "example-05"));
     EXPECT_FALSE(bench.time_series);
     EXPECT_NEAR(bench.channels[0].in_noise, 1, .15);
     EXPECT_NE(bench.table.find("lift_force_predicted"), nullptr);

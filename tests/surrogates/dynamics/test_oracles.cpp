@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "surrogates/dynamics/drag.h"
-#include "surrogates/dynamics/film.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/jets.h"
-#include "surrogates/dynamics/linear.h"
-#include "surrogates/dynamics/release.h"
-#include "surrogates/dynamics/rigid_body.h"
-#include "surrogates/dynamics/scaling.h"
+#include "surrogates/dynamics/linear/linear.h"
+#include "surrogates/dynamics/model/drag.h"
+#include "surrogates/dynamics/model/jets.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/rigid_body.h"
+#include "surrogates/dynamics/theory/film.h"
+#include "surrogates/dynamics/theory/release.h"
+#include "surrogates/dynamics/theory/scaling.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -50,7 +50,8 @@ TEST(Oracles, JetsGiveForceAndMomentByTheirPlaces) {  // O01 O02 O03 O04 O05
     EvieJets l = layout();
     const std::vector<double> thrust{.1, .08, .02, .03, .01, .04, .015, .025, .036};
     const Wrench w = jet_wrench(evie_jets(l), thrust);
-    const double force[] = {0.093227244, -0.0053898554, 0.052061559}, moment[] = {-0.00033270574, 0.00058918209, -0.00408032};
+    const double force[] = {0.093227244, -0.0053898554, 0.052061559},
+                 moment[] = {-0.00033270574, 0.00058918209, -0.00408032};
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(w.force[i], force[i], 5e-10);
         EXPECT_NEAR(w.moment[i], moment[i], 1e-11);
@@ -80,7 +81,8 @@ TEST(Oracles, TurningJetsSpanSurgeSwayAndYaw) {
     l = layout();
     const TurnAllocation a = allocate_turning(l, 0.05, -0.02, 0.003);
     all = evie_jets(l);
-    const Wrench w = jet_wrench(std::vector<Jet>{all[0], all[1], all[4], all[5]}, std::vector<double>(a.thrust, a.thrust + 4));
+    const Wrench w =
+        jet_wrench(std::vector<Jet>{all[0], all[1], all[4], all[5]}, std::vector<double>(a.thrust, a.thrust + 4));
     EXPECT_NEAR(w.force[0], 0.05, 1e-12);
     EXPECT_NEAR(w.force[1], -0.02, 1e-12);
     EXPECT_NEAR(w.moment[2], 0.003, 1e-12);
@@ -119,7 +121,8 @@ TEST(Oracles, InwardJetsGiveAMinimumPhaseZeroAndStraightOnesLoseAState) {
     EXPECT_LT(yaw_transfer(c, .35, 0, l).zero, 0);
     l.gamma = -0.1;  // outward, while the arm of the thrust still turns the same way
     EXPECT_GT(yaw_transfer(c, .35, 0, l).zero, 0);
-    // rank [b Ab A^2 b] of (v, r, psi) with d = F1 - F2 as the only input: 2 for gamma = 0 in free stream, 3 with friction
+    // rank [b Ab A^2 b] of (v, r, psi) with d = F1 - F2 as the only input: 2 for gamma = 0 in free stream, 3 with
+    // friction
     for (const double friction : {0.0, 0.5}) {
         l.gamma = 0;
         const YawTransfer straight = yaw_transfer(c, .35, friction, l);
@@ -162,7 +165,8 @@ TEST(Oracles, HeadingGainsAreStableExactlyWithinTheirBounds) {
                 s.a(2, 2) -= k1 / c.inertia_r;
                 s.a(2, 3) -= k2 / c.inertia_r;
                 double worst = -1e300;
-                for (const Eigen1& e : eigen(Dense{{s.a(1, 1), s.a(1, 2), 0}, {s.a(2, 1), s.a(2, 2), s.a(2, 3)}, {0, 1, 0}})) {
+                for (const Eigen1& e :
+                     eigen(Dense{{s.a(1, 1), s.a(1, 2), 0}, {s.a(2, 1), s.a(2, 2), s.a(2, 3)}, {0, 1, 0}})) {
                     worst = std::max(worst, e.value.real());
                 }
                 EXPECT_EQ(bounds.stable(k1, k2, c.inertia_r), worst < 0) << friction << " " << k1 << " " << k2;
@@ -210,12 +214,15 @@ TEST(Oracles, SliderFilms) {  // O21 ... O28
     EXPECT_NEAR(plane.centre_of_pressure / .05, 0.5686879122, 1e-7);
     EXPECT_FALSE(plane.valid);
     const double tilt = std::tan(0.1 * degree);
-    const auto wedge = [](double x) { return x < .05 ? 4e-3 - 2e-3 * x / .05 : x < .15 ? 2e-3 : 2e-3 + 2e-3 * (x - .15) / .05; };
+    const auto wedge = [](double x) {
+        return x < .05 ? 4e-3 - 2e-3 * x / .05 : x < .15 ? 2e-3 : 2e-3 + 2e-3 * (x - .15) / .05;
+    };
     const SliderFilm level = slider_film(wedge, .2, {.05, .15}, .5, 1e-3, 1000);
     EXPECT_NEAR(level.load_per_width, 0, 1e-12);
     EXPECT_NEAR(level.highest, 3.5511, 1e-3);
     EXPECT_NEAR(level.lowest, -3.5511, 1e-3);
-    const SliderFilm tilted = slider_film([&](double x) { return wedge(x) + (0.1 - x) * tilt; }, .2, {.05, .15}, .5, 1e-3, 1000);
+    const SliderFilm tilted =
+        slider_film([&](double x) { return wedge(x) + (0.1 - x) * tilt; }, .2, {.05, .15}, .5, 1e-3, 1000);
     EXPECT_NEAR(tilted.load_per_width, 0.11039, 1e-3);
     const SliderFilm land = slider_film(wedge, .15, {.05}, .5, 1e-3, 1000);
     EXPECT_NEAR(land.load_per_width, 0.31281, 1e-4);

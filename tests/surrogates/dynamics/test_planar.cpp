@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "surrogates/dynamics/dormand_prince.h"
-#include "surrogates/dynamics/feedback.h"
-#include "surrogates/dynamics/planar_region.h"
+#include "surrogates/dynamics/basin/planar_region.h"
+#include "surrogates/dynamics/simulate/dormand_prince.h"
+#include "surrogates/dynamics/simulate/feedback.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -17,7 +17,11 @@ TEST(PlanarRegion, OfTheReversedVanDerPolOscillatorIsTheInsideOfItsCycle) {
                                     d[0] = -y[1];
                                     d[1] = y[0] - (1 - y[0] * y[0]) * y[1];
                                 },
-                                {{0, 0}}, -6, 6, -6, 6};
+                                {{0, 0}},
+                                -6,
+                                6,
+                                -6,
+                                6};
     const std::vector<core::NamedRange> axes{{"x", -3, 3}, {"y", -3.2, 3.2}};
     const PlanarRegion region = planar_region(reversed, axes, 160, 160, 200);
     // Forward in time the cycle attracts: follow it there and take its area as the reference.
@@ -25,7 +29,11 @@ TEST(PlanarRegion, OfTheReversedVanDerPolOscillatorIsTheInsideOfItsCycle) {
                                    d[0] = y[1];
                                    d[1] = (1 - y[0] * y[0]) * y[1] - y[0];
                                },
-                               {{0, 0}}, -6, 6, -6, 6};
+                               {{0, 0}},
+                               -6,
+                               6,
+                               -6,
+                               6};
     const PlanarRegion cycle = planar_region(forward, axes, 4, 4, 200);
     ASSERT_EQ(cycle.cycles.size(), 1U);
     EXPECT_NEAR(cycle.fraction("cycle 1"), 1, 1e-12);
@@ -44,7 +52,8 @@ TEST(PlanarRegion, OfTheDampedPendulumHasTheAreaBetweenItsSeparatrices) {
     const PlanarSystem pendulum{rate, {{0, 0}, {2 * pi, 0}, {-2 * pi, 0}, {4 * pi, 0}, {-4 * pi, 0}}, -20, 20, -20, 20};
     const std::vector<core::NamedRange> axes{{"angle", -pi, pi}, {"rate", -3, 3}};
     const PlanarRegion region = planar_region(pendulum, axes, 180, 180, 300);
-    // Reference: the stable manifolds of the saddles at -pi and pi, backward in time; what lies between them belongs to the middle.
+    // Reference: the stable manifolds of the saddles at -pi and pi, backward in time; what lies between them belongs to
+    // the middle.
     struct Backward {
         void operator()(double, const double* y, double* d) const {
             d[0] = -y[1];

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -86,8 +86,13 @@ TEST(Region, ASecondTableThatEndsElsewhereAndIsSwitchedOffChangesNothing) {
     Model both = alone;
     tables::FitOptions fit;
     fit.kind = tables::FitOptions::Kind::interpolation;
-    both.forces.push_back({"lift_force", "other.csv", "other.csv", tables::ForceTable::fit(other, "lift_force", fit), {Channel::gap},
-                           {{Channel::jet_voltage, 12, 2, 0}}, 1.0});
+    both.forces.push_back({"lift_force",
+                           "other.csv",
+                           "other.csv",
+                           tables::ForceTable::fit(other, "lift_force", fit),
+                           {Channel::gap},
+                           {{Channel::jet_voltage, 12, 2, 0}},
+                           1.0});
     both.contact.gap = -.05;
     RegionOptions options;
     options.axes = {{"gap", -.04, 1}, {"heave_velocity", -.1, .1}};
@@ -120,7 +125,8 @@ TEST(Region, TheChanceToBeSafeSpreadsAboutTheBoundary) {
     core::Table table = test::ref_a_table();
     table.add_numbers("lift_force_sigma", "N", std::vector<double>(table.rows(), 1e-3));
     Model model = test::ref_a_model(0.3, 15);
-    model.forces[0].table = tables::ForceTable::fit(table, "lift_force", {tables::FitOptions::Kind::interpolation, tables::RangePolicy::clamp, {}});
+    model.forces[0].table = tables::ForceTable::fit(
+        table, "lift_force", {tables::FitOptions::Kind::interpolation, tables::RangePolicy::clamp, {}});
     RegionOptions options = map_of(-0.04, 0.5, 0.06, 24);
     const ProbabilityMap chances = probability_map(model, options, 8, 1);
     const ProbabilityMap again = probability_map(model, options, 8, 1);
@@ -153,7 +159,10 @@ TEST(Region, EnergyAndSettlingRulesAgree) {
     const StabilityRegion a = stability_region(calm, options), b = stability_region(waved, options);
     std::size_t different = 0;
     for (std::size_t i = 0; i < a.index.size(); ++i) {
-        different += a.classes[static_cast<std::size_t>(a.index[i])].name != b.classes[static_cast<std::size_t>(b.index[i])].name ? 1 : 0;
+        different +=
+            a.classes[static_cast<std::size_t>(a.index[i])].name != b.classes[static_cast<std::size_t>(b.index[i])].name
+                ? 1
+                : 0;
     }
     EXPECT_LT(different, a.index.size() / 50);
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/dynamics/rigid_body.h"
+#include "surrogates/dynamics/simulate/rigid_body.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -14,10 +14,14 @@ namespace {
 /// EVIE in ideal fluid (Lamb's added mass), neutrally buoyant unless told otherwise.
 Model evie(double net_weight = 0, double friction = 0) {
     return read_model_text(
-        "[vehicle]\nmass = 2.2\nadded_mass_surge = 0.79865194\nadded_mass_sway = 1.335082\nadded_mass_heave = 1.4565619\n"
-        "roll_inertia = 0.00485441\npitch_inertia = 0.00685484\nyaw_inertia = 0.00708337\nadded_inertia_roll = 8.7418652e-06\n"
-        "added_inertia_pitch = 0.0005086667\nadded_inertia_yaw = 0.00037700395\nbase_depth = 0.0514\nbase_half_length = 0.0717\n"
-        "buoyancy_height = 0.005\nnet_weight = " + test::number(net_weight) + "\n[contact]\nfriction = " + test::number(friction) + "\n",
+        "[vehicle]\nmass = 2.2\nadded_mass_surge = 0.79865194\nadded_mass_sway = 1.335082\nadded_mass_heave = "
+        "1.4565619\n"
+        "roll_inertia = 0.00485441\npitch_inertia = 0.00685484\nyaw_inertia = 0.00708337\nadded_inertia_roll = "
+        "8.7418652e-06\n"
+        "added_inertia_pitch = 0.0005086667\nadded_inertia_yaw = 0.00037700395\nbase_depth = 0.0514\nbase_half_length "
+        "= 0.0717\n"
+        "buoyancy_height = 0.005\nnet_weight = " +
+            test::number(net_weight) + "\n[contact]\nfriction = " + test::number(friction) + "\n",
         "evie.toml", ".");
 }
 
@@ -63,7 +67,9 @@ TEST(RigidBody, KeepsItsEnergyInIdealFluidAndThePrintedEquationsDoNot) {  // O87
         printed = rk4(printed, 1e-3, as_printed);
     }
     EXPECT_NEAR(body.kinetic_energy(y) / start, 1, 1e-10);
-    const auto energy = [&](const BodyState& s) { return sx * s[state_u] * s[state_u] + sy * s[state_v] * s[state_v] + sr * s[state_r] * s[state_r]; };
+    const auto energy = [&](const BodyState& s) {
+        return sx * s[state_u] * s[state_u] + sy * s[state_v] * s[state_v] + sr * s[state_r] * s[state_r];
+    };
     BodyState first{};
     first[state_u] = .35;
     first[state_v] = .02;
@@ -111,7 +117,8 @@ TEST(RigidBody, MirrorsItsMotionWhenTheStartIsMirrored) {
     left[state_z] = right[state_z] = -5;
     BodyOptions options;
     options.duration = 3;
-    const BodyTrajectory a = simulate_body(body, left, nullptr, options), b = simulate_body(body, right, nullptr, options);
+    const BodyTrajectory a = simulate_body(body, left, nullptr, options),
+                         b = simulate_body(body, right, nullptr, options);
     EXPECT_NEAR(a.state.back()[state_y], -b.state.back()[state_y], 1e-7);
     EXPECT_NEAR(a.state.back()[state_z], b.state.back()[state_z], 1e-7);
     EXPECT_NEAR(a.roll_rate.back(), -b.roll_rate.back(), 1e-7);
@@ -155,7 +162,9 @@ TEST(RigidBody, TipsOntoItsNoseEdgeWhenTheJetsPushHardEnough) {
     }
     BodyOptions options;
     options.duration = .5;
-    const auto command = [](double t, const BodyState&) { return t < .25 ? std::vector<double>{.3, .3} : std::vector<double>{.1, .1}; };
+    const auto command = [](double t, const BodyState&) {
+        return t < .25 ? std::vector<double>{.3, .3} : std::vector<double>{.1, .1};
+    };
     const BodyTrajectory motion = simulate_body(body, y, command, options);
     bool nose = false;
     for (std::size_t i = 0; i < motion.time.size(); ++i) {
@@ -211,8 +220,8 @@ TEST(RigidBody, JetsFollowTheirCommandWithTheirLag) {
     y[state_z] = -10;
     BodyOptions options;
     options.duration = 2;
-    const BodyTrajectory motion =
-        simulate_body(body, y, [](double t, const BodyState&) { return std::vector<double>{t > 0 ? .3 : 0.0}; }, options);
+    const BodyTrajectory motion = simulate_body(
+        body, y, [](double t, const BodyState&) { return std::vector<double>{t > 0 ? .3 : 0.0}; }, options);
     // S_x u' = F, F = 0.3 (1 - exp(-t/0.5))
     EXPECT_NEAR(motion.state.back()[state_u], .3 / 2.99865194 * (2 - .5 * (1 - std::exp(-4))), 1e-6);
 }
@@ -225,8 +234,10 @@ TEST(RigidBody, LinearisesToTheSurfaceModel) {
     const LinearSystem s = linearise_body(body, y, {});
     EXPECT_NEAR(s.a(state_v, state_r), -2.99865194 * .35 / 3.535082, 1e-6);
     EXPECT_NEAR(s.a(state_r, state_v), -0.53643006 * .35 / 0.0074603703, 1e-4);
-    EXPECT_NEAR(s.a(state_q, state_w), 0.65790996 * .35 / (0.00685484 + 0.0005086667), 1e-4);  // Munk in pitch destabilises
-    const std::vector<Mode> found = modes(s, {"surge", "sway", "heave", "pitch", "yaw", "pitch", "heading", "x", "y", "depth"});
+    EXPECT_NEAR(s.a(state_q, state_w), 0.65790996 * .35 / (0.00685484 + 0.0005086667),
+                1e-4);  // Munk in pitch destabilises
+    const std::vector<Mode> found =
+        modes(s, {"surge", "sway", "heave", "pitch", "yaw", "pitch", "heading", "x", "y", "depth"});
     double fastest = 0;
     for (const Mode& mode : found) {
         if (mode.name.find("sway") != std::string::npos) {
@@ -240,8 +251,10 @@ TEST(RigidBody, RefusesWhatCannotBe) {
     Model model = evie();
     model.vehicle.yaw_inertia = std::nan("");
     EXPECT_THROW(RigidBody{model}, core::InputError);
-    EXPECT_THROW(read_model_text("[vehicle]\nmass = 2.2\nroll_inertia = 0.001\npitch_inertia = 0.001\nyaw_inertia = 0.1\n", "m", "."),
-                 core::InputError);
+    EXPECT_THROW(
+        read_model_text("[vehicle]\nmass = 2.2\nroll_inertia = 0.001\npitch_inertia = 0.001\nyaw_inertia = 0.1\n", "m",
+                        "."),
+        core::InputError);
     const RigidBody body(evie());
     BodyState y{};
     y[state_z] = 0;

@@ -1,4 +1,5 @@
-// Motions whose forces are fast beside the time step: films at small gaps, steep springs, hard friction; and what predict says of them.
+// Motions whose forces are fast beside the time step: films at small gaps, steep springs, hard friction; and what
+// predict says of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 
 #include "core/file.h"
 #include "core/random.h"
-#include "surrogates/dynamics/predict.h"
+#include "surrogates/dynamics/simulate/predict.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
@@ -25,7 +26,8 @@ InputSignals rocking(double duration, double step, double mean, double amplitude
     return inputs;
 }
 
-double worst_beside_cvode(const Model& model, double gap, double velocity, const InputSignals& inputs, double duration, double step) {
+double worst_beside_cvode(const Model& model, double gap, double velocity, const InputSignals& inputs, double duration,
+                          double step) {
     TrajectoryOptions options;
     options.duration = duration;
     options.output_step = step;
@@ -43,9 +45,11 @@ double worst_beside_cvode(const Model& model, double gap, double velocity, const
 
 TEST(Stiff, FilmsOfEveryThicknessAgreeWithCvode) {
     for (const double film : {6.7e-8, 1e-6, 3e-5}) {
-        const Model model = test::free_model(4, 0, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", film}}));
+        const Model model =
+            test::free_model(4, 0, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", film}}));
         for (const double gap : {0.01, 1e-3, 2e-4, 5e-5}) {
-            EXPECT_LT(worst_beside_cvode(model, gap, -0.02, rocking(10, 0.02, -0.005, 0.02), 10, 0.02), 2e-3 * gap + 1e-7)
+            EXPECT_LT(worst_beside_cvode(model, gap, -0.02, rocking(10, 0.02, -0.005, 0.02), 10, 0.02),
+                      2e-3 * gap + 1e-7)
                 << "film " << film << " from " << gap;
         }
     }
@@ -56,13 +60,15 @@ TEST(Stiff, SteepSpringsFrictionAndMemoryAgreeWithCvode) {
     EXPECT_LT(worst_beside_cvode(spring, 0.1005, 0, rocking(5, 0.02, 0, 5), 5, 0.02), 2e-5);
     const Model stuck = test::free_model(4, 0, 0.1, 5).with_effect(make_use("coulomb_friction", {{"force", 1.0}}));
     EXPECT_LT(worst_beside_cvode(stuck, 0.1, 0.05, rocking(5, 0.02, 0, 1.5), 5, 0.02), 2e-5);
-    const Model film = test::free_model(4, 0, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", 1e-6}}));
+    const Model film =
+        test::free_model(4, 0, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", 1e-6}}));
     const Model remembering = film.with_effect(make_use("history_force", {{"area", 0.5}}));
     EXPECT_LT(worst_beside_cvode(remembering, 1e-3, -0.01, rocking(10, 0.02, -0.005, 0.02), 10, 0.02), 3e-6);
 }
 
 /// A run measured on `truth`, with white noise on the gap.
-MeasuredRun measured(const Model& truth, const std::string& name, const InputSignals& inputs, double gap, double noise, std::uint64_t seed) {
+MeasuredRun measured(const Model& truth, const std::string& name, const InputSignals& inputs, double gap, double noise,
+                     std::uint64_t seed) {
     const HeavePlant plant = plant_for(truth, inputs);
     const HeaveRun fine(plant, inputs, 0.001);
     std::vector<double> motion(fine.samples()), velocity(motion.size());
@@ -83,10 +89,12 @@ MeasuredRun measured(const Model& truth, const std::string& name, const InputSig
 }
 
 TEST(Stiff, PredictFindsATrueModelWithAFilmTrue) {
-    const Model model = test::free_model(4, 0.01, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", 2e-6}}));
+    const Model model =
+        test::free_model(4, 0.01, 0.1, 5).with_effect(make_use("squeeze_film_damping", {{"coefficient", 2e-6}}));
     Measurements data;
     for (int r = 0; r < 3; ++r) {
-        data.runs.push_back(measured(model, "run-" + std::to_string(r), rocking(20, 0.02, 0.008, 0.03), 3e-3 - 1e-3 * r, 2e-5, 10 + r));
+        data.runs.push_back(
+            measured(model, "run-" + std::to_string(r), rocking(20, 0.02, 0.008, 0.03), 3e-3 - 1e-3 * r, 2e-5, 10 + r));
     }
     const Prediction found = predict(model, data);
     EXPECT_EQ(found.diverged, 0U);
@@ -97,7 +105,8 @@ TEST(Stiff, PredictFindsATrueModelWithAFilmTrue) {
 
 TEST(Stiff, PredictSaysWhereAModelRunsAway) {
     const Model truth = test::spring_model(1.0, 4, 0.5, 0);
-    const Model wrong = test::spring_model(-1.0, 4, 0.5, 0).with_effect(make_use("linear_damping", {{"coefficient", -60.0}}));
+    const Model wrong =
+        test::spring_model(-1.0, 4, 0.5, 0).with_effect(make_use("linear_damping", {{"coefficient", -60.0}}));
     Measurements data;
     data.runs.push_back(measured(truth, "run", rocking(20, 0.02, 0, 0.03), 0.12, 2e-5, 3));
     const Prediction found = predict(wrong, data);

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/dynamics/heave_pitch.h"
-#include "surrogates/dynamics/hold.h"
-#include "surrogates/dynamics/linear.h"
-#include "surrogates/dynamics/region.h"
-#include "surrogates/dynamics/surface_motion.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/linear/linear.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/dynamics/simulate/hold_with_jets.h"
+#include "surrogates/dynamics/simulate/surface_motion.h"
 #include "tests/support/support.h"
 #include "tests/surrogates/dynamics/models.h"
 
@@ -18,10 +18,15 @@ namespace {
 
 Model sled(double friction, double net_weight = .5) {
     return read_model_text(
-        "[vehicle]\nmass = 2.2\nadded_mass_surge = 0.79865194\nadded_mass_sway = 1.335082\nadded_mass_heave = 1.4565619\n"
-        "roll_inertia = 0.00485441\npitch_inertia = 0.00685484\nyaw_inertia = 0.00708337\nadded_inertia_roll = 8.7418652e-06\n"
-        "added_inertia_pitch = 0.0005086667\nadded_inertia_yaw = 0.00037700395\nbase_depth = 0.0514\nbase_half_length = 0.0717\n"
-        "net_weight = " + test::number(net_weight) + "\n[drag.surge]\nquadratic = 2\n[contact]\nfriction = " + test::number(friction) + "\nslip_speed = 1e-5\n",
+        "[vehicle]\nmass = 2.2\nadded_mass_surge = 0.79865194\nadded_mass_sway = 1.335082\nadded_mass_heave = "
+        "1.4565619\n"
+        "roll_inertia = 0.00485441\npitch_inertia = 0.00685484\nyaw_inertia = 0.00708337\nadded_inertia_roll = "
+        "8.7418652e-06\n"
+        "added_inertia_pitch = 0.0005086667\nadded_inertia_yaw = 0.00037700395\nbase_depth = 0.0514\nbase_half_length "
+        "= 0.0717\n"
+        "net_weight = " +
+            test::number(net_weight) +
+            "\n[drag.surge]\nquadratic = 2\n[contact]\nfriction = " + test::number(friction) + "\nslip_speed = 1e-5\n",
         "sled.toml", ".");
 }
 
@@ -106,7 +111,9 @@ TEST(Surface, StopsByFrictionTipsAndLiftsOff) {
     options.settle_speed = 1e-4;
     EXPECT_EQ(simulate_surface(motion, {.2, 0, 0, 0, 0, 0}, nullptr, options).end, "equilibrium");
     // J7 and J8 push up with 2 F cos(20 deg): more than the net weight lifts off, one alone tips.
-    const auto lift = [](double t, const BodyState&) { return std::vector<double>{0, 0, 0, 0, 0, 0, .1 * t, .1 * t, 0}; };
+    const auto lift = [](double t, const BodyState&) {
+        return std::vector<double>{0, 0, 0, 0, 0, 0, .1 * t, .1 * t, 0};
+    };
     const SurfaceTrajectory off = simulate_surface(motion, {0, 0, 0, 0, 0, 0}, lift, options);
     EXPECT_EQ(off.end, "lift_off");
     EXPECT_NEAR(off.time.back(), .5 / (2 * std::cos(.349) * .1), 2e-3);
@@ -130,7 +137,8 @@ TEST(Surface, HeadingFeedbackHoldsExactlyWithinItsBoundsOnTheNonlinearModel) {
         hold.heading = 0;
         hold.heading_gain = part * bounds.least_k2_without_friction;
         hold.yaw_rate_gain = .02;
-        const SurfaceTrajectory run = simulate_surface(motion, {.35, 0, 0, .02, 0, 0}, JetHold(model, hold).command(), options);
+        const SurfaceTrajectory run =
+            simulate_surface(motion, {.35, 0, 0, .02, 0, 0}, JetHold(model, hold).command(), options);
         double largest = 0;
         for (const SurfaceState& y : run.state) {
             largest = std::max(largest, std::abs(y[3]));
@@ -154,7 +162,8 @@ TEST(Surface, ATurnIsHeldByTheJetsWithinTheirLimits) {
     options.duration = 30;
     options.output_step = .5;
     options.command_step = .02;
-    const SurfaceTrajectory run = simulate_surface(motion, {.3, 0, 0, 0, 0, 0}, JetHold(model, hold).command(), options);
+    const SurfaceTrajectory run =
+        simulate_surface(motion, {.3, 0, 0, 0, 0, 0}, JetHold(model, hold).command(), options);
     EXPECT_EQ(run.end, "time");
     EXPECT_NEAR(run.state.back()[3], .4, .03);
     EXPECT_NEAR(run.state.back()[0], .3, .05);
@@ -204,7 +213,8 @@ TEST(Allocation, NoOtherThrustsWithinTheLimitsComeNearer) {
         for (int other = 0; other < 300; ++other) {
             std::vector<double> thrust = best.thrust;
             for (std::size_t i = 0; i < count; ++i) {
-                thrust[i] = std::clamp(thrust[i] + random.normal() * (other % 2 ? .1 : 1e-3), jets[i].minimum, jets[i].maximum);
+                thrust[i] =
+                    std::clamp(thrust[i] + random.normal() * (other % 2 ? .1 : 1e-3), jets[i].minimum, jets[i].maximum);
             }
             EXPECT_GE(misfit(thrust), best.misfit - 1e-7);
         }

@@ -1,12 +1,11 @@
-#include "surrogates/dynamics/table_notes.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/dynamics/region.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/model/table_notes.h"
+#include "surrogates/dynamics/plant/heave.h"
 
 namespace underbody::dynamics {
 namespace {
@@ -18,13 +17,16 @@ protected:
         std::string points = "gap [mm], speed [m/s], lift_force [N], lift_force_sigma [N]\n";
         for (int g = 1; g <= 6; ++g) {
             for (const double u : {0.4, 0.6, 0.8}) {
-                points += std::to_string(g) + "," + std::to_string(u) + "," + std::to_string(u * u * (7 - g)) + ",0.01\n";
+                points +=
+                    std::to_string(g) + "," + std::to_string(u) + "," + std::to_string(u * u * (7 - g)) + ",0.01\n";
             }
         }
         core::write_file(folder.path() / "lift.csv", points);
-        core::write_file(folder.path() / "model.toml", "[vehicle]\nmass = \"2 kg\"\nnet_weight = \"1 N\"\n[drag.heave]\nlinear = \"5 N s/m\"\n[conditions]\nspeed = \"0.6 m/s\"\n"
-                                                       "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n" +
-                                                           fit);
+        core::write_file(folder.path() / "model.toml",
+                         "[vehicle]\nmass = \"2 kg\"\nnet_weight = \"1 N\"\n[drag.heave]\nlinear = \"5 N "
+                         "s/m\"\n[conditions]\nspeed = \"0.6 m/s\"\n"
+                         "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n" +
+                             fit);
         return read_model(folder.path() / "model.toml");
     }
 };
@@ -33,7 +35,8 @@ TEST_F(TableNotes, SayWhichFitWasChosenAndTakeTheOlderWords) {
     EXPECT_EQ(fits_json(model("fit = \"gp\"\n"))[0]["kind"], "Gaussian process");
     EXPECT_EQ(fits_json(model("fit = \"auto\"\n")), fits_json(model("fit = \"automatic\"\n")));
     EXPECT_EQ(fits_json(model("fit = \"gaussian_process\"\n"))[0]["kind"], "Gaussian process");
-    EXPECT_EQ(fit_lines(model("fit = \"interpolation\"\n")).at(0), "lift_force of lift.csv: monotone cubic, two axes through 18 points");
+    EXPECT_EQ(fit_lines(model("fit = \"interpolation\"\n")).at(0),
+              "lift_force of lift.csv: monotone cubic, two axes through 18 points");
     EXPECT_THROW((void)model("fit = \"gass\"\n"), core::InputError);
 }
 
@@ -54,9 +57,13 @@ TEST_F(TableNotes, WarnOfAConditionOutsideTheTableInMapAndMotion) {
     fast[Channel::speed] = 3;
     const auto found = held_outside(m, fast);
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_NE(found[0].message.find("speed 3 m/s is outside the lift_force table lift.csv, which covers 0.4 to 0.8 m/s"), std::string::npos) << found[0].message;
+    EXPECT_NE(
+        found[0].message.find("speed 3 m/s is outside the lift_force table lift.csv, which covers 0.4 to 0.8 m/s"),
+        std::string::npos)
+        << found[0].message;
     const auto warned = [](const core::Problems& remarks) {
-        return std::any_of(remarks.begin(), remarks.end(), [](const auto& r) { return r.message.find("speed 3 m/s is outside") != std::string::npos; });
+        return std::any_of(remarks.begin(), remarks.end(),
+                           [](const auto& r) { return r.message.find("speed 3 m/s is outside") != std::string::npos; });
     };
     RegionOptions options;
     options.held = fast;

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "surrogates/dynamics/heave.h"
-#include "surrogates/estimator/loop_region.h"
-#include "surrogates/estimator/published.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/estimator/control/loop_region.h"
+#include "surrogates/estimator/thesis/published.h"
 
 namespace underbody::estimator {
 namespace {
@@ -126,10 +126,13 @@ TEST(HoldingAGap, SurvivesSaturationLagAndNoise) {
 TEST(HoldingAGap, InACurrentWithDampingEffectsAndAnActuatorItHoldsWhatItIsAskedTo) {
     dynamics::Model model = dynamics::read_model_text(
         "[vehicle]\nmass = 4\nnet_weight = 0.02\n[drag.heave]\nlinear = 0.3\nquadratic = 6\n", "loop.toml", ".");
-    for (const auto& use : {dynamics::make_use("ambient_heave_current", {{"velocity", 0.03}}), dynamics::make_use("linear_damping", {{"coefficient", 0.8}}),
-                            dynamics::make_use("quadratic_damping", {{"coefficient", 4.0}}), dynamics::make_use("coulomb_friction", {{"force", 0.001}}),
-                            dynamics::make_use("input_gain", {{"gain", 0.8}}), dynamics::make_use("input_delay", {{"delay", 0.06}}),
-                            dynamics::make_use("actuator_lag", {{"time_constant", 0.1}})}) {
+    for (const auto& use :
+         {dynamics::make_use("ambient_heave_current", {{"velocity", 0.03}}),
+          dynamics::make_use("linear_damping", {{"coefficient", 0.8}}),
+          dynamics::make_use("quadratic_damping", {{"coefficient", 4.0}}),
+          dynamics::make_use("coulomb_friction", {{"force", 0.001}}), dynamics::make_use("input_gain", {{"gain", 0.8}}),
+          dynamics::make_use("input_delay", {{"delay", 0.06}}),
+          dynamics::make_use("actuator_lag", {{"time_constant", 0.1}})}) {
         model = model.with_effect(use);
     }
     SeparatedPlant plant = separate(model, {});
@@ -146,7 +149,8 @@ TEST(HoldingAGap, InACurrentWithDampingEffectsAndAnActuatorItHoldsWhatItIsAskedT
         // The gain of the actuator makes the loop softer; what remains of the cancelled forces is a fifth of them.
         EXPECT_LT(std::abs(run.hold_error), 4e-3) << name;
         EXPECT_LT(run.total_force_error, 2e-3) << name;
-        EXPECT_NEAR(run.drag_force.back(), dynamics::HeavePlant(model).resistance(run.gap.back(), run.velocity.back()), 1e-12);
+        EXPECT_NEAR(run.drag_force.back(), dynamics::HeavePlant(model).resistance(run.gap.back(), run.velocity.back()),
+                    1e-12);
     }
     LoopOptions slow = o;
     dynamics::Model late = model.with_effect(dynamics::make_use("input_delay", {{"delay", 3.0}}));
@@ -154,7 +158,8 @@ TEST(HoldingAGap, InACurrentWithDampingEffectsAndAnActuatorItHoldsWhatItIsAskedT
     delayed.lower = 0;
     delayed.upper = 1;
     const LoopRun swing = close_loop(delayed, law, design_loop_estimator("extended", delayed, {}), slow);
-    EXPECT_GT(swing.hold_sigma, 10 * close_loop(plant, law, design_loop_estimator("extended", plant, {}), o).hold_sigma);
+    EXPECT_GT(swing.hold_sigma,
+              10 * close_loop(plant, law, design_loop_estimator("extended", plant, {}), o).hold_sigma);
 }
 
 TEST(Separation, HoldsForTheControllerAndTheReducedObserver) {
@@ -203,8 +208,9 @@ TEST_F(LoopRegionOfTheReferencePlant, IsWiderWithCancellationThanWithout) {
     const auto points = hold_points_without_cancellation(plant, weak());
     for (const auto& c : without.classes) {
         if (c.name.rfind("parked", 0) == 0) {
-            EXPECT_TRUE(std::any_of(points.begin(), points.end(),
-                                    [&](const HoldPoint& p) { return p.stable && std::abs(p.gap - c.gap) < 2e-3; })) << c.gap;
+            EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const HoldPoint& p) {
+                return p.stable && std::abs(p.gap - c.gap) < 2e-3;
+            })) << c.gap;
         }
     }
     double sum = 0;
@@ -240,7 +246,8 @@ TEST_F(LoopRegionOfTheReferencePlant, EqualsTheEnergyArgumentWhereThatHolds) {
     ASSERT_TRUE(std::isfinite(barrier));
     int inside = 0;
     for (std::size_t i = 0; i < region.index.size(); ++i) {
-        const double h = 0.5 * (static_cast<double>(i % 10) + .5) / 10, w = -.03 + .06 * (static_cast<double>(i / 10) + .5) / 6;
+        const double h = 0.5 * (static_cast<double>(i % 10) + .5) / 10,
+                     w = -.03 + .06 * (static_cast<double>(i / 10) + .5) / 6;
         if (h < 0.16 && energy(h, w) < 0.98 * barrier) {
             ++inside;
             EXPECT_EQ(region.classes[static_cast<std::size_t>(region.index[i])].name, "held") << h << " " << w;

@@ -1,4 +1,5 @@
-// The extended filter, what the sensors can know along the gap, the bank of surfaces, dynamic mode decomposition, measured runs.
+// The extended filter, what the sensors can know along the gap, the bank of surfaces, dynamic mode decomposition,
+// measured runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,14 +7,14 @@
 #include <limits>
 
 #include "core/random.h"
-#include "surrogates/dynamics/measurements.h"
-#include "surrogates/dynamics/model.h"
-#include "surrogates/estimator/dmd.h"
-#include "surrogates/estimator/estimate.h"
-#include "surrogates/estimator/information.h"
-#include "surrogates/estimator/peers.h"
-#include "surrogates/estimator/published.h"
-#include "surrogates/estimator/run_data.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/estimator/model/dmd.h"
+#include "surrogates/estimator/model/peers.h"
+#include "surrogates/estimator/model/run_data.h"
+#include "surrogates/estimator/observe/estimate.h"
+#include "surrogates/estimator/observe/information.h"
+#include "surrogates/estimator/thesis/published.h"
 #include "tests/support/support.h"
 
 namespace underbody::estimator {
@@ -26,7 +27,8 @@ struct Simulated {
     std::vector<double> gap, velocity, ground, drag;
 };
 
-Simulated simulate(const SeparatedPlant& plant, double gap, double duration, double step, double noise, std::uint64_t seed) {
+Simulated simulate(const SeparatedPlant& plant, double gap, double duration, double step, double noise,
+                   std::uint64_t seed) {
     Simulated s;
     core::Random random(seed);
     double h = gap, w = 0, slope = 0;
@@ -38,7 +40,8 @@ Simulated simulate(const SeparatedPlant& plant, double gap, double duration, dou
         s.drag.push_back(plant.drag(h, w));
         s.signals.time.push_back(t);
         s.signals.gap.push_back(h + noise * random.normal());
-        const double u = -0.05 * (h - gap) - 0.3 * w - plant.ground_force(gap, slope) - plant.bias + 0.004 * std::sin(0.7 * t);
+        const double u =
+            -0.05 * (h - gap) - 0.3 * w - plant.ground_force(gap, slope) - plant.bias + 0.004 * std::sin(0.7 * t);
         s.signals.input.push_back(u);
         plant.advance(h, w, u, step);
     }
@@ -118,8 +121,8 @@ TEST(ExtendedFilter, ItsSeparateBandsHoldTheTruthWhateverOfTheDeclaredLawsIsWron
         const char* what;
         double drag, ground;
     };
-    for (const Wrong& wrong : {Wrong{"nothing", 1, 1}, Wrong{"drag halved", .5, 1}, Wrong{"drag doubled", 2, 1}, Wrong{"drag threefold", 3, 1},
-                               Wrong{"table a third too small", 1, 1.33}}) {
+    for (const Wrong& wrong : {Wrong{"nothing", 1, 1}, Wrong{"drag halved", .5, 1}, Wrong{"drag doubled", 2, 1},
+                               Wrong{"drag threefold", 3, 1}, Wrong{"table a third too small", 1, 1.33}}) {
         SeparatedPlant real = reference_plant(quadratic_drag(.3 * wrong.drag, 6 * wrong.drag));
         real.ground_force = [f = declared.ground_force, k = wrong.ground](double h, double& slope) {
             const double force = k * f(h, slope);
@@ -138,7 +141,8 @@ TEST(ExtendedFilter, ItsSeparateBandsHoldTheTruthWhateverOfTheDeclaredLawsIsWron
                 s.drag.push_back(real.drag(h, w));
                 s.signals.time.push_back(t);
                 s.signals.gap.push_back(h + 2e-4 * random.normal());
-                const double u = -.4 * (h - .2) - declared.ground_force(.2, slope) + .02 * std::sin(.5 * t + static_cast<double>(seed));
+                const double u = -.4 * (h - .2) - declared.ground_force(.2, slope) +
+                                 .02 * std::sin(.5 * t + static_cast<double>(seed));
                 s.signals.input.push_back(u);
                 real.advance(h, w, u, .02);
             }

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "surrogates/estimator/augmented_model.h"
-#include "surrogates/estimator/published.h"
-#include "surrogates/estimator/training.h"
+#include "surrogates/estimator/model/augmented_model.h"
+#include "surrogates/estimator/model/training.h"
+#include "surrogates/estimator/thesis/published.h"
 #include "tests/support/support.h"
 
 namespace underbody::estimator {
@@ -68,7 +68,8 @@ std::vector<Published> oracle_cases() {
 TEST(ReferenceCurve, GivesTheValuesAndSlopesOfTheOracles) {
     const auto f = reference_ground_force();
     double slope = 0;
-    const double h[] = {.005, .065, .155, .275, .75}, want[] = {-0.0021467003, -0.014388284, -0.0010682339, 0.015453207, 0.01457831};
+    const double h[] = {.005, .065, .155, .275, .75},
+                 want[] = {-0.0021467003, -0.014388284, -0.0010682339, 0.015453207, 0.01457831};
     for (int i = 0; i < 5; ++i) {
         EXPECT_NEAR(f(h[i], slope), want[i], 1e-8);
     }
@@ -128,7 +129,8 @@ TEST(Learning, GivesTheSameMatrixByBothMethodsAtEveryOrder) {
         const TrainingSet set = oracle_mesh(c.plant);
         for (std::size_t order = 1; order <= 7; ++order) {
             const AugmentedModel a = fit(set, Fit::method1, order), b = fit(set, Fit::method2, order);
-            const double tolerance = order == 4 || order == 5 ? 1e-7 : 1e-9;  // nearly singular there: the thesis's "anomaly"
+            const double tolerance =
+                order == 4 || order == 5 ? 1e-7 : 1e-9;  // nearly singular there: the thesis's "anomaly"
             EXPECT_LT((a.A - b.A).largest(), tolerance * std::max(1.0, b.A.largest())) << c.name << " order " << order;
             EXPECT_LT((a.B - b.B).largest(), tolerance * std::max(1.0, b.B.largest())) << c.name << " order " << order;
         }
@@ -148,7 +150,8 @@ TEST(Learning, LeavesNoResidualInItsExactRelationsFromTheRankOn) {
     const Moments m = moments(set.view());
     const auto residual = [&](std::size_t order) {
         const AugmentedModel model = fit(set, Fit::method2, order);
-        const Matrix u = model.basis.block(0, 0, 1, order), v = model.basis.block(1, 0, 4, order), w = model.basis.block(5, 0, 4, order);
+        const Matrix u = model.basis.block(0, 0, 1, order), v = model.basis.block(1, 0, 4, order),
+                     w = model.basis.block(5, 0, 4, order);
         double worst = 0;
         for (std::size_t i = 0; i < set.count; i += 97) {
             Vector n(9);
@@ -180,7 +183,8 @@ TEST(Learning, FindsThePublishedSixthOrderRowFromThePopulation) {
     for (int i = 0; i < gaps; ++i) {
         for (int j = 0; j < velocities; ++j) {
             for (const double u : {-.00278, .00278}) {
-                sample_at(plant, layout, u, .03 * ((2 * j + 1.) / velocities - 1), 1.2 * (i + .5) / gaps, rows.data() + at);
+                sample_at(plant, layout, u, .03 * ((2 * j + 1.) / velocities - 1), 1.2 * (i + .5) / gaps,
+                          rows.data() + at);
                 at += 9;
             }
         }
@@ -238,7 +242,8 @@ TEST(Learning, ReturnsTheMeanDerivativeAtTheMeanState) {
             EXPECT_NEAR(d[i], m.mean[5 + i], 1e-14);
         }
     }
-    const AugmentedModel fixed = corrected(fit(set, Fit::least_squares, 0), Correction::p2, heave_rows(set.layout, plant.virtual_mass, plant.bias));
+    const AugmentedModel fixed = corrected(fit(set, Fit::least_squares, 0), Correction::p2,
+                                           heave_rows(set.layout, plant.virtual_mass, plant.bias));
     EXPECT_NEAR(fixed.offset[0], plant.bias / plant.virtual_mass, 1e-16);
     EXPECT_NEAR(fit(set, Fit::least_squares, 0).offset[0], plant.bias / plant.virtual_mass, 1e-9);
 }
@@ -260,8 +265,9 @@ TEST(Learning, HasNoOffsetFromRawMomentsAndPassesThroughAGivenEquilibrium) {
 
 TEST(Learning, KeepsStructuralZerosFromTheStart) {
     const TrainingSet set = oracle_mesh(reference_plant());
-    const AugmentedModel m = learn_structured(moments(set.view()), set.layout,
-                                              {{"ground_force", {"heave_velocity"}}, {"drag_force", {"ground_force", "drag_force", "input_force"}}});
+    const AugmentedModel m = learn_structured(
+        moments(set.view()), set.layout,
+        {{"ground_force", {"heave_velocity"}}, {"drag_force", {"ground_force", "drag_force", "input_force"}}});
     EXPECT_EQ(m.A(2, 1), 0);
     EXPECT_EQ(m.A(3, 0), 0);
     EXPECT_EQ(m.B(2, 0), 0);
@@ -269,7 +275,8 @@ TEST(Learning, KeepsStructuralZerosFromTheStart) {
     // The best law under the zeros beats zeroing afterwards.
     const Moments mm = moments(set.view());
     LearnOptions o;
-    const AugmentedModel p4 = corrected(learn(mm, set.layout, o), Correction::p4, heave_rows(set.layout, thesis_virtual_mass(), 0));
+    const AugmentedModel p4 =
+        corrected(learn(mm, set.layout, o), Correction::p4, heave_rows(set.layout, thesis_virtual_mass(), 0));
     EXPECT_LT(derivative_error(m, mm).rms[3], derivative_error(p4, mm).rms[3]);
 }
 
@@ -293,7 +300,8 @@ TEST(Learning, SaysWhereAForwardDifferenceContradictsTheStates) {
 TEST(Learning, SaysWhereSamplesContradictTheEquationOfMotionOrHoldAnOutlier) {
     const auto said = [](const TrainingSet& set, const char* words) {
         const auto problems = check_consistency(moments(set.view()), set.layout, thesis_virtual_mass());
-        return std::any_of(problems.begin(), problems.end(), [&](const core::Problem& p) { return p.message.find(words) != std::string::npos; });
+        return std::any_of(problems.begin(), problems.end(),
+                           [&](const core::Problem& p) { return p.message.find(words) != std::string::npos; });
     };
     TrainingOptions o;
     o.samples = 5000;
@@ -326,7 +334,9 @@ TEST(Learning, RefusesWhatCannotBeLearned) {
         moments(set.view(), set.layout.names());
         FAIL();
     } catch (const core::InputError& e) {
-        EXPECT_NE(std::string(e.what()).find("sample 1001 of channel 'ground_force' is not a number"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("sample 1001 of channel 'ground_force' is not a number"),
+                  std::string::npos)
+            << e.what();
     }
     TrainingOptions o;
     o.auxiliaries = {"ground_forse"};
@@ -341,8 +351,9 @@ TEST(Learning, LeavesOutAConstantChannelAndSaysSo) {
     const AugmentedModel m = fit(set, Fit::least_squares, 0);
     EXPECT_EQ(m.B(0, 0), 0);
     EXPECT_NEAR(m.A(0, 2), 0.2529, 1e-9);
-    EXPECT_TRUE(std::any_of(m.remarks.begin(), m.remarks.end(),
-                            [](const auto& p) { return p.message.find("'input_force' is constant") != std::string::npos; }));
+    EXPECT_TRUE(std::any_of(m.remarks.begin(), m.remarks.end(), [](const auto& p) {
+        return p.message.find("'input_force' is constant") != std::string::npos;
+    }));
 }
 
 TEST(TrainingData, HasTheVanishingCorrelationsOfTheGrid) {
@@ -351,7 +362,9 @@ TEST(TrainingData, HasTheVanishingCorrelationsOfTheGrid) {
     const TrainingSet set = training_set(reference_plant(), o);
     const Moments m = moments(set.view());
     const double bound = 4.5 / std::sqrt(static_cast<double>(set.count));
-    const auto r = [&](std::size_t i, std::size_t j) { return m.covariance(i, j) / std::sqrt(m.covariance(i, i) * m.covariance(j, j)); };
+    const auto r = [&](std::size_t i, std::size_t j) {
+        return m.covariance(i, j) / std::sqrt(m.covariance(i, i) * m.covariance(j, j));
+    };
     for (const std::size_t j : {1U, 2U, 3U, 4U, 6U, 7U}) {
         EXPECT_LT(std::abs(r(0, j)), bound) << j;
     }
@@ -392,7 +405,8 @@ TEST(Moments, AgreeWithTheTwoPassFormulaInBothLayoutsAndFromAFile) {
     std::vector<double> rows(n * c), columns(n * c);
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = 0; j < c; ++j) {
-            rows[i * c + j] = 1e6 * static_cast<double>(j) + random.normal() * std::pow(10.0, static_cast<double>(j) - 4);
+            rows[i * c + j] =
+                1e6 * static_cast<double>(j) + random.normal() * std::pow(10.0, static_cast<double>(j) - 4);
             columns[j * n + i] = rows[i * c + j];
         }
     }
@@ -415,7 +429,8 @@ TEST(Moments, AgreeWithTheTwoPassFormulaInBothLayoutsAndFromAFile) {
         for (std::size_t j = 0; j <= i; ++j) {
             long double sum = 0;
             for (std::size_t k = 0; k < n; ++k) {
-                sum += (rows[k * c + i] - static_cast<long double>(a.mean[i])) * (rows[k * c + j] - static_cast<long double>(a.mean[j]));
+                sum += (rows[k * c + i] - static_cast<long double>(a.mean[i])) *
+                       (rows[k * c + j] - static_cast<long double>(a.mean[j]));
             }
             const double size = std::sqrt(a.covariance(i, i) * a.covariance(j, j));
             EXPECT_NEAR(a.covariance(i, j), static_cast<double>(sum / n), 1e-9 * size);

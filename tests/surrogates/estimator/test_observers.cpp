@@ -8,16 +8,20 @@
 
 #include "core/file.h"
 #include "core/random.h"
-#include "surrogates/estimator/bounds.h"
-#include "surrogates/estimator/observer.h"
-#include "surrogates/estimator/published.h"
+#include "surrogates/estimator/control/bounds.h"
+#include "surrogates/estimator/observe/observer.h"
+#include "surrogates/estimator/thesis/published.h"
 #include "tests/support/support.h"
 
 namespace underbody::estimator {
 namespace {
 
-AugmentedModel p2_of(const AugmentedModel& m) { return corrected(m, Correction::p2, heave_rows(m.layout, thesis_virtual_mass(), 0)); }
-AugmentedModel p3_of(const AugmentedModel& m) { return corrected(m, Correction::p3, heave_rows(m.layout, thesis_virtual_mass(), 0)); }
+AugmentedModel p2_of(const AugmentedModel& m) {
+    return corrected(m, Correction::p2, heave_rows(m.layout, thesis_virtual_mass(), 0));
+}
+AugmentedModel p3_of(const AugmentedModel& m) {
+    return corrected(m, Correction::p3, heave_rows(m.layout, thesis_virtual_mass(), 0));
+}
 
 // O75, O76, O77, O78
 TEST(RobustnessBounds, AgreeWithTheOraclesOnThePublishedMatrices) {
@@ -200,7 +204,8 @@ TEST(LatentObserver, EstimatesTheSameAsTheFullOrderOne) {
         }
     }
     const ObserverDesign full = full_observer(m, sensors, l, 0.02);
-    const ObserverDesign latent = latent_observer(m, exponential(skew), {.017, .35, .01, .02}, {0.001, .6, .008, 0}, sensors, l, 0.02);
+    const ObserverDesign latent =
+        latent_observer(m, exponential(skew), {.017, .35, .01, .02}, {0.001, .6, .008, 0}, sensors, l, 0.02);
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_NEAR(std::abs(full.poles[i] - latent.poles[i]), 0, 1e-7);
     }
@@ -334,7 +339,9 @@ TEST(KalmanFilter, StatesItsCovarianceTrulyOnItsOwnModelAndHasWhiteInnovations) 
     }
     for (std::size_t i = 0; i < 5; ++i) {
         // The slow direction of the split has few independent samples: a wide band there.
-        EXPECT_NEAR(std::sqrt(squares[i] / (n - warm)) / std::sqrt(d.covariance(i, i)), 1, i == 2 || i == 3 ? 0.5 : 0.06) << i;
+        EXPECT_NEAR(std::sqrt(squares[i] / (n - warm)) / std::sqrt(d.covariance(i, i)), 1,
+                    i == 2 || i == 3 ? 0.5 : 0.06)
+            << i;
     }
     EXPECT_LT(std::abs(lag1 / lag0), 4 / std::sqrt(static_cast<double>(n)));
 }
@@ -410,7 +417,8 @@ TEST(LinearSystems, SolveTheirEquations) {
     }
 }
 
-// Worst relative difference between the compiled header and the library over 5000 samples; negative: it does not compile.
+// Worst relative difference between the compiled header and the library over 5000 samples; negative: it does not
+// compile.
 double worst_difference(const LinearFilter& f, const std::string& compiler) {
     const core::TemporaryFolder folder;
     std::ofstream(folder.path() / "observer.h") << export_c(f, "observer", {"thesis 8.47, P3"});
@@ -431,7 +439,8 @@ int main(void) {
 }
 )";
     const auto built = test::run_program(
-        "/bin/sh", {"-c", compiler + " -std=c99 -Wall -Wextra -Wconversion -Werror -pedantic -O2 main.c -o main"}, folder.path());
+        "/bin/sh", {"-c", compiler + " -std=c99 -Wall -Wextra -Wconversion -Werror -pedantic -O2 main.c -o main"},
+        folder.path());
     if (built.exit_code != 0) {
         ADD_FAILURE() << compiler << ": " << built.errors;
         return -1;
@@ -469,12 +478,15 @@ TEST(ExportedObserver, CompilesStrictlyByGccAndClangAndAgreesWithTheLibraryToTwe
     const AugmentedModel m = p3_of(published_8_47());
     const std::vector<std::string> sensors{"heave_velocity", "gap"};
     const Matrix gain = full_gain(m, sensors, {-3, -4, -5, -6});
-    const ObserverDesign designs[] = {reduced_observer(m, reduced_gain(m, {-3, -4}), 0.02), full_observer(m, sensors, gain, 0.02),
-                                      latent_observer(m, usual_rotation(), {.017, .35, .01, .02}, {0, .6, .008, 0}, sensors, gain, 0.02),
-                                      kalman_observer(m, {"gap"}, {0, 0, 1e-6, 1e-6}, {2e-4}, 0.02),
-                                      disturbance_observer(thesis_virtual_mass(), -0.01, 4, 0.02)};
+    const ObserverDesign designs[] = {
+        reduced_observer(m, reduced_gain(m, {-3, -4}), 0.02), full_observer(m, sensors, gain, 0.02),
+        latent_observer(m, usual_rotation(), {.017, .35, .01, .02}, {0, .6, .008, 0}, sensors, gain, 0.02),
+        kalman_observer(m, {"gap"}, {0, 0, 1e-6, 1e-6}, {2e-4}, 0.02),
+        disturbance_observer(thesis_virtual_mass(), -0.01, 4, 0.02)};
     for (const char* compiler : {"gcc", "clang"}) {
-        if (test::run_program("/bin/sh", {"-c", std::string("command -v ") + compiler}, std::filesystem::temp_directory_path()).exit_code != 0) {
+        if (test::run_program("/bin/sh", {"-c", std::string("command -v ") + compiler},
+                              std::filesystem::temp_directory_path())
+                .exit_code != 0) {
             std::printf("%s is not here: its part of the test is left out\n", compiler);
             continue;
         }

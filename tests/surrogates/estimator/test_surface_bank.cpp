@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/estimator/published.h"
-#include "surrogates/estimator/surface_bank.h"
+#include "surrogates/estimator/observe/surface_bank.h"
+#include "surrogates/estimator/thesis/published.h"
 
 namespace underbody::estimator {
 namespace {
@@ -27,13 +27,15 @@ std::vector<Surface> bank() { return {{"smooth", surface(0)}, {"rough", surface(
 RunSignals run_over(const SeparatedPlant& plant, const FilterNoise& noise, double duration, core::Random& random) {
     RunSignals run;
     run.held = true;
-    const double step = 0.04, gap = random.uniform(0.03, 0.25), size = random.uniform(0.5, 1.5), beat = random.uniform(0.4, 1.2);
+    const double step = 0.04, gap = random.uniform(0.03, 0.25), size = random.uniform(0.5, 1.5),
+                 beat = random.uniform(0.4, 1.2);
     double h = gap, w = 0, d = noise.departure_sigma * random.normal(), slope = 0;
     for (double t = 0; t < duration; t += step) {
         run.time.push_back(t);
         run.gap.push_back(h + noise.gap * random.normal());
         // A hand that does not know the surface: its nominal force is that of the middle one.
-        const double u = -0.5 * (h - gap) - 1.0 * w - 1.3 * reference_plant().ground_force(gap, slope) + 0.004 * size * std::sin(beat * t);
+        const double u = -0.5 * (h - gap) - 1.0 * w - 1.3 * reference_plant().ground_force(gap, slope) +
+                         0.004 * size * std::sin(beat * t);
         run.input.push_back(u);
         for (int i = 0; i < 4; ++i) {
             plant.advance(h, w, u + d, step / 4);
@@ -60,7 +62,8 @@ TEST(BankOfSurfaces, NamesTheSurfaceUnderTheVehicle) {
     }
 }
 
-// Of all statements "this surface with probability p", a share p is true: over 500 runs, in ten bins, and in the logarithmic score.
+// Of all statements "this surface with probability p", a share p is true: over 500 runs, in ten bins, and in the
+// logarithmic score.
 TEST(BankOfSurfaces, IsRightAsOftenAsItSays) {
     const auto surfaces = bank();
     FilterNoise noise;
@@ -119,7 +122,10 @@ TEST(BankOfSurfaces, WeighsHowFastTheForceWandersTogetherWithTheSurfaces) {
     double ratio = 0;
     for (std::size_t r = 0; r < 20; ++r) {
         core::Random random(5, r);
-        ratio += std::log10(identify_surface(surfaces, run_over(surfaces[1].plant, truth, 20, random), o).force_density / 1e-6) / 20;
+        ratio +=
+            std::log10(identify_surface(surfaces, run_over(surfaces[1].plant, truth, 20, random), o).force_density /
+                       1e-6) /
+            20;
     }
     EXPECT_NEAR(ratio, 0, 0.5);
 }
@@ -135,7 +141,8 @@ TEST(BankOfSurfaces, FollowsAChangeOfTheSurface) {
     double h = run.gap.back(), w = 0, slope = 0;
     for (int k = 0; k < 750; ++k) {
         run.time.push_back(run.time.back() + 0.04);
-        const double u = -0.5 * (h - .1) - w - 1.3 * reference_plant().ground_force(.1, slope) + 0.004 * std::sin(0.03 * k);
+        const double u =
+            -0.5 * (h - .1) - w - 1.3 * reference_plant().ground_force(.1, slope) + 0.004 * std::sin(0.03 * k);
         run.gap.push_back(h + noise.gap * random.normal());
         run.input.push_back(u);
         surfaces[2].plant.advance(h, w, u, 0.04);

@@ -1,26 +1,30 @@
-// The study of the thesis: every figure is drawn, every claim has numbers and a verdict that the physics page stands behind.
+// The study of the thesis: every figure is drawn, every claim has numbers and a verdict that the physics page stands
+// behind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "surrogates/estimator/thesis.h"
+#include "surrogates/estimator/thesis/thesis.h"
 
 namespace underbody::estimator {
 namespace {
 
 TEST(ThesisStudy, DrawsItsFiguresAndJudgesItsClaims) {
     const ThesisStudy study = thesis_study();
-    for (const char* number : {"7-7a", "7-7b", "7-13", "7-14", "7-15", "7-16", "7-17a", "7-17b", "7-18a", "7-18b", "7-19a", "7-19b", "7-20",
-                               "7-21", "7-22", "7-peers-a", "7-peers-b", "8-2a", "8-2b", "8-2c", "8-3a", "8-3b", "8-3c", "8-5", "8-6", "8-7a", "8-7d", "8-8", "8-9a", "8-9b", "8-9c", "8-10", "8-11",
-                               "8-12", "8-13", "8-14a", "8-14b", "8-14c", "8-14d", "8-14e", "8-14f", "8-14g", "8-14h"}) {
+    for (const char* number :
+         {"7-7a",  "7-7b", "7-13",  "7-14",  "7-15",      "7-16",      "7-17a", "7-17b", "7-18a", "7-18b", "7-19a",
+          "7-19b", "7-20", "7-21",  "7-22",  "7-peers-a", "7-peers-b", "8-2a",  "8-2b",  "8-2c",  "8-3a",  "8-3b",
+          "8-3c",  "8-5",  "8-6",   "8-7a",  "8-7d",      "8-8",       "8-9a",  "8-9b",  "8-9c",  "8-10",  "8-11",
+          "8-12",  "8-13", "8-14a", "8-14b", "8-14c",     "8-14d",     "8-14e", "8-14f", "8-14g", "8-14h"}) {
         const core::Figure* f = study.figure(number);
         ASSERT_NE(f, nullptr) << number;
         EXPECT_FALSE(f->title.empty());
         for (const auto& curve : f->curves) {
             EXPECT_EQ(curve.x.size(), curve.y.size());
             EXPECT_FALSE(curve.x.empty());
-            for (std::size_t i = 0; i < curve.y.size(); ++i) {  // a value that is not finite only where a line is parted
+            for (std::size_t i = 0; i < curve.y.size();
+                 ++i) {  // a value that is not finite only where a line is parted
                 EXPECT_TRUE(std::isfinite(curve.y[i]) || std::isnan(curve.x[i])) << number << curve.name;
             }
         }

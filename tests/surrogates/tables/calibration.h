@@ -1,4 +1,5 @@
-// How often the errors that a table states hold the truth: known forces measured at random places with noise, over many random forces of a kind.
+// How often the errors that a table states hold the truth: known forces measured at random places with noise, over many
+// random forces of a kind.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 #include "core/random.h"
 #include "core/table.h"
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::test {
 
@@ -20,15 +21,16 @@ struct Setting {
     std::size_t axes = 1;
     std::vector<std::size_t> grid;  ///< set points an axis; empty: `points` at random places
     std::size_t points = 0;
-    double noise = 0;          ///< standard deviation, in shares of the force's
-    bool relative = false;     ///< ... or of its own value there (and a tenth of the spread)
-    bool stated = true;        ///< the points carry their errors
-    double ratio = 20;         ///< of the largest to the smallest gap
+    double noise = 0;       ///< standard deviation, in shares of the force's
+    bool relative = false;  ///< ... or of its own value there (and a tenth of the spread)
+    bool stated = true;     ///< the points carry their errors
+    double ratio = 20;      ///< of the largest to the smallest gap
     enum class Kind { film, dip, smooth } kind = Kind::dip;
     std::size_t seeds = 40;  ///< cases of a run that is not a short one
 };
 
-/// Force against gap over its smallest value (1 to ratio), pitch (-1 to 1) and speed (0.4 to 1); about unit size over the points.
+/// Force against gap over its smallest value (1 to ratio), pitch (-1 to 1) and speed (0.4 to 1); about unit size over
+/// the points.
 class KnownForce {
 public:
     KnownForce(const Setting& setting, core::Random& random) : setting_(setting) {
@@ -61,14 +63,17 @@ private:
         double force = 0;
         if (setting_.kind == Setting::Kind::film) {  // 1/h^2 over a small free-stream part
             force = (0.6 + 0.8 * c_[0]) / (h * h) + (c_[1] - 0.5) / h + 0.1 * c_[2];
-        } else if (setting_.kind == Setting::Kind::dip) {  // repulsion of the film, suction further out, and what is left far away
+        } else if (setting_.kind ==
+                   Setting::Kind::dip) {  // repulsion of the film, suction further out, and what is left far away
             const double at = std::log(2 + 6 * c_[0]), width = 0.5 + 0.5 * c_[1];
-            force = (0.5 + c_[2]) / h - (0.5 + c_[3]) * std::exp(-std::pow((std::log(h) - at) / width, 2)) + 0.2 * c_[4];
+            force =
+                (0.5 + c_[2]) / h - (0.5 + c_[3]) * std::exp(-std::pow((std::log(h) - at) / width, 2)) + 0.2 * c_[4];
         } else {
             force = c_[0] + c_[1] * std::log(h) + (c_[2] - 0.5) * std::sin((1 + c_[3]) * std::log(h) + 6 * c_[4]);
         }
         if (setting_.axes > 1) {
-            force += (0.5 + c_[5]) * x[1] / (1 + 0.3 * h) + (c_[6] - 0.5) * x[1] * x[1] + 0.3 * std::sin(2 * c_[7] * x[1] + std::log(h));
+            force += (0.5 + c_[5]) * x[1] / (1 + 0.3 * h) + (c_[6] - 0.5) * x[1] * x[1] +
+                     0.3 * std::sin(2 * c_[7] * x[1] + std::log(h));
         }
         return setting_.axes > 2 ? force * std::pow(x[2], 1.9 + 0.2 * c_[8]) : force;
     }
@@ -90,7 +95,8 @@ inline core::Table measured(const Setting& setting, const KnownForce& force, cor
             const std::size_t n = setting.grid[k];
             for (std::size_t i = 0; i < n; ++i) {
                 // Not quite even, as people choose them.
-                const double t = (static_cast<double>(i) + (i > 0 && i + 1 < n ? random.uniform(-0.25, 0.25) : 0)) / static_cast<double>(n - 1);
+                const double t = (static_cast<double>(i) + (i > 0 && i + 1 < n ? random.uniform(-0.25, 0.25) : 0)) /
+                                 static_cast<double>(n - 1);
                 lines[k].push_back(k == 0 ? std::pow(setting.ratio, t) : k == 1 ? 2 * t - 1 : 0.4 + 0.6 * t);
             }
         }
@@ -134,15 +140,17 @@ inline core::Table measured(const Setting& setting, const KnownForce& force, cor
 
 /// What came of a setting.
 struct Calibration {
-    double share = 0;     ///< of the places where the truth lies within one stated standard deviation
-    double share_two = 0; ///< within two
-    double scale = 0;     ///< factor on the stated bands that makes them hold 68 %
-    double width = 0;     ///< mean stated standard deviation over the mean of the narrowest bands that hold 68 %, one in each tenth of the gaps
-    double error = 0;     ///< root mean square miss
+    double share = 0;      ///< of the places where the truth lies within one stated standard deviation
+    double share_two = 0;  ///< within two
+    double scale = 0;      ///< factor on the stated bands that makes them hold 68 %
+    double width = 0;  ///< mean stated standard deviation over the mean of the narrowest bands that hold 68 %, one in
+                       ///< each tenth of the gaps
+    double error = 0;  ///< root mean square miss
 };
 
 /// `places` random places inside the points of each of `seeds` cases.
-inline Calibration calibration(const Setting& setting, std::uint64_t first_seed, std::size_t seeds, const tables::FitOptions& options = {}, int places = 60) {
+inline Calibration calibration(const Setting& setting, std::uint64_t first_seed, std::size_t seeds,
+                               const tables::FitOptions& options = {}, int places = 60) {
     struct Miss {
         double size, sigma;
     };
@@ -182,7 +190,8 @@ inline Calibration calibration(const Setting& setting, std::uint64_t first_seed,
             ratios.push_back(m.size / m.sigma);
         }
         std::sort(bin.begin(), bin.end(), [](const Miss& a, const Miss& b) { return a.size < b.size; });
-        narrowest += bin[static_cast<std::size_t>(0.6827 * static_cast<double>(bin.size()))].size * static_cast<double>(bin.size());
+        narrowest += bin[static_cast<std::size_t>(0.6827 * static_cast<double>(bin.size()))].size *
+                     static_cast<double>(bin.size());
         count += static_cast<double>(bin.size());
     }
     std::sort(ratios.begin(), ratios.end());
@@ -197,7 +206,8 @@ inline Calibration calibration(const Setting& setting, std::uint64_t first_seed,
 inline std::vector<Setting> settings() {
     using Kind = Setting::Kind;
     std::vector<Setting> all;
-    const auto add = [&](std::string name, std::size_t axes, std::vector<std::size_t> grid, std::size_t points, double noise, bool relative, bool stated, double ratio, Kind kind, std::size_t seeds) {
+    const auto add = [&](std::string name, std::size_t axes, std::vector<std::size_t> grid, std::size_t points,
+                         double noise, bool relative, bool stated, double ratio, Kind kind, std::size_t seeds) {
         all.push_back({std::move(name), axes, std::move(grid), points, noise, relative, stated, ratio, kind, seeds});
     };
     add("film, 10 points, 1 % stated", 1, {10}, 0, 0.01, true, true, 20, Kind::film, 60);

@@ -15,8 +15,8 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "surrogates/tables/exports/export.h"
-#include "surrogates/tables/force_table.h"
-#include "surrogates/tables/sampled.h"
+#include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/sampled.h"
 #include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody::test {
@@ -46,8 +46,12 @@ inline tables::ForceTable two_axes(const std::string& range = "clamp") {
     for (int i = -6; i <= 6; ++i) {
         pitch.push_back(i * 0.012);
     }
-    return tables::ForceTable::fit(with_sigma(grid_table(gap, pitch, [](double h, double p) { return 3e-4 / h + 4 * p / (1 + 40 * h) + 0.3 * std::sin(9 * h); }), 0.01),
-                                   "lift_force", interpolation(range));
+    return tables::ForceTable::fit(
+        with_sigma(
+            grid_table(gap, pitch,
+                       [](double h, double p) { return 3e-4 / h + 4 * p / (1 + 40 * h) + 0.3 * std::sin(9 * h); }),
+            0.01),
+        "lift_force", interpolation(range));
 }
 
 inline tables::ForceTable three_axes(const std::string& range = "clamp") {
@@ -153,7 +157,8 @@ inline std::vector<double> random_points(const tables::ForceTable& table, std::s
         for (const auto& axis : table.axes()) {
             const double span = axis.upper - axis.lower;
             const bool inside = random.below(3) != 0;
-            double x = inside ? random.uniform(axis.lower, axis.upper) : random.uniform(axis.lower - span, axis.upper + span);
+            double x =
+                inside ? random.uniform(axis.lower, axis.upper) : random.uniform(axis.lower - span, axis.upper + span);
             if (random.below(20) == 0) {
                 x = axis.points[random.below(axis.points.size())];
             }
@@ -236,13 +241,16 @@ inline void expect_alike(const tables::ForceTable& table, const double* point, c
     if (::testing::Test::HasFailure()) {
         std::string where;
         for (std::size_t k = 0; k < n; ++k) {
-            where += table.axes()[k].name + " = " + std::to_string(point[k]) + " (" + to_string(table.axes()[k].range) + ") ";
+            where += table.axes()[k].name + " = " + std::to_string(point[k]) + " (" + to_string(table.axes()[k].range) +
+                     ") ";
         }
         FAIL() << "at " << where;
     }
 }
 
-inline bool have(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
+inline bool have(const std::string& program) {
+    return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0;
+}
 
 inline std::vector<double> read_doubles(const std::filesystem::path& path) {
     const std::string bytes = core::read_file(path);

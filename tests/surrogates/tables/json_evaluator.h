@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "surrogates/tables/force_table.h"
+#include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::test {
 
@@ -46,7 +46,8 @@ struct JsonTable {
         Value result;
         std::vector<std::size_t> cell(n), size(n);
         std::vector<double> t(n);
-        std::vector<std::array<double, 4>> f(n), d(n);  // the four functions of each axis and their derivatives: value, slope below; value, slope above
+        std::vector<std::array<double, 4>> f(n),
+            d(n);  // the four functions of each axis and their derivatives: value, slope below; value, slope above
         std::vector<bool> zero(n, false);
         bool refused = false;
         for (std::size_t k = 0; k < n; ++k) {

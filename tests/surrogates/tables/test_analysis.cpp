@@ -8,12 +8,12 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "core/text.h"
-#include "surrogates/tables/collapse.h"
-#include "surrogates/tables/compare.h"
-#include "surrogates/tables/continuation.h"
-#include "surrogates/tables/figures.h"
-#include "surrogates/tables/pitch.h"
-#include "surrogates/tables/select.h"
+#include "surrogates/tables/analysis/collapse.h"
+#include "surrogates/tables/analysis/compare.h"
+#include "surrogates/tables/analysis/continuation.h"
+#include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/analysis/pitch.h"
+#include "surrogates/tables/points/select.h"
 #include "tests/support/support.h"
 #include "tests/surrogates/tables/tables_support.h"
 
@@ -116,7 +116,8 @@ TEST(Continuation, SeesNoFoldWhereTheForceEndsFlat) {
     }
 }
 
-/// F = 1 - 2 (h - 0.5) + 3 p, M = -0.5 p + 0.2 (h - 0.5): both linear, so one balance for weight 1 at (0.5, 0), with K = [[2, -3], [-0.2, 0.5]].
+/// F = 1 - 2 (h - 0.5) + 3 p, M = -0.5 p + 0.2 (h - 0.5): both linear, so one balance for weight 1 at (0.5, 0), with K
+/// = [[2, -3], [-0.2, 0.5]].
 core::Table coupled_points() {
     const std::vector<double> h = {0.1, 0.3, 0.5, 0.7, 0.9}, q = {-0.2, -0.1, 0, 0.1, 0.2};
     core::Table data = test::grid_table(h, q, [](double a, double b) { return 1 - 2 * (a - 0.5) + 3 * b; });
@@ -180,7 +181,8 @@ TEST(Pitch, KnowsHowSureABalanceWithHeaveIs) {
     double gap = 0, pitch = 0;
     const int draws = 400;
     for (int i = 0; i < draws; ++i) {
-        const auto moved = coupled_equilibria(lift, moment, {1 - 0.01 * random.normal(), 0.002 * random.normal(), 0, 0, {}});
+        const auto moved =
+            coupled_equilibria(lift, moment, {1 - 0.01 * random.normal(), 0.002 * random.normal(), 0, 0, {}});
         ASSERT_EQ(moved.size(), 1u);
         gap += std::pow(moved[0].gap - 0.5, 2) / draws;
         pitch += std::pow(moved[0].pitch, 2) / draws;
@@ -207,8 +209,10 @@ TEST(Pitch, DrawsTheLinesOfBalanceThroughTheirCommonPoints) {
 }
 
 TEST(Comparison, NamesTheWinnerAndWhereVariantsDifferBeyondTheirErrors) {
-    const auto a = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.25, .75, .01\n0.5, .5, .01\n1, 0, .01\n"));
-    const auto b = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 2, .01\n0.25, 1.5, .01\n0.5, 1, .01\n1, 0, .01\n"));
+    const auto a = monotone(
+        csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.25, .75, .01\n0.5, .5, .01\n1, 0, .01\n"));
+    const auto b = monotone(
+        csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 2, .01\n0.25, 1.5, .01\n0.5, 1, .01\n1, 0, .01\n"));
     const auto result = compare_tables({{"flat", a}, {"steep", b}}, {});
     EXPECT_EQ(result.winner, "steep");
     EXPECT_EQ(result.unit, "N/m");
@@ -220,8 +224,10 @@ TEST(Comparison, NamesTheWinnerAndWhereVariantsDifferBeyondTheirErrors) {
 }
 
 TEST(Comparison, NamesNoWinnerWhereNothingRestores) {
-    const auto a = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, 1.5, .01\n1, 2, .01\n"));
-    const auto b = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, 1.7, .01\n2, 3, .01\n"));
+    const auto a =
+        monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, 1.5, .01\n1, 2, .01\n"));
+    const auto b =
+        monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, 1.7, .01\n2, 3, .01\n"));
     const auto slopes = compare_tables({{"a", a}, {"b", b}}, {});
     EXPECT_EQ(slopes.winner, "") << "both lifts rise with the gap";
     EXPECT_FALSE(slopes.beyond_error);
@@ -238,8 +244,10 @@ TEST(Comparison, NamesNoWinnerWhereNothingRestores) {
 }
 
 TEST(Comparison, AsksADragForNoRestoringSlope) {
-    const auto a = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 1, .01\n0.5, .7, .01\n1, .5, .01\n"), "drag_force");
-    const auto b = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 2, .01\n0.5, 1.7, .01\n1, 1, .01\n"), "drag_force");
+    const auto a = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 1, .01\n0.5, .7, .01\n1, .5, .01\n"),
+                            "drag_force");
+    const auto b = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 2, .01\n0.5, 1.7, .01\n1, 1, .01\n"),
+                            "drag_force");
     const auto result = compare_tables({{"a", a}, {"b", b}}, {});
     EXPECT_EQ(result.measure, "lowest mean");
     EXPECT_EQ(result.winner, "a");
@@ -251,7 +259,8 @@ TEST(Comparison, AsksADragForNoRestoringSlope) {
 }
 
 TEST(Comparison, ShowsTheCurvesBesideABandThatIsManyTimesWider) {
-    const auto narrow = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, .8, .01\n1, .5, .01\n"));
+    const auto narrow =
+        monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, .01\n0.5, .8, .01\n1, .5, .01\n"));
     const auto wide = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1.1, 5\n0.5, .9, 5\n1, .6, 5\n"));
     const auto figure = comparison_figure({{"narrow", narrow}, {"wide", wide}});
     EXPECT_GT(figure.y.lower, 0);
@@ -267,7 +276,8 @@ TEST(Collapse, HoldsForTheSquareLawAndSaysTheExponentWhereItDoesNot) {
         for (const double u : {0.5, 1.0}) {
             for (const double h : {1.0, 2.0, 3.0, 5.0, 8.0}) {
                 const double f = std::pow(u, exponent) * (1 + 2 / h);
-                text += std::to_string(h) + "," + std::to_string(u) + "," + std::to_string(f) + "," + std::to_string(0.005 * f) + "\n";
+                text += std::to_string(h) + "," + std::to_string(u) + "," + std::to_string(f) + "," +
+                        std::to_string(0.005 * f) + "\n";
             }
         }
         return csv(text);
@@ -291,7 +301,8 @@ TEST(Collapse, PutsSizesOnOneCurveOfTheLiftCoefficientOverGapByLength) {
                 f *= length > 300 && share < 0.015 ? 1 + extra : 1;
                 std::ostringstream line;
                 line.precision(12);
-                line << share * length << "," << length << "," << 0.75 * length << "," << u << "," << f << "," << 0.01 * f << "\n";
+                line << share * length << "," << length << "," << 0.75 * length << "," << u << "," << f << ","
+                     << 0.01 * f << "\n";
                 text += line.str();
             }
         }
@@ -319,7 +330,8 @@ TEST(Collapse, PutsJetForcesOnTheSquareOfVoltageOrFlow) {
     std::string text = "gap [m], jet_voltage [V], jet_flow [m^3/s], lift_force [N]\n";
     for (const double volts : {6.0, 12.0}) {
         for (const double h : {0.1, 0.2, 0.4, 0.8}) {
-            text += std::to_string(h) + "," + std::to_string(volts) + "," + core::format_number(2e-6 * volts) + "," + core::format_number(1e-4 * volts * volts * (1 - h)) + "\n";
+            text += std::to_string(h) + "," + std::to_string(volts) + "," + core::format_number(2e-6 * volts) + "," +
+                    core::format_number(1e-4 * volts * volts * (1 - h)) + "\n";
         }
     }
     for (const char* by : {"jet_voltage", "jet_flow"}) {
@@ -339,7 +351,8 @@ TEST(Collapse, PutsJetForcesOnTheSquareOfVoltageOrFlow) {
 
 TEST(Collapse, FindsTheSharedCfdBelowTheSquareLaw) {
     UNDERBODY_NEEDS_SHARED("cfd/forces.csv");
-    const auto points = selected_rows(core::read_csv(test::shared_folder() / "cfd/forces.csv"), "variant=ellipse, mesh=medium, pitch=0");
+    const auto points = selected_rows(core::read_csv(test::shared_folder() / "cfd/forces.csv"),
+                                      "variant=ellipse, mesh=medium, pitch=0");
     const auto result = collapse(points, "lift_force", {});
     EXPECT_FALSE(result.holds);
     ASSERT_EQ(result.groups.size(), 1u);
@@ -347,7 +360,9 @@ TEST(Collapse, FindsTheSharedCfdBelowTheSquareLaw) {
 }
 
 TEST(Kinks, AreNamedWithThePointThatCausesThem) {
-    const auto table = ForceTable::fit(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1,1,.05\n2,.8,.05\n3,.83,.05\n4,.6,.05\n5,.4,.05\n"), "lift_force");
+    const auto table = ForceTable::fit(
+        csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1,1,.05\n2,.8,.05\n3,.83,.05\n4,.6,.05\n5,.4,.05\n"),
+        "lift_force");
     std::string remarks;
     for (const auto& r : table.remarks()) {
         remarks += r.message + "\n";

@@ -21,9 +21,10 @@ void judge(std::size_t axes, std::size_t seeds) {
             continue;
         }
         const auto c = test::calibration(setting, judging, long_run() ? 3 * setting.seeds : seeds);
-        std::cout << setting.name << ": " << c.share << " within one standard deviation, " << c.share_two << " within two; the narrowest band that holds 68 % is " << c.scale
-                  << " of the stated one\n";
-        // Exact points that are interpolated: their error is that of forces as CFD has them, with kinks; smoother ones are met better.
+        std::cout << setting.name << ": " << c.share << " within one standard deviation, " << c.share_two
+                  << " within two; the narrowest band that holds 68 % is " << c.scale << " of the stated one\n";
+        // Exact points that are interpolated: their error is that of forces as CFD has them, with kinks; smoother ones
+        // are met better.
         const bool exact = setting.name.ends_with("exact") && !setting.grid.empty();
         // A few forces of a kind leave their own chance; the long run has enough of them for the bounds that are meant.
         EXPECT_GT(c.share, long_run() ? 0.60 : 0.52) << setting.name;
@@ -77,7 +78,8 @@ TEST(Suspects, NamesThePointThatIsOffAndNotItsNeighbours) {
             const core::Table clean = test::measured(setting, force, random);
             const std::size_t at = 3 + random.below(14);
             const double sigma = clean.numbers("lift_force_sigma")[at];
-            const auto table = tables::ForceTable::fit(with_outlier(clean, at, (random.uniform() < 0.5 ? -1 : 1) * sigmas * sigma), "lift_force");
+            const auto table = tables::ForceTable::fit(
+                with_outlier(clean, at, (random.uniform() < 0.5 ? -1 : 1) * sigmas * sigma), "lift_force");
             const std::string place = "gap " + core::format_number(clean.numbers("gap")[at], 6) + " m ";
             for (const auto& message : suspects(table)) {
                 (message.find(place) != std::string::npos ? named : others) += 1;
@@ -98,7 +100,8 @@ TEST(Suspects, AreRareAmongCleanPoints) {
         for (std::uint64_t seed = judging; seed < judging + 20; ++seed) {
             core::Random random(77001, seed);
             const test::KnownForce force(setting, random);
-            found += suspects(tables::ForceTable::fit(test::measured(setting, force, random), "lift_force")).empty() ? 0 : 1;
+            found +=
+                suspects(tables::ForceTable::fit(test::measured(setting, force, random), "lift_force")).empty() ? 0 : 1;
             ++cases;
         }
     }

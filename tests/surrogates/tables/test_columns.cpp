@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "surrogates/tables/compare.h"
-#include "surrogates/tables/pitch.h"
-#include "surrogates/tables/select.h"
+#include "surrogates/tables/analysis/compare.h"
+#include "surrogates/tables/analysis/pitch.h"
+#include "surrogates/tables/points/select.h"
 #include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody {
@@ -28,7 +28,9 @@ std::string refusal(const std::string& text, const std::vector<std::string>& axe
 }
 
 TEST(Columns, AMisnamedAxisIsNamedWhereThePointsThenRepeat) {
-    const std::string text = refusal("Gap (mm), trim angle [deg], speed [m/s], lift_force [N]\n1,0,0.4,1\n2,0,0.4,2\n1,1,0.6,1.5\n2,1,0.6,2.5\n", {"speed"});
+    const std::string text = refusal(
+        "Gap (mm), trim angle [deg], speed [m/s], lift_force [N]\n1,0,0.4,1\n2,0,0.4,2\n1,1,0.6,1.5\n2,1,0.6,2.5\n",
+        {"speed"});
     EXPECT_THAT(text, HasSubstr("the column 'Gap (mm)' is not understood and not used: write gap [mm]"));
     EXPECT_THAT(text, HasSubstr("the column 'trim angle' is not understood and not used: write pitch [deg]"));
 }
@@ -40,7 +42,10 @@ TEST(Columns, AMisnamedAxisIsNamedWhereNothingVaries) {
 TEST(Columns, AnUnusedAxisIsAWarningAndLabelsAreNot) {
     tables::FitOptions options;
     options.axes = {"gap"};
-    const auto table = ForceTable::fit(test::csv("gap [mm], velocity [m/s], case, lift_force [N], cells [1]\n1,0.1,a,1,10\n2,0.2,b,2,20\n3,0.3,c,3,30\n"), "lift_force", options);
+    const auto table = ForceTable::fit(
+        test::csv(
+            "gap [mm], velocity [m/s], case, lift_force [N], cells [1]\n1,0.1,a,1,10\n2,0.2,b,2,20\n3,0.3,c,3,30\n"),
+        "lift_force", options);
     int warnings = 0;
     for (const auto& remark : table.remarks()) {
         warnings += remark.severity != core::Problem::Severity::note ? 1 : 0;
@@ -52,7 +57,8 @@ TEST(Columns, AnUnusedAxisIsAWarningAndLabelsAreNot) {
 
 TEST(Columns, RowsAreSelectedInTheWayOfTheCommandLineAndOfAStudy) {
     const auto table = test::csv("variant, pitch [deg], lift_force [N]\na,0,1\na,1,2\nb,0,3\n");
-    for (const char* where : {"variant=a, pitch=0", "{variant = \"a\", pitch = 0}", "{ variant = 'a', pitch = \"0 deg\" }"}) {
+    for (const char* where :
+         {"variant=a, pitch=0", "{variant = \"a\", pitch = 0}", "{ variant = 'a', pitch = \"0 deg\" }"}) {
         EXPECT_EQ(tables::selected_rows(table, where).rows(), 1U) << where;
     }
     EXPECT_EQ(tables::selected_rows(table, "variant=\"a|b\"").rows(), 3U);
@@ -61,9 +67,11 @@ TEST(Columns, RowsAreSelectedInTheWayOfTheCommandLineAndOfAStudy) {
 TEST(Compare, PraisesNobodyWhereNothingRestores) {
     std::vector<std::pair<std::string, ForceTable>> all;
     for (const double slope : {1.0, 2.0}) {
-        all.emplace_back(slope == 1 ? "a" : "b", ForceTable::fit(test::csv("gap [m], lift_force [N]\n0,0\n1," + std::to_string(slope) + "\n2," + std::to_string(2 * slope) + "\n3," +
-                                                                              std::to_string(3 * slope) + "\n"),
-                                                                    "lift_force"));
+        all.emplace_back(
+            slope == 1 ? "a" : "b",
+            ForceTable::fit(test::csv("gap [m], lift_force [N]\n0,0\n1," + std::to_string(slope) + "\n2," +
+                                      std::to_string(2 * slope) + "\n3," + std::to_string(3 * slope) + "\n"),
+                            "lift_force"));
     }
     for (const auto measure : {tables::Measure::restoring_slope, tables::Measure::restoring_width}) {
         tables::ComparisonOptions options;
@@ -102,7 +110,8 @@ TEST(Pitch, SaysHowSureAWindowEdgeIsFromTheErrorsOfThePoints) {
     }
     const auto windows = tables::pitch_windows(ForceTable::fit(test::csv(text), "pitch_moment"), {});
     ASSERT_FALSE(windows.empty());
-    // The slope is known to about sigma / (root of 13 / 2 points over a span of 4 degrees), over a curvature of 0.002: some tenths of a degree.
+    // The slope is known to about sigma / (root of 13 / 2 points over a span of 4 degrees), over a curvature of 0.002:
+    // some tenths of a degree.
     EXPECT_NEAR(windows[0].upper, 1.3 * M_PI / 180, 3 * windows[0].upper_sigma + 1e-4);
     EXPECT_GT(windows[0].upper_sigma, 0.005 * M_PI / 180);
     EXPECT_LT(windows[0].upper_sigma, 0.6 * M_PI / 180);

@@ -7,8 +7,8 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "surrogates/tables/equilibria.h"
-#include "surrogates/tables/figures.h"
+#include "surrogates/tables/analysis/equilibria.h"
+#include "surrogates/tables/analysis/figures.h"
 #include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody {
@@ -144,7 +144,8 @@ TEST(Equilibria, AreMarginalWhereTheForceOnlyTouchesTheWeight) {
 }
 
 TEST(Equilibria, OfATableOfTwoAxesHoldTheOther) {
-    const auto table = monotone(test::grid_table({0, .5, 1}, {-.1, 0, .1}, [](double h, double p) { return 1 - h + 2 * p; }));
+    const auto table =
+        monotone(test::grid_table({0, .5, 1}, {-.1, 0, .1}, [](double h, double p) { return 1 - h + 2 * p; }));
     EquilibriumOptions options;
     options.net_weight = 0.5;
     auto found = equilibria(table, options);
@@ -159,7 +160,8 @@ TEST(Equilibria, OfATableOfTwoAxesHoldTheOther) {
 }
 
 TEST(Equilibria, FollowThePolicyOfAHeldAxis) {
-    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01, 0.02}, {-0.05, 0, 0.05}, [](double h, double p) { return 1e-3 / h + 2 * p; });
+    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01, 0.02}, {-0.05, 0, 0.05},
+                                       [](double h, double p) { return 1e-3 / h + 2 * p; });
     tables::FitOptions options;
     options.kind = tables::FitOptions::Kind::interpolation;
     tables::EquilibriumOptions wanted;
@@ -184,7 +186,8 @@ TEST(Equilibria, FollowThePolicyOfAHeldAxis) {
 }
 
 TEST(Equilibria, KnowHowSureTheyAre) {
-    const auto table = monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, 0.02\n0.5, 0.5, 0.02\n1, 0, 0.02\n"));
+    const auto table =
+        monotone(csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, 0.02\n0.5, 0.5, 0.02\n1, 0, 0.02\n"));
     EquilibriumOptions options;
     options.net_weight = 0.5;
     options.draws = 100;
@@ -207,7 +210,9 @@ TEST(Figures, ShowCurveBandPointsAndEquilibria) {
     tables::FigureOptions options;
     options.equilibria = EquilibriumOptions{};
     options.equilibria->net_weight = 0.3;
-    const auto table = monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, .66, .02\n2, .4, .02\n5, .27, .02\n20, .32, .02\n50, .35, .02\n100, .28, .02\n"));
+    const auto table =
+        monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, .66, .02\n2, .4, .02\n5, .27, .02\n20, .32, "
+                     ".02\n50, .35, .02\n100, .28, .02\n"));
     const auto figure = curve_figure(table, options);
     ASSERT_EQ(figure.curves.size(), 1u);
     EXPECT_EQ(figure.bands.size(), 1u);
@@ -217,7 +222,8 @@ TEST(Figures, ShowCurveBandPointsAndEquilibria) {
     EXPECT_EQ(figure.points[0].x.size(), 6u);
     EXPECT_EQ(figure.points[1].name, "stable");
     EXPECT_EQ(figure.points[1].x.size(), 2u);
-    const auto map = tables::figure(monotone(test::grid_table({0, .5, 1}, {-.1, 0, .1}, [](double h, double p) { return 1 - h + 2 * p; })));
+    const auto map = tables::figure(
+        monotone(test::grid_table({0, .5, 1}, {-.1, 0, .1}, [](double h, double p) { return 1 - h + 2 * p; })));
     EXPECT_EQ(map.maps.size(), 1u);
 }
 

@@ -27,11 +27,13 @@ std::string driver(const std::string& name, std::size_t axes) {
            ", stdout);\n    }\n    return 0;\n}\n";
 }
 
-std::vector<double> run_header(const std::filesystem::path& folder, const std::string& compiler, std::size_t axes, const std::vector<double>& points) {
+std::vector<double> run_header(const std::filesystem::path& folder, const std::string& compiler, std::size_t axes,
+                               const std::vector<double>& points) {
     core::write_file(folder / "main.c", driver("table", axes));
     test::write_doubles(folder / "points.bin", points);
     const std::string command = "cd '" + folder.string() + "' && " + compiler +
-                                " -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -pedantic main.c -o main 2> errors.txt && ./main < points.bin > out.bin";
+                                " -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -pedantic main.c -o main 2> "
+                                "errors.txt && ./main < points.bin > out.bin";
     if (std::system(command.c_str()) != 0) {
         ADD_FAILURE() << core::read_file(folder / "errors.txt");
         return {};
@@ -73,15 +75,16 @@ void check_double(const ForceTable& table, const std::string& compiler) {
     }
 }
 
-/// The header knows the ends of the axes rounded to float: a point between an end and its rounded value is moved past the end, to the side where the header
-/// has it. `beyond` is what the header must say, to the last bit.
+/// The header knows the ends of the axes rounded to float: a point between an end and its rounded value is moved past
+/// the end, to the side where the header has it. `beyond` is what the header must say, to the last bit.
 std::vector<double> as_float_sees_it(const ForceTable& table, const double* point, std::vector<double>& beyond) {
     const std::size_t n = table.axes().size();
     std::vector<double> seen(n);
     beyond.assign(n, 0);
     for (std::size_t k = 0; k < n; ++k) {
         const auto& axis = table.axes()[k];
-        const auto x = static_cast<float>(point[k]), lower = static_cast<float>(axis.lower), upper = static_cast<float>(axis.upper);
+        const auto x = static_cast<float>(point[k]), lower = static_cast<float>(axis.lower),
+                   upper = static_cast<float>(axis.upper);
         if (x < lower) {
             beyond[k] = static_cast<double>(x - lower);
             seen[k] = std::min(point[k], std::nextafter(axis.lower, -INFINITY));
@@ -95,8 +98,9 @@ std::vector<double> as_float_sees_it(const ForceTable& table, const double* poin
     return seen;
 }
 
-/// Bounds are counts of the rounding u = 2^-24 of a float, half as much again and more as occurs: of the value 8 u of its largest size (5e-7), of the standard
-/// deviation 4 u. A slope is a difference of values over the width h of a cell, at a place whose coordinate x is rounded: 8 u (value/h + slope (1 + x/h)).
+/// Bounds are counts of the rounding u = 2^-24 of a float, half as much again and more as occurs: of the value 8 u of
+/// its largest size (5e-7), of the standard deviation 4 u. A slope is a difference of values over the width h of a
+/// cell, at a place whose coordinate x is rounded: 8 u (value/h + slope (1 + x/h)).
 void check_single(const ForceTable& table, const std::string& compiler) {
     const std::size_t n = table.axes().size();
     const HeaderRun run(table, true, compiler);
@@ -113,7 +117,8 @@ void check_single(const ForceTable& table, const std::string& compiler) {
         ASSERT_EQ(o[3] != 0, e.refused);
         ASSERT_EQ(o[4] != 0, e.at.no_data);
         ASSERT_NEAR(o[1], e.at.sigma, 4 * u * sizes.sigma);
-        ASSERT_TRUE(e.refused ? std::isnan(o[0]) : std::abs(o[0] - e.at.value) <= 8 * u * sizes.value) << o[0] << " instead of " << e.at.value;
+        ASSERT_TRUE(e.refused ? std::isnan(o[0]) : std::abs(o[0] - e.at.value) <= 8 * u * sizes.value)
+            << o[0] << " instead of " << e.at.value;
         for (std::size_t k = 0; k < n; ++k) {
             ASSERT_EQ(o[5 + n + k], beyond[k]);
             if (e.refused) {
@@ -121,7 +126,8 @@ void check_single(const ForceTable& table, const std::string& compiler) {
                 continue;
             }
             const auto& x = table.knots(k);
-            const auto above = std::clamp<std::ptrdiff_t>(std::upper_bound(x.begin(), x.end(), seen[k]) - x.begin(), 1, std::ssize(x) - 1);
+            const auto above = std::clamp<std::ptrdiff_t>(std::upper_bound(x.begin(), x.end(), seen[k]) - x.begin(), 1,
+                                                          std::ssize(x) - 1);
             const double h = x[above] - x[above - 1];
             ASSERT_NEAR(o[5 + k], e.at.slope[k],
                         8 * u * (sizes.value / h + sizes.slope[k] * (1 + std::abs(point[k]) / h)))
@@ -139,7 +145,8 @@ TEST_P(CHeader, EvaluatesLikeTheTableInsideAndOutside) {
     for (const auto& table : test::tables_of_all_policies()) {
         check_double(table, GetParam());
     }
-    for (const auto& table : {test::one_axis(), test::two_axes(), test::three_axes(), test::two_axes("gap=refuse,pitch=extrapolate")}) {
+    for (const auto& table :
+         {test::one_axis(), test::two_axes(), test::three_axes(), test::two_axes("gap=refuse,pitch=extrapolate")}) {
         check_single(table, GetParam());
     }
 }

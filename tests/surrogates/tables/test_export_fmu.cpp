@@ -48,7 +48,8 @@ public:
 
     [[nodiscard]] bool loaded() const { return library_ != nullptr; }
     void* instantiate(int type, const std::string& guid) {
-        return function<void* (*)(const char*, int, const char*, const char*, const void*, int, int)>("fmi2Instantiate")("x", type, guid.c_str(), "", nullptr, 0, 0);
+        return function<void* (*)(const char*, int, const char*, const char*, const void*, int, int)>(
+            "fmi2Instantiate")("x", type, guid.c_str(), "", nullptr, 0, 0);
     }
     template <class... Arguments>
     int call(const char* name, Arguments... arguments) {
@@ -109,8 +110,8 @@ void check_derivatives(Fmu& fmu, void* instance, const ForceTable& table, const 
         const auto& x = table.knots(k);
         const auto& axis = table.axes()[k];
         const bool at_end = axis.range == tables::RangePolicy::refuse && point[k] == axis.upper;
-        auto above = at_end ? std::lower_bound(x.begin(), x.end(), point[k])
-                            : std::upper_bound(x.begin(), x.end(), point[k]);
+        auto above =
+            at_end ? std::lower_bound(x.begin(), x.end(), point[k]) : std::upper_bound(x.begin(), x.end(), point[k]);
         above = std::clamp(above, x.begin() + 1, x.end() - 1);
         slope += along[k] * expected.at.slope[k];
         rounding += std::abs(along[k]) * (1e-12 * sizes.slope[k] + 1e-14 * sizes.value / (*above - *(above - 1)));
@@ -174,18 +175,25 @@ void check_values(Fmu& fmu, void* instance, const ForceTable& table, bool steps)
             ASSERT_EQ(fmu.call("fmi2DoStep", instance, 0.1 * static_cast<double>(i), 0.1, 1), ok);
         }
         const auto e = test::expected(table, point);
-        ASSERT_EQ(fmu.call("fmi2GetReal", instance, static_cast<const unsigned*>(outputs.data()), outputs.size(), out.data()), e.refused ? discard : ok);
+        ASSERT_EQ(
+            fmu.call("fmi2GetReal", instance, static_cast<const unsigned*>(outputs.data()), outputs.size(), out.data()),
+            e.refused ? discard : ok);
         ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, point, sizes, 1e-12, out[0], &out[1], out[1 + n],
                                                    out[2 + n] != 0, out[3 + n] != 0));
         if (i < 2000) {
             ASSERT_NO_FATAL_FAILURE(check_derivatives(fmu, instance, table, point, sizes, outputs)) << "point " << i;
         }
     }
-    if (std::any_of(table.axes().begin(), table.axes().end(), [](const auto& a) { return a.range == tables::RangePolicy::refuse; })) {
+    if (std::any_of(table.axes().begin(), table.axes().end(),
+                    [](const auto& a) { return a.range == tables::RangePolicy::refuse; })) {
         // Whether it is outside can be asked at a point that is refused.
         const double outside[4] = {1e3, 1e3, 1e3, 1e3};
-        ASSERT_EQ(fmu.call("fmi2SetReal", instance, static_cast<const unsigned*>(inputs), n, static_cast<const double*>(outside)), ok);
-        ASSERT_EQ(fmu.call("fmi2GetReal", instance, static_cast<const unsigned*>(&outputs[n + 2]), std::size_t{1}, out.data()), ok);
+        ASSERT_EQ(fmu.call("fmi2SetReal", instance, static_cast<const unsigned*>(inputs), n,
+                           static_cast<const double*>(outside)),
+                  ok);
+        ASSERT_EQ(fmu.call("fmi2GetReal", instance, static_cast<const unsigned*>(&outputs[n + 2]), std::size_t{1},
+                           out.data()),
+                  ok);
         EXPECT_EQ(out[0], 1);
     }
 }
@@ -200,9 +208,11 @@ TEST(ExportsOfFmu, AreLoadedAndEvaluateLikeTheTable) {
         export_table(table, "fmu", path);
         EXPECT_TRUE(first == core::read_file(path)) << "the same table must give the same bytes";
         if (test::have("python3")) {
-            EXPECT_EQ(std::system(("python3 -c \"import zipfile,xml.dom.minidom as m;z=zipfile.ZipFile('" + path.string() +
-                                   "');assert z.testzip() is None;m.parseString(z.read('modelDescription.xml'))\"").c_str()),
-                      0);
+            EXPECT_EQ(
+                std::system(("python3 -c \"import zipfile,xml.dom.minidom as m;z=zipfile.ZipFile('" + path.string() +
+                             "');assert z.testzip() is None;m.parseString(z.read('modelDescription.xml'))\"")
+                                .c_str()),
+                0);
         }
         const auto entries = unzipped(first);
         ASSERT_TRUE(entries.contains("modelDescription.xml"));

@@ -90,8 +90,8 @@ TEST(ExportsOfJsbsim, InterpolateLinearlyWithinWhatTheySay) {
 }
 
 TEST(ExportsOfJsbsim, TakeTheFewestPointsThatStraightLinesNeed) {
-    // For a parabola of curvature 2 lines between n even points miss 1/(4 n^2): 1 % of its range needs 7 points, of which two may be lost to the
-    // choice among halved cells.
+    // For a parabola of curvature 2 lines between n even points miss 1/(4 n^2): 1 % of its range needs 7 points, of
+    // which two may be lost to the choice among halved cells.
     std::vector<double> x, y;
     for (int i = 0; i <= 40; ++i) {
         x.push_back(i / 40.0);
@@ -123,7 +123,8 @@ TEST(ExportsOfJsbsim, StateAnErrorNearThatOfTheTable) {
     core::Random random(17);
     double stated = 0, own = 0;
     for (int i = 0; i < 3000; ++i) {
-        const double p[2] = {random.uniform(table.axes()[0].lower, table.axes()[0].upper), random.uniform(table.axes()[1].lower, table.axes()[1].upper)};
+        const double p[2] = {random.uniform(table.axes()[0].lower, table.axes()[0].upper),
+                             random.uniform(table.axes()[1].lower, table.axes()[1].upper)};
         ASSERT_GE(sigma.at(p), (1 - 1e-12) * table.sigma(p));
         stated += sigma.at(p) / 3000;
         own += table.sigma(p) / 3000;
@@ -139,7 +140,8 @@ TEST(ExportsOfJsbsim, SayThatTheyOnlyHoldTheirEnds) {
         remarks += remark.message + "\n";
     }
     EXPECT_THAT(remarks, HasSubstr("JSBSim holds the ends of gap: it cannot refuse"));
-    EXPECT_THAT(core::read_file(folder.path() / "t.xml"), HasSubstr("Outside the range of an axis JSBSim holds the end value"));
+    EXPECT_THAT(core::read_file(folder.path() / "t.xml"),
+                HasSubstr("Outside the range of an axis JSBSim holds the end value"));
 }
 
 using Vector = std::array<double, 3>;

@@ -12,7 +12,8 @@ namespace {
 
 using tables::ForceTable;
 
-std::map<std::string, std::vector<double>> read_by_matio(const std::filesystem::path& path, const std::vector<std::string>& names) {
+std::map<std::string, std::vector<double>> read_by_matio(const std::filesystem::path& path,
+                                                         const std::vector<std::string>& names) {
     std::map<std::string, std::vector<double>> read;
     mat_t* file = Mat_Open(path.c_str(), MAT_ACC_RDONLY);
     for (const auto& name : names) {
@@ -99,7 +100,9 @@ TEST(ExportsOfMat, LookedUpByOctaveEvaluateLikeTheTable) {
                   ",[])';fclose(f);[v,s,g,o,e]=lift" + id + "_at(p);f=fopen('out" + id +
                   "','w');fwrite(f,[v s g o e]','double');fclose(f);";
     }
-    const std::string command = "cd '" + folder.path().string() + "' && $(command -v octave-cli || command -v octave) --eval \"" + script + "\" > errors.txt 2>&1";
+    const std::string command = "cd '" + folder.path().string() +
+                                "' && $(command -v octave-cli || command -v octave) --eval \"" + script +
+                                "\" > errors.txt 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0) << core::read_file(folder.path() / "errors.txt");
     for (std::size_t t = 0; t < all.size(); ++t) {
         const std::size_t n = all[t].axes().size();

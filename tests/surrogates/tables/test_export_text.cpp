@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "surrogates/tables/many_points.h"
+#include "surrogates/tables/fit/table_batch.h"
 #include "tests/surrogates/tables/exports_support.h"
 #include "tests/surrogates/tables/json_evaluator.h"
 
@@ -95,10 +95,13 @@ TEST(ExportsOfText, OfOlderVersionsAreReadWithTheirOnePolicyForAllAxes) {
 }
 
 TEST(ExportsOfText, KeepTheConditionsOfTheTableAndWhereItsPointsAre) {
-    std::string text = "# a diagonal band\ngap [mm], pitch [deg], speed [m/s], mass [kg], variant, lift_force [N], lift_force_sigma [N]\n";
+    std::string text =
+        "# a diagonal band\ngap [mm], pitch [deg], speed [m/s], mass [kg], variant, lift_force [N], lift_force_sigma "
+        "[N]\n";
     for (int i = 0; i < 9; ++i) {
         for (const int j : {-1, 0, 1}) {
-            text += std::to_string(2 + i) + "," + std::to_string(0.5 * (i + j) - 2) + ",0.5,2.2,ellipse," + std::to_string(0.6 - 0.05 * i + 0.02 * j) + ",0.01\n";
+            text += std::to_string(2 + i) + "," + std::to_string(0.5 * (i + j) - 2) + ",0.5,2.2,ellipse," +
+                    std::to_string(0.6 - 0.05 * i + 0.02 * j) + ",0.01\n";
         }
     }
     const auto table = ForceTable::fit(test::csv(text), "lift_force");

@@ -19,8 +19,10 @@ TEST(Exports, ThinTheGridAndKeepTheErrorAskedFor) {
         gap.push_back(0.001 * std::pow(100.0, i / 59.0));
         pitch.push_back(-0.1 + 0.2 * i / 59);
     }
-    const auto table = ForceTable::fit(test::grid_table(gap, pitch, [](double h, double p) { return 3e-4 / h + 4 * p / (1 + 40 * h) + 0.3 * std::sin(9 * h); }),
-                                       "lift_force", test::interpolation());
+    const auto table = ForceTable::fit(
+        test::grid_table(gap, pitch,
+                         [](double h, double p) { return 3e-4 / h + 4 * p / (1 + 40 * h) + 0.3 * std::sin(9 * h); }),
+        "lift_force", test::interpolation());
     core::TemporaryFolder folder;
     ExportOptions options;
     options.max_error = 0.005;
@@ -74,12 +76,14 @@ TEST(Exports, SayWithTheirErrorWhatThinningCostBetweenTheLinesOfEveryAxis) {
 TEST(Exports, DoNotLoseTheErrorOfAPointThatThinningLeavesOut) {
     std::string text = "gap [m], lift_force [N], lift_force_sigma [N]\n";
     for (int i = 0; i <= 10; ++i) {
-        text += core::format_number(0.1 * i) + ", " + core::format_number(1 - 0.1 * i) + (i == 5 ? ", 0.2\n" : ", 0.01\n");
+        text +=
+            core::format_number(0.1 * i) + ", " + core::format_number(1 - 0.1 * i) + (i == 5 ? ", 0.2\n" : ", 0.01\n");
     }
     core::TemporaryFolder folder;
     ExportOptions options;
     options.max_error = 0.01;
-    const auto result = export_table(ForceTable::fit(test::csv(text), "lift_force", test::interpolation()), "csv", folder.path() / "thin.csv", options);
+    const auto result = export_table(ForceTable::fit(test::csv(text), "lift_force", test::interpolation()), "csv",
+                                     folder.path() / "thin.csv", options);
     ASSERT_EQ(result.grid[0], 2u);
     const auto thin = ForceTable::read(folder.path() / "thin.csv", "lift_force");
     for (const double gap : {0.0, 0.3, 0.5, 1.0}) {

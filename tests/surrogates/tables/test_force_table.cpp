@@ -8,9 +8,9 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "surrogates/tables/force_table.h"
-#include "surrogates/tables/grid.h"
-#include "surrogates/tables/many_points.h"
+#include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/grid.h"
+#include "surrogates/tables/fit/table_batch.h"
 #include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody {
@@ -105,9 +105,11 @@ TEST(ForceTable, OfTwoAxesNeverLeavesTheRangeOfTheCornersOfItsCell) {
         const std::size_t columns = y.size();
         for (std::size_t i = 0; i + 1 < x.size(); ++i) {
             for (std::size_t j = 0; j + 1 < columns; ++j) {
-                const auto [low, high] = std::minmax({z[i * columns + j], z[i * columns + j + 1], z[(i + 1) * columns + j], z[(i + 1) * columns + j + 1]});
+                const auto [low, high] = std::minmax({z[i * columns + j], z[i * columns + j + 1],
+                                                      z[(i + 1) * columns + j], z[(i + 1) * columns + j + 1]});
                 for (int k = 0; k < 144; ++k) {
-                    const double p[2] = {x[i] + (x[i + 1] - x[i]) * (k % 12) / 11, y[j] + (y[j + 1] - y[j]) * (k / 12) / 11.0};
+                    const double p[2] = {x[i] + (x[i + 1] - x[i]) * (k % 12) / 11,
+                                         y[j] + (y[j + 1] - y[j]) * (k / 12) / 11.0};
                     const double v = table.value(p);
                     ASSERT_LE(v, high + 1e-12);
                     ASSERT_GE(v, low - 1e-12);
@@ -120,7 +122,9 @@ TEST(ForceTable, OfTwoAxesNeverLeavesTheRangeOfTheCornersOfItsCell) {
 }
 
 TEST(ForceTable, GivesManyPointsAtOnceTheSameBitsAsOneByOne) {
-    const auto same = [](double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b)); };
+    const auto same = [](double a, double b) {
+        return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
+    };
     core::Random random(21);
     for (const bool wide : {false, true}) {
         std::vector<double> x, y;
@@ -128,7 +132,8 @@ TEST(ForceTable, GivesManyPointsAtOnceTheSameBitsAsOneByOne) {
             x.push_back(wide ? 0.001 * std::pow(300.0, i / 36.0) : 0.002 * (i + 1));
             y.push_back(-0.1 + 0.005 * i);
         }
-        const ForceTable table = monotone(test::grid_table(x, y, [](double a, double b) { return std::sin(70 * a) + b * std::cos(9 * a); }));
+        const ForceTable table =
+            monotone(test::grid_table(x, y, [](double a, double b) { return std::sin(70 * a) + b * std::cos(9 * a); }));
         for (const std::size_t count : {0, 1, 3, 4, 127, 128, 129, 1001}) {
             std::vector<double> points, value(count), slope(2 * count);
             for (std::size_t i = 0; i < count; ++i) {
@@ -162,7 +167,9 @@ TEST(ForceTable, FindsTheCellOnAxesHoweverUneven) {
         }
         const tables::GridAxis axis(x);
         for (int i = 0; i < 400; ++i) {
-            const double at = i < 2 * static_cast<int>(x.size()) ? std::nextafter(x[i / 2], i % 2 == 0 ? x.front() : x.back()) : random.uniform(x.front(), x.back());
+            const double at = i < 2 * static_cast<int>(x.size())
+                                  ? std::nextafter(x[i / 2], i % 2 == 0 ? x.front() : x.back())
+                                  : random.uniform(x.front(), x.back());
             const std::size_t cell = axis.cell(at);
             ASSERT_LT(cell + 1, x.size());
             ASSERT_TRUE(at >= x[cell] && (at < x[cell + 1] || cell + 2 == x.size())) << at;
@@ -195,7 +202,8 @@ TEST(ForceTable, ConvergesWithTheFourthOrderOnSmoothMonotoneData) {
         for (int i = 0; i <= n; ++i) {
             x.push_back(0.5 + 2.0 * i / n);
         }
-        const ForceTable table = monotone(test::grid_table(x, x, [](double a, double b) { return std::exp(-a - 0.7 * b) + a + b; }));
+        const ForceTable table =
+            monotone(test::grid_table(x, x, [](double a, double b) { return std::exp(-a - 0.7 * b) + a + b; }));
         double worst = 0;
         for (int i = 0; i < 10000; ++i) {
             const double p[2] = {0.5 + 0.02 * (i % 100), 0.5 + 0.02 * (i / 100)};
@@ -213,7 +221,9 @@ TEST(ForceTable, GivesSlopesThatAreTheDerivativesOfItsValue) {
         FitOptions options;
         options.kind = kind;
         const ForceTable table = ForceTable::fit(
-            test::grid_table(x, y, [](double h, double p) { return 0.3 + 0.001 / h * std::cos(20 * p) + 5 * p + std::sin(80 * h); }), "lift_force", options);
+            test::grid_table(
+                x, y, [](double h, double p) { return 0.3 + 0.001 / h * std::cos(20 * p) + 5 * p + std::sin(80 * h); }),
+            "lift_force", options);
         core::Random random(3);
         for (int i = 0; i < 500; ++i) {
             double p[2] = {random.uniform(0.001, 0.05), random.uniform(-0.07, 0.07)};
@@ -310,7 +320,8 @@ TEST(ForceTable, RefusesOrExtrapolatesWhenToldTo) {
 }
 
 TEST(ForceTable, FollowsThePolicyOfEachAxis) {
-    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01}, {-0.07, -0.02, 0.03, 0.07}, [](double h, double p) { return 3e-3 / h + 5 * p * p + 0.01 * p / h; });
+    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01}, {-0.07, -0.02, 0.03, 0.07},
+                                       [](double h, double p) { return 3e-3 / h + 5 * p * p + 0.01 * p / h; });
     FitOptions options;
     options.kind = FitOptions::Kind::interpolation;
     options.range = tables::parse_range_policies("gap=refuse,pitch=clamp");
@@ -319,7 +330,8 @@ TEST(ForceTable, FollowsThePolicyOfEachAxis) {
     EXPECT_DOUBLE_EQ(mixed.at(beyond_pitch).value, mixed.at(at_its_end).value);
     EXPECT_EQ(mixed.at(beyond_pitch).slope[1], 0);
     EXPECT_TRUE(mixed.at(beyond_pitch).outside);
-    EXPECT_THAT(message_of([&] { (void)mixed.at(beyond_gap); }), HasSubstr("gap 0.02 m is outside the table, which covers 0.001 to 0.01 m"));
+    EXPECT_THAT(message_of([&] { (void)mixed.at(beyond_gap); }),
+                HasSubstr("gap 0.02 m is outside the table, which covers 0.001 to 0.01 m"));
     EXPECT_NO_THROW((void)mixed.value(beyond_gap)) << "the hot path holds the ends";
     options.range = tables::parse_range_policies("refuse,pitch=extrapolate");
     const auto other = ForceTable::fit(data, "lift_force", options);
@@ -328,7 +340,8 @@ TEST(ForceTable, FollowsThePolicyOfEachAxis) {
 }
 
 TEST(ForceTable, HasTheSlopesOfItsValueBeyondItsEndsToo) {
-    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01}, {-0.07, -0.02, 0.03, 0.07}, [](double h, double p) { return 3e-3 / h + 5 * p * p + 0.01 * p / h; });
+    const auto data = test::grid_table({0.001, 0.002, 0.005, 0.01}, {-0.07, -0.02, 0.03, 0.07},
+                                       [](double h, double p) { return 3e-3 / h + 5 * p * p + 0.01 * p / h; });
     core::Random random(4);
     for (const char* range : {"extrapolate", "gap=extrapolate,pitch=clamp", "clamp,pitch=extrapolate"}) {
         FitOptions options;
@@ -344,7 +357,8 @@ TEST(ForceTable, HasTheSlopesOfItsValueBeyondItsEndsToo) {
                 a[k] -= step;
                 b[k] += step;
                 const double difference = (table.at(b).value - table.at(a).value) / (2 * step);
-                EXPECT_NEAR(e.slope[k], difference, 1e-4 * (1 + std::abs(difference))) << range << " at " << p[0] << ", " << p[1];
+                EXPECT_NEAR(e.slope[k], difference, 1e-4 * (1 + std::abs(difference)))
+                    << range << " at " << p[0] << ", " << p[1];
             }
         }
     }
@@ -373,7 +387,8 @@ TEST(ForceTable, SaysWhatIsWrongWithRangePolicies) {
 }
 
 TEST(ForceTable, CarriesTheErrorsOfItsPoints) {
-    const ForceTable table = monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 3, 0.1\n2, 2, 0.2\n3, 1, 0.1\n4, 0, 0.1\n"));
+    const ForceTable table =
+        monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 3, 0.1\n2, 2, 0.2\n3, 1, 0.1\n4, 0, 0.1\n"));
     const double at = 0.002;
     EXPECT_NEAR(table.at({&at, 1}).sigma, 0.2, 1e-12);
     const auto drawn = table.drawn(5);
@@ -400,7 +415,8 @@ TEST(ForceTable, DrawsWhatItsInterpolationMayMissBetweenExactPoints) {
 }
 
 TEST(ForceTable, FindsItsAxesAndConditions) {
-    const auto data = csv("gap [mm], pitch [deg], speed [m/s], lift_force [N]\n1,0,0.5,1\n2,0,0.5,2\n2,1,0.5,4\n1,1,0.5,3\n");
+    const auto data =
+        csv("gap [mm], pitch [deg], speed [m/s], lift_force [N]\n1,0,0.5,1\n2,0,0.5,2\n2,1,0.5,4\n1,1,0.5,3\n");
     const ForceTable table = monotone(data);
     ASSERT_EQ(table.axes().size(), 2u);
     EXPECT_EQ(table.axes()[0].name, "gap");
@@ -419,15 +435,19 @@ TEST(ForceTable, SaysWhatIsWrongWithItsPoints) {
     EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n2, 3\n", "lift_forze"), HasSubstr("lift_force"));
     EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n2, 3\n1, 2.5\n"), HasSubstr("made.csv:4"));
     EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n2, 3\n1, 2.5\n"), HasSubstr("occurs twice"));
-    EXPECT_THAT(error_of("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n2, 3, 0\n"), HasSubstr("made.csv:3:3"));
-    EXPECT_THAT(error_of("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n2, 3, -1\n"), HasSubstr("positive"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n2, 3, 0\n"),
+                HasSubstr("made.csv:3:3"));
+    EXPECT_THAT(error_of("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n2, 3, -1\n"),
+                HasSubstr("positive"));
     EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n1, 2\n"), HasSubstr("no axis"));
     EXPECT_THAT(error_of("gap [mm], lift_force [N]\n1, 2\n , 3\n2, 1\n"), HasSubstr("made.csv:3:1"));
-    EXPECT_THAT(error_of("gap [mm], pitch [deg], lift_force [N]\n1, 0, 1\n1, 1, 2\n2, 0, 3\n"), HasSubstr("gap 2 mm, pitch 1 deg"));
+    EXPECT_THAT(error_of("gap [mm], pitch [deg], lift_force [N]\n1, 0, 1\n1, 1, 2\n2, 0, 3\n"),
+                HasSubstr("gap 2 mm, pitch 1 deg"));
 }
 
 TEST(ForceTable, MergesRepeatsThatAgree) {
-    const ForceTable table = monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n1, 2.1, 0.1\n2, 3, 0.1\n"));
+    const ForceTable table =
+        monotone(csv("gap [mm], lift_force [N], lift_force_sigma [N]\n1, 2, 0.1\n1, 2.1, 0.1\n2, 3, 0.1\n"));
     const double at = 0.001;
     EXPECT_NEAR(table.value(&at), 2.05, 1e-12);
     EXPECT_NEAR(table.at({&at, 1}).sigma, 0.1 / std::sqrt(2), 1e-12);

@@ -10,11 +10,11 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "surrogates/tables/figures.h"
-#include "surrogates/tables/force_table.h"
-#include "surrogates/tables/gaussian_process.h"
-#include "surrogates/tables/many_points.h"
-#include "surrogates/tables/select.h"
+#include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/gaussian_process.h"
+#include "surrogates/tables/fit/table_batch.h"
+#include "surrogates/tables/points/select.h"
 #include "tests/support/support.h"
 #include "tests/surrogates/tables/tables_support.h"
 
@@ -139,7 +139,8 @@ TEST(GaussianProcessTable, HasSlopesThatAreTheDerivativesOfItsValueAndFollowsThe
     EXPECT_THAT(table.remarks().back().message, HasSubstr("force over speed squared"));
     double worst = 0;
     for (int i = 0; i < 300; ++i) {
-        double x[3] = {1e-3 * std::pow(100.0, random.uniform(0.03, 0.97)), random.uniform(-0.045, 0.045), random.uniform(0.33, 0.97)};
+        double x[3] = {1e-3 * std::pow(100.0, random.uniform(0.03, 0.97)), random.uniform(-0.045, 0.045),
+                       random.uniform(0.33, 0.97)};
         double slope[3];
         const double v = table.value(x, slope);
         worst = std::max(worst, std::abs(v - x[2] * x[2] * (1.2 + 5e-4 / x[0] + 8 * x[1] / (1 + 30 * x[0]))));
@@ -162,8 +163,10 @@ struct Known {
     std::function<double(const double*)> f;
 };
 
-/// Share of the places between random points where the 95 % band holds the truth, over random splits of the functions in turn.
-double coverage(const std::vector<Known>& functions, const std::vector<std::pair<std::string, std::string>>& axes, int splits) {
+/// Share of the places between random points where the 95 % band holds the truth, over random splits of the functions
+/// in turn.
+double coverage(const std::vector<Known>& functions, const std::vector<std::pair<std::string, std::string>>& axes,
+                int splits) {
     int inside = 0, all = 0;
     for (int split = 0; split < splits; ++split) {
         core::Random random(1000, static_cast<std::uint64_t>(split));
@@ -201,12 +204,13 @@ double coverage(const std::vector<Known>& functions, const std::vector<std::pair
 int splits(int usual) { return std::getenv("UNDERBODY_LONG_RUN") != nullptr ? 200 : usual; }
 
 TEST(GaussianProcessTable, CoversTheTruthAsOftenAsItSaysOnOneAxis) {
-    const double share = coverage({{24, 0.03, [](const double* x) { return std::sin(6 * x[0]); }},
-                                   {24, 0.03, [](const double* x) { return std::exp(-3 * x[0]) + 0.3 * x[0]; }},
-                                   {24, 0.03, [](const double* x) { return 1 / (0.2 + x[0]) - 2 * std::exp(-20 * (x[0] - 0.5) * (x[0] - 0.5)); }},
-                                   {12, 0.03, [](const double* x) { return x[0] * x[0] * x[0] - x[0]; }},
-                                   {8, 0.05, [](const double* x) { return 2 * x[0]; }}},
-                                  {{"depth", "m"}}, 200);
+    const double share = coverage(
+        {{24, 0.03, [](const double* x) { return std::sin(6 * x[0]); }},
+         {24, 0.03, [](const double* x) { return std::exp(-3 * x[0]) + 0.3 * x[0]; }},
+         {24, 0.03, [](const double* x) { return 1 / (0.2 + x[0]) - 2 * std::exp(-20 * (x[0] - 0.5) * (x[0] - 0.5)); }},
+         {12, 0.03, [](const double* x) { return x[0] * x[0] * x[0] - x[0]; }},
+         {8, 0.05, [](const double* x) { return 2 * x[0]; }}},
+        {{"depth", "m"}}, 200);
     std::cout << "coverage of the 95 % band, one axis: " << share << "\n";
     EXPECT_GT(share, 0.90);
     EXPECT_LT(share, 0.99);
@@ -224,9 +228,13 @@ TEST(GaussianProcessTable, CoversTheTruthAsOftenAsItSaysOnTwoAxes) {
 }
 
 TEST(GaussianProcessTable, CoversTheTruthAsOftenAsItSaysOnThreeAxes) {
-    const double share = coverage({{60, 0.1, [](const double* x) { return std::sin(4 * x[0]) + 0.7 * std::pow(std::sin(3 * x[1]), 2) + 0.3 * x[2] * std::sin(4 * x[0]); }},
-                                   {40, 0.05, [](const double* x) { return std::sin(3 * x[0] * x[1]) + std::exp(-2 * x[2]); }}},
-                                  {{"temperature", "K"}, {"depth", "m"}, {"pitch_rate", "rad/s"}}, splits(10));
+    const double share = coverage(
+        {{60, 0.1,
+          [](const double* x) {
+              return std::sin(4 * x[0]) + 0.7 * std::pow(std::sin(3 * x[1]), 2) + 0.3 * x[2] * std::sin(4 * x[0]);
+          }},
+         {40, 0.05, [](const double* x) { return std::sin(3 * x[0] * x[1]) + std::exp(-2 * x[2]); }}},
+        {{"temperature", "K"}, {"depth", "m"}, {"pitch_rate", "rad/s"}}, splits(10));
     std::cout << "coverage of the 95 % band, three axes: " << share << "\n";
     EXPECT_GT(share, 0.90);
     EXPECT_LT(share, 0.99);
@@ -295,7 +303,8 @@ TEST(GaussianProcessTable, KnowsTheHullOfItsPoints) {
     EXPECT_NEAR(tables::beyond_points(table, corner), std::sqrt(0.5), 1e-9);
     EXPECT_FALSE(table.at(corner).outside) << "no axis is exceeded";
     const auto figure = tables::map_figure(table, "temperature", "depth");
-    const auto blank = std::count_if(figure.maps[0].values.begin(), figure.maps[0].values.end(), [](double v) { return std::isnan(v); });
+    const auto blank = std::count_if(figure.maps[0].values.begin(), figure.maps[0].values.end(),
+                                     [](double v) { return std::isnan(v); });
     EXPECT_NEAR(static_cast<double>(blank) / static_cast<double>(figure.maps[0].values.size()), 0.5, 0.05);
     EXPECT_THAT(figure.caption, HasSubstr("outside the points"));
 }
@@ -324,7 +333,8 @@ TEST(GaussianProcessTable, FindsTheFreeStreamValueThatTheForceDecaysTo) {
 }
 
 /// Each set point left out in turn: how often the rest predicts it within so many stated errors.
-double share_within(double sigmas, const core::Table& points, const std::string& quantity, const std::vector<std::string>& axes, FitOptions::Kind kind, bool say = false) {
+double share_within(double sigmas, const core::Table& points, const std::string& quantity,
+                    const std::vector<std::string>& axes, FitOptions::Kind kind, bool say = false) {
     int inside = 0, all = 0;
     FitOptions options;
     options.axes = axes;
@@ -348,7 +358,8 @@ double share_within(double sigmas, const core::Table& points, const std::string&
             ++all;
         }
         if (say) {
-            std::cout << quantity << " at " << at[0] << ": " << truth << " predicted " << e.value << " +- " << e.sigma << (e.outside ? " outside" : "") << "\n";
+            std::cout << quantity << " at " << at[0] << ": " << truth << " predicted " << e.value << " +- " << e.sigma
+                      << (e.outside ? " outside" : "") << "\n";
         }
     }
     return static_cast<double>(inside) / all;
@@ -361,7 +372,8 @@ TEST(GaussianProcessTable, PredictsHeldOutGapsOfTheSharedCfd) {
     const auto front = tables::selected_rows(all, "variant=ellipse_front, mesh=medium, pitch=0, speed=0.5");
     const auto pitched = tables::selected_rows(all, "variant=ellipse, mesh=medium, speed=0.5");
     const bool say = std::getenv("UNDERBODY_SAY") != nullptr;
-    const auto share = [&](double sigmas, const std::vector<core::Table>& sets, const std::vector<std::string>& axes, FitOptions::Kind kind) {
+    const auto share = [&](double sigmas, const std::vector<core::Table>& sets, const std::vector<std::string>& axes,
+                           FitOptions::Kind kind) {
         double sum = 0, count = 0;
         for (const auto& points : sets) {
             for (const char* quantity : {"lift_force", "drag_force", "pitch_moment"}) {
@@ -375,11 +387,11 @@ TEST(GaussianProcessTable, PredictsHeldOutGapsOfTheSharedCfd) {
     const double gaps = share(1, {level, front}, {"gap"}, FitOptions::Kind::automatic);
     const double gaps_by_process = share(1, {level, front}, {"gap"}, FitOptions::Kind::gaussian_process);
     const double gaps_within_two = share(2, {level, front}, {"gap"}, FitOptions::Kind::gaussian_process);
-    // Scattered gaps and pitches: what is left to miss is a cliff that one point alone shows (3 mm, 2 degrees nose down: 0.41 N where
-    // the rest says -0.2 N).
+    // Scattered gaps and pitches: what is left to miss is a cliff that one point alone shows (3 mm, 2 degrees nose
+    // down: 0.41 N where the rest says -0.2 N).
     const double pitches = share(1, {pitched}, {"gap", "pitch"}, FitOptions::Kind::automatic);
-    std::cout << "held-out gaps within the stated error: " << gaps << ", by Gaussian process " << gaps_by_process << " (within twice " << gaps_within_two << "), over gap and pitch "
-              << pitches << "\n";
+    std::cout << "held-out gaps within the stated error: " << gaps << ", by Gaussian process " << gaps_by_process
+              << " (within twice " << gaps_within_two << "), over gap and pitch " << pitches << "\n";
     EXPECT_GE(gaps, 0.58);
     EXPECT_LE(gaps, 0.78);
     EXPECT_GE(gaps_by_process, 0.60);
@@ -398,7 +410,8 @@ TEST(GaussianProcessTable, RefusesPointsThatCannotTellTheAxesApart) {
         }
         return std::string("no error");
     };
-    EXPECT_THAT(error("gap [mm], pitch [deg], lift_force [N]\n1,1,1\n2,2,2\n3,3,3\n4,4,2\n5,5,1\n"), HasSubstr("lie on a line"));
+    EXPECT_THAT(error("gap [mm], pitch [deg], lift_force [N]\n1,1,1\n2,2,2\n3,3,3\n4,4,2\n5,5,1\n"),
+                HasSubstr("lie on a line"));
     EXPECT_THAT(error("gap [mm], pitch [deg], lift_force [N]\n1,1,1\n2,2,2\n3,5,3\n"), HasSubstr("too few"));
 }
 
@@ -456,7 +469,8 @@ TEST(GaussianProcessTable, ThinsAMillionPointsAndSaysSo) {
     data.add_numbers("lift_force", "N", f);
     const auto begin = std::chrono::steady_clock::now();
     const ForceTable table = ForceTable::fit(data, "lift_force");
-    std::cout << "a million points: " << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() << " s\n";
+    std::cout << "a million points: " << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()
+              << " s\n";
     const double at[2] = {0.02, 0.01};
     EXPECT_NEAR(table.value(at), std::sin(2.0) + 0.03, 0.02);
 }

@@ -1,5 +1,6 @@
-// Points as people really have them: in clusters, dense along one line and sparse beside it, with errors over four decades, over four axes, with kinks,
-// steep films and two regimes. The truth must lie in the band about as often as the band says.
+// Points as people really have them: in clusters, dense along one line and sparse beside it, with errors over four
+// decades, over four axes, with kinks, steep films and two regimes. The truth must lie in the band about as often as
+// the band says.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,8 +9,8 @@
 #include <iostream>
 
 #include "core/random.h"
-#include "surrogates/tables/force_table.h"
-#include "surrogates/tables/many_points.h"
+#include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/table_batch.h"
 #include "tests/surrogates/tables/tables_support.h"
 
 namespace underbody {
@@ -43,7 +44,12 @@ struct Campaign {
             for (const auto& at : x) {
                 column.push_back(at[k]);
             }
-            data.add_numbers(names[k], names[k] == "gap" ? "m" : names[k] == "pitch" ? "rad" : names[k] == "speed" ? "m/s" : "V", column);
+            data.add_numbers(names[k],
+                             names[k] == "gap"     ? "m"
+                             : names[k] == "pitch" ? "rad"
+                             : names[k] == "speed" ? "m/s"
+                                                   : "V",
+                             column);
         }
         data.add_numbers("lift_force", "N", force);
         data.add_numbers("lift_force_sigma", "N", sigma);
@@ -64,7 +70,8 @@ void judge(const Campaign& campaign, Coverage& coverage) {
     for (int i = 0; i < 200; ++i) {
         std::vector<double> at;
         for (const auto& axis : table.axes()) {
-            at.push_back(axis.name == "gap" ? axis.lower * std::pow(axis.upper / axis.lower, random.uniform()) : random.uniform(axis.lower, axis.upper));
+            at.push_back(axis.name == "gap" ? axis.lower * std::pow(axis.upper / axis.lower, random.uniform())
+                                            : random.uniform(axis.lower, axis.upper));
         }
         if (beyond_points(table, at.data()) > 0) {
             continue;
@@ -87,7 +94,9 @@ Coverage over_seeds(int count, const std::function<Campaign(core::Random&)>& mak
 }
 
 /// Film repulsion, two regimes and a kink in pitch.
-double force_of(double h, double p) { return 2e-7 / (h * h) + 0.25 * std::tanh(std::log(h / 0.02) / 0.4) + 3 * std::abs(p - 0.01) / (1 + 40 * h); }
+double force_of(double h, double p) {
+    return 2e-7 / (h * h) + 0.25 * std::tanh(std::log(h / 0.02) / 0.4) + 3 * std::abs(p - 0.01) / (1 + 40 * h);
+}
 
 TEST(UnusualLayouts, PointsInClusters) {
     const auto coverage = over_seeds(8, [](core::Random& random) {
@@ -132,7 +141,8 @@ TEST(UnusualLayouts, ErrorsOverFourDecades) {
 
 TEST(UnusualLayouts, SteepFilmAtSmallGaps) {
     const auto coverage = over_seeds(30, [](core::Random& random) {
-        Campaign c{{"gap"}, [](const auto& x) { return 3e-9 / std::pow(x[0], 3) - 2e-6 / (x[0] * x[0]) + 0.1; }, random};
+        Campaign c{
+            {"gap"}, [](const auto& x) { return 3e-9 / std::pow(x[0], 3) - 2e-6 / (x[0] * x[0]) + 0.1; }, random};
         for (int i = 0; i < 14; ++i) {
             const double h = 0.0002 * std::pow(300.0, i / 13.0);
             c.measure({h}, 0.002 + 0.02 * std::abs(c.truth({h})));
@@ -146,9 +156,15 @@ TEST(UnusualLayouts, SteepFilmAtSmallGaps) {
 TEST(UnusualLayouts, FourAxesAtOnce) {
     const auto coverage = over_seeds(4, [](core::Random& random) {
         Campaign c{{"gap", "pitch", "speed", "jet_voltage"},
-                   [](const auto& x) { return x[2] * x[2] * (5e-4 / x[0] + 4 * x[1] / (1 + 30 * x[0]) + 0.3) + 2.5e-4 * x[3] * x[3] * std::exp(-x[0] / 0.01); }, random};
+                   [](const auto& x) {
+                       return x[2] * x[2] * (5e-4 / x[0] + 4 * x[1] / (1 + 30 * x[0]) + 0.3) +
+                              2.5e-4 * x[3] * x[3] * std::exp(-x[0] / 0.01);
+                   },
+                   random};
         for (int i = 0; i < 110; ++i) {
-            c.measure({0.002 * std::pow(20.0, random.uniform()), random.uniform(-0.05, 0.05), random.uniform(0.3, 0.9), random.uniform(4, 12)}, 0.01);
+            c.measure({0.002 * std::pow(20.0, random.uniform()), random.uniform(-0.05, 0.05), random.uniform(0.3, 0.9),
+                       random.uniform(4, 12)},
+                      0.01);
         }
         return c;
     });
@@ -181,7 +197,8 @@ TEST(UnusualLayouts, ManyNoisyPointsOfOneAxisAreSmoothedCleanOnesKept) {
 }
 
 TEST(UnusualLayouts, ManyNoisyPointsOfALongNarrowGridAreJudgedOnAllItsInnerLines) {
-    // 4000 gaps times 5 pitches, the pitch fastest: steps of one size through the list would meet the ends of the pitch alone.
+    // 4000 gaps times 5 pitches, the pitch fastest: steps of one size through the list would meet the ends of the pitch
+    // alone.
     const auto force = [](double h, double p) { return std::sin(8 * h) + 2 * p; };
     const auto noisy = [&](const std::vector<double>& pitch) {
         std::vector<double> gap;
@@ -189,7 +206,8 @@ TEST(UnusualLayouts, ManyNoisyPointsOfALongNarrowGridAreJudgedOnAllItsInnerLines
             gap.push_back(0.01 + i * 2.5e-4);
         }
         core::Random random(99);
-        core::Table data = test::grid_table(gap, pitch, [&](double h, double p) { return force(h, p) + 0.05 * random.normal(); });
+        core::Table data =
+            test::grid_table(gap, pitch, [&](double h, double p) { return force(h, p) + 0.05 * random.normal(); });
         data.add_numbers("lift_force_sigma", "N", std::vector<double>(data.rows(), 0.02));
         return ForceTable::fit(data, "lift_force");
     };

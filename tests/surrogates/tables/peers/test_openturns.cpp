@@ -9,7 +9,7 @@
 #include <openturns/SquaredExponential.hxx>
 
 #include "core/random.h"
-#include "surrogates/tables/gaussian_process.h"
+#include "surrogates/tables/fit/gaussian_process.h"
 
 namespace underbody {
 namespace {
@@ -84,7 +84,8 @@ TEST(OpenTurns, HasTheSameMeanAndVarianceBySquaredExponentialOnThreeAxes) {
     lengths[1] = 0.9;
     lengths[2] = 1.4;
     const OT::SquaredExponential kernel(lengths, OT::Point(1, 1.1));
-    expect_the_same(both, kernel, GaussianProcess(both.data, Kernel::squared_exponential, GpParameters{{0.5, 0.9, 1.4}, 1.1, 1e-9}));
+    expect_the_same(both, kernel,
+                    GaussianProcess(both.data, Kernel::squared_exponential, GpParameters{{0.5, 0.9, 1.4}, 1.1, 1e-9}));
 }
 
 TEST(OpenTurns, HasTheSameRatiosOfLikelihood) {
@@ -116,7 +117,8 @@ TEST(OpenTurns, HasTheSameRatiosOfLikelihood) {
     };
     for (const double length : {0.2, 0.6, 1.5}) {
         for (const double scale : {0.7, 2.0}) {
-            EXPECT_NEAR(ours(length, scale) - ours(0.4, 1.3), at(length, scale) - at(0.4, 1.3), 1e-4) << length << " " << scale;
+            EXPECT_NEAR(ours(length, scale) - ours(0.4, 1.3), at(length, scale) - at(0.4, 1.3), 1e-4)
+                << length << " " << scale;
         }
     }
 }

@@ -1,0 +1,237 @@
+#include "geometry/body/variants.h"
+
+#include <cmath>
+#include <map>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "geometry/body/body_surface.h"
+#include "geometry/body/exact_body.h"
+#include "geometry/body/shape_format.h"
+#include "geometry/water/loading.h"
+
+namespace underbody::geometry {
+
+namespace {
+
+struct Vary {
+    std::string key;
+    std::vector<std::string> values;
+};
+
+struct Tie {
+    std::string key, of;
+    double factor = 1, offset = 0;
+};
+
+std::string unit_of(const std::string& key, const core::Place& place) {
+    std::vector<std::string> known;
+    for (const ParameterName& p : parameter_names()) {
+        if (p.name == key) {
+            return p.unit;
+        }
+        known.push_back(p.name);
+    }
+    throw core::InputError("name", "a shape has no parameter '" + key + "'", place, core::did_you_mean(key, known));
+}
+
+// Units that designers read: mm and degrees.
+std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
+
+std::string written(double value, const std::string& unit) {
+    const std::string shown = shown_unit(unit);
+    return core::format_number(core::convert(value, unit, shown), 12) + (shown == "1" ? "" : " " + shown);
+}
+
+Vary vary_from(const core::TomlTable& table) {
+    Vary vary;
+    vary.key = table.string("key");
+    const std::string unit = unit_of(vary.key, table.place("key"));
+    if (unit.empty()) {
+        vary.values = table.strings("values");
+    } else if (table.has("values") || !table.has("from")) {  // without both the values are what is missing
+        for (const double v : table.quantities("values", unit)) {
+            vary.values.push_back(written(v, unit));
+        }
+    } else {
+        const double from = table.quantity("from", unit), to = table.quantity("to", unit);
+        const std::int64_t count = table.integer_or("count", 2);
+        if (count < 2 || count > 100000) {
+            throw core::InputError("range", table.path_of("count") + " is " + std::to_string(count),
+                                   table.place("count"), "the nearest allowed value: 2");
+        }
+        for (std::int64_t i = 0; i < count; ++i) {
+            vary.values.push_back(
+                written(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1), unit));
+        }
+    }
+    if (vary.values.empty()) {
+        throw core::InputError("empty", table.path_of("values") + " is empty", table.place("values"));
+    }
+    return vary;
+}
+
+Tie tie_from(const core::TomlTable& table) {
+    Tie tie;
+    tie.key = table.string("key");
+    tie.of = table.string("of");
+    const std::string unit = unit_of(tie.key, table.place("key")), of_unit = unit_of(tie.of, table.place("of"));
+    if (unit.empty() || of_unit != unit) {
+        throw core::InputError("unit", tie.key + " cannot be tied to " + tie.of + ": they are not of one kind",
+                               table.place("of"));
+    }
+    tie.factor = table.quantity_or("factor", "1", 1);
+    tie.offset = table.quantity_or("offset", unit, 0);
+    return tie;
+}
+
+std::string numbered(const std::string& name, std::size_t index, std::size_t count) {
+    const std::string digits = std::to_string(index + 1);
+    const std::size_t width = std::max<std::size_t>(3, std::to_string(count).size());
+    return name + "-" + std::string(width - digits.size(), '0') + digits;
+}
+
+double base_area(const SurfaceMesh& mesh) {
+    for (const PatchSummary& patch : patches(mesh)) {
+        if (patch.name == "base") {
+            return patch.area;
+        }
+    }
+    return 0;
+}
+
+}  // namespace
+
+VariantSet read_variants(const std::filesystem::path& path) {
+    const core::TomlTable root = core::read_toml(path, shape_format());
+    VariantSet set;
+    set.name = path.stem().string();
+    std::vector<Vary> varies;
+    std::vector<Tie> ties;
+    std::size_t count = 1;
+    for (const core::TomlTable& table : root.tables("vary")) {
+        varies.push_back(vary_from(table));
+        set.keys.push_back(varies.back().key);
+        count *= varies.back().values.size();
+        if (count > 100000) {
+            throw core::InputError("size", "more than 100000 variants", table.place("key"), "vary less, or in steps");
+        }
+    }
+    if (varies.empty()) {
+        throw core::InputError("missing", "there is no [[vary]] in it", root.place(),
+                               "add: [[vary]] key = \"protrusion.height\" values = [\"1 mm\", \"2 mm\"]");
+    }
+    for (const core::TomlTable& table : root.tables("tie")) {
+        ties.push_back(tie_from(table));
+    }
+    const BodyShape common = shape_from(root, set.name);
+    static_cast<void>(loading_from(root));  // a typo in [mass] is an error here too
+    root.finish();
+    std::map<std::string, std::string> seen;
+    for (std::size_t i = 0; i < count; ++i) {
+        Variant variant;
+        variant.name = numbered(set.name, i, count);
+        variant.shape = common;
+        variant.shape.name = variant.name;
+        variant.values.resize(varies.size());
+        std::size_t rest = i;
+        for (std::size_t k = varies.size(); k-- > 0;) {
+            variant.values[k] = varies[k].values[rest % varies[k].values.size()];
+            rest /= varies[k].values.size();
+        }
+        try {
+            for (std::size_t k = 0; k < varies.size(); ++k) {
+                set_parameter(variant.shape, varies[k].key, variant.values[k]);
+            }
+            for (const Tie& tie : ties) {
+                const double value = tie.factor * parameter(variant.shape, tie.of) + tie.offset;
+                set_parameter(variant.shape, tie.key, core::format_number(value));
+            }
+            check(variant.shape);
+            const auto [found, fresh] = seen.emplace(shape_hash(variant.shape), variant.name);
+            variant.same_as = fresh ? "" : found->second;
+        } catch (const core::InputError& error) {
+            variant.refused = error.message() + (error.hint().empty() ? "" : "; " + error.hint());
+        }
+        set.variants.push_back(std::move(variant));
+    }
+    return set;
+}
+
+std::vector<MadeVariant> make_variants(VariantSet& set, std::size_t triangles, core::Progress& progress) {
+    std::vector<MadeVariant> made(set.variants.size());
+    core::parallel_for(
+        set.variants.size(),
+        [&](std::size_t i) {
+            Variant& variant = set.variants[i];
+            made[i].variant = &variant;
+            if (!variant.refused.empty() || !variant.same_as.empty()) {
+                return;
+            }
+            SurfaceOptions options;
+            options.triangles = triangles;
+            try {
+                made[i].mesh = make_surface(variant.shape, options, progress);
+                made[i].certificate = certify(made[i].mesh, variant.shape, progress);
+                require(made[i].certificate, variant.name);
+                made[i].mass = mass_properties(ExactBody(variant.shape), made[i].mesh);
+            } catch (const core::InputError& error) {
+                variant.refused = error.message();
+                made[i].mesh = {};
+            }
+        },
+        progress);
+    return made;
+}
+
+core::Table table(const VariantSet& set, const std::vector<MadeVariant>& made) {
+    core::Table result;
+    std::vector<std::string> names, same, refused;
+    for (const Variant& v : set.variants) {
+        names.push_back(v.name);
+        same.push_back(v.same_as.empty() ? "-" : v.same_as);
+        std::string reason = v.refused.empty() ? "-" : v.refused;
+        for (char& c : reason) {
+            c = c == ',' || c == '\n' ? ';' : c;  // one field of a CSV line
+        }
+        refused.push_back(reason);
+    }
+    result.add_text("name", names);
+    for (std::size_t k = 0; k < set.keys.size(); ++k) {
+        const std::string unit = unit_of(set.keys[k], {});
+        std::vector<std::string> words;
+        std::vector<double> numbers;
+        for (const Variant& v : set.variants) {
+            words.push_back(v.values[k]);
+            numbers.push_back(unit.empty() ? 0 : core::parse_in(v.values[k], unit));
+        }
+        if (unit.empty()) {
+            result.add_text(set.keys[k], words);
+        } else {
+            result.add_numbers(set.keys[k], unit, numbers, shown_unit(unit));
+        }
+    }
+    const auto column = [&](const char* name, const char* unit, const char* written, auto value) {
+        std::vector<double> numbers;
+        for (const MadeVariant& m : made) {
+            numbers.push_back(m.mesh.triangles.empty() ? std::nan("") : value(m));
+        }
+        result.add_numbers(name, unit, numbers, written);
+    };
+    column("volume", "m^3", "cm^3", [](const MadeVariant& m) { return m.mass.volume; });
+    column("area", "m^2", "cm^2", [](const MadeVariant& m) { return m.mass.area; });
+    column("base_area", "m^2", "cm^2", [](const MadeVariant& m) { return base_area(m.mesh); });
+    column("buoyancy", "N", "N", [](const MadeVariant& m) { return m.mass.buoyancy(); });
+    column("centroid_x", "m", "mm", [](const MadeVariant& m) { return m.mass.centroid.x; });
+    column("centroid_z", "m", "mm", [](const MadeVariant& m) { return m.mass.centroid.z; });
+    column("smallest_angle", "rad", "deg", [](const MadeVariant& m) { return m.certificate.smallest_angle; });
+    column("distance_largest", "m", "mm", [](const MadeVariant& m) { return m.certificate.exact->distance_largest; });
+    column("volume_error", "1", "1", [](const MadeVariant& m) { return m.certificate.exact->volume_error; });
+    result.add_text("same_as", same);
+    result.add_text("refused", refused);
+    return result;
+}
+
+}  // namespace underbody::geometry

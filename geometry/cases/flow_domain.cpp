@@ -1,0 +1,90 @@
+#include "geometry/cases/flow_domain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "geometry/cases/case_files.h"
+
+namespace underbody::geometry {
+
+namespace {
+
+void positive(const char* name, double value) {
+    if (!(value > 0) || !std::isfinite(value)) {
+        throw core::InputError("range",
+                               std::string(name) + " is " + core::format_number(value, 6) + ": it must be positive", {},
+                               "the nearest allowed value: above 0");
+    }
+}
+
+}  // namespace
+
+FlowDomain flow_domain(const SurfaceMesh& body, const FlowOptions& o) {
+    for (const auto& [name, value] : {std::pair{"speed", o.speed},
+                                      {"density", o.density},
+                                      {"kinematic_viscosity", o.kinematic_viscosity},
+                                      {"turbulence_intensity", o.turbulence_intensity},
+                                      {"viscosity_ratio", o.viscosity_ratio},
+                                      {"upstream", o.upstream},
+                                      {"downstream", o.downstream},
+                                      {"side", o.side},
+                                      {"above", o.above},
+                                      {"cell", o.cell}}) {
+        positive(name, value);
+    }
+    if (o.cell > 0.5) {
+        throw core::InputError(
+            "range", "a background cell of " + core::format_number(o.cell, 4) + " body lengths cannot find the body",
+            {}, "the nearest allowed value: 0.5");
+    }
+    if (o.half) {
+        if (o.placement.roll != 0) {
+            throw core::InputError("symmetry", "a rolled body has no plane of symmetry", {},
+                                   "make a whole model, or take roll = 0");
+        }
+        port_half(body);  // throws when triangles cross the plane
+    }
+    FlowDomain domain;
+    domain.clearance = clearance(body, o.placement);
+    if (domain.clearance.smallest <= 0) {
+        throw core::InputError("contact",
+                               "the body's " + domain.clearance.patch + " is " +
+                                   core::format_number(-1000 * domain.clearance.smallest, 4) +
+                                   " mm below the ground at this gap and pitch",
+                               {},
+                               "the nearest allowed gap: above " +
+                                   core::format_number(1000 * (o.placement.gap - domain.clearance.smallest), 6) +
+                                   " mm");
+    }
+    const Box at = bounding_box(placed(body, o.placement));
+    const Box made = bounding_box(body);
+    const double length = made.upper.x - made.lower.x, cell = o.cell * length;
+    const auto cells = [cell](double distance) { return cell * std::ceil(distance / cell); };
+    domain.box.lower = {-cells(o.downstream * length - at.lower.x), o.half ? 0.0 : -cells(o.side * length - at.lower.y),
+                        0};
+    domain.box.upper = {cells(o.upstream * length + at.upper.x), cells(o.side * length + at.upper.y),
+                        cells(o.above * length + at.upper.z)};
+    domain.boundaries = {"inlet", "outlet", "ground", "top", "side", o.half ? "symmetry" : "side_starboard"};
+    for (const PatchSummary& patch : patches(body)) {
+        domain.walls.push_back(patch.name);
+    }
+    domain.gap_level =
+        std::clamp(static_cast<int>(std::ceil(std::log2(4 * cell / domain.clearance.smallest))), o.surface_level, 6);
+    domain.cells_in_gap = domain.clearance.smallest / (cell / std::pow(2, domain.gap_level));
+    return domain;
+}
+
+void require_empty_folder(const std::filesystem::path& folder) {
+    if (std::filesystem::exists(folder) &&
+        (!std::filesystem::is_directory(folder) || !std::filesystem::is_empty(folder))) {
+        throw core::InputError("exists", "'" + folder.string() + "' is not an empty folder",
+                               {folder.string(), {}, {}, {}},
+                               "name a new folder: a case is never written over another");
+    }
+}
+
+std::string digits(double value) { return core::format_number(value, 12); }
+
+}  // namespace underbody::geometry

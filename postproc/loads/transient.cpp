@@ -1,0 +1,195 @@
+#include "postproc/loads/transient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/text.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+std::optional<double> time_of(const LoadsCase& one) {
+    const auto named =
+        std::find_if(one.numbers.begin(), one.numbers.end(), [](const auto& entry) { return entry.first == "time"; });
+    return one.loads.time               ? one.loads.time
+           : named != one.numbers.end() ? std::optional<double>(named->second)
+                                        : std::nullopt;
+}
+
+/// What tells runs apart: all conditions but the time.
+std::string run_of(const LoadsCase& one) {
+    std::vector<std::string> parts;
+    for (const auto& [name, value] : one.numbers) {
+        if (name != "time") {
+            parts.push_back(name + "=" + core::format_number(value, 9));
+        }
+    }
+    for (const auto& [name, value] : one.texts) {
+        parts.push_back(name + "=" + value);
+    }
+    std::sort(parts.begin(), parts.end());
+    std::string text;
+    for (const auto& part : parts) {
+        text += part + "\n";
+    }
+    return text;
+}
+
+using Run = std::vector<const LoadsCase*>;
+
+void mean_vector(Vector& target, const Run& run, const auto& member) {
+    target = {};
+    for (const LoadsCase* one : run) {
+        const Vector& value = member(one->loads);
+        for (std::size_t k = 0; k < 3; ++k) {
+            target[k] += value[k] / static_cast<double>(run.size());
+        }
+    }
+}
+
+void mean_wrench(Wrench& target, const Run& run, const auto& member) {
+    mean_vector(target.force, run, [&](const LoadsResult& loads) -> const Vector& { return member(loads).force; });
+    mean_vector(target.moment, run, [&](const LoadsResult& loads) -> const Vector& { return member(loads).moment; });
+}
+
+void mean_named(NamedLoads& target, const Run& run, NamedLoads LoadsResult::*which) {
+    for (double NamedLoads::*load : {&NamedLoads::lift_force, &NamedLoads::drag_force, &NamedLoads::side_force,
+                                     &NamedLoads::pitch_moment, &NamedLoads::roll_moment, &NamedLoads::yaw_moment}) {
+        double sum = 0;
+        for (const LoadsCase* one : run) {
+            sum += (one->loads.*which).*load;
+        }
+        target.*load = sum / static_cast<double>(run.size());
+    }
+}
+
+/// Throws core::InputError where times are missing or come twice; warns of unequal steps.
+void check_times(Run& run, core::Problems& notes) {
+    for (const LoadsCase* one : run) {
+        if (!time_of(*one)) {
+            throw core::InputError("missing",
+                                   "the time of this file is not known, so that it has no place among the others",
+                                   {one->file, {}, {}, {}}, "let the name of the file carry it: 'run-{time:s}.csv'");
+        }
+    }
+    std::stable_sort(run.begin(), run.end(),
+                     [](const LoadsCase* a, const LoadsCase* b) { return *time_of(*a) < *time_of(*b); });
+    double shortest = HUGE_VAL;
+    double longest = 0;
+    for (std::size_t i = 1; i < run.size(); ++i) {
+        const double step = *time_of(*run[i]) - *time_of(*run[i - 1]);
+        if (!(step > 0)) {
+            throw core::InputError("duplicate",
+                                   "'" + run[i - 1]->file + "' and '" + run[i]->file + "' are of one time, " +
+                                       core::format_number(*time_of(*run[i])),
+                                   {run[i]->file, {}, {}, {}}, "conditions have to tell runs apart");
+        }
+        shortest = std::min(shortest, step);
+        longest = std::max(longest, step);
+    }
+    if (longest > 1.5 * shortest) {
+        notes.push_back({core::Problem::Severity::warning,
+                         "the times are " + core::format_number(shortest, 3) + " to " +
+                             core::format_number(longest, 3) +
+                             " apart: each counts alike in the mean, and the correlation is taken by number",
+                         {run.front()->file, {}, {}, {}}});
+    }
+}
+
+LoadsCase mean_of(Run run, core::Problems& notes) {
+    check_times(run, notes);
+    LoadsCase result = *run.back();
+    mean_named(result.loads.named, run, &LoadsResult::named);
+    mean_named(result.loads.named_pressure, run, &LoadsResult::named_pressure);
+    mean_named(result.loads.named_viscous, run, &LoadsResult::named_viscous);
+    mean_wrench(result.loads.total, run, [](const LoadsResult& loads) -> const Wrench& { return loads.total; });
+    mean_wrench(result.loads.pressure, run, [](const LoadsResult& loads) -> const Wrench& { return loads.pressure; });
+    mean_wrench(result.loads.viscous, run, [](const LoadsResult& loads) -> const Wrench& { return loads.viscous; });
+    if (result.loads.coefficients) {
+        for (double LoadsCoefficients::*which :
+             {&LoadsCoefficients::lift, &LoadsCoefficients::drag, &LoadsCoefficients::pitch_moment}) {
+            double sum = 0;
+            for (const LoadsCase* one : run) {
+                sum += one->loads.coefficients ? (*one->loads.coefficients).*which : std::nan("");
+            }
+            (*result.loads.coefficients).*which = sum / static_cast<double>(run.size());
+        }
+    }
+    result.loads.zones.clear();  // of one instant
+    result.loads.stations.clear();
+    result.loads.centre_of_pressure.reset();
+    result.loads.time.reset();
+    result.comparisons.clear();
+    result.scatters.clear();
+    result.sigmas.clear();
+    result.settled = {};
+    result.settled.transient = true;
+    const double force =
+        std::hypot(result.loads.named.lift_force, result.loads.named.drag_force, result.loads.named.side_force);
+    double correlation = 1;
+    std::string drift;
+    for (const auto& column : table_row(result.loads)) {
+        if (column.unit != "N" && column.unit != "N m") {
+            continue;
+        }
+        std::vector<double> values;
+        for (const LoadsCase* one : run) {
+            const auto row = table_row(one->loads);
+            values.push_back(std::find_if(row.begin(), row.end(), [&](const LoadsColumn& c) {
+                                 return c.name == column.name;
+                             })->value);
+        }
+        const MeanInTime mean = mean_in_time(values);
+        correlation = column.name == "lift_force" ? mean.correlation_time : correlation;
+        if (mean.error > 0) {
+            result.sigmas.emplace_back(column.name, mean.error);
+        }
+        if (values.size() >= shortest_history) {
+            const IterationScatter scatter = iteration_scatter(values);
+            const double scale = force * (column.unit == "N m" ? result.loads.length : 1);
+            const std::string fault = fault_of(scatter, scale, true);
+            drift += fault.empty() ? "" : (drift.empty() ? "" : "; ") + column.name + " " + fault;
+            result.settled.loads.push_back({column.name, result.file, scatter, mean.error});
+        }
+    }
+    const std::string over = "mean over " + std::to_string(run.size()) + " times, " +
+                             core::format_number(static_cast<double>(run.size()) / correlation, 3) +
+                             " of them independent";
+    result.settled.verdict = run.size() < shortest_history ? SettledVerdict::unknown
+                             : drift.empty()               ? SettledVerdict::settled
+                                                           : SettledVerdict::not_settled;
+    result.settled.why = over + (run.size() < shortest_history ? ": too few to see a drift"
+                                 : drift.empty()               ? ", no drift"
+                                                               : ": " + drift);
+    std::erase_if(result.numbers, [](const auto& entry) { return entry.first == "time"; });
+    for (const auto& [name, value] : {std::pair{"samples", static_cast<double>(run.size())},
+                                      {"first_time", *time_of(*run.front())},
+                                      {"last_time", *time_of(*run.back())},
+                                      {"correlation_time", correlation}}) {
+        result.numbers.emplace_back(name, value);
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<LoadsCase> means_in_time(const std::vector<LoadsCase>& cases, core::Problems& notes) {
+    std::map<std::string, std::size_t> places;
+    std::vector<Run> runs;
+    for (const auto& one : cases) {
+        const auto [place, fresh] = places.emplace(run_of(one), runs.size());
+        if (fresh) {
+            runs.emplace_back();
+        }
+        runs[place->second].push_back(&one);
+    }
+    std::vector<LoadsCase> result;
+    for (auto& run : runs) {
+        result.push_back(run.size() > 1 ? mean_of(run, notes) : *run.front());
+    }
+    return result;
+}
+
+}  // namespace underbody::postproc

@@ -1,0 +1,378 @@
+// Closing the loop with heave runs: the declared model inside the experiment.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "core/text.h"
+#include "surrogates/discovery/heave/heave_loop.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+/// Set on the bench of tests/bench/discovery; see its README for the data sets.
+Calibration heave_calibration() {
+    Calibration c;
+    c.gate = 0.002;
+    c.form_share = 0.01;
+    c.unknown_share = 0.3;
+    c.unknown_p = 1e-4;
+    c.pair_share = 0.1;
+    c.pair_gain = 40;
+    c.origin = "tests/bench/discovery, heave runs";
+    return c;
+}
+
+}  // namespace
+
+HeaveLoop::HeaveLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+                     core::Progress& progress)
+    : model_(model),
+      data_(data),
+      options_(options),
+      progress_(progress),
+      calibration_(heave_calibration()),
+      records_(prepare_heave_records(model, data)),
+      records_read_(model.records) {}
+
+Discovery HeaveLoop::run() {
+    split();
+    experiment_.emplace(model_, records_, train_, data_.declared_noise("gap"), data_.declared_noise("heave_velocity"));
+    progress_.report(0.02, "noise");
+    fit_null();
+    progress_.report(0.08, "fitting the effects of the catalogue");
+    fit_singles();
+    try_hold();
+    colour_noise();
+    progress_.report(0.5, "testing what is left");
+    open_gate();
+    if (gate_ < calibration_.gate) {
+        check_input();
+        smooth_corrections();
+        progress_.report(0.65, "pairs of effects");
+        fit_pairs();
+    }
+    decide();
+    progress_.report(0.8, "clean twins");
+    run_placebo();
+    progress_.report(0.85, "error on held-out runs");
+    measure_error();
+    describe();
+    return std::move(result_);
+}
+
+void HeaveLoop::split() {
+    const std::filesystem::path beside = data_.folder / "held-out";
+    const bool named = std::any_of(data_.runs.begin(), data_.runs.end(),
+                                   [](const auto& run) { return run.use == dynamics::RunUse::test; });
+    const std::size_t count = records_.records.size();
+    if (named) {
+        for (std::size_t i = 0; i < count; ++i) {
+            (data_.runs[records_.records[i].run].use == dynamics::RunUse::test ? test_ : train_).push_back(i);
+        }
+        result_.held_out = "runs that dataset.toml marks for the test";
+    } else if (std::filesystem::exists(beside / "dataset.toml")) {
+        const dynamics::Measurements other = dynamics::read_measurements(beside);
+        if (other.kind == dynamics::MeasurementKind::time_series) {
+            test_records_ = prepare_heave_records(model_, other);
+            train_.resize(count);
+            std::iota(train_.begin(), train_.end(), std::size_t{0});
+            test_.resize(test_records_->records.size());
+            std::iota(test_.begin(), test_.end(), std::size_t{0});
+            result_.held_out =
+                "the runs in the folder held-out beside the data (another excitation or controller), which nothing was "
+                "fitted to";
+        }
+    }
+    if (train_.empty()) {
+        const std::size_t held = count >= 3 ? std::max<std::size_t>(1, count / 4) : 0;
+        std::vector<bool> out(count, false);
+        core::Random random(options_.seed);
+        for (std::size_t left = held; left > 0;) {
+            const std::size_t i = random.below(count);
+            left -= out[i] ? 0 : 1;
+            out[i] = true;
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            (out[i] ? test_ : train_).push_back(i);
+        }
+        result_.held_out = std::to_string(held) + " of " + std::to_string(count) +
+                           " runs, drawn before anything was fitted (same controller)";
+        if (held == 0) {
+            test_ = train_;
+            result_.held_out =
+                "the same runs that were fitted: there are too few to hold any out, so the error after is too good";
+            result_.problems.push_back({core::Problem::Severity::warning,
+                                        "with " + std::to_string(count) +
+                                            " run(s) nothing can be held out: the error is that of the fit, and what "
+                                            "runs have in common cannot be told from chance",
+                                        core::Place{data_.folder.string(), {}, {}, {}}});
+        }
+    }
+}
+
+void HeaveLoop::fit_null() {
+    HeaveNoise noise = experiment_->noise();
+    experiment_->fit_process({}, noise);
+    experiment_->fit_noise({}, noise);
+    set_null(noise);
+}
+
+void HeaveLoop::set_null(HeaveNoise noise) {
+    experiment_->fit_process({}, noise);
+    null_noise_ = noise;
+    null_by_record_.clear();
+    null_cost_ = experiment_->evaluate({}, nullptr, null_noise_, null_innovations_, &null_by_record_);
+}
+
+HeaveExperiment::Result HeaveLoop::fitted(const Hypothesis& hypothesis, const HeaveNoise& begin) const {
+    HeaveExperiment::Result result = experiment_->fit(hypothesis, begin);
+    result.fitted.explained = null_cost_ - result.fitted.cost;
+    const FitParameter& chief = hypothesis.parameters.front();
+    if (result.fitted.fit.parameters.front() >= chief.upper - 1e-9 * std::abs(chief.upper)) {
+        result.fitted.hypothesis.prior *=
+            1e-4;  // driven against the bound of what physics allows: it stands in for something else
+    }
+    result.fitted.explained_by_group = null_by_record_;
+    for (std::size_t r = 0; r < null_by_record_.size(); ++r) {
+        result.fitted.explained_by_group[r] -= result.fitted.cost_of_group[r];
+    }
+    return result;
+}
+
+void HeaveLoop::list_candidates() {
+    std::vector<dynamics::Channel> varying;
+    const dynamics::Conditions& first = records_.records.front().plant->held();
+    for (std::size_t c = 0; c < dynamics::channel_count; ++c) {
+        const auto channel = static_cast<dynamics::Channel>(c);
+        if (std::any_of(records_.records.begin(), records_.records.end(), [&](const HeaveRecord& record) {
+                return std::abs(record.plant->held().get(channel, 0) - first.get(channel, 0)) >
+                       1e-3 * std::abs(first.get(channel, 0));
+            })) {
+            varying.push_back(channel);
+        }
+    }
+    candidates_ = heave_hypotheses(model_, varying);
+    if (!records_.input_recorded) {
+        // a motion without input that is seen later is a motion without input: only a velocity beside the gap could
+        // tell
+        std::erase_if(candidates_, [&](const Hypothesis& h) {
+            return h.names.front().rfind("input_", 0) == 0 || h.names.front() == "actuator_lag" ||
+                   (h.names.front() == "gap_sensor_delay" && !records_.velocity_measured);
+        });
+    }
+    keep_shapes_inside();
+    for (Hypothesis& candidate : candidates_) {
+        if (candidate.names.front() == "periodic_disturbance") {
+            candidate.starts = experiment_->periodic_starts({}, null_noise_, 3);
+            std::erase_if(candidate.starts,
+                          [&](const std::vector<double>& start) { return start[1] < candidate.parameters[1].lower; });
+        }
+    }
+    std::erase_if(candidates_,
+                  [](const Hypothesis& h) { return h.names.front() == "periodic_disturbance" && h.starts.empty(); });
+    keep_only(candidates_, options_.candidates);
+}
+
+/// A wave of which no run shows a few cycles, or an inertia that grows only far below every gap that was visited, is
+/// none that these runs can show: it would pass for any slow change.
+void HeaveLoop::keep_shapes_inside() {
+    double lowest = 1e300;
+    for (const std::size_t r : train_) {
+        for (const double gap : records_.records[r].gap) {
+            lowest = std::isfinite(gap) ? std::min(lowest, gap) : lowest;
+        }
+    }
+    const double slowest = 2 * experiment_->lowest_frequency();  // four cycles of the longest run
+    std::erase_if(candidates_, [&](Hypothesis& candidate) {
+        for (FitParameter& parameter : candidate.parameters) {
+            if (candidate.names.front() == "periodic_disturbance" && parameter.name == "frequency") {
+                parameter.lower = std::max(parameter.lower, slowest);
+                parameter.start = std::max(parameter.start, slowest);
+            } else if (candidate.names.front() == "gap_dependent_added_mass" && parameter.name == "length") {
+                parameter.lower = std::max(parameter.lower, 0.1 * lowest);
+                parameter.start = std::max(parameter.start, parameter.lower);
+            }
+            if (parameter.lower >= parameter.upper) {
+                return true;
+            }
+        }
+        return false;
+    });
+}
+
+void HeaveLoop::fit_singles() {
+    if (candidates_.empty()) {
+        list_candidates();
+    }
+    fitted_.assign(candidates_.size(), {});
+    noises_.assign(candidates_.size(), {});
+    core::parallel_for(
+        candidates_.size(),
+        [&](std::size_t i) {
+            HeaveExperiment::Result result = fitted(candidates_[i], null_noise_);
+            fitted_[i] = std::move(result.fitted);
+            noises_[i] = result.noise;
+        },
+        progress_);
+    singles_ = fitted_.size();
+    best_single_ = best_hypothesis(fitted_, 1);
+}
+
+/// Is the recorded input held from sample to sample, or linear between? Half a sample of delay hangs on it.
+void HeaveLoop::try_hold() {
+    if (!records_.input_recorded) {
+        return;
+    }
+    const FittedHypothesis& best = fitted_[best_single_];
+    std::vector<double> innovations;
+    experiment_->set_hold(false);
+    const double linear =
+        experiment_->evaluate(best.hypothesis.with(best.fit.parameters), nullptr, noises_[best_single_], innovations);
+    // the noise of the held null model may hold what the hold itself does wrong
+    const double null_linear = std::min(experiment_->evaluate({}, nullptr, null_noise_, innovations),
+                                        experiment_->evaluate({}, nullptr, noises_[best_single_], innovations));
+    // What half a sample of delay does to a controlled body looks like damping: where a linear input leaves nothing to
+    // that name, there is no effect.
+    const bool explains_without_effect = null_cost_ - null_linear > 10 && null_linear < best.cost;
+    if (explains_without_effect || (best.cost - linear > 10 && null_cost_ - null_linear > -10)) {
+        null_by_record_.clear();
+        fit_null();
+        fit_singles();
+        return;
+    }
+    experiment_->set_hold(true);
+}
+
+/// Coloured sensor noise would pass for an effect, and an effect for coloured noise: it was looked for beside the
+/// declared model, now beside the best explanation; if the answer is another one, everything is judged again.
+void HeaveLoop::colour_noise() {
+    for (int round = 0; round < 2; ++round) {
+        HeaveNoise noise = noises_[best_single_];
+        const FittedHypothesis& best = fitted_[best_single_];
+        const double before = null_noise_.slow;
+        const bool coloured = experiment_->fit_noise(best.hypothesis.with(best.fit.parameters), noise);
+        if (!coloured && before == 0) {
+            return;
+        }
+        if (coloured && before > 0 && noise.slow < 1.6 * before && noise.slow > before / 1.6) {
+            return;
+        }
+        HeaveNoise null = noise;
+        null.process = null_noise_.process;
+        if (!coloured) {
+            null.gap = experiment_->noise().gap;
+        }
+        set_null(null);
+        fit_singles();
+    }
+}
+
+/// How logs like these are to be read: what model.toml says of them, so that a prediction reads them as this did.
+dynamics::RecordReading HeaveLoop::reading_found() const {
+    dynamics::RecordReading reading = records_read_;
+    if (records_.input_recorded) {
+        using Between = dynamics::RecordReading::Between;
+        reading.input_between = experiment_->hold() ? Between::held : Between::linear;
+    }
+    reading.velocity_factor *= records_.velocity_turned ? -1 : 1;
+    return reading;
+}
+
+/// Moves the recorded input in time and scales it, in every record there is.
+void HeaveLoop::change_input(double seconds, double factor) {
+    const auto change = [&](HeaveRecords& records) {
+        for (HeaveRecord& record : records.records) {
+            for (double& t : record.raw_time) {
+                t += seconds;
+            }
+            for (double& u : record.raw_input) {
+                u *= factor;
+            }
+            prepare_input(record);
+        }
+    };
+    change(records_);
+    if (test_records_) {
+        change(*test_records_);
+    }
+}
+
+/// An input that acts before it was commanded, or that is a thousand times off or turned round, is no effect but a
+/// matter of the record.
+void HeaveLoop::check_input() {
+    if (!records_.input_recorded) {
+        return;
+    }
+    double best = fitted_[best_single_].score() - 40;
+    double early = 0;
+    double factor = 1;
+    const bool hold = experiment_->hold();
+    experiment_->set_hold(true);  // whether it is held between samples was asked of an input that may be wrong
+    const auto attempt = [&](double seconds, double times) {
+        change_input(-seconds, times);
+        HeaveNoise noise = null_noise_;
+        const double cost = experiment_->fit_process({}, noise);
+        change_input(seconds, 1 / times);
+        if (cost < best && seconds >= 0) {
+            best = cost;
+            early = seconds;
+            factor = times;
+        }
+    };
+    for (const double seconds : {0.02, 0.04, 0.06, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0}) {
+        attempt(seconds, 1);
+    }
+    for (double step = 0.02; step > 0.004 && early > 0; step /= 2) {
+        const double middle = early;
+        attempt(middle - step, 1);
+        attempt(middle + step, 1);
+    }
+    if (early == 0 && fitted_[best_single_].hypothesis.names.front() == "input_gain") {
+        best += 60;  // the same said with a name; the slip is the likelier story
+    }
+    for (const double times : {1e-3, 1e3, -1.0}) {
+        attempt(0, times);
+    }
+    if (early == 0 && factor == 1) {
+        experiment_->set_hold(hold);
+        return;
+    }
+    change_input(-early, factor);
+    records_read_.input_advance += early;
+    records_read_.input_factor *= factor;
+    if (factor == 1) {
+        warn("the recorded input comes about " + core::format_number(early, 2) +
+             " s after the motion that it makes: the clocks of input_force and gap differ; the input was moved forward "
+             "by that much");
+    } else {
+        warn("the motion fits an input_force " + core::format_number(factor, 4) + " times the recorded one: " +
+             (factor < 0 ? "its sign is turned round (up is positive)" : "its unit is wrong by a thousand") +
+             "; it was used so");
+    }
+    // nothing is known of what was commanded after the record's end
+    for (HeaveRecord& record : records_.records) {
+        for (std::size_t k = 0; k < record.time.size(); ++k) {
+            if (record.time[k] > record.raw_time.back() + 0.02) {
+                record.gap[k] = std::nan("");
+                if (!record.velocity.empty()) {
+                    record.velocity[k] = std::nan("");
+                }
+            }
+        }
+    }
+    fit_null();
+    fit_singles();
+    try_hold();
+    colour_noise();
+    open_gate();
+}
+
+Discovery discover_time_series(const dynamics::Model& model, const dynamics::Measurements& data,
+                               const DiscoverOptions& options, core::Progress& progress) {
+    return HeaveLoop(model, data, options, progress).run();
+}
+
+}  // namespace underbody::discovery

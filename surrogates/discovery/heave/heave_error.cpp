@@ -1,0 +1,153 @@
+#include "surrogates/discovery/heave/heave_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/discovery/consequence.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
+                    const HeaveNoise& fitted_noise, double horizon, std::vector<double>& sum_of_squares,
+                    std::vector<double>& counts) {
+    // a filter that takes its model for perfect would carry the model's error into the state that a window starts from
+    HeaveNoise noise = fitted_noise;
+    noise.process = std::max(noise.process, 1e-9);
+    const std::vector<std::size_t>& chosen = experiment.chosen();
+    sum_of_squares.assign(chosen.size(), 0);
+    counts.assign(chosen.size(), 0);
+    std::vector<double> innovations, states, memories, input, predicted;
+    // `unknown` comes as a table: the smooth force it was made from is gone by then, so the table itself is used
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+        const HeaveRecord& record = experiment.records().records[chosen[c]];
+        const HeaveExplanation explanation = experiment.explanation(chosen[c], uses);
+        innovations.clear();
+        states.clear();
+        memories.clear();
+        filter_innovations(record, explanation, noise, innovations, &states, &memories);
+        transform_input(record, explanation, input);
+        const std::size_t n = record.time.size();
+        std::size_t first = 0;
+        while (first < n && record.time[first] - record.time.front() < 1) {
+            ++first;  // a second for the filter to find the state
+        }
+        while (first + 2 < n) {
+            std::size_t last = first;
+            while (last + 1 < n && record.time[last + 1] - record.time[first] <= horizon) {
+                ++last;
+            }
+            if (last < first + 2) {
+                break;
+            }
+            free_run(record, explanation, input, first, last, states[2 * first], states[2 * first + 1], predicted,
+                     memories.data() + first * dynamics::history_states);
+            for (std::size_t k = first + 1; k <= last; ++k) {
+                if (std::isfinite(record.gap[k])) {
+                    // the average of m readings carries 1/m of their variance: the rest is put back, so that the figure
+                    // is one of readings
+                    const double share = record.gap_share[k] * record.gap_share[k];
+                    const double difference = record.gap[k] - predicted[k - first];
+                    sum_of_squares[c] += difference * difference + (1 - share) * noise.gap * noise.gap;
+                    counts[c] += 1;
+                }
+            }
+            first = last;
+        }
+    }
+}
+
+double estimator_error(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
+                       const HeaveNoise& noise, const std::vector<dynamics::EffectUse>& better,
+                       const HeaveNoise& better_noise) {
+    std::vector<double> innovations, states;
+    double sum = 0;
+    double count = 0;
+    for (const std::size_t r : experiment.chosen()) {
+        const HeaveRecord& record = experiment.records().records[r];
+        innovations.clear();
+        states.clear();
+        filter_innovations(record, experiment.explanation(r, uses), noise, innovations, &states);
+        const SmoothedRun reference = smooth_with_force(record, experiment.explanation(r, better), better_noise,
+                                                        0.001 * record.plant->terms.mass);
+        for (std::size_t k = 0; k < record.time.size(); ++k) {
+            if (record.time[k] - record.time.front() > 2) {
+                const double difference = states[2 * k + 1] - reference.velocity[k];
+                sum += difference * difference;
+                count += 1;
+            }
+        }
+    }
+    return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+dynamics::EffectUse force_table(const FlexibleForce& force) {
+    const std::size_t variables = force.variables.size();
+    const std::size_t each = variables == 1 ? 97 : 33;
+    std::size_t count = 1;
+    for (std::size_t v = 0; v < variables; ++v) {
+        count *= each;
+    }
+    std::vector<std::vector<double>> grid(variables, std::vector<double>(count));
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::size_t rest = i;
+        double point[4] = {0, 0, 0, 0};
+        for (std::size_t v = 0; v < variables; ++v) {
+            const double x = force.lower[v] + (force.upper[v] - force.lower[v]) * static_cast<double>(rest % each) /
+                                                  static_cast<double>(each - 1);
+            grid[v][i] = x;
+            rest /= each;
+            point[static_cast<std::size_t>(force.variables[v])] = x;
+        }
+        values[i] = force(point[0], point[1], point[2], point[3]);
+    }
+    core::Table table;
+    table.source = "correction-lift_force.csv";
+    for (std::size_t v = 0; v < variables; ++v) {
+        const char* name = variable_name(force.variables[v]);
+        table.add_numbers(name, core::find_quantity(name)->unit, grid[v]);
+    }
+    table.add_numbers("lift_force", "N", values);
+    dynamics::EffectUse use = dynamics::neutral_use("unknown");
+    use.quantity = "lift_force";
+    use.table = tables::ForceTable::fit(table, "lift_force");
+    use.table_file = table.source;
+    return use;
+}
+
+Consequence heave_consequence(const dynamics::Model& before, const dynamics::Model& after, const HeaveRecords& records,
+                              core::Progress& progress) {
+    Consequence result;
+    const dynamics::Conditions held = records.records.front().plant->held();
+    map_if_possible(result, [&] {
+        const auto balances = [&](const dynamics::Model& model) {
+            std::vector<Balance> list;
+            for (const dynamics::HeaveEquilibrium& one :
+                 dynamics::heave_equilibria(dynamics::HeavePlant(model, held))) {
+                list.push_back({one.name, one.stable, one.gap});
+            }
+            return list;
+        };
+        result.equilibria = paired(balances(before), balances(after));
+        double low = 1e300, high = -1e300;
+        for (const HeaveRecord& record : records.records) {
+            for (const double gap : record.gap) {
+                if (std::isfinite(gap)) {
+                    low = std::min(low, gap);
+                    high = std::max(high, gap);
+                }
+            }
+        }
+        low = std::max(low, 1e-3);
+        high = std::max(high, 2e-3);
+        compare_regions(before, after, low, high, held, 40, progress, result);
+        result.text = "Free motion (no input force) from starts with gaps of " + core::format_number(1000 * low, 3) +
+                      " to " + core::format_number(1000 * high, 3) + " mm and velocities of -0.1 to 0.1 m/s.";
+    });
+    return result;
+}
+
+}  // namespace underbody::discovery

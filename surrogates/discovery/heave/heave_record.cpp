@@ -1,0 +1,559 @@
+#include "surrogates/discovery/heave/heave_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
+
+#include "core/text.h"
+#include "surrogates/discovery/heave/heave_filter.h"
+#include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
+
+namespace underbody::discovery {
+
+using dynamics::Channel;
+
+namespace {
+
+void remark(core::Problems& problems, const std::string& text, const std::string& file) {
+    problems.push_back({core::Problem::Severity::warning, text, core::Place{file, {}, {}, {}}});
+}
+
+dynamics::Conditions held_conditions(const dynamics::MeasuredRun& run) {
+    dynamics::Conditions held;
+    for (const auto& [name, value] : run.conditions) {
+        Channel channel{};
+        if (dynamics::find_channel(name, channel)) {
+            held[channel] = value;
+        }
+    }
+    // a channel that was recorded but did not change is a condition; one that changed is held at its mean
+    for (const core::Column& column : run.table.columns()) {
+        Channel channel{};
+        if (!column.is_text() && dynamics::find_channel(column.name, channel) && channel != Channel::time &&
+            channel != Channel::gap && channel != Channel::heave_velocity && channel != Channel::input_force) {
+            double sum = 0;
+            double count = 0;
+            for (const double value : column.numbers) {
+                if (std::isfinite(value)) {
+                    sum += value;
+                    count += 1;
+                }
+            }
+            if (count > 0) {
+                held[channel] = sum / count;
+            }
+        }
+    }
+    return held;
+}
+
+/// Readings far from the middle of their neighbours become missing.
+std::size_t drop_outliers(std::vector<double>& values, double sigma) {
+    constexpr std::size_t half = 3,
+                          reach = 15;  // readings on either side, and how far to look for them across missing ones
+    std::vector<std::size_t> bad;
+    std::vector<double> window;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        window.clear();
+        if (!std::isfinite(values[i])) {
+            continue;
+        }
+        window.push_back(values[i]);
+        for (const bool before : {true, false}) {
+            std::size_t found = 0;
+            for (std::size_t d = 1; d <= reach && found < half && (before ? d <= i : i + d < values.size()); ++d) {
+                const double other = values[before ? i - d : i + d];
+                if (std::isfinite(other)) {
+                    window.push_back(other);
+                    ++found;
+                }
+            }
+        }
+        if (window.size() >= 4) {
+            const double spread = quantile(window, 0.8) - quantile(window, 0.2);
+            if (std::abs(values[i] - median(window)) > 8 * sigma + 2 * spread) {
+                bad.push_back(i);
+            }
+        }
+    }
+    for (const std::size_t i : bad) {
+        values[i] = std::nan("");
+    }
+    return bad.size();
+}
+
+bool stuck(const std::vector<double>& values) {
+    std::size_t same = 0;
+    std::size_t longest = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        same = values[i] == values[i - 1] ? same + 1 : 0;
+        longest = std::max(longest, same);
+    }
+    return values.size() > 20 && longest > values.size() / 5;
+}
+
+void average(const std::vector<double>& time, const std::vector<double>& values,
+             const std::vector<std::size_t>& step_of, std::size_t steps, std::vector<double>& mean_value,
+             std::vector<double>& share) {
+    mean_value.assign(steps, 0);
+    std::vector<double> count(steps, 0);
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        if (std::isfinite(values[i])) {
+            mean_value[step_of[i]] += values[i];
+            count[step_of[i]] += 1;
+        }
+    }
+    share.assign(steps, 1);
+    for (std::size_t k = 0; k < steps; ++k) {
+        mean_value[k] = count[k] > 0 ? mean_value[k] / count[k] : std::nan("");
+        share[k] = count[k] > 0 ? 1 / std::sqrt(count[k]) : 1;
+    }
+}
+
+/// Groups readings into steps; a gap in time gets empty steps. Fills times and returns each reading's step.
+std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector<double>& step_time) {
+    std::vector<std::size_t> step_of(time.size());
+    std::vector<double> sum;
+    std::vector<double> count;
+    double begin = -1e300;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        if (time[i] - begin >= record_step * (1 - 1e-6)) {
+            if (i > 0 && time[i] - time[i - 1] > 2 * record_step) {
+                const double gap = time[i] - time[i - 1];
+                const auto empty = static_cast<std::size_t>(gap / record_step) - 1;
+                for (std::size_t k = 1; k <= empty; ++k) {
+                    sum.push_back(time[i - 1] + gap * static_cast<double>(k) / static_cast<double>(empty + 1));
+                    count.push_back(1);
+                }
+            }
+            begin = time[i];
+            sum.push_back(0);
+            count.push_back(0);
+        }
+        step_of[i] = sum.size() - 1;
+        sum.back() += time[i];
+        count.back() += 1;
+    }
+    step_time.resize(sum.size());
+    for (std::size_t k = 0; k < sum.size(); ++k) {
+        step_time[k] = sum[k] / count[k];
+    }
+    return step_of;
+}
+
+/// Readings at the ends of a sensor's range: many at exactly one value, several in one piece, and hardly any beyond
+/// (outliers may be).
+std::size_t drop_saturated(const std::vector<double>& time, std::vector<double>& values) {
+    std::size_t dropped = 0;
+    const double step = dynamics::reading_step(values);
+    for (const bool upper : {true, false}) {
+        double end = upper ? -1e300 : 1e300;
+        std::size_t same = 1;
+        for (std::size_t i = 1; i < values.size(); ++i) {
+            same = values[i] == values[i - 1] ? same + 1 : 1;
+            if (same == 5) {
+                end = upper ? std::max(end, values[i]) : std::min(end, values[i]);
+            }
+        }
+        // a sensor without noise of its own repeats values by rounding; a saturated one repeats its end alone
+        std::vector<double> inside = values;
+        std::replace(inside.begin(), inside.end(), end, std::nan(""));
+        const double noise = dynamics::sensor_noise(time, inside);
+        const auto at_end = static_cast<std::size_t>(std::count(values.begin(), values.end(), end));
+        // one that rounds repeats every value: its end counts only when it has far more readings than the value beside
+        // it
+        const double beside = end + (upper ? -step : step);
+        const auto at_next = static_cast<std::size_t>(
+            step > 0 ? std::count_if(values.begin(), values.end(),
+                                     [&](double v) { return std::abs(v - beside) < 0.1 * step; })
+                     : 0);
+        const auto beyond =
+            std::count_if(values.begin(), values.end(), [&](double x) { return upper ? x > end : x < end; });
+        if (at_end > std::max<std::size_t>(8, values.size() / 100) &&
+            50 * static_cast<std::size_t>(beyond) < values.size() && noise > 0 && at_end > 10 * at_next) {
+            // beside the end only the readings whose noise points inward are left: they would look like a force
+            for (double& value : values) {
+                if (upper ? value > end - 5 * noise : value < end + 5 * noise) {
+                    value = std::nan("");
+                    ++dropped;
+                }
+            }
+        }
+    }
+    return dropped;
+}
+
+/// Why the declared model cannot run this run; empty where it can. `doubt` is filled where it can with a reserve.
+std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, std::string& doubt,
+                       bool& unit) {
+    const double lower = plant.terms.table_lower;
+    const double upper = plant.terms.table_upper;
+    if (lower < -1e299 || upper > 1e299) {
+        return "";
+    }
+    std::vector<double> finite;
+    std::copy_if(gap.begin(), gap.end(), std::back_inserter(finite), [](double x) { return std::isfinite(x); });
+    const double middle = median(finite);
+    const auto inside = [&](double value) {
+        return value > lower - 0.05 * (upper - lower) && value < upper + 0.05 * (upper - lower);
+    };
+    const std::string where = "(" + core::format_number(lower, 4) + " to " + core::format_number(upper, 4) + " m)";
+    unit = false;
+    if (!inside(middle)) {
+        unit = inside(middle * 1e-3) || inside(middle * 1e3);
+        return "its gap, " + core::format_number(middle, 4) +
+               " m in the middle, lies outside the tables of the declared model " + where +
+               (unit ? ": a thousandth or a thousandfold would fit" : "");
+    }
+    const auto share_outside = [&](double factor) {
+        const auto out = std::count_if(finite.begin(), finite.end(),
+                                       [&](double x) { return factor * x < lower || factor * x > upper; });
+        return static_cast<double>(out) / static_cast<double>(finite.size());
+    };
+    const double outside = share_outside(1);
+    if (outside > 0.5) {
+        unit = share_outside(1e3) < 0.1 || share_outside(1e-3) < 0.1;
+        return "it spends " + core::format_number(100 * outside, 3) +
+               " % of its time outside the tables of the declared model " + where +
+               (unit ? ": a thousandth or a thousandfold would fit" : "");
+    }
+    if (outside > 0.02) {
+        doubt = "spends " + core::format_number(100 * outside, 3) +
+                " % of its time outside the tables of the declared model " + where +
+                ", where they hold their end values: what is found there may be the missing table";
+    }
+    return "";
+}
+
+/// What the measured velocity says beside the gap's own changes over a second each; both NaN without enough motion.
+struct VelocityScale {
+    double slope = std::nan("");  ///< regression: a foreign channel gives about 0, a turned one -1
+    double ratio = std::nan("");  ///< root of the mean squares' ratio: a delay of one sensor leaves it at 1
+};
+
+VelocityScale velocity_scale(const HeaveRecord& record, double gap_noise) {
+    double cross = 0;
+    double by_velocity = 0;
+    double by_gap = 0;
+    constexpr double window = 1;  // s: short beside a run, long enough that the noise of the gap hardly counts
+    for (std::size_t begin = 0, end = 1; end < record.time.size(); ++end) {
+        const double lasted = record.time[end] - record.time[begin];
+        if (lasted < window) {
+            continue;
+        }
+        double sum = 0;
+        double weights = 0;
+        for (std::size_t i = begin; i <= end; ++i) {
+            if (std::isfinite(record.velocity[i])) {
+                const double weight = i == begin || i == end ? 0.5 : 1;
+                sum += weight * record.velocity[i];
+                weights += weight;
+            }
+        }
+        const double change = record.gap[end] - record.gap[begin];
+        if (std::isfinite(change) && weights > 0.5 * static_cast<double>(end - begin)) {
+            const double path = lasted * sum / weights;
+            cross += change * path;
+            by_velocity += path * path;
+            by_gap += change * change - 2 * gap_noise * gap_noise;
+        }
+        begin = end;
+    }
+    return by_gap > 0 ? VelocityScale{cross / by_gap, std::sqrt(by_velocity / by_gap)} : VelocityScale{};
+}
+
+bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+/// The same run twice would make everything look more certain than it is.
+void drop_copies(HeaveRecords& result, const dynamics::Measurements& data) {
+    for (std::size_t a = 0; a < result.records.size(); ++a) {
+        for (std::size_t b = result.records.size(); b-- > a + 1;) {
+            if (same_numbers(result.records[a].gap, result.records[b].gap) &&
+                same_numbers(result.records[a].raw_input, result.records[b].raw_input)) {
+                remark(result.problems,
+                       result.records[b].name + " is the same as " + result.records[a].name +
+                           ", reading by reading: used once",
+                       data.runs[result.records[b].run].table.source);
+                result.records.erase(result.records.begin() + static_cast<std::ptrdiff_t>(b));
+            }
+        }
+    }
+}
+
+/// Conditions that changed within a run: over each step what the lift of the one table source is, over what it is with
+/// the condition held at its mean. A channel that cannot be followed so is named in `held_at_mean`.
+std::vector<double> lift_over_steps(const dynamics::Model& model, const dynamics::MeasuredRun& run,
+                                    const dynamics::Conditions& held, const std::vector<std::size_t>& step_of,
+                                    std::size_t steps, std::string& held_at_mean) {
+    std::vector<double> scale;
+    std::size_t sources = 0;
+    for (const dynamics::ForceSource& source : model.forces) {
+        sources += source.quantity == "lift_force" ? 1 : 0;
+    }
+    for (const core::Column& column : run.table.columns()) {
+        Channel channel{};
+        if (column.is_text() || !dynamics::find_channel(column.name, channel) || channel == Channel::time ||
+            channel == Channel::gap || channel == Channel::heave_velocity || channel == Channel::input_force) {
+            continue;
+        }
+        std::vector<double> finite;
+        std::copy_if(column.numbers.begin(), column.numbers.end(), std::back_inserter(finite),
+                     [](double x) { return std::isfinite(x); });
+        const double middle = held.get(channel, 0);
+        if (finite.empty() || robust_sigma(finite) < 0.01 * std::abs(middle)) {
+            continue;
+        }
+        for (const dynamics::ForceSource& source : model.forces) {
+            const bool axis = std::find(source.axes.begin(), source.axes.end(), channel) != source.axes.end();
+            const auto own = std::find_if(source.scales.begin(), source.scales.end(),
+                                          [&](const auto& s) { return s.channel == channel; });
+            if (source.quantity != "lift_force" || (!axis && own == source.scales.end())) {
+                continue;
+            }
+            const auto strength = [&](double x) {
+                return std::pow(std::max(0.0, std::abs(x) - own->dead_band) / (own->reference - own->dead_band),
+                                own->exponent);
+            };
+            if (axis || sources != 1 || !(strength(middle) > 0)) {
+                held_at_mean = column.name;
+                continue;
+            }
+            std::vector<double> sum(steps, 0), count(steps, 0);
+            for (std::size_t i = 0; i < step_of.size(); ++i) {
+                if (std::isfinite(column.numbers[i])) {
+                    sum[step_of[i]] += strength(column.numbers[i]);
+                    count[step_of[i]] += 1;
+                }
+            }
+            scale.resize(steps, 1);
+            double last = 1;
+            for (std::size_t k = 0; k < steps; ++k) {
+                last = count[k] > 0 ? sum[k] / count[k] / strength(middle) : last;
+                scale[k] *= last;
+            }
+        }
+    }
+    return scale;
+}
+
+/// A velocity that does not belong to its gap is left out, everywhere: the filter would trust it.
+void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) {
+    if (!result.velocity_measured) {
+        return;
+    }
+    std::vector<double> slopes;
+    std::vector<double> ratios;
+    for (const HeaveRecord& record : result.records) {
+        const VelocityScale scale =
+            record.velocity.empty() ? VelocityScale{} : velocity_scale(record, result.gap_noise);
+        if (std::isfinite(scale.slope)) {
+            slopes.push_back(scale.slope);
+            ratios.push_back(scale.ratio);
+        }
+    }
+    const double slope = slopes.empty() ? 1 : median(slopes);
+    const double ratio = ratios.empty() ? 1 : median(ratios);
+    std::vector<double> apart;
+    for (const double one : ratios) {
+        apart.push_back(std::abs(one - ratio));
+    }
+    // five standard errors of the runs' median, and never for a few hundredths; one or two runs show no scatter
+    const double tolerance =
+        ratios.size() < 3
+            ? 0.25
+            : std::max(0.05, 5 * 1.25 * 1.4826 * median(apart) / std::sqrt(static_cast<double>(ratios.size())));
+    std::string text;
+    if (slope < -0.5 && slope > -2) {
+        text = "heave_velocity has the opposite sign of the gap's changes (positive is up: it is turned round)";
+    } else if (std::abs(slope) < 0.5 || std::abs(slope) > 2) {
+        const bool thousand = (slope > 500 && slope < 2000) || (slope > 5e-4 && slope < 2e-3);
+        text = "heave_velocity is " + core::format_number(slope, 3) + " times what the gap's changes say" +
+               (thousand ? ": a unit wrong by a thousand?" : ": another channel, another run, or swapped columns?") +
+               " It is not used";
+    } else if (std::abs(ratio - 1) > tolerance) {
+        text = "heave_velocity is " + core::format_number(ratio, 3) +
+               " times what the gap's changes say: is the scale of one of the two wrong? It is not used";
+    }
+    if (text.empty()) {
+        return;
+    }
+    remark(result.problems, text, data.folder.string());
+    const bool turn = slope < -0.5 && slope > -2;
+    for (HeaveRecord& record : result.records) {
+        if (turn) {
+            for (double& value : record.velocity) {
+                value = -value;
+            }
+        } else {
+            record.velocity.clear();
+            record.velocity_share.clear();
+        }
+    }
+    result.velocity_measured = turn;
+    result.velocity_turned = turn;
+}
+
+}  // namespace
+
+HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics::Measurements& data) {
+    HeaveRecords result;
+    std::vector<double> gap_noises;
+    std::vector<double> velocity_noises;
+    std::vector<double> steps;
+    std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
+    bool unit = false;
+    std::size_t still = 0;
+    std::size_t swapped = 0;
+    for (std::size_t r = 0; r < data.runs.size(); ++r) {
+        const dynamics::MeasuredRun& run = data.runs[r];
+        const std::string file = run.table.source;
+        HeaveRecord record;
+        record.name = run.name;
+        record.run = r;
+        const dynamics::Conditions held = held_conditions(run);
+        std::vector<double> key(held.value.begin(), held.value.end());
+        std::replace_if(
+            key.begin(), key.end(), [](double v) { return std::isnan(v); }, -1e300);
+        std::shared_ptr<const dynamics::HeavePlant>& plant = plants[key];
+        if (!plant) {
+            plant = std::make_shared<dynamics::HeavePlant>(model, held);
+        }
+        record.plant = plant;
+        const std::vector<double>& time = run.table.numbers("time");
+        std::vector<double> gap = run.table.numbers("gap");
+        const std::size_t saturated = drop_saturated(time, gap);
+        const double noise = dynamics::sensor_noise(time, gap);  // a reading at the end of the range has none
+        if (saturated > 0) {
+            remark(result.problems,
+                   std::to_string(saturated) + " gap readings of " + run.name +
+                       " stand exactly at the end of the sensor's range (saturated): not used",
+                   file);
+        }
+        if (stuck(gap) || 2 * saturated > gap.size()) {
+            remark(
+                result.problems,
+                "the gap of " + run.name + " stands still for a fifth of the run: a stuck sensor? the run is left out",
+                file);
+            ++still;
+            continue;
+        }
+        std::string doubt;
+        const std::string reason = cannot_run(gap, *plant, doubt, unit);
+        if (!reason.empty()) {
+            remark(result.problems, run.name + " is left out: " + reason, file);
+            continue;
+        }
+        if (!doubt.empty()) {
+            remark(result.problems, run.name + " " + doubt, file);
+        }
+        const std::vector<double> pushed = run.values("input_force");
+        const double input_noise = pushed.size() == gap.size() ? dynamics::sensor_noise(time, pushed) : 0;
+        const std::optional<double> declared = data.declared_noise("gap");
+        if (declared && noise < 0.05 * *declared && input_noise > 0.5 * *declared && input_noise < 2 * *declared) {
+            remark(result.problems,
+                   run.name +
+                       " is left out: gap has no noise and input_force that of the gap sensor; the two columns look "
+                       "swapped",
+                   file);
+            ++swapped;
+            continue;
+        }
+        const std::size_t outliers = drop_outliers(gap, std::max(noise, 1e-9));
+        if (outliers > 0) {
+            remark(
+                result.problems,
+                std::to_string(outliers) + " gap readings of " + run.name + " lie far from their neighbours: not used",
+                file);
+        }
+        if (!std::isfinite(noise)) {
+            remark(result.problems, run.name + " is left out: it has hardly any gap readings", file);
+            continue;
+        }
+        gap_noises.push_back(noise);
+        for (std::size_t i = 1; i < time.size(); ++i) {
+            steps.push_back(time[i] - time[i - 1]);
+        }
+        const std::vector<std::size_t> step_of = make_steps(time, record.time);
+        average(time, gap, step_of, record.time.size(), record.gap, record.gap_share);
+        std::string held_at_mean;
+        record.lift_scale = lift_over_steps(model, run, held, step_of, record.time.size(), held_at_mean);
+        if (!held_at_mean.empty()) {
+            remark(result.problems,
+                   held_at_mean + " changes within " + run.name +
+                       " and moves a table or one of several sources of lift: held at its mean",
+                   file);
+        }
+        const core::Column* velocity = run.table.find("heave_velocity");
+        if (velocity != nullptr && !velocity->is_text()) {
+            std::vector<double> values = dynamics::as_read(run, "heave_velocity", model.records);
+            const double own = dynamics::sensor_noise(time, values);
+            if (stuck(values) || !std::isfinite(own)) {
+                remark(result.problems,
+                       "heave_velocity of " + run.name +
+                           " stands still for a fifth of the run or is missing: it is not used",
+                       file);
+            } else {
+                drop_outliers(values, std::max(own, 1e-9));
+                velocity_noises.push_back(own);
+                average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
+                result.velocity_measured = true;
+            }
+        }
+        record.raw_time = time;
+        for (double& t : record.raw_time) {
+            t -= model.records.input_advance;
+        }
+        record.raw_input = dynamics::as_read(run, "input_force", model.records);
+        if (record.raw_input.empty()) {
+            record.raw_input.assign(time.size(), 0);
+        } else {
+            result.input_recorded = true;
+        }
+        double last = 0;
+        for (double& u : record.raw_input) {
+            u = std::isfinite(u) ? u : last;
+            last = u;
+        }
+        if (record.time.size() < 20) {
+            remark(result.problems, run.name + " has fewer than 20 steps: left out", file);
+            continue;
+        }
+        prepare_input(record);
+        result.records.push_back(std::move(record));
+    }
+    if (swapped > 0 && 2 * swapped >= data.runs.size()) {
+        // what looks right in the others is then chance
+        throw core::InputError("swapped",
+                               "gap and input_force look swapped in " + std::to_string(swapped) + " of " +
+                                   std::to_string(data.runs.size()) +
+                                   " runs: gap has no noise, and input_force has that of the gap sensor",
+                               core::Place{data.folder.string(), {}, {}, {}},
+                               "exchange the two names in the header lines");
+    }
+    if (result.records.empty()) {
+        const std::string first = result.problems.empty() ? "" : result.problems.front().message;
+        throw core::InputError(
+            unit ? "unit" : "range", "no run can be used" + (first.empty() ? std::string() : ": " + first),
+            core::Place{data.folder.string(), {}, {}, {}},
+            unit                        ? "is the column's unit mm, or m written as mm?"
+            : still == data.runs.size() ? "look at the gap sensor and its cable; a saturated one needs another range"
+                                        : "give the model tables that cover the gaps that were measured, or runs "
+                                          "within them; `underbody predict` "
+                                          "shows the model beside each run");
+    }
+    result.raw_step = median(steps);
+    result.gap_noise = median(gap_noises);
+    result.velocity_noise = velocity_noises.empty() ? 0 : median(velocity_noises);
+    drop_copies(result, data);
+    check_velocities(result, data);
+    return result;
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,199 @@
+// From fitted effects to a verdict for heave runs: pairs, what they leave, and how stable the answer is.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "core/parallel.h"
+#include "surrogates/discovery/heave/heave_error.h"
+#include "surrogates/discovery/heave/heave_loop.h"
+#include "surrogates/discovery/report_findings.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+constexpr std::size_t seconds_tried = 5;
+
+/// Effects whose laws can stand in for parts of each other.
+bool one_kind(const std::vector<std::string>& names) {
+    static const std::vector<std::set<std::string>> kinds{
+        {"linear_damping", "quadratic_damping", "squeeze_film_damping", "coulomb_friction", "history_force",
+         "ambient_heave_current"},
+        {"added_mass", "gap_dependent_added_mass", "history_force"},
+        {"constant_force", "tether_stiffness", "surface_roughness", "gap_sensor_bias", "declared_parameter"},
+        {"input_gain", "input_dead_zone", "input_delay", "actuator_lag", "gap_sensor_delay"}};
+    return std::any_of(kinds.begin(), kinds.end(), [&](const std::set<std::string>& kind) {
+        return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return kind.count(name) > 0; });
+    });
+}
+
+}  // namespace
+
+/// A second effect is looked for where the best single one leaves structure, and stays when it earns its place.
+void HeaveLoop::fit_pairs() {
+    const auto tried = [&](std::size_t i) { return i < singles_; };
+    std::vector<std::size_t> order(singles_);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return fitted_[a].score() < fitted_[b].score(); });
+    if (rest_.fit.p > calibration_.unknown_p && rest_.second.empty()) {
+        return;
+    }
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    const auto add = [&](std::size_t a, std::size_t b) {
+        if (tried(a) && tried(b) && fitted_[a].hypothesis.names != fitted_[b].hypothesis.names &&
+            std::find(pairs.begin(), pairs.end(), std::pair{a, b}) == pairs.end() &&
+            std::find(pairs.begin(), pairs.end(), std::pair{b, a}) == pairs.end()) {
+            pairs.emplace_back(a, b);
+        }
+    };
+    for (std::size_t k = 0; k < std::min(seconds_tried, rest_.second.size()); ++k) {
+        add(best_single_, rest_.second[k]);
+    }
+    if (singles_ > 1) {
+        const std::size_t other = order[0] == best_single_ ? order[1] : order[0];
+        const Rest beside = rest_beside(fitted_[other], noises_[other]);
+        for (std::size_t k = 0; k < std::min(seconds_tried, beside.second.size()); ++k) {
+            add(other, beside.second[k]);
+        }
+    }
+    std::vector<FittedHypothesis> found(pairs.size());
+    std::vector<HeaveNoise> noises(pairs.size());
+    core::parallel_for(
+        pairs.size(),
+        [&](std::size_t k) {
+            const auto [a, b] = pairs[k];
+            const Hypothesis& second = fitted_[b].hypothesis;
+            std::vector<double> start = second.starts.empty() ? fitted_[b].fit.parameters : second.starts.front();
+            if (second.names.front() == "periodic_disturbance") {
+                const auto starts =
+                    experiment_->periodic_starts(fitted_[a].hypothesis.with(fitted_[a].fit.parameters), noises_[a], 1);
+                start = starts.empty() ? start : starts.front();
+            }
+            HeaveExperiment::Result result =
+                fitted(joined(fitted_[a].hypothesis, fitted_[a].fit.parameters, second, start), noises_[a]);
+            found[k] = std::move(result.fitted);
+            noises[k] = result.noise;
+        },
+        progress_);
+    for (std::size_t k = found.size(); k-- > 0;) {
+        if (!plausible_pair(found[k])) {
+            found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
+            noises.erase(noises.begin() + static_cast<std::ptrdiff_t>(k));
+        }
+    }
+    if (found.empty()) {
+        return;
+    }
+    const std::size_t best = best_hypothesis(found, 2);
+    const double gain = fitted_[best_single_].score() - found[best].score();
+    // two effects of one kind may be one effect whose law has another form than the catalogue's: that needs more to be
+    // believed
+    const double share = calibration_.pair_share * (one_kind(found[best].hypothesis.names) ? 3 : 1);
+    if (gain < calibration_.pair_gain || gain < share * found[best].explained) {
+        return;
+    }
+    // one smooth law that does better for its price is one law, not two
+    if (!whole_list_.empty() && smooth_score(best_smooth(whole_list_)) < found[best].cost + found[best].occam - 10) {
+        return;
+    }
+    const Rest rest = rest_beside(found[best], noises[best]);
+    if (rest.fit.p > calibration_.unknown_p || rest.share < 0.5 * calibration_.unknown_share) {
+        fitted_.insert(fitted_.end(), found.begin(), found.end());
+        noises_.insert(noises_.end(), noises.begin(), noises.end());
+        rest_ = rest;
+    }
+}
+
+/// Two laws of one kind that work against each other are no two effects: together they bend into a law that neither
+/// has.
+bool HeaveLoop::plausible_pair(const FittedHypothesis& pair) const {
+    static const std::set<std::string> signed_alike{
+        "linear_damping", "quadratic_damping", "squeeze_film_damping",    "coulomb_friction",
+        "history_force",  "added_mass",        "gap_dependent_added_mass"};
+    const auto& names = pair.hypothesis.names;
+    if (!one_kind(names) ||
+        !std::all_of(names.begin(), names.end(), [&](const auto& name) { return signed_alike.count(name) > 0; })) {
+        return true;
+    }
+    int up = 0;
+    int down = 0;
+    std::set<std::size_t> seen;
+    for (std::size_t j = 0; j < pair.hypothesis.slots.size(); ++j) {
+        if (seen.insert(pair.hypothesis.slots[j].use).second) {  // its strength comes first
+            const dynamics::EffectUse neutral =
+                dynamics::neutral_use(pair.hypothesis.uses[pair.hypothesis.slots[j].use].name);
+            const double strength = pair.fit.parameters[j] - neutral.values[pair.hypothesis.slots[j].value];
+            up += strength > 0 ? 1 : 0;
+            down += strength < 0 ? 1 : 0;
+        }
+    }
+    return up == 0 || down == 0;
+}
+
+void HeaveLoop::decide() {
+    SmoothFit rest = rest_.fit;
+    const std::size_t chosen = best_hypothesis(fitted_, 2);
+    if (!whole_list_.empty() && chosen < fitted_.size()) {
+        // a law without a name must do better on runs that it was not fitted to
+        double smooth = 0;
+        double named = 0;
+        for (const double own : best_smooth(whole_list_).held_out) {
+            smooth += own;
+        }
+        for (const double own : fitted_[chosen].held_out) {
+            named += own;
+        }
+        // or so much better on all runs, at Schwarz's price, that runs which alone visit a corner of its variables
+        // cannot spoil it
+        const bool far_better =
+            smooth_score(best_smooth(whole_list_)) < fitted_[chosen].cost + fitted_[chosen].occam - 100;
+        // a law that does hardly more than a named one is that one in another form: a power of 1.9 instead of 2
+        const bool hardly_more = whole_.gain < 1.35 * fitted_[chosen].explained;
+        if ((smooth > named - 10 && !far_better) || hardly_more) {
+            rest.p = 1;
+        }
+    }
+    if (gate_ < calibration_.gate && named_gate_ >= calibration_.gate && !whole_list_.empty()) {
+        rest = whole_;  // something is there, and no name says more of it than noise would
+        rest.p = gate_;
+    }
+    attribution_ = attribute(fitted_, gate_, rest, calibration_);
+    result_.verdict = attribution_.verdict;
+    result_.gate = gate_;
+    result_.none_probability = attribution_.none_probability;
+    result_.model = model_;
+    result_.model.records = reading_found();
+    after_noise_ = null_noise_;
+    if (result_.verdict == "effect") {
+        uses_ = found_effect(fitted_[attribution_.chosen], 1).uses;
+        after_noise_ = noises_[attribution_.chosen];
+    } else if (result_.verdict == "unknown" && !whole_list_.empty()) {
+        const HeaveExperiment::Smooth smooth = refined(best_smooth(whole_list_));
+        uses_ = {force_table(smooth.force)};
+        after_noise_ = smooth.noise;
+    }
+    for (const dynamics::EffectUse& use : uses_) {
+        result_.model = result_.model.with_effect(use);
+    }
+    if (result_.verdict != "none") {
+        result_.depends_on = whole_.variables;
+    }
+}
+
+/// Share of resampled runs in which the chosen names have the least score.
+double HeaveLoop::stability() const {
+    if (result_.verdict == "none") {
+        return result_.none_probability;
+    }
+    if (result_.verdict == "unknown") {
+        return attribution_.unknown_probability;
+    }
+    return share_of_draws(null_by_record_.size(), options_.seed + 1, [&](const std::vector<double>& weight) {
+        return best_in_draw(attribution_, fitted_, weight) == attribution_.chosen;
+    });
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,236 @@
+// Closing the loop with forces measured at set points: what is held out, every effect alone, accidents and colour of
+// the noise.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "surrogates/discovery/static/static_checks.h"
+#include "surrogates/discovery/static/static_loop.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+using dynamics::Channel;
+
+namespace {
+
+/// Set on the bench of tests/bench/discovery; see its README for the data sets.
+Calibration static_calibration() {
+    Calibration c;
+    c.gate = 0.002;
+    c.form_share = 0.003;
+    c.unknown_share = 0.12;
+    c.unknown_p = 0.002;
+    c.pair_share = 0.05;
+    c.pair_gain = 20;
+    c.origin = "tests/bench/discovery, static sets";
+    return c;
+}
+
+}  // namespace
+
+StaticLoop::StaticLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+                       core::Progress& progress)
+    : model_(model),
+      data_(data),
+      options_(options),
+      progress_(progress),
+      calibration_(static_calibration()),
+      experiment_(model, data) {}
+
+Discovery StaticLoop::run() {
+    refuse_outside_tables(experiment_, data_);
+    split();
+    experiment_.estimate_noise();
+    progress_.report(0.1, "fitting the effects of the catalogue");
+    fit_singles();
+    leave_accidents_out();
+    whiten();
+    progress_.report(0.4, "testing what is left");
+    open_gate();
+    if (gate_ < calibration_.gate) {
+        fit_pairs();
+    }
+    decide();
+    progress_.report(0.8, "error on held-out set points");
+    if (test_experiment_) {
+        test_experiment_->set_noise(experiment_.noise());
+    }
+    measure_error();
+    describe();
+    if (options_.placebo_twins > 0) {
+        progress_.report(0.85, "the same on twins with nothing missing");
+        run_placebo();
+    }
+    return std::move(result_);
+}
+
+void StaticLoop::split() {
+    const bool named = std::any_of(data_.runs.begin(), data_.runs.end(),
+                                   [](const auto& run) { return run.use == dynamics::RunUse::test; });
+    const auto& all = experiment_.observations();
+    const std::filesystem::path beside = data_.folder / "held-out";
+    if (named) {
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            (data_.runs[all[i].run].use == dynamics::RunUse::test ? test_ : train_).push_back(i);
+        }
+        result_.held_out = "runs that dataset.toml marks for the test";
+    } else if (std::filesystem::exists(beside / "dataset.toml")) {
+        const dynamics::Measurements other = dynamics::read_measurements(beside);
+        if (other.kind == dynamics::MeasurementKind::steady) {
+            test_experiment_.emplace(model_, other);
+            result_.held_out = "the folder held-out beside the data, which nothing was fitted to";
+        }
+    }
+    if (!named && !test_experiment_) {
+        // a quarter of the set points, drawn once
+        std::vector<bool> held(experiment_.set_points(), false);
+        if (experiment_.set_points() >= 8) {
+            core::Random random(options_.seed);
+            for (std::size_t left = experiment_.set_points() / 4; left > 0;) {
+                const std::size_t g = random.below(held.size());
+                left -= held[g] ? 0 : 1;
+                held[g] = true;
+            }
+        }
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            (held[all[i].set_point] ? test_ : train_).push_back(i);
+        }
+        result_.held_out =
+            test_.empty()
+                ? "the readings that were fitted, because fewer than eight set points leave none to hold out: too good "
+                  "by nature"
+                : "a quarter of the set points, drawn before anything was fitted (same rig, same order of measurement)";
+    } else if (!named) {
+        train_.resize(all.size());
+        std::iota(train_.begin(), train_.end(), std::size_t{0});
+    }
+    // in the order of measurement, one quantity after the other, so that blocks of neighbours are blocks in time
+    std::stable_sort(train_.begin(), train_.end(), [&](std::size_t a, std::size_t b) {
+        return std::tuple(all[a].quantity, all[a].run, all[a].row) <
+               std::tuple(all[b].quantity, all[b].run, all[b].row);
+    });
+}
+
+void StaticLoop::keep_lengths_inside(std::vector<Hypothesis>& candidates) const {
+    double low = 1e300;
+    double high = -1e300;
+    for (const std::size_t i : train_) {
+        low = std::min(low, experiment_.observations()[i].at[Channel::gap]);
+        high = std::max(high, experiment_.observations()[i].at[Channel::gap]);
+    }
+    for (Hypothesis& candidate : candidates) {
+        for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+            FitParameter& parameter = candidate.parameters[j];
+            if (candidate.names.front() == "surface_roughness" && parameter.name == "length" && low > 0 &&
+                high > 1.5 * low) {
+                parameter.lower = std::max(parameter.lower, 1.2 * low);
+                parameter.upper = std::min(parameter.upper, 0.85 * high);
+                parameter.start = std::clamp(parameter.start, parameter.lower, parameter.upper);
+                parameter.typical = std::min(parameter.typical, 0.5 * (parameter.upper - parameter.lower));
+                const double inside[] = {std::pow(low, 0.75) * std::pow(high, 0.25), std::sqrt(low * high),
+                                         std::pow(low, 0.25) * std::pow(high, 0.75)};
+                for (std::size_t k = 0; k < candidate.starts.size(); ++k) {
+                    candidate.starts[k][j] = inside[k % 3];
+                }
+            }
+        }
+    }
+}
+
+FittedHypothesis StaticLoop::fitted(const Hypothesis& hypothesis) const {
+    FittedHypothesis fit = experiment_.fit(hypothesis, train_);
+    fit.explained = null_cost_ - fit.cost;
+    fit.explained_by_group.assign(experiment_.set_points(), 0);
+    for (std::size_t i = 0; i < train_.size(); ++i) {
+        fit.explained_by_group[experiment_.observations()[train_[i]].set_point] +=
+            null_residuals_[i] * null_residuals_[i] - fit.fit.residuals[i] * fit.fit.residuals[i];
+    }
+    return fit;
+}
+
+void StaticLoop::fit_singles() {
+    std::vector<Channel> seen = experiment_.varying();
+    if (experiment_.set_points() == 1) {
+        // nothing tells them apart there: all that can have moved the readings share the probability
+        for (const Channel channel : {Channel::gap, Channel::speed, Channel::jet_voltage}) {
+            if (experiment_.observations().front().at.has(channel) &&
+                std::find(seen.begin(), seen.end(), channel) == seen.end()) {
+                seen.push_back(channel);
+            }
+        }
+    }
+    std::vector<Hypothesis> candidates = static_hypotheses(experiment_.model(), seen, experiment_.quantities());
+    keep_lengths_inside(candidates);
+    keep_only(candidates, options_.candidates);
+    experiment_.residuals(train_, {}, null_residuals_);
+    null_cost_ = sum_of_squares(null_residuals_);
+    fitted_.resize(candidates.size());
+    core::parallel_for(
+        candidates.size(), [&](std::size_t i) { fitted_[i] = fitted(candidates[i]); }, progress_);
+    singles_ = fitted_.size();
+}
+
+std::vector<double> StaticLoop::left_over() const {
+    const std::size_t best = best_hypothesis(fitted_, 1);
+    std::vector<double> left = best < fitted_.size() ? fitted_[best].fit.residuals : null_residuals_;
+    const StaticStructure structure(experiment_, train_);
+    for (const StaticStructure::Test& test : structure.tests()) {
+        // coloured noise alone makes a slow wave over time; only what is far more than that is no colour
+        const bool slow = test.variables.front() == Channel::time;
+        const double colour_alone = 50 + 5 * static_cast<double>(test.basis.columns);
+        if (test.variables.size() == 1 && (!slow || explained_square(test.basis, left) > colour_alone)) {
+            take_out(test.basis, left);
+        }
+    }
+    return left;
+}
+
+void StaticLoop::leave_accidents_out() {
+    const std::vector<std::size_t> bad = accidents(left_over());
+    if (bad.empty()) {
+        return;
+    }
+    std::string where;
+    std::vector<std::size_t> kept;
+    std::vector<std::size_t> left_out;
+    for (std::size_t i = 0; i < train_.size(); ++i) {
+        if (std::find(bad.begin(), bad.end(), i) == bad.end()) {
+            kept.push_back(train_[i]);
+        } else {
+            left_out.push_back(train_[i]);
+            const Observation& one = experiment_.observations()[train_[i]];
+            where += (where.empty() ? "" : ", ") +
+                     data_.runs[one.run].table.place(one.row, experiment_.quantities()[one.quantity]).text();
+        }
+    }
+    train_ = std::move(kept);
+    experiment_.mark_accidents(left_out);
+    result_.problems.push_back(
+        {core::Problem::Severity::warning,
+         std::to_string(bad.size()) + (bad.size() == 1 ? " reading lies" : " readings lie") +
+             " more than six standard deviations from everything else and was left out of every fit: " + where,
+         {}});
+    experiment_.estimate_noise();
+    fit_singles();
+}
+
+void StaticLoop::whiten() {
+    if (experiment_.find_colour(train_, left_over())) {
+        result_.problems.push_back(
+            {core::Problem::Severity::note,
+             "neighbouring readings share part of their noise (coloured noise): whitened before anything was judged",
+             {}});
+        fit_singles();
+    }
+}
+
+Discovery discover_static(const dynamics::Model& model, const dynamics::Measurements& data,
+                          const DiscoverOptions& options, core::Progress& progress) {
+    return StaticLoop(model, data, options, progress).run();
+}
+
+}  // namespace underbody::discovery

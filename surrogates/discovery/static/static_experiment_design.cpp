@@ -1,0 +1,182 @@
+#include "surrogates/discovery/static/static_experiment_design.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/discovery/wording.h"
+
+namespace underbody::discovery {
+
+using dynamics::Channel;
+
+namespace {
+
+struct Candidate {
+    dynamics::Conditions at;
+    double separation = 0;  ///< of the two explanations, in standard deviations, all measured quantities together
+};
+
+std::vector<double> levels(const StaticExperiment& experiment, Channel channel) {
+    double low = 1e300;
+    double high = -1e300;
+    for (const Observation& one : experiment.observations()) {
+        low = std::min(low, one.at[channel]);
+        high = std::max(high, one.at[channel]);
+    }
+    const bool fine = channel == Channel::gap;
+    const int count = fine ? 9 : channel == Channel::approach_direction ? 2 : 3;
+    std::vector<double> values;
+    for (int k = 0; k < count; ++k) {
+        const double share = static_cast<double>(k) / (count - 1);
+        values.push_back(fine && low > 0 ? low * std::pow(high / low, share) : low + (high - low) * share);
+    }
+    return values;
+}
+
+/// Every combination of a few levels of every varying channel; no more than some thousands.
+std::vector<Candidate> candidates(const StaticExperiment& experiment) {
+    std::vector<Candidate> list(1);
+    list.front().at = experiment.observations().front().at;
+    for (const Channel channel : experiment.varying()) {
+        const std::vector<double> values = levels(experiment, channel);
+        if (list.size() * values.size() > 4000) {
+            continue;
+        }
+        std::vector<Candidate> longer;
+        for (const Candidate& begun : list) {
+            for (const double value : values) {
+                longer.push_back(begun);
+                longer.back().at[channel] = value;
+            }
+        }
+        list = std::move(longer);
+    }
+    return list;
+}
+
+std::vector<Candidate> separated(const StaticExperiment& experiment, const std::vector<dynamics::EffectUse>& a,
+                                 const std::vector<dynamics::EffectUse>& b) {
+    std::vector<Candidate> list = candidates(experiment);
+    for (Candidate& candidate : list) {
+        for (std::size_t q = 0; q < experiment.quantities().size(); ++q) {
+            Observation one = experiment.observations().front();
+            one.quantity = q;
+            one.at = candidate.at;
+            one.sigma = 0;
+            const double sigma = experiment.noise().at(experiment.quantities()[q]).value;
+            const double difference = (experiment.predict(one, a) - experiment.predict(one, b)) / sigma;
+            candidate.separation += difference * difference;
+        }
+        candidate.separation = std::sqrt(candidate.separation);
+    }
+    std::sort(list.begin(), list.end(),
+              [](const Candidate& x, const Candidate& y) { return x.separation > y.separation; });
+    return list;
+}
+
+std::string where(const StaticExperiment& experiment, const Candidate& candidate) {
+    std::string text;
+    for (const Channel channel : experiment.varying()) {
+        if (channel != Channel::time && channel != Channel::temperature) {
+            text += (text.empty() ? "" : ", ") + std::string(dynamics::channel_name(channel)) + " " +
+                    value_text({"", candidate.at[channel], 0, dynamics::channel_unit(channel)});
+        }
+    }
+    return text;
+}
+
+/// Chance that n-fold evidence of total separation `d` (in standard deviations) reaches odds of 20 for the truth.
+double power_of(double d) { return d > 1e-9 ? 0.5 * std::erfc(-(0.5 * d - std::log(20.0) / d) / std::sqrt(2.0)) : 0; }
+
+}  // namespace
+
+std::string static_told_apart(const StaticExperiment& experiment, const FittedHypothesis& chosen,
+                              const FittedHypothesis& rival) {
+    const std::vector<Candidate> list = separated(experiment, chosen.hypothesis.with(chosen.fit.parameters),
+                                                  rival.hypothesis.with(rival.fit.parameters));
+    if (list.front().separation < 0.02) {
+        return "nothing in the measured range: both say the same at every set point; look at the rig (is there such a "
+               "part?)";
+    }
+    const double repeats = std::ceil(36 / (list.front().separation * list.front().separation));
+    return "they differ most at " + where(experiment, list.front()) + ": by " +
+           core::format_number(list.front().separation, 3) + " standard deviations a reading, so " +
+           (repeats <= 1 ? "one reading there decides"
+                         : core::format_number(std::min(repeats, 1e6), 4) + " readings there decide");
+}
+
+void next_static_experiment(const StaticExperiment& experiment, const std::vector<FittedHypothesis>& fitted,
+                            const Attribution& attribution, std::uint64_t /*seed*/, Discovery& result) {
+    if (attribution.shares.empty()) {
+        result.next_experiment =
+            "set points other than those measured; the catalogue has no effect that these could show";
+        return;
+    }
+    const FittedHypothesis& best = fitted[attribution.shares.front().hypothesis];
+    const FittedHypothesis* rival = nullptr;
+    std::vector<dynamics::EffectUse> a = best.hypothesis.with(best.fit.parameters);
+    std::vector<dynamics::EffectUse> b;
+    std::string purpose;
+    if (result.verdict == "effect" && attribution.shares.size() > 1) {
+        // the likeliest rival that set points can tell from it at all
+        for (std::size_t k = 1; k < attribution.shares.size(); ++k) {
+            rival = &fitted[attribution.shares[k].hypothesis];
+            b = rival->hypothesis.with(rival->fit.parameters);
+            if (separated(experiment, a, b).front().separation > 0.02) {
+                break;
+            }
+        }
+        purpose = "to tell " + best.hypothesis.label() + " from " + rival->hypothesis.label();
+    } else if (result.verdict == "none") {
+        // the effect that came nearest, at its limit
+        std::vector<double> p = best.fit.parameters;
+        p.front() += 3 * best.fit.sigma.front();
+        a = best.hypothesis.with(p);
+        purpose = "to see " + best.hypothesis.label() + " below today's limit";
+    } else if (result.verdict == "unknown" && !result.effects.empty()) {
+        // where the correction is largest; levels between the measured ones show its shape
+        a = result.effects.front().uses;
+        purpose = "to see the law behind what depends on " + list_of(result.depends_on);
+    } else {
+        purpose = "to confirm " + best.hypothesis.label();
+    }
+    const std::vector<Candidate> list = separated(experiment, a, b);
+    std::vector<Candidate> taken;
+    for (const Candidate& candidate : list) {
+        if (taken.size() < 8 && candidate.separation > 0.3 * list.front().separation) {
+            taken.push_back(candidate);
+        }
+    }
+    constexpr double repeats = 4;
+    double square = 0;
+    for (const Candidate& candidate : taken) {
+        square += repeats * candidate.separation * candidate.separation;
+    }
+    result.next_power = power_of(std::sqrt(square));
+    result.next_experiment = purpose + ": " + std::to_string(taken.size()) + " set points, " +
+                             core::format_number(repeats, 2) + " readings each in mixed order, first at " +
+                             where(experiment, list.front()) + "; " + settling_text(result.next_power) +
+                             " (next-experiment.csv)";
+    std::vector<Candidate> order;
+    for (int repeat = 0; repeat < static_cast<int>(repeats); ++repeat) {
+        for (std::size_t k = 0; k < taken.size(); ++k) {
+            // up one time and down the next, so that time does not run with any channel
+            order.push_back(taken[repeat % 2 == 0 ? k : taken.size() - 1 - k]);
+        }
+    }
+    for (const Channel channel : experiment.varying()) {
+        if (channel == Channel::time || channel == Channel::temperature) {
+            continue;
+        }
+        std::vector<double> values;
+        for (const Candidate& candidate : order) {
+            values.push_back(candidate.at[channel]);
+        }
+        result.next_set_points.add_numbers(dynamics::channel_name(channel), dynamics::channel_unit(channel),
+                                           std::move(values));
+    }
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,87 @@
+// The loop for forces at set points: from the readings to a verdict, the error before and after, and what to do next.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surrogates/discovery/attribution.h"
+#include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/static/static_experiment.h"
+#include "surrogates/discovery/static/static_structure.h"
+
+namespace underbody::discovery {
+
+/// Runs once. Steps in the order of run(); each leaves its answer in the members that the next ones read.
+class StaticLoop {
+public:
+    StaticLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+               core::Progress& progress);
+    Discovery run();
+
+private:
+    // static_discovery.cpp: what is held out, every effect alone, accidents, colour
+    void split();
+    void fit_singles();
+    /// A change over the gap at a length that was not measured is no such change: it would pass for a gain.
+    void keep_lengths_inside(std::vector<Hypothesis>& candidates) const;
+    [[nodiscard]] FittedHypothesis fitted(const Hypothesis& hypothesis) const;
+    /// What neither the best single effect nor a smooth function of one channel explains; of time only what is far too
+    /// much for colour.
+    [[nodiscard]] std::vector<double> left_over() const;
+    /// One bad reading would pass for an effect, or for more noise than there is.
+    void leave_accidents_out();
+    /// Noise whose neighbours in time go together would pass for drift and the like: what the best effect and a smooth
+    /// function of time leave is looked at, and if it is coloured everything is judged again after whitening.
+    void whiten();
+
+    // static_verdict.cpp: is anything there, pairs of effects, what goes into the model
+    /// What each effect does to the residuals when it is small.
+    [[nodiscard]] std::vector<DesignMatrix> directions() const;
+    void open_gate();
+    /// A second effect is looked for only where the best single one leaves structure, and stays only when it earns its
+    /// place.
+    void fit_pairs();
+    /// Two laws of which each does far more than both together (a gain of seven beside a power that undoes it) are no
+    /// two effects: they bend into a law that neither has.
+    [[nodiscard]] bool cancels(const FittedHypothesis& pair) const;
+    void decide();
+    void make_correction();
+    /// Whether the verdict stands when each set point counts with its weight.
+    [[nodiscard]] bool same_verdict(const std::vector<double>& weight) const;
+    [[nodiscard]] double stability() const;
+
+    // static_twins.cpp
+    /// The data with what the declared model says at every set point, and noise.
+    [[nodiscard]] dynamics::Measurements twin(std::uint64_t seed) const;
+    void run_placebo();
+
+    // static_describe.cpp
+    void measure_error();
+    void describe();
+    [[nodiscard]] std::string evidence(const FittedHypothesis& one) const;
+
+    const dynamics::Model& model_;
+    const dynamics::Measurements& data_;
+    const DiscoverOptions& options_;
+    core::Progress& progress_;
+    Calibration calibration_;
+    StaticExperiment experiment_;
+    std::optional<StaticExperiment> test_experiment_;
+    std::vector<std::size_t> train_;
+    std::vector<std::size_t> test_;
+    std::vector<double> null_residuals_;
+    double null_cost_ = 0;
+    std::vector<FittedHypothesis> fitted_;
+    std::size_t singles_ = 0;
+    std::size_t best_single_ = 0;
+    std::optional<StaticStructure> structure_;
+    SmoothFit whole_;  ///< structure of the residuals as declared
+    SmoothFit rest_;   ///< and of what the best explanation leaves
+    double gate_ = 1;
+    Attribution attribution_;
+    std::vector<dynamics::EffectUse> uses_;  ///< what goes into the model
+    Discovery result_;
+};
+
+}  // namespace underbody::discovery

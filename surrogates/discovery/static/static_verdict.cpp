@@ -1,0 +1,213 @@
+// From fitted effects to a verdict for static sets: the gate, pairs, what they leave, and how stable the answer is.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <set>
+
+#include "core/parallel.h"
+#include "surrogates/discovery/report_findings.h"
+#include "surrogates/discovery/static/static_loop.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+using dynamics::Channel;
+
+std::vector<DesignMatrix> StaticLoop::directions() const {
+    std::vector<DesignMatrix> list;
+    std::vector<double> moved;
+    for (std::size_t i = 0; i < singles_; ++i) {
+        const Hypothesis& h = fitted_[i].hypothesis;
+        DesignMatrix matrix;
+        matrix.rows = train_.size();
+        for (std::size_t j = 0; j < h.parameters.size(); ++j) {
+            std::vector<double> p = h.start();
+            p[j] +=
+                (p[j] + 0.1 * h.parameters[j].typical <= h.parameters[j].upper ? 0.1 : -0.1) * h.parameters[j].typical;
+            experiment_.residuals(train_, h.with(p), moved);
+            ++matrix.columns;
+            for (std::size_t k = 0; k < moved.size(); ++k) {
+                matrix.values.push_back(moved[k] - null_residuals_[k]);
+            }
+        }
+        list.push_back(orthonormal(matrix));
+    }
+    return list;
+}
+
+void StaticLoop::open_gate() {
+    structure_.emplace(experiment_, train_);
+    whole_ = structure_->best(null_residuals_);
+    best_single_ = best_hypothesis(fitted_, 1);
+    rest_ = whole_;
+    std::vector<double> noise_like = null_residuals_;
+    if (best_single_ < fitted_.size()) {
+        rest_ = structure_->best(fitted_[best_single_].fit.residuals);
+        noise_like = fitted_[best_single_].fit.residuals;
+    }
+    gate_ = simulated_gate(*structure_, directions(), null_residuals_, noise_like, options_.seed, progress_);
+    result_.depends_on = whole_.variables;
+}
+
+void StaticLoop::fit_pairs() {
+    if (best_single_ >= fitted_.size() || rest_.p > calibration_.unknown_p) {
+        return;
+    }
+    std::vector<std::size_t> order(singles_);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return fitted_[a].score() < fitted_[b].score(); });
+    std::vector<std::size_t> leaders;
+    std::set<std::vector<std::string>> seen;
+    for (const std::size_t i : order) {
+        std::vector<std::string> law = fitted_[i].hypothesis.names;
+        if (law.front() == "cable_buoyancy") {
+            law.front() = "strut_buoyancy";  // one law under two names takes one place
+        }
+        if (leaders.size() < 5 && seen.insert(law).second) {
+            leaders.push_back(i);
+        }
+    }
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (const std::size_t a : leaders) {
+        for (std::size_t b = 0; b < singles_; ++b) {
+            const bool both_lead = std::find(leaders.begin(), leaders.end(), b) != leaders.end();
+            if (fitted_[a].hypothesis.names != fitted_[b].hypothesis.names && !(both_lead && b < a)) {
+                pairs.emplace_back(a, b);
+            }
+        }
+    }
+    std::vector<FittedHypothesis> found(pairs.size());
+    core::parallel_for(
+        pairs.size(),
+        [&](std::size_t k) {
+            const auto [a, b] = pairs[k];
+            const Hypothesis& second = fitted_[b].hypothesis;
+            found[k] = fitted(joined(fitted_[a].hypothesis, fitted_[a].fit.parameters, second,
+                                     second.starts.empty() ? second.start() : second.starts.front()));
+        },
+        progress_);
+    std::erase_if(found, [&](const FittedHypothesis& pair) { return cancels(pair); });
+    const std::size_t best = best_hypothesis(found, 2);
+    if (best >= found.size()) {
+        return;
+    }
+    const double gain = fitted_[best_single_].score() - found[best].score();
+    const SmoothFit rest = structure_->best(found[best].fit.residuals);
+    const double share = gain / std::max(found[best].explained, 1e-12);
+    // two laws together bend to much: what they leave must look like noise, or nearly
+    if (gain > calibration_.pair_gain && share > calibration_.pair_share &&
+        (rest.p > calibration_.unknown_p ||
+         structure_left(rest, found[best].explained) < 0.15 * calibration_.unknown_share)) {
+        fitted_.insert(fitted_.end(), found.begin(), found.end());
+        rest_ = rest;
+    }
+}
+
+bool StaticLoop::cancels(const FittedHypothesis& pair) const {
+    constexpr double most = 20;
+    const std::vector<dynamics::EffectUse> uses = pair.hypothesis.with(pair.fit.parameters);
+    double parts = 0;
+    std::vector<double> moved;
+    const auto size_of = [&](const std::vector<dynamics::EffectUse>& some) {
+        experiment_.residuals(train_, some, moved);
+        double sum = 0;
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            sum += (moved[i] - null_residuals_[i]) * (moved[i] - null_residuals_[i]);
+        }
+        return sum;
+    };
+    for (const std::string& name : pair.hypothesis.names) {
+        std::vector<dynamics::EffectUse> own;
+        std::copy_if(uses.begin(), uses.end(), std::back_inserter(own),
+                     [&](const dynamics::EffectUse& use) { return use.name == name; });
+        parts += size_of(own);
+    }
+    return parts > most * size_of(uses);
+}
+
+void StaticLoop::make_correction() {
+    std::vector<Channel> variables;
+    for (const std::string& name : whole_.variables) {
+        Channel channel{};
+        if (dynamics::find_channel(name, channel)) {
+            variables.push_back(channel);
+        }
+    }
+    std::vector<double> residuals;
+    for (const std::size_t i : train_) {
+        residuals.push_back(experiment_.observations()[i].value -
+                            experiment_.predict(experiment_.observations()[i], {}));
+    }
+    for (std::size_t q = 0; q < experiment_.quantities().size(); ++q) {
+        std::vector<double> own = null_residuals_;
+        for (std::size_t i = 0; i < train_.size(); ++i) {
+            own[i] = experiment_.observations()[train_[i]].quantity == q ? own[i] : 0;
+        }
+        if (structure_->best(own).p > 0.01) {
+            continue;  // nothing was seen in this quantity: a correction would only carry its noise into the model
+        }
+        uses_.push_back(smooth_correction(experiment_, train_, variables, q, residuals));
+    }
+}
+
+void StaticLoop::decide() {
+    attribution_ = attribute(fitted_, gate_, rest_, calibration_);
+    result_.verdict = attribution_.verdict;
+    result_.gate = gate_;
+    result_.none_probability = attribution_.none_probability;
+    result_.model = model_;
+    for (const auto& [quantity, figure] : experiment_.noise()) {
+        result_.noise[quantity] = {figure.value, figure.unit, figure.from, figure.estimated};
+    }
+    if (result_.verdict == "effect") {
+        uses_ = found_effect(fitted_[attribution_.chosen], 1).uses;
+    } else if (result_.verdict == "unknown") {
+        make_correction();
+    }
+    for (const dynamics::EffectUse& use : uses_) {
+        result_.model = result_.model.with_effect(use);
+    }
+}
+
+bool StaticLoop::same_verdict(const std::vector<double>& weight) const {
+    const auto of_rows = [&](const std::vector<double>& gain) {
+        double sum = 0;
+        for (std::size_t i = 0; i < gain.size(); ++i) {
+            sum += weight[experiment_.observations()[train_[i]].set_point] * gain[i];
+        }
+        return sum;
+    };
+    const auto of_groups = [&](const FittedHypothesis& one) {
+        return std::inner_product(weight.begin(), weight.end(), one.explained_by_group.begin(), 0.0);
+    };
+    if (result_.verdict == "none") {
+        // the gate's chance follows the tail of what looked most like something, smooth or named
+        const auto chance = [&](double gain, double drawn, double degrees) {
+            const double whole = chi_squared_tail(gain, degrees);
+            return std::pair(whole, gate_ * chi_squared_tail(std::max(drawn, 0.0), degrees) / std::max(whole, 1e-300));
+        };
+        std::pair<double, double> strongest = chance(whole_.gain, of_rows(whole_.gain_of_row), whole_.degrees);
+        if (best_single_ < fitted_.size()) {
+            const FittedHypothesis& best = fitted_[best_single_];
+            strongest = std::min(strongest, chance(best.explained, of_groups(best),
+                                                   static_cast<double>(best.hypothesis.parameters.size())));
+        }
+        return strongest.second >= calibration_.gate;
+    }
+    const SmoothFit left{{}, of_rows(rest_.gain_of_row), rest_.degrees, rest_.p, {}};
+    const bool unknown = attribution_.chosen >= fitted_.size() ||
+                         (rest_.p < calibration_.unknown_p &&
+                          structure_left(left, of_groups(fitted_[attribution_.chosen])) > calibration_.unknown_share);
+    return result_.verdict == "unknown"
+               ? unknown
+               : !unknown && best_in_draw(attribution_, fitted_, weight) == attribution_.chosen;
+}
+
+double StaticLoop::stability() const {
+    return share_of_draws(experiment_.set_points(), options_.seed + 1,
+                          [&](const std::vector<double>& weight) { return same_verdict(weight); });
+}
+
+}  // namespace underbody::discovery

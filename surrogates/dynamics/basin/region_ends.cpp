@@ -1,0 +1,436 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/parallel.h"
+#include "core/text.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/plant/loop_actuator.h"
+#include "surrogates/dynamics/simulate/dormand_prince.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+/// Everything that acts on the body at rest, against the gap, as one curve over [lower, upper].
+Curve static_curve(const HeavePlant& plant, double lower, double upper) {
+    std::vector<double> knots{lower, upper};
+    if (!plant.lift_curve().empty()) {
+        for (const double knot : plant.lift_curve().knots()) {
+            if (knot > lower && knot < upper) {
+                knots.push_back(knot);
+            }
+        }
+    }
+    std::sort(knots.begin(), knots.end());
+    // Knots a hair apart keep two tables apart where one ends; here each stretch takes its slopes from its own inside.
+    const double hair = 1e-8 * (upper - lower);
+    knots.erase(std::unique(knots.begin(), knots.end(), [hair](double l, double r) { return r - l <= hair; }),
+                knots.end());
+    const double size = [&] {
+        double largest = 1e-300;
+        for (const double h : knots) {
+            largest = std::max(largest, std::abs(plant.static_force(h)));
+        }
+        return largest;
+    }();
+    std::vector<double> x, value, slope;
+    const auto f = [&](double h) { return plant.static_force(h); };
+    // Slopes from inside the interval: exact for a cubic, and right on both sides of the kinks of a clamped table.
+    const auto end_slope = [&](double end, double inner) {
+        const double d = (inner - end) / 3;
+        return (-11 * f(end) + 18 * f(end + d) - 9 * f(end + 2 * d) + 2 * f(inner)) / (6 * d);
+    };
+    const auto refine = [&](auto&& self, double l, double r, int depth) -> void {
+        const double sl = end_slope(l, r), sr = end_slope(r, l), width = r - l;
+        const double vl = f(l), vr = f(r);
+        double worst = 0;
+        for (const double t : {0.15, 0.45, 0.75}) {
+            const double q = 1 - t;
+            const double hermite =
+                vl * q * q * (1 + 2 * t) + vr * t * t * (3 - 2 * t) + width * t * q * (sl * q - sr * t);
+            worst = std::max(worst, std::abs(hermite - f(l + t * width)));
+        }
+        if (worst > 1e-11 * size && depth < 8) {
+            self(self, l, (l + r) / 2, depth + 1);
+            self(self, (l + r) / 2, r, depth + 1);
+            return;
+        }
+        // Two knots a hair apart where the slopes of two pieces differ: each piece keeps its own.
+        if (!x.empty() && std::abs(slope.back() - sl) <= 1e-7 * (std::abs(sl) + size / (upper - lower))) {
+            x.pop_back();
+            value.pop_back();
+            slope.pop_back();
+            x.push_back(l);
+        } else if (!x.empty()) {
+            x.push_back(l + std::max(1e-10 * width, 1e-15 * std::abs(l)));
+        } else {
+            x.push_back(l);
+        }
+        value.push_back(vl);
+        slope.push_back(sl);
+        x.push_back(r);
+        value.push_back(vr);
+        slope.push_back(sr);
+    };
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+        if (knots[i + 1] - knots[i] > 1e-12 * (upper - lower)) {
+            refine(refine, knots[i], knots[i + 1], 0);
+        }
+    }
+    return {std::move(x), std::move(value), std::move(slope)};
+}
+
+/// A stable equilibrium between two rims.
+struct Well {
+    int class_index = 0;
+    double lower = 0, upper = 0;
+    double rim = 0;  ///< J: less energy than this cannot leave
+};
+
+}  // namespace
+
+const char* end_kind_name(EndKind kind) {
+    switch (kind) {
+        case EndKind::attractor:
+            return "attractor";
+        case EndKind::contact:
+            return "contact";
+        case EndKind::escape:
+            return "escape";
+        case EndKind::cycle:
+            return "cycle";
+        case EndKind::undecided:
+            break;
+    }
+    return "undecided";
+}
+
+struct HeaveEnds::Impl {
+    const HeavePlant& plant;
+    double contact, escape, duration, scale_gap, scale_velocity, gap_size, velocity_size;
+    std::vector<HeaveEquilibrium> equilibria;
+    std::vector<EndClass> classes;
+    std::vector<Well> wells;
+    int contact_class = 0, escape_class = 0, undecided_class = 0;
+    bool energy = false;    ///< the energy argument holds
+    bool lossless = false;  ///< and nothing dissipates
+    Curve force;
+    double rest_resistance = 0;
+    std::string rule;
+
+    Impl(const HeavePlant& p, double contact_gap, double escape_gap, double time, double tolerance, double gap_scale,
+         double velocity_scale)
+        : plant(p),
+          contact(contact_gap),
+          escape(escape_gap),
+          duration(time),
+          scale_gap(tolerance * gap_scale),
+          scale_velocity(tolerance * velocity_scale),
+          gap_size(gap_scale),
+          velocity_size(velocity_scale) {
+        equilibria = heave_equilibria(plant);
+        const double margin = 0.02 * (escape - contact);
+        force = static_curve(plant, contact - margin, escape + margin);
+        rest_resistance = plant.resistance(std::max(contact, 1e-3), 0.0);
+        judge_dissipation();
+        name_classes();
+    }
+
+    void judge_dissipation() {
+        bool depends_on_both = plant.terms.extras.empty();
+        for (const HeaveTerms::Correction& correction : plant.terms.corrections) {
+            depends_on_both = depends_on_both && correction.axes.size() == 1 &&
+                              (correction.axes[0] == Channel::gap || correction.axes[0] == Channel::heave_velocity);
+        }
+        energy = plant.autonomous() && depends_on_both && plant.single_curve() && !plant.loop;
+        double most = 0;
+        for (double size = 1e-6; size < 1e3 && energy; size *= 1.3) {
+            for (const double w : {size, -size}) {
+                for (const double h : {contact + 1e-4, contact + 0.3 * (escape - contact)}) {
+                    const double loss = (plant.resistance(h, w) - rest_resistance) * w;
+                    energy = energy && loss >= -1e-15 * w * w;
+                    most = std::max(most, loss / (w * w));
+                }
+            }
+        }
+        lossless = energy && most <= 1e-15;
+        rule = !energy ? "settled" : lossless ? "energy without loss" : "energy";
+    }
+
+    [[nodiscard]] double potential(double h) const { return -force.integral(h); }
+
+    void name_classes() {
+        for (const HeaveEquilibrium& e : equilibria) {
+            if (e.stable && e.gap > contact && e.gap < escape) {
+                classes.push_back({e.name, EndKind::attractor, e.gap, 0});
+            }
+        }
+        const std::size_t attractors = classes.size();
+        contact_class = static_cast<int>(classes.size());
+        classes.push_back({"contact", EndKind::contact});
+        escape_class = static_cast<int>(classes.size());
+        classes.push_back({"escape", EndKind::escape});
+        for (std::size_t i = 0; i < attractors; ++i) {
+            classes.push_back({"about " + classes[i].name, EndKind::cycle, classes[i].gap, 0});
+        }
+        undecided_class = static_cast<int>(classes.size());
+        classes.push_back({"undecided", EndKind::undecided});
+        for (std::size_t i = 0; i < attractors; ++i) {
+            Well well;
+            well.class_index = static_cast<int>(lossless ? attractors + 2 + i : i);
+            well.lower = contact;
+            well.upper = escape;
+            for (const HeaveEquilibrium& e : equilibria) {
+                if (!e.stable && e.gap < classes[i].gap) {
+                    well.lower = std::max(well.lower, e.gap);
+                }
+                if (!e.stable && e.gap > classes[i].gap) {
+                    well.upper = std::min(well.upper, e.gap);
+                }
+            }
+            // A hair below the rim, so that rounding never captures what would pass.
+            const double bottom = potential(classes[i].gap);
+            const double rim = std::min(potential(well.lower), potential(well.upper));
+            well.rim = rim - 1e-12 * std::abs(rim - bottom);
+            wells.push_back(well);
+        }
+    }
+
+    [[nodiscard]] int captured(double h, double w) const {
+        for (const Well& well : wells) {
+            if (h > well.lower && h < well.upper) {
+                double slope = 0;
+                const double mass = plant.inertia(h, slope);
+                return 0.5 * mass * w * w + potential(h) < well.rim ? well.class_index : -1;
+            }
+        }
+        return -1;
+    }
+
+    /// The heave equation with all that depends on the gap alone taken from one curve.
+    struct StaticRate {
+        const HeaveTerms* terms;
+        const Curve* force;
+        double rest;
+        void operator()(double, const double* y, double* d) const {
+            HeaveLoad load{(*force)(y[0]) + rest, 0, 0};
+            add_water_drag<false>(*terms, y[1], load);
+            add_guided_resistance<false>(*terms, y[0], y[1], 0, load);
+            HeaveSlopes unused;
+            d[0] = y[1];
+            d[1] = heave_acceleration<false>(*terms, y[0], y[1], load, {}, unused);
+        }
+    };
+    struct FullRate {
+        const HeavePlant* plant;
+        double input;
+        void operator()(double t, const double* y, double* d) const {
+            HeaveMoment moment;
+            moment.t = t;
+            moment.input = input;
+            d[0] = y[1];
+            d[1] = plant->acceleration(y[0], y[1], moment);
+        }
+    };
+    struct HistoryRate {
+        const HeavePlant* plant;
+        double input;
+        void operator()(double t, const double* y, double* d) const {
+            HeaveMoment moment;
+            moment.t = t;
+            moment.input = input;
+            d[0] = y[1];
+            d[1] = plant->acceleration(y[0], y[1], moment, y + 2);
+            const HistoryKernel& kernel = history_kernel();
+            for (std::size_t i = 0; i < history_states; ++i) {
+                d[2 + i] = -kernel.rate[i] * (y[2 + i] + y[1]);
+            }
+        }
+    };
+
+    /// The loop with the states of its actuator: gap, velocity, force after the lag, and the memory of the water.
+    template <std::size_t N>
+    struct LoopRate {
+        const HeavePlant* plant;
+        const LoopActuator<2>* actuator;
+        void operator()(double t, const double* y, double* d) const {
+            const double driven = actuator->driven(t, y);
+            HeaveMoment moment;
+            moment.t = t;
+            moment.input = actuator->lagged() ? y[2] : driven;
+            d[0] = y[1];
+            d[1] = plant->acceleration(y[0], y[1], moment, N > 3 ? y + 3 : nullptr);
+            d[2] = actuator->lagged() ? (driven - y[2]) / plant->terms.actuator.lag : 0;
+            if constexpr (N > 3) {
+                const HistoryKernel& kernel = history_kernel();
+                for (std::size_t i = 0; i < history_states; ++i) {
+                    d[3 + i] = -kernel.rate[i] * (y[3 + i] + y[1]);
+                }
+            }
+        }
+    };
+    template <std::size_t N>
+    [[nodiscard]] End through_actuator(double h, double w) const {
+        const double given = plant.held_input();
+        LoopActuator<2> actuator(
+            plant.terms, [this, given](double, const double* y) { return given + plant.loop->command(y[0], y[1]); });
+        std::array<double, N> y{};
+        y.fill(-w);
+        y[0] = h;
+        y[1] = w;
+        const double still[2] = {w, 0};
+        actuator.start(0, y.data(), still);
+        y[2] = actuator.driven(0, y.data());
+        const LoopRate<N> rate{&plant, &actuator};
+        std::array<double, N> begin{};
+        rate(0, y.data(), begin.data());
+        actuator.accept(0, y.data(), begin.data());
+        return go<N>(rate, y, &actuator);
+    }
+
+    [[nodiscard]] End of(double h, double w) const {
+        if (h <= contact) {
+            return {contact_class, 0};
+        }
+        if (h >= escape) {
+            return {escape_class, 0};
+        }
+        if (energy) {
+            const int index = captured(h, w);
+            if (index >= 0) {
+                return {index, 0};
+            }
+            return go<2>(StaticRate{&plant.terms, &force, rest_resistance}, {h, w});
+        }
+        const double input = plant.held_input();
+        if (plant.loop_has_states()) {
+            return plant.terms.history != 0 ? through_actuator<3 + history_states>(h, w) : through_actuator<3>(h, w);
+        }
+        if (plant.terms.history != 0) {
+            std::array<double, 2 + history_states> y{};
+            y.fill(-w);
+            y[0] = h;
+            y[1] = w;
+            return go<2 + history_states>(HistoryRate{&plant, input}, y);
+        }
+        return go<2>(FullRate{&plant, input}, {h, w});
+    }
+
+    /// The extent of the motion over a part of the time.
+    struct Extent {
+        double low = 1e300, high = -1e300;
+        void take(double h) {
+            low = std::min(low, h);
+            high = std::max(high, h);
+        }
+        [[nodiscard]] double size() const { return high - low; }
+    };
+
+    template <std::size_t N, class Rate>
+    End go(const Rate& rate, const std::array<double, N>& start, LoopActuator<2>* actuator = nullptr) const {
+        std::array<double, N> scale;
+        scale.fill(scale_velocity);
+        scale[0] = scale_gap;
+        if constexpr (N > 2) {
+            // A force that changes the velocity so much within a second.
+            scale[2] = actuator ? scale_velocity * plant.terms.mass : scale[2];
+        }
+        const double look_back = actuator && actuator->delayed() ? actuator->max_step() : 1e300;
+        DormandPrince<N, Rate> ode(rate, 0.0, start, scale, 0.02);
+        Extent third, fourth;
+        while (ode.t() < duration) {
+            if (!ode.step(std::min(duration, ode.t() + look_back)) || ode.tries() > 200000) {
+                return {undecided_class, ode.t()};
+            }
+            if (actuator) {
+                actuator->accept(ode.t(), ode.y().data(), ode.rate().data());
+            }
+            const double h = ode.y()[0], w = ode.y()[1];
+            const End event = passed(ode);
+            if (event.index >= 0) {
+                return event;
+            }
+            if (energy) {
+                const int index = captured(h, w);
+                if (index >= 0) {
+                    return {index, ode.t()};
+                }
+            } else if (ode.t() > 0.5 * duration) {
+                (ode.t() > 0.75 * duration ? fourth : third).take(h);
+            }
+        }
+        return energy ? End{undecided_class, duration} : settled(ode.y()[0], third, fourth);
+    }
+
+    /// Contact or escape within the last step; a negative index when neither.
+    template <class Integrator>
+    End passed(const Integrator& ode) const {
+        const double h = ode.y()[0], w = ode.y()[1], w0 = ode.before()[1];
+        double part = 1;
+        bool low = h <= contact, high = h >= escape;
+        if (!low && !high && w0 != 0 && (w0 < 0) != (w < 0)) {
+            part = w0 / (w0 - w);  // the turning point within the step
+            const double turned = ode.between(part, 0);
+            low = turned <= contact;
+            high = turned >= escape;
+        }
+        if (!low && !high) {
+            return {-1, 0};
+        }
+        const double level = low ? contact : escape;
+        double lo = 0, hi = part;
+        for (int i = 0; i < 50; ++i) {
+            const double middle = (lo + hi) / 2;
+            const bool beyond = low ? ode.between(middle, 0) <= level : ode.between(middle, 0) >= level;
+            (beyond ? hi : lo) = middle;
+        }
+        return {low ? contact_class : escape_class, ode.before_t() + hi * (ode.t() - ode.before_t())};
+    }
+
+    [[nodiscard]] End settled(double h, const Extent& third, const Extent& fourth) const {
+        const Extent both{std::min(third.low, fourth.low), std::max(third.high, fourth.high)};
+        for (const Well& well : wells) {
+            if (both.low <= well.lower || both.high >= well.upper || h <= well.lower || h >= well.upper) {
+                continue;
+            }
+            const double width = well.upper - well.lower;
+            if (fourth.size() < 2e-3 * width) {
+                return {well.class_index, duration};
+            }
+            if (fourth.size() < 0.9 * third.size()) {
+                return {well.class_index, duration};  // shrinking toward it
+            }
+            if (std::abs(fourth.size() - third.size()) < 0.05 * third.size()) {
+                return {static_cast<int>(static_cast<std::size_t>(well.class_index) + 2 + wells.size()), duration};
+            }
+        }
+        return {undecided_class, duration};
+    }
+};
+
+HeaveEnds::HeaveEnds(const HeavePlant& plant, double contact_gap, double escape_gap, double duration, double tolerance,
+                     double gap_size, double velocity_size)
+    : impl_(std::make_unique<Impl>(plant, contact_gap, escape_gap, duration, tolerance, gap_size, velocity_size)) {}
+
+HeaveEnds::~HeaveEnds() = default;
+
+End HeaveEnds::of(double gap, double velocity) const { return impl_->of(gap, velocity); }
+
+void HeaveEnds::of(std::span<const double> gap, std::span<const double> velocity, std::span<End> out,
+                   core::Progress& progress) const {
+    core::parallel_blocks(
+        gap.size(), 256,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                out[i] = impl_->of(gap[i], velocity[i]);
+            }
+        },
+        progress);
+}
+
+const std::vector<EndClass>& HeaveEnds::classes() const { return impl_->classes; }
+const std::vector<HeaveEquilibrium>& HeaveEnds::equilibria() const { return impl_->equilibria; }
+const std::string& HeaveEnds::rule() const { return impl_->rule; }
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "core/text.h"
+#include "surrogates/dynamics/basin/region_parts.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) {
+    throw core::InputError("range", why, {}, "for instance --axes gap=0:0.5,heave_velocity=-0.1:0.1");
+}
+
+}  // namespace
+
+void check_region_options(const RegionOptions& options) {
+    if (options.axes.size() != 2 || options.axes[0].name == options.axes[1].name) {
+        refuse("a region needs two different axes");
+    }
+    for (const core::NamedRange& axis : options.axes) {
+        if (axis.name != "gap" && axis.name != "heave_velocity" && axis.name != "pitch" && axis.name != "pitch_rate") {
+            refuse("'" + axis.name + "' cannot be an axis of a region: gap, heave_velocity, pitch, pitch_rate can");
+        }
+        if (!(axis.upper > axis.lower) || !std::isfinite(axis.lower) || !std::isfinite(axis.upper)) {
+            refuse("axis " + axis.name + " needs a lower and a higher bound");
+        }
+    }
+    if (options.columns < 1 || options.rows < 1 || options.columns * options.rows > 100000000) {
+        refuse("a region has between one and 100 million starts");
+    }
+    if (!(options.duration > 0)) {
+        refuse("the time of motion must be positive");
+    }
+}
+
+std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch) {
+    std::vector<double> x(o.columns * o.rows), y(x.size());
+    for (std::size_t j = 0; j < o.rows; ++j) {
+        for (std::size_t i = 0; i < o.columns; ++i) {
+            x[j * o.columns + i] = o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) *
+                                                         (static_cast<double>(i) + 0.5) /
+                                                         static_cast<double>(o.columns);
+            y[j * o.columns + i] = o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) *
+                                                         (static_cast<double>(j) + 0.5) / static_cast<double>(o.rows);
+        }
+    }
+    std::vector<End> ends(x.size());
+    batch(x, y, ends);
+    return ends;
+}
+
+std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& batch, const std::vector<End>& ends,
+                                     std::size_t classes) {
+    constexpr std::size_t fine = 4;
+    const std::size_t columns = o.columns, rows = o.rows;
+    std::vector<double> sums(classes, 0.0);
+    std::vector<std::size_t> edge;
+    for (std::size_t j = 0; j < rows; ++j) {
+        for (std::size_t i = 0; i < columns; ++i) {
+            const int own = ends[j * columns + i].index;
+            const auto other = [&](std::size_t ii, std::size_t jj) { return ends[jj * columns + ii].index != own; };
+            const bool at_edge = o.refine && ((i > 0 && other(i - 1, j)) || (i + 1 < columns && other(i + 1, j)) ||
+                                              (j > 0 && other(i, j - 1)) || (j + 1 < rows && other(i, j + 1)));
+            if (at_edge) {
+                edge.push_back(j * columns + i);
+            } else {
+                sums[static_cast<std::size_t>(own)] += 1;
+            }
+        }
+    }
+    std::vector<double> x(edge.size() * fine * fine), y(x.size());
+    const double dx = (o.axes[0].upper - o.axes[0].lower) / static_cast<double>(columns);
+    const double dy = (o.axes[1].upper - o.axes[1].lower) / static_cast<double>(rows);
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+        for (std::size_t f = 0; f < fine * fine; ++f) {
+            x[k * fine * fine + f] = o.axes[0].lower + dx * (static_cast<double>(edge[k] % columns) +
+                                                             (static_cast<double>(f % fine) + 0.5) / fine);
+            y[k * fine * fine + f] = o.axes[1].lower + dy * (static_cast<double>(edge[k] / columns) +
+                                                             (static_cast<double>(f / fine) + 0.5) / fine);
+        }
+    }
+    std::vector<End> refined(x.size());
+    batch(x, y, refined);
+    for (const End& end : refined) {
+        sums[static_cast<std::size_t>(end.index)] += 1.0 / (fine * fine);
+    }
+    for (double& sum : sums) {
+        sum /= static_cast<double>(columns * rows);
+    }
+    return sums;
+}
+
+void keep_seen_classes(StabilityRegion& region, const std::vector<EndClass>& all, const std::vector<double>& sums) {
+    std::vector<bool> occurs(all.size(), false);
+    for (const int index : region.index) {
+        occurs[static_cast<std::size_t>(index)] = true;
+    }
+    std::vector<int> renamed(all.size(), -1);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (occurs[i] || sums[i] > 0 || all[i].kind == EndKind::attractor) {
+            renamed[i] = static_cast<int>(region.classes.size());
+            region.classes.push_back(all[i]);
+            region.classes.back().fraction = sums[i];
+        }
+    }
+    for (int& index : region.index) {
+        index = renamed[static_cast<std::size_t>(index)];
+    }
+}
+
+namespace {
+
+/// A pair of neighbouring starts of different classes, and the point between them where the class changes.
+struct Crossing {
+    std::size_t low, high;  ///< of the grid
+    double from = 0, to = 1;
+};
+
+void bisect(std::vector<Crossing>& crossings, const RegionOptions& o, const RegionBatch& batch,
+            const std::vector<End>& ends, const std::function<double(std::size_t)>& x_of,
+            const std::function<double(std::size_t)>& y_of) {
+    if (!o.refine || crossings.empty()) {
+        return;
+    }
+    std::vector<double> x(crossings.size()), y(crossings.size());
+    std::vector<End> middle(crossings.size());
+    for (int round = 0; round < 7; ++round) {
+        for (std::size_t k = 0; k < crossings.size(); ++k) {
+            const Crossing& c = crossings[k];
+            const double part = (c.from + c.to) / 2;
+            x[k] = x_of(c.low) + part * (x_of(c.high) - x_of(c.low));
+            y[k] = y_of(c.low) + part * (y_of(c.high) - y_of(c.low));
+        }
+        batch(x, y, middle);
+        for (std::size_t k = 0; k < crossings.size(); ++k) {
+            Crossing& c = crossings[k];
+            (middle[k].index == ends[c.low].index ? c.from : c.to) = (c.from + c.to) / 2;
+        }
+    }
+}
+
+}  // namespace
+
+void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, const RegionBatch& batch,
+                           const std::vector<End>& ends) {
+    const std::size_t columns = o.columns, rows = o.rows;
+    const auto x_of = [&](std::size_t k) {
+        return o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (static_cast<double>(k % columns) + 0.5) /
+                                     static_cast<double>(columns);
+    };
+    const auto y_of = [&](std::size_t k) {
+        return o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) * (static_cast<double>(k / columns) + 0.5) /
+                                     static_cast<double>(rows);
+    };
+    // Crossing k of start s: 2 s toward the next column, 2 s + 1 toward the next row.
+    std::vector<Crossing> crossings;
+    std::vector<std::ptrdiff_t> of(2 * columns * rows, -1);
+    for (std::size_t s = 0; s < columns * rows; ++s) {
+        for (const std::size_t way : {0, 1}) {
+            const bool inside = way == 0 ? s % columns + 1 < columns : s / columns + 1 < rows;
+            const std::size_t next = s + (way == 0 ? 1 : columns);
+            if (inside && ends[s].index != ends[next].index) {
+                of[2 * s + way] = static_cast<std::ptrdiff_t>(crossings.size());
+                crossings.push_back({s, next});
+            }
+        }
+    }
+    bisect(crossings, o, batch, ends, x_of, y_of);
+    RegionBoundary line;
+    line.name = "between classes";
+    for (std::size_t j = 0; j + 1 < rows; ++j) {
+        for (std::size_t i = 0; i + 1 < columns; ++i) {
+            const std::size_t s = j * columns + i;
+            std::vector<std::array<double, 2>> points;
+            for (const std::size_t edge : {2 * s, 2 * s + 1, 2 * (s + 1) + 1, 2 * (s + columns)}) {
+                if (of[edge] >= 0) {
+                    const Crossing& c = crossings[static_cast<std::size_t>(of[edge])];
+                    const double part = (c.from + c.to) / 2;
+                    points.push_back({x_of(c.low) + part * (x_of(c.high) - x_of(c.low)),
+                                      y_of(c.low) + part * (y_of(c.high) - y_of(c.low))});
+                }
+            }
+            if (points.size() < 2) {
+                continue;
+            }
+            std::array<double, 2> middle{};
+            for (const std::array<double, 2>& p : points) {
+                middle[0] += p[0] / static_cast<double>(points.size());
+                middle[1] += p[1] / static_cast<double>(points.size());
+            }
+            const auto segment = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+                for (const double v : {a[0], b[0], std::nan("")}) {
+                    line.x.push_back(v);
+                }
+                for (const double v : {a[1], b[1], std::nan("")}) {
+                    line.y.push_back(v);
+                }
+            };
+            if (points.size() == 2) {
+                segment(points[0], points[1]);
+            } else {
+                for (const std::array<double, 2>& p : points) {
+                    segment(p, middle);
+                }
+            }
+        }
+    }
+    if (!line.x.empty()) {
+        region.boundaries.push_back(std::move(line));
+    }
+}
+
+double outside_share(const StabilityRegion& region) {
+    double inside = 1;
+    for (const core::NamedRange& axis : region.axes) {
+        const bool gap = axis.name == "gap";
+        if (!gap && axis.name != "pitch") {
+            continue;
+        }
+        const double lower = gap ? region.table_lower : region.pitch_lower,
+                     upper = gap ? region.table_upper : region.pitch_upper;
+        const double covered = std::min(axis.upper, upper) - std::max(axis.lower, lower);
+        inside *= std::clamp(covered / (axis.upper - axis.lower), 0.0, 1.0);
+    }
+    return inside > 1 - 1e-12 ? 0 : 1 - inside;
+}
+
+void add_outside_remark(StabilityRegion& region) {
+    if (region.outside_fraction == 0) {
+        return;
+    }
+    std::string range;
+    for (const core::NamedRange& axis : region.axes) {
+        const bool gap = axis.name == "gap";
+        const double lower = gap ? region.table_lower : region.pitch_lower,
+                     upper = gap ? region.table_upper : region.pitch_upper;
+        if ((gap || axis.name == "pitch") && (axis.lower < lower || axis.upper > upper)) {
+            const double scale = gap ? 1 : 57.29577951308232;
+            range += (range.empty() ? "" : "; ") + axis.name + " " + core::format_number(scale * lower, 6) + " to " +
+                     core::format_number(scale * upper, 6) + (gap ? " m" : " deg");
+        }
+    }
+    region.remarks.push_back({core::Problem::Severity::warning,
+                              core::format_number(100 * region.outside_fraction, 3) +
+                                  " % of the starts lie outside the range of a force table (" + range +
+                                  "), where it holds its end value",
+                              {}});
+}
+
+bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts) {
+    if (options.motion != RegionOptions::Motion::automatic) {
+        return options.motion == RegionOptions::Motion::heave_pitch;
+    }
+    const auto turns = [](const core::NamedRange& axis) { return axis.name == "pitch" || axis.name == "pitch_rate"; };
+    if (starts) {
+        return starts->find("pitch") || starts->find("pitch_rate") || options.pitch_feedback;
+    }
+    return options.pitch_feedback || std::any_of(options.axes.begin(), options.axes.end(), turns);
+}
+
+}  // namespace underbody::dynamics

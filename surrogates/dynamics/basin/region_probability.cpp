@@ -1,0 +1,159 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/random.h"
+#include "core/text.h"
+#include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/basin/region_parts.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+/// The model with every force table drawn anew from its error.
+Model drawn(const Model& model, std::uint64_t seed, std::size_t draw) {
+    Model result = model;
+    core::Random random(seed, draw);
+    for (ForceSource& source : result.forces) {
+        source.table = source.table.drawn(random.bits());
+    }
+    return result;
+}
+
+}  // namespace
+
+ProbabilityMap probability_map(const Model& model, const RegionOptions& options, std::size_t draws, std::uint64_t seed,
+                               core::Progress& progress) {
+    if (draws < 1) {
+        throw core::UsageError("range", "a probability map needs at least one draw");
+    }
+    ProbabilityMap map;
+    map.axes = options.axes;
+    map.columns = options.columns;
+    map.rows = options.rows;
+    map.draws = draws;
+    map.safe.assign(options.columns * options.rows, 0.0F);
+    RegionOptions each = options;
+    each.refine = false;
+    // All draws share the bounds of the declared model: a drawn table has the same range.
+    double sum = 0, squares = 0;
+    for (std::size_t draw = 0; draw < draws; ++draw) {
+        progress.check();
+        progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing force tables");
+        const StabilityRegion region = stability_region(drawn(model, seed, draw), each, progress);
+        std::size_t safe = 0;
+        for (std::size_t i = 0; i < region.index.size(); ++i) {
+            const bool back = region.classes[static_cast<std::size_t>(region.index[i])].kind == EndKind::attractor;
+            map.safe[i] += back ? 1.0F : 0.0F;
+            safe += back ? 1 : 0;
+        }
+        const double share = static_cast<double>(safe) / static_cast<double>(region.index.size());
+        sum += share;
+        squares += share * share;
+    }
+    const auto count = static_cast<double>(draws);
+    for (float& value : map.safe) {
+        value /= static_cast<float>(draws);
+    }
+    map.area_mean = sum / count;
+    map.area_sigma =
+        draws > 1 ? std::sqrt(std::max(0.0, squares / count - map.area_mean * map.area_mean) * count / (count - 1))
+                  : 0.0;
+    if (map.area_sigma == 0) {
+        map.remarks.push_back(
+            {core::Problem::Severity::note, "the force tables carry no error, or none that matters here", {}});
+    }
+    return map;
+}
+
+void to_json(nlohmann::json& json, const ProbabilityMap& map) {
+    json = {{"columns", map.columns},
+            {"rows", map.rows},
+            {"draws", map.draws},
+            {"area_mean", map.area_mean},
+            {"area_sigma", map.area_sigma}};
+    json["axes"] = nlohmann::json::array();
+    for (const core::NamedRange& axis : map.axes) {
+        json["axes"].push_back({{"name", axis.name}, {"lower", axis.lower}, {"upper", axis.upper}});
+    }
+    json["safe"] = map.safe;
+}
+
+SafeSet largest_safe_set(const StabilityRegion& region, const std::string& equilibrium) {
+    SafeSet set;
+    set.equilibrium = equilibrium;
+    int wanted = -1;
+    for (std::size_t i = 0; i < region.classes.size(); ++i) {
+        if (region.classes[i].name == equilibrium && region.classes[i].kind == EndKind::attractor) {
+            wanted = static_cast<int>(i);
+        }
+    }
+    if (wanted < 0) {
+        std::vector<std::string> known;
+        for (const EndClass& end : region.classes) {
+            if (end.kind == EndKind::attractor) {
+                known.push_back(end.name);
+            }
+        }
+        throw core::InputError("name", "no attractor is called '" + equilibrium + "'", {},
+                               core::did_you_mean(equilibrium, known));
+    }
+    for (const HeaveEquilibrium& e : region.equilibria) {
+        if (e.name == equilibrium) {
+            for (const std::size_t axis : {0, 1}) {
+                const std::string& name = region.axes[axis].name;
+                set.axes[axis] = name;
+                set.centre[axis] = name == "gap" ? e.gap : name == "pitch" ? e.pitch : 0.0;
+            }
+        }
+    }
+    const core::NamedRange &ax = region.axes[0], &ay = region.axes[1];
+    const double dx = (ax.upper - ax.lower) / static_cast<double>(region.columns),
+                 dy = (ay.upper - ay.lower) / static_cast<double>(region.rows);
+    // Cells that do not end there, relative to the equilibrium; the border of the map counts as not known to be safe.
+    std::vector<std::pair<double, double>> bad;
+    for (std::size_t k = 0; k < region.index.size(); ++k) {
+        if (region.index[k] != wanted) {
+            const double x = ax.lower + dx * (static_cast<double>(k % region.columns) + 0.5),
+                         y = ay.lower + dy * (static_cast<double>(k / region.columns) + 0.5);
+            bad.emplace_back(std::max(0.0, std::abs(x - set.centre[0]) - dx / 2),
+                             std::max(0.0, std::abs(y - set.centre[1]) - dy / 2));
+        }
+    }
+    const double most_x = std::min(set.centre[0] - ax.lower, ax.upper - set.centre[0]),
+                 most_y = std::min(set.centre[1] - ay.lower, ay.upper - set.centre[1]);
+    // For each half length along the first axis the largest along the second; keep the largest area.
+    for (int k = 1; k <= 400; ++k) {
+        const double a = most_x * k / 400;
+        double b = most_y, box = most_y;
+        for (const auto& [x, y] : bad) {
+            if (x < a) {
+                b = std::min(b, y / std::sqrt(1 - x / a * (x / a)));
+                box = std::min(box, y);
+            }
+        }
+        if (a > 0 && b > 0 && a * b > set.ellipse[0] * set.ellipse[1]) {
+            set.ellipse = {a, b};
+        }
+        if (a > 0 && box > 0 && a * box > set.box[0] * set.box[1]) {
+            set.box = {a, box};
+        }
+    }
+    return set;
+}
+
+void to_json(nlohmann::json& json, const SafeSet& set) {
+    json = {{"equilibrium", set.equilibrium},
+            {"ellipse", nlohmann::json::object()},
+            {"box", nlohmann::json::object()},
+            {"centre", nlohmann::json::object()}};
+    for (const std::size_t axis : {0, 1}) {
+        const std::string& name = set.axes[axis];
+        json["centre"][name] = set.centre[axis];
+        json["ellipse"][name] = set.ellipse[axis];
+        json["box"][name + "_lower"] = set.centre[axis] - set.box[axis];
+        json["box"][name + "_upper"] = set.centre[axis] + set.box[axis];
+    }
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,43 @@
+// How sure a model is of a force: the errors of its tables and of its effects' parameters, as they reach the force.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surrogates/dynamics/model/model.h"
+
+namespace underbody::dynamics {
+
+/// One standard deviation of static_value, N or N m, to first order. Errors of one table file are one error, those of
+/// different files and of the effects' parameters are independent; the table of a correction counts as one more file.
+/// Immutable, safe to use from many threads.
+class ForceError {
+public:
+    ForceError(const Model& model, const std::string& quantity);
+    /// At a set point, as static_value takes it; 0 where neither tables nor effects state an error.
+    [[nodiscard]] double operator()(const Conditions& set_point) const;
+    /// Neither tables nor effects state an error.
+    [[nodiscard]] bool none() const { return sources_.empty() && parameters_.empty() && corrections_.empty(); }
+
+private:
+    /// The force with one table at 1 and all others at 0: less the force with all at 0, how much of the table's error
+    /// arrives.
+    struct Source {
+        std::size_t index = 0;
+        std::size_t group = 0;  ///< of those with the same table file
+        StaticModel alone;
+    };
+    struct Parameter {
+        StaticModel above, below;  ///< the value moved by `sigma`, as far as its bounds allow
+        double share = 0;          ///< of 2 sigma that lies between the two
+    };
+    StaticModel model_;
+    std::string quantity_;
+    StaticModel nothing_;
+    std::vector<Source> sources_;  ///< whose tables state an error
+    std::size_t groups_ = 0;
+    std::vector<Parameter> parameters_;
+    std::vector<std::pair<tables::ForceTable, std::vector<Channel>>> corrections_;
+};
+
+}  // namespace underbody::dynamics

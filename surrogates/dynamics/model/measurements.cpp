@@ -1,0 +1,232 @@
+#include "surrogates/dynamics/model/measurements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/mistyped.h"
+#include "core/text.h"
+#include "core/toml.h"
+#include "core/units.h"
+#include "surrogates/dynamics/model/file_formats.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+std::map<std::string, double> read_quantities(const core::TomlTable& table, const char* what) {
+    std::map<std::string, double> values;
+    for (const std::string& key : table.keys()) {
+        const core::QuantityName* quantity = core::find_quantity(key);
+        if (quantity == nullptr) {
+            std::vector<std::string> known;
+            for (const core::QuantityName& name : core::quantity_names()) {
+                known.push_back(name.name);
+            }
+            throw core::InputError("name", std::string(what) + " of an unknown quantity '" + key + "'",
+                                   table.place(key), core::did_you_mean(key, known));
+        }
+        values[key] = table.quantity(key, quantity->unit);
+    }
+    return values;
+}
+
+/// A standard deviation is a difference: "0.1 degC" is 0.1 K, not 273.25 K.
+std::map<std::string, double> read_noise(const core::TomlTable& table) {
+    std::map<std::string, double> noise = read_quantities(table, "noise");
+    for (auto& [name, sigma] : noise) {
+        if (table.is_string(name)) {
+            const core::Quantity written = core::parse_quantity(table.string(name), table.place(name));
+            if (!written.unit.empty()) {
+                const core::QuantityName* quantity = core::find_quantity(name);
+                sigma = written.value * core::conversion(written.unit, quantity->unit, table.place(name)).scale;
+            }
+        }
+        if (!(sigma > 0)) {
+            throw core::InputError("range",
+                                   "the noise of " + name + " is " + core::format_number(sigma, 6) + ", not positive",
+                                   table.place(name), "leave the line out and the noise is estimated from the data");
+        }
+    }
+    return noise;
+}
+
+void check_time_series(const MeasuredRun& run) {
+    const core::Place whole{run.table.source, {}, {}, {}};
+    for (const char* needed : {"time", "gap"}) {
+        if (run.table.find(needed) == nullptr) {
+            throw core::InputError("missing", std::string("a time series needs the column ") + needed, whole,
+                                   "kind = \"static\" is for set points without motion");
+        }
+    }
+    const std::vector<double>& time = run.table.numbers("time");
+    if (time.size() < 3) {
+        throw core::InputError("range", "a time series of " + std::to_string(time.size()) + " rows", whole,
+                               "at least three rows are needed, some thousands are usual");
+    }
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        if (std::isnan(time[i])) {
+            throw core::InputError("missing", "a row without time", run.table.place(i, "time"),
+                                   "leave the whole row out: gaps in time are fine");
+        }
+        if (i > 0 && time[i] <= time[i - 1]) {
+            throw core::InputError(
+                "order",
+                std::string("time ") + (time[i] == time[i - 1] ? "stands still" : "runs backwards") + " from " +
+                    core::format_number(time[i - 1], 9) + " s to " + core::format_number(time[i], 9) + " s",
+                run.table.place(i, "time"),
+                "if the logger started anew here, make two runs of the file; the other runs can be used as they are");
+        }
+    }
+}
+
+void check_static(const MeasuredRun& run) {
+    for (const std::string& channel : force_channels()) {
+        if (run.table.find(channel) != nullptr) {
+            return;
+        }
+    }
+    throw core::InputError("missing", "a static set needs a measured force or moment",
+                           core::Place{run.table.source, {}, {}, {}},
+                           "columns such as lift_force [N], drag_force [N], pitch_moment [N m]");
+}
+
+/// Columns under names that nobody reads: what they were probably meant for. An input that vanishes leaves the run with
+/// zero input, which is refused.
+void check_names(const MeasuredRun& run, bool time_series, core::Problems& problems) {
+    for (const core::Column& column : run.table.columns()) {
+        const std::string base =
+            column.name.ends_with("_sigma") ? column.name.substr(0, column.name.size() - 6) : column.name;
+        const std::string meant = core::meant_quantity(column);
+        const bool lacking = !meant.empty() && run.table.find(meant) == nullptr && run.conditions.count(meant) == 0;
+        if (core::find_quantity(base) != nullptr || (column.is_text() && !lacking)) {
+            continue;
+        }
+        const core::Place place = run.table.place(0, column.name);
+        if (time_series && lacking && meant == "input_force") {
+            throw core::InputError(
+                "name",
+                "the column '" + column.name +
+                    "' looks like input_force, which the run lacks: its input would be taken as zero",
+                place,
+                "name it " + core::heading_for(column, meant) +
+                    "; if it is no input, give it a name that is less like one");
+        }
+        problems.push_back({core::Problem::Severity::warning,
+                            "the column '" + column.name + "' is not used" +
+                                (lacking ? ": if it is " + meant + ", name it " + core::heading_for(column, meant)
+                                         : ", for no quantity has that name"),
+                            place});
+    }
+}
+
+/// The same problem in many runs is one line.
+void gather(core::Problems& problems) {
+    core::Problems once;
+    std::vector<std::size_t> counts;
+    for (const core::Problem& problem : problems) {
+        const auto same = std::find_if(once.begin(), once.end(),
+                                       [&](const core::Problem& other) { return other.message == problem.message; });
+        if (same == once.end()) {
+            once.push_back(problem);
+            counts.push_back(0);
+        } else {
+            ++counts[static_cast<std::size_t>(same - once.begin())];
+        }
+    }
+    for (std::size_t i = 0; i < once.size(); ++i) {
+        once[i].message += counts[i] > 0 ? " (alike in " + std::to_string(counts[i]) +
+                                               (counts[i] == 1 ? " other run)" : " other runs)")
+                                         : "";
+    }
+    problems = std::move(once);
+}
+
+}  // namespace
+
+std::vector<double> MeasuredRun::values(const std::string& quantity) const {
+    const core::Column* column = table.find(quantity);
+    if (column != nullptr && !column->is_text()) {
+        return column->numbers;
+    }
+    const auto condition = conditions.find(quantity);
+    if (condition != conditions.end()) {
+        return std::vector<double>(table.rows(), condition->second);
+    }
+    return {};
+}
+
+bool MeasuredRun::has(const std::string& quantity) const {
+    const core::Column* column = table.find(quantity);
+    return (column != nullptr && !column->is_text()) || conditions.count(quantity) > 0;
+}
+
+std::optional<double> Measurements::declared_noise(const std::string& channel) const {
+    const auto found = noise.find(channel);
+    return found == noise.end() ? std::nullopt : std::optional<double>(found->second);
+}
+
+bool Measurements::all_have(const std::string& quantity) const {
+    return std::all_of(runs.begin(), runs.end(), [&](const MeasuredRun& run) { return run.has(quantity); });
+}
+
+const std::vector<std::string>& force_channels() {
+    static const std::vector<std::string> names{"lift_force",   "drag_force",  "side_force",
+                                                "pitch_moment", "roll_moment", "yaw_moment"};
+    return names;
+}
+
+Measurements read_measurements(const std::filesystem::path& folder) {
+    std::filesystem::path file = folder;
+    if (std::filesystem::is_directory(folder)) {
+        file = folder / "dataset.toml";
+        if (!std::filesystem::exists(file)) {
+            throw core::InputError("missing", "no dataset.toml in this folder",
+                                   core::Place{folder.string(), {}, {}, {}},
+                                   "a data set is a folder with dataset.toml, which names its runs");
+        }
+    }
+    const core::TomlTable root = core::read_toml(file, dataset_format());
+    Measurements data;
+    data.folder = file.parent_path();
+    data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady
+                                                                           : MeasurementKind::time_series;
+    data.title = root.string_or("title", {});
+    data.noise = read_noise(root.table_or_empty("noise"));
+    const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
+    std::set<std::string> names;
+    for (const core::TomlTable& entry : root.tables("run")) {
+        MeasuredRun run;
+        run.file = entry.file("file");
+        run.name = run.file.stem().string();
+        for (int copy = 2; !names.insert(run.name).second; ++copy) {
+            run.name = run.file.stem().string() + "-" + std::to_string(copy);
+        }
+        for (const MeasuredRun& other : data.runs) {
+            if (std::filesystem::weakly_canonical(other.file) == std::filesystem::weakly_canonical(run.file)) {
+                throw core::InputError("duplicate", "the run " + run.file.string() + " is named twice",
+                                       entry.place("file"),
+                                       "a run counted twice makes everything look twice as certain");
+            }
+        }
+        run.conditions = conditions;
+        for (const auto& [name, value] : read_quantities(entry.table_or_empty("conditions"), "condition")) {
+            run.conditions[name] = value;
+        }
+        const std::string use = entry.choice("use", {"train", "test"}, "automatic");
+        run.use = use == "train" ? RunUse::train : use == "test" ? RunUse::test : RunUse::automatic;
+        run.table = core::read_csv(run.file);
+        data.kind == MeasurementKind::steady ? check_static(run) : check_time_series(run);
+        check_names(run, data.kind == MeasurementKind::time_series, data.problems);
+        data.runs.push_back(std::move(run));
+    }
+    gather(data.problems);
+    root.finish();
+    if (data.runs.empty()) {
+        throw core::InputError("missing", "a data set without a run", core::Place{file.string(), {}, {}, {}},
+                               "name each file: [[run]] file = \"run-01.csv\"");
+    }
+    return data;
+}
+
+}  // namespace underbody::dynamics

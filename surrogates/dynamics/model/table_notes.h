@@ -1,0 +1,23 @@
+// What a reader of a model's numbers must know of its force tables: how each was fitted, and where they are asked
+// beyond what they cover.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "surrogates/dynamics/model/model.h"
+
+namespace underbody::dynamics {
+
+/// One line a force: "lift_force of lift.csv: Gaussian process through 15 points".
+std::vector<std::string> fit_lines(const Model& model);
+/// The same as a list: quantity, table, kind, points, remarks.
+nlohmann::json fits_json(const Model& model);
+
+/// A warning for every held condition that lies outside an axis of a force table: the table holds its end value there.
+/// `held`: what is given over the model's own conditions; what varies in the motion is not among them.
+core::Problems held_outside(const Model& model, const Conditions& held);
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,99 @@
+#include "surrogates/dynamics/simulate/feedback.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace underbody::dynamics {
+
+void close_loop(HeavePlant& plant, const HeaveFeedback& feedback) {
+    HeaveTerms& terms = plant.terms;
+    if (feedback.limit > 0 || terms.actuator.dead_zone > 0 || terms.actuator.has_states()) {
+        plant.loop = feedback;
+        return;
+    }
+    const double gap_gain = terms.actuator.gain * feedback.gap_gain,
+                 velocity_gain = terms.actuator.gain * feedback.velocity_gain;
+    terms.constant += gap_gain * (feedback.reference - terms.stiffness_gap);
+    terms.stiffness += gap_gain;
+    terms.extra_linear += velocity_gain;
+    terms.constant -= velocity_gain * terms.current;  // the feedback acts on w itself
+}
+
+HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,
+                        double input_weight) {
+    double slope = 0;
+    const double mass = plant.inertia(gap, slope);
+    const double step = 1e-6, speed = 1e-7;
+    const double stiffness = -(plant.static_force(gap + step) - plant.static_force(gap - step)) / (2 * step);
+    const double damping = (plant.resistance(gap, speed) - plant.resistance(gap, -speed)) / (2 * speed);
+    LinearSystem system;
+    system.a = Dense{{-damping / mass, -stiffness / mass}, {1, 0}};
+    system.b = Dense{{1 / mass}, {0}};
+    const Regulator k = lqr(system, Dense::diagonal({velocity_weight, gap_weight}), Dense::diagonal({input_weight}));
+    return {k.gain(0, 1), k.gain(0, 0), gap, 0};
+}
+
+PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const PitchWeights& weights) {
+    const LinearSystem system = plant.linearised(gap, pitch);
+    const Regulator regulator = lqr(system, Dense::diagonal({weights.state.begin(), weights.state.end()}),
+                                    Dense::diagonal({weights.force, weights.moment}));
+    PitchFeedback feedback;
+    for (std::size_t i = 0; i < 4; ++i) {
+        feedback.force_gain[i] = regulator.gain(0, i);
+        feedback.moment_gain[i] = regulator.gain(1, i);
+    }
+    feedback.reference = {gap, 0, pitch, 0};
+    return feedback;
+}
+
+std::vector<std::complex<double>> closed_poles(const HeavePitch& plant, const PitchFeedback& feedback) {
+    const LinearSystem system = plant.linearised(feedback.reference[0], feedback.reference[2]);
+    Dense gain(2, 4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        gain(0, i) = feedback.force_gain[i];
+        gain(1, i) = feedback.moment_gain[i];
+    }
+    std::vector<std::complex<double>> poles;
+    for (const Eigen1& one : eigen(system.a - system.b * gain)) {
+        poles.push_back(one.value);
+    }
+    return poles;
+}
+
+EquilibriumSweep equilibrium_sweep(const Model& model, const Conditions& held, Channel channel, double lower,
+                                   double upper, std::size_t count) {
+    if (count < 2 || !(upper > lower)) {
+        throw core::InputError("range", "a sweep needs a range and at least two values");
+    }
+    EquilibriumSweep sweep;
+    sweep.channel = channel;
+    for (std::size_t i = 0; i < count; ++i) {
+        Conditions conditions = held;
+        conditions[channel] = lower + (upper - lower) * static_cast<double>(i) / static_cast<double>(count - 1);
+        sweep.value.push_back(conditions[channel]);
+        sweep.equilibria.push_back(heave_equilibria(HeavePlant(model, conditions)));
+    }
+    return sweep;
+}
+
+core::Figure equilibrium_figure(const EquilibriumSweep& sweep) {
+    core::Figure figure;
+    figure.title = std::string("Equilibria against ") + channel_name(sweep.channel);
+    figure.x = {channel_name(sweep.channel), channel_unit(sweep.channel)};
+    figure.y = {"gap", "mm"};
+    core::FigurePoints stable{"stable", {}, {}, {}, core::palette(2), core::FigurePoints::Shape::disc, 4};
+    core::FigurePoints unstable{"unstable", {}, {}, {}, core::palette(5), core::FigurePoints::Shape::circle, 4};
+    for (std::size_t i = 0; i < sweep.value.size(); ++i) {
+        for (const HeaveEquilibrium& e : sweep.equilibria[i]) {
+            core::FigurePoints& points = e.stable ? stable : unstable;
+            points.x.push_back(sweep.value[i]);
+            points.y.push_back(1e3 * e.gap);
+        }
+    }
+    figure.points = {stable, unstable};
+    figure.caption =
+        "Gaps where the vertical forces balance; from a stable one the body comes back after a small push.";
+    return figure;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,47 @@
+// Feedback on heave, and equilibria against a condition: what closed-loop maps and design plots need.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "core/figure.h"
+#include "surrogates/dynamics/linear/linear.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
+
+namespace underbody::dynamics {
+
+/// Closes the loop through the actuator that the model declares (input_delay, input_dead_zone, input_gain,
+/// actuator_lag). With neither limit nor delay, dead zone or lag it is a spring and a damper, so that the energy
+/// argument of the region still holds.
+void close_loop(HeavePlant& plant, const HeaveFeedback& feedback);
+
+/// LQR gains of heave at a gap: states (heave_velocity, gap), weights q = (q_w, q_h), r, on M dw/dt = -k (h - h0) - d w
+/// + u.
+HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,
+                        double input_weight);
+
+/// Weights of the regulator of heave and pitch: of the square of each state (gap, heave_velocity, pitch, pitch_rate) in
+/// SI, and of the force and the moment.
+struct PitchWeights {
+    std::array<double, 4> state{100, 1, 10, 0.1};
+    double force = 1, moment = 100;
+};
+/// LQR about a gap and a pitch, both inputs. Throws core::Error (kind "control") when there is none.
+PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const PitchWeights& weights);
+/// Poles of the loop closed, about the reference.
+std::vector<std::complex<double>> closed_poles(const HeavePitch& plant, const PitchFeedback& feedback);
+
+/// Equilibria for a range of one condition (jet_voltage, speed, ...).
+struct EquilibriumSweep {
+    Channel channel = Channel::jet_voltage;
+    std::vector<double> value;
+    std::vector<std::vector<HeaveEquilibrium>> equilibria;
+};
+EquilibriumSweep equilibrium_sweep(const Model& model, const Conditions& held, Channel channel, double lower,
+                                   double upper, std::size_t count);
+core::Figure equilibrium_figure(const EquilibriumSweep& sweep);
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,567 @@
+#include "surrogates/dynamics/simulate/predict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/parallel.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/dynamics/plant/contact_gap.h"
+#include "surrogates/dynamics/simulate/start_state.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+/// Sum of squares of one channel over all runs.
+struct Score {
+    double sum = 0;
+    std::size_t count = 0;
+    std::vector<double> noises;
+    void take(double error) {
+        if (std::isfinite(error)) {
+            sum += error * error;
+            ++count;
+        }
+    }
+};
+
+ChannelError error_of(const std::string& name, const std::string& unit, const Score& score, const Measurements& data) {
+    ChannelError error{name, unit};
+    error.count = score.count;
+    error.rmse = score.count ? std::sqrt(score.sum / static_cast<double>(score.count)) : 0.0;
+    if (const auto declared = data.declared_noise(name)) {
+        error.noise = *declared;
+        error.noise_declared = true;
+    } else if (!score.noises.empty()) {
+        std::vector<double> sorted = score.noises;
+        std::sort(sorted.begin(), sorted.end());
+        error.noise = sorted[sorted.size() / 2];
+    }
+    error.in_noise = error.noise > 0 ? error.rmse / error.noise : 0.0;
+    return error;
+}
+
+Prediction predict_static(const Model& model, const Measurements& data) {
+    Prediction out;
+    std::vector<std::string> quantities;
+    for (const std::string& name : force_channels()) {
+        const bool measured = std::any_of(data.runs.begin(), data.runs.end(),
+                                          [&](const MeasuredRun& run) { return run.table.find(name); });
+        const std::vector<std::string> sources = model.quantities();
+        if (measured && std::find(sources.begin(), sources.end(), name) != sources.end()) {
+            quantities.push_back(name);
+        } else if (measured) {
+            out.remarks.push_back(
+                {core::Problem::Severity::warning, "the model has no force source for the measured " + name, {}});
+        }
+    }
+    if (quantities.empty()) {
+        throw core::InputError("missing", "the model has no force source for anything that was measured",
+                               {model.name, {}, {}, {}},
+                               "declare it: [[force]] quantity = \"lift_force\", table = ...");
+    }
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<double>> columns;
+    std::vector<std::string> shown;
+    for (const std::string& channel : channel_names()) {
+        if (std::any_of(data.runs.begin(), data.runs.end(), [&](const MeasuredRun& run) { return run.has(channel); })) {
+            shown.push_back(channel);
+        }
+    }
+    std::size_t outside_count = 0;
+    std::map<std::string, Score> scores;
+    std::vector<StaticModel> models;
+    for (const std::string& quantity : quantities) {
+        models.emplace_back(model, quantity);
+    }
+    for (const MeasuredRun& run : data.runs) {
+        for (std::size_t row = 0; row < run.table.rows(); ++row) {
+            const Conditions point = set_point_of(run, row);
+            names.push_back(run.name);
+            for (const std::string& channel : shown) {
+                Channel which{};
+                find_channel(channel, which);
+                columns[channel].push_back(point[which]);
+            }
+            bool outside = false;
+            for (std::size_t q = 0; q < quantities.size(); ++q) {
+                const core::Column* column = run.table.find(quantities[q]);
+                const double measured = column ? column->numbers[row] : std::nan("");
+                const double predicted = models[q](point, &outside);
+                columns[quantities[q]].push_back(measured);
+                columns[quantities[q] + "_predicted"].push_back(predicted);
+                scores[quantities[q]].take(predicted - measured);
+            }
+            outside_count += outside ? 1 : 0;
+        }
+    }
+    out.table.add_text("run", names);
+    for (const std::string& channel : shown) {
+        Channel which{};
+        find_channel(channel, which);
+        out.table.add_numbers(channel, channel_unit(which), columns[channel]);
+    }
+    for (const std::string& quantity : quantities) {
+        const std::string unit = core::find_quantity(quantity)->unit;
+        out.table.add_numbers(quantity, unit, columns[quantity]);
+        out.table.add_numbers(quantity + "_predicted", unit, columns[quantity + "_predicted"]);
+        out.channels.push_back(error_of(quantity, unit, scores[quantity], data));
+    }
+    if (outside_count > 0) {
+        out.remarks.push_back(
+            {core::Problem::Severity::warning,
+             std::to_string(outside_count) +
+                 " set points lie outside the range of a force table, which holds its end value there",
+             {}});
+    }
+    return out;
+}
+
+/// One measured run against the model, window by window.
+class RunPredictor {
+public:
+    RunPredictor(const Model& model, const RecordReading& records, const MeasuredRun& run,
+                 const PredictOptions& options, double gap_noise, double velocity_noise)
+        : signals_(signals_of(run, records)),
+          plant_(plant_for(model, signals_)),
+          run_(plant_, signals_, options.max_step),
+          gap_(run.values("gap")),
+          velocity_(as_read(run, "heave_velocity", records)),
+          options_(options),
+          gap_noise_(gap_noise),
+          velocity_noise_(velocity_noise) {}
+
+    struct Row {
+        std::size_t window, sample;
+        double gap, velocity;
+    };
+
+    std::vector<Row> rows() const {
+        const std::vector<double>& t = signals_.time;
+        const double past = options_.past > 0 ? options_.past : std::min(options_.horizon, 2.0);
+        std::vector<Row> out;
+        std::size_t window = 0;
+        // Beyond this nothing is known of what acted.
+        const double known = t.back() - signals_.input_advance;
+        for (double begin = t.front() + past; begin < known; begin += options_.horizon) {
+            const auto at = [&t](double time) {
+                return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), time - 1e-9) - t.begin());
+            };
+            const std::size_t from = at(begin - past), start = at(begin);
+            const double until = std::min(begin + options_.horizon, known);
+            const std::size_t end = std::max<std::size_t>(std::min(at(until + 1e-6), t.size()), 1) - 1;
+            if (end <= start || start <= from + 2) {
+                continue;
+            }
+            const auto state = estimate(from, start);
+            if (!state) {
+                continue;
+            }
+            std::vector<double> gap(end - from + 1), velocity(gap.size()), reading(gap.size());
+            run_.simulate(plant_, from, end, state->first, state->second, gap, velocity);
+            run_.sensor(plant_, from, gap, reading);
+            for (std::size_t i = start; i <= end; ++i) {
+                out.push_back({window, i, reading[i - from], velocity[i - from]});
+            }
+            ++window;
+        }
+        return out;
+    }
+
+    [[nodiscard]] const std::vector<double>& time() const { return signals_.time; }
+    [[nodiscard]] const std::vector<double>& gap() const { return gap_; }
+    [[nodiscard]] const std::vector<double>& velocity() const { return velocity_; }
+
+private:
+    /// The state at sample `from` whose motion fits the measurements from..start best (least squares in units of
+    /// noise); nothing later than `start` is looked at.
+    [[nodiscard]] std::optional<std::pair<double, double>> estimate(std::size_t from, std::size_t start) const {
+        const StartState line = start_state(signals_.time, gap_, from, start);
+        if (!line.found()) {
+            return {};
+        }
+        std::pair<double, double> state{line.gap - plant_.terms.sensor_bias, line.velocity};
+        // A film forgets a velocity within a sample: what the motion does not show is taken from the line, loosely.
+        const double loose = 0.05 + 10 * gap_noise_ * std::sqrt(line.slope_factor), weight = 1 / (loose * loose);
+        const std::size_t count = start - from + 1;
+        std::vector<double> base, changed;
+        for (int iteration = 0; iteration < 6; ++iteration) {
+            const double dh = 1e-5, dw = 1e-5;
+            base = misfit(from, count, state.first, state.second);
+            double a11 = 1e-12, a12 = 0, a22 = weight, b1 = 0, b2 = weight * (line.velocity - state.second);
+            const std::vector<double> up = misfit(from, count, state.first + dh, state.second);
+            changed = misfit(from, count, state.first, state.second + dw);
+            for (std::size_t i = 0; i < base.size(); ++i) {
+                if (!std::isfinite(base[i]) || !std::isfinite(up[i]) || !std::isfinite(changed[i])) {
+                    continue;
+                }
+                const double j1 = (up[i] - base[i]) / dh, j2 = (changed[i] - base[i]) / dw;
+                a11 += j1 * j1;
+                a12 += j1 * j2;
+                a22 += j2 * j2;
+                b1 -= j1 * base[i];
+                b2 -= j2 * base[i];
+            }
+            const double determinant = a11 * a22 - a12 * a12;
+            if (!(determinant > 0)) {
+                break;
+            }
+            const double step_h = (b1 * a22 - b2 * a12) / determinant, step_w = (a11 * b2 - a12 * b1) / determinant;
+            state.first = std::max(state.first + std::clamp(step_h, -0.05, 0.05), plant_.terms.contact_gap);
+            state.second += std::clamp(step_w, -0.2, 0.2);
+            if (std::abs(step_h) < 1e-9 && std::abs(step_w) < 1e-9) {
+                break;
+            }
+        }
+        return state;
+    }
+
+    /// Residuals in units of noise, NaN where nothing was measured.
+    [[nodiscard]] std::vector<double> misfit(std::size_t from, std::size_t count, double h, double w) const {
+        std::vector<double> gap(count), velocity(count), out(velocity_.empty() ? count : 2 * count);
+        run_.simulate(plant_, from, from + count - 1, h, w, gap, velocity);
+        std::vector<double> reading(count);
+        run_.sensor(plant_, from, gap, reading);
+        for (std::size_t i = 0; i < count; ++i) {
+            out[i] = (reading[i] - gap_[from + i]) / gap_noise_;
+            if (!velocity_.empty()) {
+                out[count + i] = (velocity[i] - velocity_[from + i]) / velocity_noise_;
+            }
+        }
+        return out;
+    }
+
+    InputSignals signals_;
+    HeavePlant plant_;
+    HeaveRun run_;
+    std::vector<double> gap_, velocity_;
+    PredictOptions options_;
+    double gap_noise_, velocity_noise_;
+};
+
+double channel_noise(const Measurements& data, const MeasuredRun& run, const std::string& channel, double fallback) {
+    if (const auto declared = data.declared_noise(channel)) {
+        return *declared;
+    }
+    if (!run.has(channel)) {
+        return fallback;
+    }
+    const double found = sensor_noise(run.table.numbers("time"), run.values(channel));
+    return found > 0 ? found : fallback;
+}
+
+using RunRows = std::vector<std::vector<RunPredictor::Row>>;
+
+/// All runs predicted with the input read in one way.
+struct SeriesPrediction {
+    std::vector<std::unique_ptr<RunPredictor>> predictors;
+    RunRows rows;
+    /// Squares of the gap's errors in units of its noise.
+    [[nodiscard]] double squares(const std::vector<double>& noise) const {
+        double sum = 0;
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            for (const RunPredictor::Row& row : rows[r]) {
+                const double error = (row.gap - predictors[r]->gap()[row.sample]) / noise[r];
+                sum += std::isnan(predictors[r]->gap()[row.sample]) ? 0 : error * error;
+            }
+        }
+        return sum;
+    }
+};
+
+SeriesPrediction predict_runs(const Model& model, const RecordReading& records, const Measurements& data,
+                              const PredictOptions& options, core::Progress& progress) {
+    SeriesPrediction all;
+    all.rows.resize(data.runs.size());
+    for (const MeasuredRun& run : data.runs) {
+        all.predictors.push_back(std::make_unique<RunPredictor>(model, records, run, options,
+                                                                channel_noise(data, run, "gap", 1e-4),
+                                                                channel_noise(data, run, "heave_velocity", 1e-3)));
+    }
+    core::parallel_for(
+        data.runs.size(), [&](std::size_t r) { all.rows[r] = all.predictors[r]->rows(); }, progress);
+    return all;
+}
+
+/// Held or linear between samples: as the model says, else what the measured motion fits; held where that tells
+/// nothing.
+SeriesPrediction predict_as_read(const Model& model, const Measurements& data, const PredictOptions& options,
+                                 Prediction& out, core::Progress& progress) {
+    RecordReading records = model.records;
+    using Between = RecordReading::Between;
+    const bool varies = std::any_of(data.runs.begin(), data.runs.end(), [](const MeasuredRun& run) {
+        const InputSignals signals = signals_of(run);
+        return std::any_of(signals.signals.begin(), signals.signals.end(),
+                           [](const auto& signal) { return signal.channel == Channel::input_force; });
+    });
+    out.input_between = !varies ? "" : records.input_between == Between::linear ? "linear" : "held";
+    out.input_between_from = !varies ? "" : records.input_between == Between::unsaid ? "data" : "declared";
+    if (!varies || records.input_between != Between::unsaid) {
+        return predict_runs(model, records, data, options, progress);
+    }
+    std::vector<double> noise;
+    for (const MeasuredRun& run : data.runs) {
+        noise.push_back(channel_noise(data, run, "gap", 1e-4));
+    }
+    SeriesPrediction held = predict_runs(model, records, data, options, progress);
+    records.input_between = Between::linear;
+    SeriesPrediction linear = predict_runs(model, records, data, options, progress);
+    const double by_held = held.squares(noise), by_linear = linear.squares(noise);
+    if (by_linear < 0.98 * by_held && by_held - by_linear > 10) {
+        out.input_between = "linear";
+        return linear;
+    }
+    return held;
+}
+
+/// Counts windows whose gap leaves every bound of tables and measurements a hundredfold. Throws for values that are no
+/// numbers.
+void check_bounds(const SeriesPrediction& all, const Model& model, const Measurements& data, Prediction& out) {
+    const GapRange table = lift_gap_range(model);
+    double reach = table.upper < 1e299 && table.lower > -1e299 ? table.upper - table.lower : 0;
+    for (const auto& predictor : all.predictors) {
+        for (const double gap : predictor->gap()) {
+            reach = std::isfinite(gap) ? std::max(reach, std::abs(gap)) : reach;
+        }
+    }
+    for (std::size_t r = 0; r < all.rows.size(); ++r) {
+        std::size_t last_bad = std::numeric_limits<std::size_t>::max(), windows = 0;
+        for (const RunPredictor::Row& row : all.rows[r]) {
+            windows = row.window + 1;
+            if (!std::isfinite(row.gap) || !std::isfinite(row.velocity)) {
+                throw core::InputError("integration",
+                                       "the predicted motion of run " + data.runs[r].name + " is not finite at " +
+                                           core::format_number(all.predictors[r]->time()[row.sample], 6) +
+                                           " s: no step is small enough for the forces of the model there",
+                                       {model.name, {}, {}, {}},
+                                       "look at the effects and tables of the model at that gap");
+            }
+            if (std::abs(row.gap) > 100 * reach && row.window != last_bad) {
+                last_bad = row.window;
+                ++out.diverged;
+            }
+        }
+        out.windows += windows;
+    }
+    if (out.diverged > 0) {
+        out.remarks.push_back({core::Problem::Severity::warning,
+                               std::to_string(out.diverged) + " of " + std::to_string(out.windows) +
+                                   " predicted windows run away to more than a hundred times every measured gap: the "
+                                   "error says that the model is wrong there, not by how much",
+                               {}});
+    }
+}
+
+Prediction predict_series(const Model& model, const Measurements& data, const PredictOptions& options,
+                          core::Progress& progress) {
+    Prediction out;
+    out.time_series = true;
+    const SeriesPrediction all = predict_as_read(model, data, options, out, progress);
+    check_bounds(all, model, data, out);
+    std::vector<std::string> names;
+    std::vector<double> window, time, gap, gap_predicted, velocity, velocity_predicted;
+    Score gap_score, velocity_score;
+    bool has_velocity = false;
+    for (std::size_t r = 0; r < data.runs.size(); ++r) {
+        const RunPredictor& predictor = *all.predictors[r];
+        gap_score.noises.push_back(channel_noise(data, data.runs[r], "gap", 0));
+        has_velocity = has_velocity || !predictor.velocity().empty();
+        if (!predictor.velocity().empty()) {
+            velocity_score.noises.push_back(channel_noise(data, data.runs[r], "heave_velocity", 0));
+        }
+        for (const RunPredictor::Row& row : all.rows[r]) {
+            names.push_back(data.runs[r].name);
+            window.push_back(static_cast<double>(row.window));
+            time.push_back(predictor.time()[row.sample]);
+            gap.push_back(predictor.gap()[row.sample]);
+            gap_predicted.push_back(row.gap);
+            gap_score.take(row.gap - gap.back());
+            velocity.push_back(predictor.velocity().empty() ? std::nan("") : predictor.velocity()[row.sample]);
+            velocity_predicted.push_back(row.velocity);
+            velocity_score.take(row.velocity - velocity.back());
+        }
+        if (all.rows[r].empty()) {
+            out.remarks.push_back(
+                {core::Problem::Severity::warning,
+                 "run " + data.runs[r].name + " is shorter than the time a prediction needs and was left out",
+                 {}});
+        }
+    }
+    if (names.empty()) {
+        throw core::InputError(
+            "range", "no run is long enough for a prediction over " + core::format_number(options.horizon) + " s", {},
+            "a shorter horizon");
+    }
+    out.table.add_text("run", names);
+    out.table.add_numbers("window", "1", window);
+    out.table.add_numbers("time", "s", time);
+    out.table.add_numbers("gap", "m", gap);
+    out.table.add_numbers("gap_predicted", "m", gap_predicted);
+    out.channels.push_back(error_of("gap", "m", gap_score, data));
+    if (has_velocity) {
+        out.table.add_numbers("heave_velocity", "m/s", velocity);
+        out.table.add_numbers("heave_velocity_predicted", "m/s", velocity_predicted);
+        out.channels.push_back(error_of("heave_velocity", "m/s", velocity_score, data));
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records) {
+    std::vector<double> values = run.has(channel) ? run.values(channel) : std::vector<double>{};
+    const double factor = channel == "input_force"      ? records.input_factor
+                          : channel == "heave_velocity" ? records.velocity_factor
+                                                        : 1;
+    for (double& value : values) {
+        value *= factor;
+    }
+    return values;
+}
+
+InputSignals signals_of(const MeasuredRun& run, const RecordReading& records) {
+    InputSignals signals;
+    signals.time = run.table.numbers("time");
+    // A digital controller holds its command from sample to sample.
+    signals.input_between = records.input_between == RecordReading::Between::linear ? InputSignals::Between::linear
+                                                                                    : InputSignals::Between::held;
+    signals.input_advance = records.input_advance;
+    for (const auto& [name, value] : run.conditions) {
+        Channel channel{};
+        if (find_channel(name, channel)) {
+            signals.held[channel] = value;
+        }
+    }
+    for (const core::Column& column : run.table.columns()) {
+        Channel channel{};
+        if (column.is_text() || !find_channel(column.name, channel) || channel == Channel::time ||
+            channel == Channel::gap || channel == Channel::heave_velocity) {
+            continue;
+        }
+        double low = 1e300, high = -1e300;
+        for (const double value : column.numbers) {
+            low = std::isfinite(value) ? std::min(low, value) : low;
+            high = std::isfinite(value) ? std::max(high, value) : high;
+        }
+        if (high < low) {
+            continue;
+        }
+        if (high > low) {
+            signals.signals.push_back({channel, as_read(run, column.name, records)});
+        } else {
+            signals.held[channel] = low * (channel == Channel::input_force ? records.input_factor : 1);
+        }
+    }
+    return signals;
+}
+
+Conditions set_point_of(const MeasuredRun& run, std::size_t row) {
+    Conditions point;
+    for (const auto& [name, value] : run.conditions) {
+        Channel channel{};
+        if (find_channel(name, channel)) {
+            point[channel] = value;
+        }
+    }
+    for (const core::Column& column : run.table.columns()) {
+        Channel channel{};
+        if (!column.is_text() && find_channel(column.name, channel) && std::isfinite(column.numbers[row])) {
+            point[channel] = column.numbers[row];
+        }
+    }
+    return point;
+}
+
+Prediction predict(const Model& model, const Measurements& data, const PredictOptions& options,
+                   core::Progress& progress) {
+    if (!(options.horizon > 0)) {
+        throw core::UsageError("range", "the horizon must be positive");
+    }
+    Prediction prediction = data.kind == MeasurementKind::steady ? predict_static(model, data)
+                                                                 : predict_series(model, data, options, progress);
+    prediction.remarks.insert(prediction.remarks.begin(), data.problems.begin(), data.problems.end());
+    const bool pushed =
+        std::any_of(data.runs.begin(), data.runs.end(), [](const MeasuredRun& run) { return run.has("input_force"); });
+    for (const EffectUse& use : model.effects) {
+        if (prediction.time_series && !pushed && (use.name.starts_with("input_") || use.name == "actuator_lag")) {
+            prediction.remarks.push_back(
+                {core::Problem::Severity::warning,
+                 "the model's " + use.name + " acts on input_force, which no run has: it does nothing here",
+                 {}});
+        }
+    }
+    return prediction;
+}
+
+core::Figure prediction_figure(const Prediction& prediction) {
+    core::Figure figure;
+    if (prediction.channels.empty()) {
+        return figure;
+    }
+    const ChannelError& channel = prediction.channels.front();
+    const std::vector<double>& measured = prediction.table.numbers(channel.name);
+    const std::vector<double>& predicted = prediction.table.numbers(channel.name + "_predicted");
+    if (!prediction.time_series) {
+        figure.title = "Measured against predicted " + channel.name;
+        figure.x = {"predicted " + channel.name, channel.unit};
+        figure.y = {"measured " + channel.name, channel.unit};
+        figure.points.push_back({"", predicted, measured, {}, core::palette(0)});
+        const auto [low, high] = std::minmax_element(predicted.begin(), predicted.end());
+        figure.curves.push_back({"equal", {*low, *high}, {*low, *high}, {120, 120, 120, 255}, 1, true});
+    } else {
+        figure.title = "Measured and predicted gap";
+        figure.x = {"time", "s"};
+        figure.y = {"gap", "mm"};
+        const std::vector<std::string>& runs = prediction.table.text("run");
+        const std::vector<double>& time = prediction.table.numbers("time");
+        const std::vector<double>& window = prediction.table.numbers("window");
+        core::FigurePoints seen{"measured", {}, {}, {}, {130, 130, 130, 255}, core::FigurePoints::Shape::disc, 3};
+        core::FigureCurve line{"predicted", {}, {}, core::palette(0)};
+        for (std::size_t i = 0; i < time.size() && runs[i] == runs[0]; ++i) {
+            seen.x.push_back(time[i]);
+            seen.y.push_back(1e3 * measured[i]);
+            if (i > 0 && window[i] != window[i - 1]) {
+                line.x.push_back(std::nan(""));
+                line.y.push_back(std::nan(""));
+            }
+            line.x.push_back(time[i]);
+            line.y.push_back(1e3 * predicted[i]);
+        }
+        figure.points.push_back(seen);
+        figure.curves.push_back(line);
+    }
+    figure.caption =
+        "RMSE " + core::format_number(channel.rmse, 3) + " " + channel.unit +
+        (channel.in_noise > 0 ? ", " + core::format_number(channel.in_noise, 3) + " times the noise" : "") + ".";
+    return figure;
+}
+
+void to_json(nlohmann::json& json, const Prediction& prediction) {
+    json = nlohmann::json::object();
+    json["channels"] = nlohmann::json::object();
+    for (const ChannelError& channel : prediction.channels) {
+        json["channels"][channel.name] = {
+            {"rmse", channel.rmse},         {"unit", channel.unit},
+            {"noise", channel.noise},       {"noise_from", channel.noise_declared ? "declared" : "estimated"},
+            {"in_noise", channel.in_noise}, {"count", channel.count}};
+    }
+    json["kind"] = prediction.time_series ? "time_series" : "static";
+    if (prediction.time_series) {
+        json["windows"] = prediction.windows;
+        json["diverged_windows"] = prediction.diverged;
+    }
+    if (!prediction.input_between.empty()) {
+        json["input_between"] = {{"value", prediction.input_between}, {"from", prediction.input_between_from}};
+    }
+    json["remarks"] = nlohmann::json::array();
+    for (const core::Problem& remark : prediction.remarks) {
+        json["remarks"].push_back(remark.message);
+    }
+}
+
+}  // namespace underbody::dynamics

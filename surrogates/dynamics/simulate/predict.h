@@ -1,0 +1,63 @@
+// The model against measured runs.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/figure.h"
+#include "core/progress.h"
+#include "core/table.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
+
+namespace underbody::dynamics {
+
+struct PredictOptions {
+    double horizon = 2;  ///< s, length of a prediction
+    double past =
+        0;  ///< s of measurements before a window's start that its state is estimated from; 0: the horizon, at most 2 s
+    double max_step = 0.02;  ///< s, of the integrator
+};
+
+struct ChannelError {
+    std::string name;
+    std::string unit;
+    double rmse = 0;
+    double noise = 0;  ///< one standard deviation of the channel
+    bool noise_declared = false;
+    double in_noise = 0;  ///< rmse / noise; 0 when the noise is unknown
+    std::size_t count = 0;
+};
+
+struct Prediction {
+    core::Table table;  ///< static: run, set points, measured and predicted; time series: run, window, time, gap,
+                        ///< gap_predicted, ...
+    std::vector<ChannelError> channels;
+    bool time_series = false;
+    std::size_t windows = 0, diverged = 0;  ///< windows in all, and those that leave every bound (time series)
+    std::string input_between;  ///< "held" or "linear": how the input was read between its samples; empty: none varies
+    std::string input_between_from;  ///< "declared" or "data"
+    core::Problems remarks;
+};
+
+/// Throws core::InputError when the model lacks what the data need (a static quantity without a force source, ...);
+/// a predicted motion that is not finite (kind "integration").
+Prediction predict(const Model& model, const Measurements& data, const PredictOptions& options = {},
+                   core::Progress& progress = core::Progress::none());
+
+/// Known inputs and conditions of a run: columns that vary become signals, constant ones and conditions are held. The
+/// input as `records` says that it is to be read; held between samples where they do not say.
+InputSignals signals_of(const MeasuredRun& run, const RecordReading& records = {});
+/// A measured column as `records` says that it is to be read; empty when there is none.
+std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records);
+/// The set point of row `row` of a static run.
+Conditions set_point_of(const MeasuredRun& run, std::size_t row);
+
+/// Measured and predicted: against time for the first windows, or one against the other for a static set.
+core::Figure prediction_figure(const Prediction& prediction);
+void to_json(nlohmann::json& json, const Prediction& prediction);
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,93 @@
+#include "surrogates/dynamics/simulate/sensor_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace underbody::dynamics {
+
+double reading_step(std::span<const double> values) {
+    double step = std::numeric_limits<double>::infinity();
+    std::size_t pairs = 0;
+    std::size_t equal = 0;
+    const auto each_difference = [&values](const auto& use) {
+        for (std::size_t i = 1; i < values.size(); ++i) {
+            const double difference = std::abs(values[i] - values[i - 1]);
+            if (std::isfinite(difference)) {
+                use(difference);
+            }
+        }
+    };
+    // files have nine digits or so: what is closer than that is the same reading
+    double largest = 0;
+    each_difference([&largest](double difference) { largest = std::max(largest, difference); });
+    const double tiny = 1e-6 * largest;
+    each_difference([&](double difference) {
+        ++pairs;
+        equal += difference <= tiny ? 1 : 0;
+        step = difference > tiny ? std::min(step, difference) : step;
+    });
+    if (5 * equal < pairs || !std::isfinite(step)) {
+        return 0;
+    }
+    std::size_t on_grid = 0;
+    each_difference([&](double difference) {
+        on_grid += std::abs(difference / step - std::round(difference / step)) < 0.02 ? 1 : 0;
+    });
+    return 100 * on_grid >= 98 * pairs ? step : 0;
+}
+
+namespace {
+
+double middle_of(std::vector<double>& values) {
+    const auto half = static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), values.begin() + half, values.end());
+    const double upper = values[static_cast<std::size_t>(half)];
+    return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), values.begin() + half));
+}
+
+/// 1.4826 times the median distance from the median.
+double robust_deviation(std::vector<double> values) {
+    const double middle = middle_of(values);
+    for (double& value : values) {
+        value = std::abs(value - middle);
+    }
+    return 1.482602218505602 * middle_of(values);
+}
+
+/// White noise out of differences of an order; NaN with fewer than six.
+double noise_by_differences(std::span<const double> time, std::span<const double> values, std::size_t order) {
+    std::vector<double> differences;
+    for (std::size_t i = order; i < values.size(); ++i) {
+        bool even = true;
+        for (std::size_t k = 0; k + 1 < order && !time.empty(); ++k) {
+            const double last = time[i] - time[i - 1], before = time[i - k - 1] - time[i - k - 2];
+            even = even && std::abs(before - last) < 0.2 * last;
+        }
+        const double difference = order == 2 ? values[i] - 2 * values[i - 1] + values[i - 2]
+                                             : values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3];
+        if (even && std::isfinite(difference)) {
+            differences.push_back(difference);
+        }
+    }
+    // Of white noise they have 1 + 4 + 1 and 1 + 9 + 9 + 1 times its variance.
+    return differences.size() < 6 ? std::numeric_limits<double>::quiet_NaN()
+                                  : robust_deviation(std::move(differences)) / std::sqrt(order == 2 ? 6.0 : 20.0);
+}
+
+}  // namespace
+
+double sensor_noise(std::span<const double> time, std::span<const double> values) {
+    const double second = noise_by_differences(time, values, 2), third = noise_by_differences(time, values, 3);
+    if (std::isnan(second) && !time.empty()) {
+        return sensor_noise({}, values);  // no two steps alike: better all of them than none
+    }
+    // The second is the surer of the two unless a curved motion shows in it.
+    const double scatter = third < 0.9 * second ? third : second;
+    // A coarse sensor repeats its reading more often than not: half of its differences, and with them the middle, are
+    // naught.
+    return std::isnan(scatter) ? scatter : std::max(scatter, reading_step(values) / std::sqrt(12.0));
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,251 @@
+#include "surrogates/tables/analysis/equilibria.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/error.h"
+#include "surrogates/tables/fit/table_batch.h"
+
+namespace underbody::tables {
+
+namespace {
+
+std::size_t free_axis(const ForceTable& table, const std::string& name) {
+    if (!name.empty()) {
+        return axis_index(table, name);
+    }
+    return table.axes().size() == 1 ? 0 : axis_index(table, "gap");
+}
+
+Stability stability_of(const Line::Zero& zero, double slope_scale) {
+    if (zero.extent > 0 || std::abs(zero.slope) <= 1e-7 * slope_scale) {
+        return Stability::marginal;
+    }
+    return zero.slope < 0 ? Stability::stable : Stability::unstable;
+}
+
+/// -integral of the force from `from` to `to`: the work against it.
+double climb(const Line& force, double from, double to) { return force.integral(from) - force.integral(to); }
+
+/// Where, going from a stable point toward `end`, the potential first reaches `height`; `end` when it never does.
+double turning_point(const Line& force, double start, double end, double height) {
+    if (climb(force, start, end) <= height) {
+        return end;
+    }
+    double low = start;  // potential below height
+    double high = end;
+    for (int i = 0; i < 100; ++i) {
+        const double middle = 0.5 * (low + high);
+        (climb(force, start, middle) < height ? low : high) = middle;
+    }
+    return low;
+}
+
+/// Barriers and kicks of a stable equilibrium between its neighbours.
+void fill_kicks(Equilibrium& e, const Line& force, const std::vector<Equilibrium>& all, std::size_t index,
+                double mass) {
+    const bool has_above = index + 1 < all.size();
+    const bool has_below = index > 0;
+    const double above = has_above ? all[index + 1].gap : force.upper();
+    const double below = has_below ? all[index - 1].gap : force.lower();
+    e.barrier_up = std::max(0.0, climb(force, e.gap, above));
+    e.barrier_down = std::max(0.0, climb(force, e.gap, below));
+    // At an end of the table the force still drives back: no escape there, unless nothing else limits the kick.
+    if (has_above && has_below) {
+        e.barrier = std::min(e.barrier_up, e.barrier_down);
+    } else if (has_above || has_below) {
+        e.barrier = has_above ? e.barrier_up : e.barrier_down;
+    } else {
+        e.barrier = std::min(e.barrier_up, e.barrier_down);
+        e.limited_by_range = true;
+    }
+    e.kick_gap_up =
+        has_above && e.barrier_up <= e.barrier ? above - e.gap : turning_point(force, e.gap, above, e.barrier) - e.gap;
+    e.kick_gap_down = has_below && e.barrier_down <= e.barrier ? e.gap - below
+                                                               : e.gap - turning_point(force, e.gap, below, e.barrier);
+    e.kick_gap = std::min(e.kick_gap_up, e.kick_gap_down);
+    if (mass > 0) {
+        e.kick_velocity = std::sqrt(2 * e.barrier / mass);
+        double highest = 0;  // a body on its way down may have to cross other barriers first
+        for (std::size_t j = 0; j < index; ++j) {
+            highest = std::max(highest, climb(force, e.gap, all[j].gap));
+        }
+        highest = std::max(highest, climb(force, e.gap, force.lower()));
+        e.contact_velocity = std::sqrt(2 * highest / mass);
+    }
+}
+
+Line line_of(const ForceTable& table, std::size_t axis, const std::vector<double>& point,
+             const EquilibriumOptions& options) {
+    return Line(table, axis, point).scaled(options.scale, -options.net_weight);
+}
+
+std::vector<Equilibrium> find(const Line& force) {
+    const double slope_scale = force.size() / (force.upper() - force.lower());
+    std::vector<Equilibrium> found;
+    for (const auto& zero : force.zeros()) {
+        Equilibrium e;
+        e.gap = zero.x;
+        e.stiffness = 0 - zero.slope;  // no negative zero
+        e.stability = stability_of(zero, slope_scale);
+        e.extent = zero.extent;
+        found.push_back(e);
+    }
+    return found;
+}
+
+/// Share of drawn tables in which each equilibrium has one of its kind near by.
+void fill_probabilities(Equilibria& result, const ForceTable& table, std::size_t axis, const std::vector<double>& point,
+                        const EquilibriumOptions& options) {
+    std::vector<int> hits(result.all.size(), 0);
+    for (int draw = 0; draw < options.draws; ++draw) {
+        const auto found = find(line_of(table.drawn(static_cast<std::uint64_t>(draw)), axis, point, options));
+        for (std::size_t i = 0; i < result.all.size(); ++i) {
+            const Equilibrium& e = result.all[i];
+            // No nearer than half way to the neighbours counts as the same one.
+            double reach = std::isfinite(e.sigma) ? 4 * e.sigma : result.upper - result.lower;
+            reach = std::max(reach, 1e-9 * (result.upper - result.lower));
+            hits[i] += std::any_of(found.begin(), found.end(), [&](const Equilibrium& f) {
+                return f.stability == e.stability && std::abs(f.gap - e.gap) <= reach;
+            });
+        }
+    }
+    for (std::size_t i = 0; i < result.all.size(); ++i) {
+        result.all[i].probability = static_cast<double>(hits[i]) / options.draws;
+    }
+}
+
+}  // namespace
+
+std::string to_string(Stability stability) {
+    return stability == Stability::stable ? "stable" : stability == Stability::unstable ? "unstable" : "marginal";
+}
+
+std::vector<double> Equilibria::gaps(Stability stability) const {
+    std::vector<double> found;
+    for (const auto& e : all) {
+        if (e.stability == stability) {
+            found.push_back(e.gap);
+        }
+    }
+    return found;
+}
+
+Line net_force(const ForceTable& table, const EquilibriumOptions& options) {
+    const std::size_t axis = free_axis(table, options.axis);
+    return line_of(table, axis, held_point(table, axis, options.held), options);
+}
+
+Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options) {
+    if (!(options.virtual_mass >= 0) || !(options.damping >= 0) || !std::isfinite(options.net_weight) ||
+        !std::isfinite(options.scale)) {
+        throw core::UsageError("range", "mass and damping must not be negative, weight and scale must be finite");
+    }
+    const std::size_t axis = free_axis(table, options.axis);
+    Equilibria result;
+    std::vector<double> point = held_point(table, axis, options.held, &result.remarks);
+    const Line force = line_of(table, axis, point, options);
+    result.axis = table.axes()[axis].name;
+    result.axis_unit = table.axes()[axis].unit;
+    result.net_weight = options.net_weight;
+    result.virtual_mass = options.virtual_mass;
+    result.scale = options.scale;
+    for (std::size_t k = 0; k < point.size(); ++k) {
+        if (k == axis) {
+            continue;
+        }
+        result.held.emplace_back(table.axes()[k].name, point[k]);
+    }
+    for (auto& remark : outside_remarks(table, result.held)) {
+        result.remarks.push_back(std::move(remark));
+    }
+    result.quantity = table.quantity();
+    result.source = table.source();
+    result.lower = force.lower();
+    result.upper = force.upper();
+    result.force_at_lower = force.value(force.lower());
+    result.force_at_upper = force.value(force.upper());
+    result.all = find(force);
+    for (std::size_t i = 0; i < result.all.size(); ++i) {
+        Equilibrium& e = result.all[i];
+        point[axis] = e.gap;
+        const double error = std::abs(options.scale) * table.sigma(point.data());
+        e.sigma = error == 0                           ? 0
+                  : e.stability == Stability::marginal ? std::numeric_limits<double>::infinity()
+                                                       : error / std::abs(e.stiffness);
+        const double mass = options.virtual_mass;
+        if (mass > 0 && e.stability == Stability::stable) {
+            e.frequency = std::sqrt(e.stiffness / mass) / (2 * std::numbers::pi);
+            e.damping_ratio = options.damping / (2 * std::sqrt(e.stiffness * mass));
+        } else if (mass > 0 && e.stability == Stability::unstable) {
+            e.growth_rate = std::sqrt(-e.stiffness / mass);
+        }
+        if (e.stability == Stability::stable) {
+            fill_kicks(e, force, result.all, i, mass);
+        }
+    }
+    if (options.draws > 0) {
+        fill_probabilities(result, table, axis, point, options);
+    }
+    return result;
+}
+
+namespace {
+nlohmann::json finite_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+}  // namespace
+
+void to_json(nlohmann::json& json, const Equilibrium& e) {
+    json = nlohmann::json{{"gap", e.gap},
+                          {"stable", e.stability == Stability::stable},
+                          {"stability", to_string(e.stability)},
+                          {"stiffness", e.stiffness},
+                          {"sigma", finite_or_null(e.sigma)},
+                          {"frequency", e.frequency},
+                          {"angular_frequency", 2 * std::numbers::pi * e.frequency},
+                          {"growth_rate", e.growth_rate},
+                          {"damping_ratio", e.damping_ratio},
+                          {"barrier", e.barrier},
+                          {"barrier_up", e.barrier_up},
+                          {"barrier_down", e.barrier_down},
+                          {"limited_by_range", e.limited_by_range},
+                          {"kick_velocity", e.kick_velocity},
+                          {"kick_gap", e.kick_gap},
+                          {"kick_gap_up", e.kick_gap_up},
+                          {"kick_gap_down", e.kick_gap_down},
+                          {"contact_velocity", e.contact_velocity}};
+    if (e.extent > 0) {
+        json["extent"] = e.extent;
+    }
+    if (e.probability) {
+        json["probability"] = *e.probability;
+    }
+}
+
+void to_json(nlohmann::json& json, const Equilibria& equilibria) {
+    json = nlohmann::json{{"equilibria", equilibria.all},
+                          {"axis", equilibria.axis},
+                          {"axis_unit", equilibria.axis_unit},
+                          {"quantity", equilibria.quantity},
+                          {"source", equilibria.source},
+                          {"net_weight", equilibria.net_weight},
+                          {"virtual_mass", equilibria.virtual_mass},
+                          {"scale", equilibria.scale},
+                          {"range", {equilibria.lower, equilibria.upper}},
+                          {"force_at_ends", {equilibria.force_at_lower, equilibria.force_at_upper}},
+                          {"frequency_unit", "Hz"}};
+    json["held"] = nlohmann::json::object();
+    for (const auto& [name, value] : equilibria.held) {
+        json["held"][name] = value;
+    }
+    json["remarks"] = nlohmann::json::array();
+    for (const auto& remark : equilibria.remarks) {
+        json["remarks"].push_back(remark.message);
+    }
+}
+
+}  // namespace underbody::tables

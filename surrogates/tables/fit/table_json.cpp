@@ -1,0 +1,62 @@
+// Tables and their values as JSON.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/fit/table_batch.h"
+
+namespace underbody::tables {
+
+namespace {
+/// Of all axes; "mixed" when they differ.
+std::string common_policy(const std::vector<TableAxis>& axes) {
+    const bool same =
+        std::all_of(axes.begin(), axes.end(), [&](const TableAxis& a) { return a.range == axes.front().range; });
+    return same ? to_string(axes.front().range) : "mixed";
+}
+}  // namespace
+
+void to_json(nlohmann::json& json, const ForceTable& table) {
+    json = nlohmann::json{{"quantity", table.quantity()},
+                          {"unit", table.unit()},
+                          {"kind", table.kind()},
+                          {"source", table.source()},
+                          {"points", table.points().rows()},
+                          {"range_policy", common_policy(table.axes())}};
+    json["axes"] = nlohmann::json::array();
+    for (std::size_t k = 0; k < table.axes().size(); ++k) {
+        const TableAxis& axis = table.axes()[k];
+        json["axes"].push_back({{"name", axis.name},
+                                {"unit", axis.unit},
+                                {"lower", axis.lower},
+                                {"upper", axis.upper},
+                                {"range_policy", to_string(axis.range)},
+                                {"set_points", axis.points.size()},
+                                {"grid_lines", table.knots(k).size()}});
+    }
+    json["conditions"] = nlohmann::json::object();
+    for (const auto& [name, value] : table.conditions()) {
+        json["conditions"][name] = value;
+    }
+    json["remarks"] = nlohmann::json::array();
+    for (const auto& remark : table.remarks()) {
+        json["remarks"].push_back(remark.message);
+    }
+}
+
+nlohmann::json to_json(const ForceTable& table, const std::vector<double>& point, const Evaluation& evaluation) {
+    nlohmann::json json{{"quantity", table.quantity()}, {"unit", table.unit()},          {"value", evaluation.value},
+                        {"sigma", evaluation.sigma},    {"outside", evaluation.outside}, {"kind", table.kind()}};
+    json["no_data"] = evaluation.no_data;
+    json["max_error"] = table.sampling_error();
+    json["beyond_points"] = beyond_points(table, point.data());
+    for (std::size_t k = 0; k < point.size(); ++k) {
+        const std::string& name = table.axes()[k].name;
+        json["at"][name] = point[k];
+        json["slope"][name] = evaluation.slope[k];
+        json["beyond"][name] = evaluation.beyond[k];
+    }
+    return json;
+}
+
+}  // namespace underbody::tables
