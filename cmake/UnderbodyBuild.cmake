@@ -68,10 +68,10 @@ endfunction()
 # One library from all sources of the current folder and of its sub-folders that have no CMakeLists.txt of their own.
 # NAME gives the target underbody_NAME and its alias underbody::NAME. USES are seen by users of the library;
 # HIDES stay behind its door (their headers must not appear in public headers).
+# What is installed of its headers: those in cmake/public_headers.txt, which include none that is not there.
 function(underbody_library name)
   cmake_parse_arguments(ARG "" "" "USES;HIDES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   if(NOT sources)
     file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/empty.cpp "")
     set(sources ${CMAKE_CURRENT_BINARY_DIR}/empty.cpp)
@@ -91,6 +91,8 @@ function(underbody_library name)
   underbody_precompile(${target})
   underbody_units(${target} ${sources})
   install(TARGETS ${target} EXPORT UnderbodyTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  file(RELATIVE_PATH room ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/public_headers.txt headers REGEX "^${room}/")
   foreach(header IN LISTS headers)
     get_filename_component(folder ${header} DIRECTORY)
     install(FILES ${CMAKE_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/underbody/${folder})

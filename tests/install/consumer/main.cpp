@@ -1,6 +1,6 @@
 #include <underbody/core/table.h>
 #include <underbody/core/units.h>
-#include <underbody/surrogates/tables/force_table.h>
+#include <underbody/surrogates/tables/fit/force_table.h>
 
 #include <array>
 #include <cmath>
