@@ -25,4 +25,5 @@ find_package(SUNDIALS CONFIG REQUIRED COMPONENTS cvode nvecserial sunmatrixdense
 find_package(SQLiteCpp CONFIG REQUIRED)
 find_library(CGNS_LIBRARY cgns REQUIRED)
 find_library(MATIO_LIBRARY matio REQUIRED)
+find_library(NLOPT_LIBRARY nlopt REQUIRED)
 find_package(LAPACK REQUIRED)

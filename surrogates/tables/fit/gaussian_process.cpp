@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "surrogates/tables/fit/gaussian_process_state.h"
+
 namespace underbody::tables {
 
 using Eigen::MatrixXd;
@@ -199,15 +201,6 @@ Optimum minimise(const Objective& f, std::vector<double> v, int evaluations, cor
 
 }  // namespace
 
-struct GaussianProcess::State {
-    GpData data;
-    Kernel kernel = Kernel::matern52;
-    GpParameters parameters;
-    Eigen::LLT<MatrixXd> factor;
-    std::vector<double> weights;
-    std::vector<double> coefficients;
-};
-
 GaussianProcess::GaussianProcess(GpData data, Kernel kernel, GpParameters parameters) {
     auto state = std::make_shared<State>();
     state->data = std::move(data);
@@ -224,6 +217,8 @@ GaussianProcess::GaussianProcess(GpData data, Kernel kernel, GpParameters parame
             state->coefficients[j] += d.trend_variance * state->weights[i] * d.trend[i * d.trends + j];
         }
     }
+    state->x = Eigen::Map<const Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+        d.x.data(), static_cast<Eigen::Index>(d.count()), static_cast<Eigen::Index>(d.axes));
     state_ = std::move(state);
 }
 

@@ -61,6 +61,14 @@ struct GpOptions {
     std::vector<GpParameters> starts;  ///< empty: two standard ones
 };
 
+/// Mean and variance of the force at a point, and their derivatives by each coordinate where asked for.
+struct GpPrediction {
+    double mean = 0;
+    double variance = 0;
+    std::vector<double> mean_slope;
+    std::vector<double> variance_slope;
+};
+
 /// A fitted process. Immutable.
 class GaussianProcess {
 public:
@@ -97,6 +105,14 @@ public:
     /// Variances of many points: x [point * axes], trend [point * trends], amplitude [point] (empty: 1).
     [[nodiscard]] std::vector<double> variances(std::span<const double> x, std::span<const double> trend,
                                                 std::span<const double> amplitude = {}) const;
+
+    /// mean() and variance() at once, for processes of amplitude 1 everywhere. With `trend_slope` [trend * axes +
+    /// axis], the derivatives of the trend functions by the coordinates, the slopes too.
+    [[nodiscard]] GpPrediction predict(std::span<const double> x, std::span<const double> trend,
+                                       std::span<const double> trend_slope = {}) const;
+    /// Covariance of the force at several points, for processes of amplitude 1: x [point * axes], trend [point *
+    /// trends]; the result [i * points + j].
+    [[nodiscard]] std::vector<double> covariance(std::span<const double> x, std::span<const double> trend) const;
 
     struct LeftOut {
         std::vector<double> mean;      ///< of each point from all others

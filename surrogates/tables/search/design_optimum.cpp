@@ -1,0 +1,326 @@
+// The best design on surrogates, and fronts of several objectives: sequential quadratic programming from many starts.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlopt.hpp>
+#include <utility>
+
+#include "surrogates/tables/search/design_search.h"
+#include "surrogates/tables/search/sampling.h"
+
+namespace underbody::tables {
+
+namespace {
+
+using Function = std::function<double(std::span<const double>, std::span<double>)>;  // value and slopes in the cube
+
+double call(unsigned n, const double* u, double* slope, void* data) {
+    return (*static_cast<const Function*>(data))({u, n}, slope == nullptr ? std::span<double>() : std::span(slope, n));
+}
+
+/// Slopes by central differences, for what has no closed form.
+Function with_differences(std::function<double(std::span<const double>)> f) {
+    return [f = std::move(f)](std::span<const double> u, std::span<double> slope) {
+        constexpr double step = 1e-6;
+        std::vector<double> moved(u.begin(), u.end());
+        for (std::size_t v = 0; v < slope.size(); ++v) {
+            moved[v] = std::min(1.0, u[v] + step);
+            const double above = f(moved), upper = moved[v];
+            moved[v] = std::max(0.0, u[v] - step);
+            slope[v] = (above - f(moved)) / (upper - moved[v]);
+            moved[v] = u[v];
+        }
+        return f(u);
+    };
+}
+
+/// Best point from a start; the start itself where no step could be made.
+std::vector<double> polished(const Function& objective, const std::vector<Function>& limits, std::vector<double> u) {
+    nlopt::opt search(nlopt::LD_SLSQP, static_cast<unsigned>(u.size()));
+    search.set_lower_bounds(0.0);
+    search.set_upper_bounds(1.0);
+    search.set_maxeval(100);
+    search.set_xtol_abs(1e-7);
+    search.set_min_objective(call, const_cast<Function*>(&objective));
+    for (const Function& limit : limits) {
+        search.add_inequality_constraint(call, const_cast<Function*>(&limit), 1e-8);
+    }
+    std::vector<double> end = u;
+    double value = 0;
+    try {
+        search.optimize(end, value);
+        return end;
+    } catch (const nlopt::roundoff_limited&) {
+        return end;
+    } catch (const std::runtime_error&) {
+        return u;
+    }
+}
+
+}  // namespace
+
+/// What the polishing needs: objectives and limits over the cube, the limits with a margin of `sigmas` errors, each
+/// scaled by the spread of its quantity so that one tolerance fits all.
+struct DesignSearch::OnTheCube {
+    std::vector<Function> objectives, limits;
+    std::vector<double> spreads;
+
+    OnTheCube(const DesignSearch& search, double sigmas) {
+        const SearchProblem& problem = search.problem_;
+        for (const Objective& objective : problem.objectives) {
+            const double spread = search.bind(objective.response).surrogate->spread();
+            spreads.push_back(spread);
+            objectives.push_back(response(
+                search, objective.response,
+                [&search, &objective, spread](ResponseValue v) {
+                    return std::pair{search.cost_of(objective, v.value) / spread, 0.0};
+                },
+                [&objective, spread](ResponseValue v) {
+                    const double sign = objective.sense == Objective::Sense::maximise                               ? -1
+                                        : objective.sense == Objective::Sense::target && v.value < objective.target ? -1
+                                                                                                                    : 1;
+                    return std::pair{sign / spread, 0.0};
+                }));
+        }
+        for (const Limit& limit : problem.limits) {
+            const double spread = search.bind(limit.response).surrogate->spread();
+            if (limit.upper < 1e299) {
+                limits.push_back(response(
+                    search, limit.response,
+                    [=](ResponseValue v) {
+                        return std::pair{(v.value + sigmas * v.sigma - limit.upper) / spread, 0.0};
+                    },
+                    [=](ResponseValue) {
+                        return std::pair{1 / spread, sigmas / spread};
+                    }));
+            }
+            if (limit.lower > -1e299) {
+                limits.push_back(response(
+                    search, limit.response,
+                    [=](ResponseValue v) {
+                        return std::pair{(limit.lower - v.value + sigmas * v.sigma) / spread, 0.0};
+                    },
+                    [=](ResponseValue) {
+                        return std::pair{-1 / spread, sigmas / spread};
+                    }));
+            }
+        }
+        for (const auto& known : problem.known_limits) {
+            limits.push_back(
+                with_differences([&search, &known](std::span<const double> u) { return known(search.unscaled(u)); }));
+        }
+    }
+
+    [[nodiscard]] double violation(std::span<const double> u) const {
+        double worst = 0;
+        for (const Function& limit : limits) {
+            worst = std::max(worst, limit(u, {}));
+        }
+        return worst;
+    }
+
+private:
+    using OfValue = std::function<std::pair<double, double>(ResponseValue)>;
+
+    /// f(response) with slopes by the chain rule: `rates` are df/dvalue and df/dsigma.
+    static Function response(const DesignSearch& search, const Response& response, OfValue f, OfValue rates) {
+        const Bound bound = search.bind(response);
+        return [&search, bound, f = std::move(f), rates = std::move(rates)](std::span<const double> u,
+                                                                            std::span<double> slope) {
+            const std::vector<double> x = search.unscaled(u);
+            if (slope.empty()) {
+                return f(search.value(bound, x)).first;
+            }
+            ResponseValue value;
+            std::vector<double> by_value, by_sigma;
+            search.value_with_slopes(bound, x, value, by_value, by_sigma);
+            const auto [a, b] = rates(value);
+            for (std::size_t v = 0; v < slope.size(); ++v) {
+                slope[v] = (a * by_value[v] + b * by_sigma[v]) / search.problem_.variables[v].scaled_slope(x[v]);
+            }
+            return f(value).first;
+        };
+    }
+};
+
+void DesignSearch::value_with_slopes(const Bound& bound, std::span<const double> x, ResponseValue& value,
+                                     std::vector<double>& by_value, std::vector<double>& by_sigma) const {
+    value = this->value(bound, x);
+    by_value.assign(x.size(), 0.0);
+    by_sigma.assign(x.size(), 0.0);
+    for (std::size_t p = 0; p < bound.points.size(); ++p) {
+        std::vector<double> point = bound.points[p];
+        for (std::size_t v = 0; v < x.size(); ++v) {
+            if (bound.filled[v] != static_cast<std::size_t>(-1)) {
+                point[bound.filled[v]] = x[v];
+            }
+        }
+        const SurrogatePrediction here = bound.surrogate->at(point, true);
+        for (std::size_t v = 0; v < x.size(); ++v) {
+            if (bound.filled[v] != static_cast<std::size_t>(-1)) {
+                by_value[v] += bound.weights[p] * here.slope[bound.filled[v]];
+                by_sigma[v] = here.sigma_slope[bound.filled[v]];
+            }
+        }
+    }
+    if (bound.points.size() > 1) {  // the error of a difference has no simple slope
+        for (std::size_t v = 0; v < x.size(); ++v) {
+            std::vector<double> moved(x.begin(), x.end());
+            const double step = 1e-5 / problem_.variables[v].scaled_slope(x[v]);
+            moved[v] = x[v] + step;
+            const double above = this->value(bound, moved).sigma;
+            moved[v] = x[v] - step;
+            by_sigma[v] = (above - this->value(bound, moved).sigma) / (2 * step);
+        }
+    }
+}
+
+std::optional<Candidate> DesignSearch::optimum(double sigmas, std::uint64_t seed, core::Progress& progress) const {
+    const std::size_t axes = problem_.variables.size();
+    const OnTheCube cube(*this, sigmas);
+    std::vector<std::pair<double, std::vector<double>>> starts;
+    for (std::vector<double>& u : sobol_plan(std::min<std::size_t>(2000, 250 * axes), axes, seed)) {
+        // Starts that break a limit come after those that do not.
+        const double value = cube.objectives.front()(u, {}) + 1e3 * cube.violation(u);
+        starts.emplace_back(value, std::move(u));
+    }
+    const std::size_t used = std::min<std::size_t>(10, starts.size());
+    std::partial_sort(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(used), starts.end());
+    constexpr double tolerance = 1e-6;
+    double best = std::numeric_limits<double>::infinity();
+    std::optional<Candidate> result;
+    for (std::size_t i = 0; i < used; ++i) {
+        progress.check();
+        for (const std::vector<double>& u :
+             {starts[i].second, polished(cube.objectives.front(), cube.limits, starts[i].second)}) {
+            const double value = cube.objectives.front()(u, {});
+            if (cube.violation(u) <= tolerance && value < best) {
+                best = value;
+                result = describe(unscaled(u));
+            }
+        }
+    }
+    return result;
+}
+
+std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, std::uint64_t seed,
+                                                  core::Progress& progress) const {
+    const std::size_t axes = problem_.variables.size(), objectives = problem_.objectives.size();
+    const OnTheCube cube(*this, 0);
+    struct Point {
+        std::vector<double> u, f;
+    };
+    std::vector<Point> points;
+    const auto take = [&](std::vector<double> u) {
+        if (cube.violation(u) > 1e-6) {
+            return;
+        }
+        Point point{std::move(u), {}};
+        for (const Function& f : cube.objectives) {
+            point.f.push_back(f(point.u, {}));
+        }
+        points.push_back(std::move(point));
+    };
+    const auto keep_front = [&] {
+        const auto dominated = [&](const Point& p) {
+            return std::any_of(points.begin(), points.end(), [&](const Point& q) {
+                bool better = false;
+                for (std::size_t k = 0; k < objectives; ++k) {
+                    if (q.f[k] > p.f[k]) {
+                        return false;
+                    }
+                    better = better || q.f[k] < p.f[k];
+                }
+                return better;
+            });
+        };
+        std::vector<Point> front;
+        std::copy_if(points.begin(), points.end(), std::back_inserter(front),
+                     [&](const Point& p) { return !dominated(p); });
+        points = std::move(front);
+    };
+    for (const std::vector<double>& u : sobol_plan(std::min<std::size_t>(3000, 500 * axes), axes, seed)) {
+        take(u);
+    }
+    keep_front();
+    // From points of the cloud's front, each as far as it goes toward the best of every objective at once.
+    std::vector<double> ideal(objectives, std::numeric_limits<double>::infinity());
+    std::vector<double> nadir(objectives, -std::numeric_limits<double>::infinity());
+    for (const Point& p : points) {
+        for (std::size_t k = 0; k < objectives; ++k) {
+            ideal[k] = std::min(ideal[k], p.f[k]);
+            nadir[k] = std::max(nadir[k], p.f[k]);
+        }
+    }
+    const std::vector<Point> cloud = points;
+    for (std::size_t i = 0; i < std::min<std::size_t>(cloud.size(), 2 * count); ++i) {
+        progress.check();
+        const Point& start = cloud[i * cloud.size() / std::min<std::size_t>(cloud.size(), 2 * count)];
+        // All other objectives no worse than here; the one in turn as small as it gets.
+        const std::size_t turn = i % objectives;
+        std::vector<Function> limits = cube.limits;
+        for (std::size_t k = 0; k < objectives; ++k) {
+            if (k != turn) {
+                limits.push_back([&cube, k, bound = start.f[k]](std::span<const double> u, std::span<double> slope) {
+                    return cube.objectives[k](u, slope) - bound;
+                });
+            }
+        }
+        take(polished(cube.objectives[turn], limits, start.u));
+    }
+    keep_front();
+    std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.f.front() < b.f.front(); });
+    std::vector<Candidate> result;
+    for (std::size_t i = 0; i < std::min(count, points.size()); ++i) {
+        const std::size_t at = points.size() <= count || count < 2 ? i : i * (points.size() - 1) / (count - 1);
+        result.push_back(describe(unscaled(points[at].u)));
+    }
+    return result;
+}
+
+core::Table table(const DesignSearch& search, const std::vector<Candidate>& candidates) {
+    const SearchProblem& problem = search.problem();
+    core::Table result;
+    const auto column = [&](const std::string& name, const std::string& unit, auto&& value) {
+        std::vector<double> values;
+        for (const Candidate& c : candidates) {
+            values.push_back(value(c));
+        }
+        result.add_numbers(name, unit, std::move(values));
+    };
+    for (std::size_t v = 0; v < problem.variables.size(); ++v) {
+        column(problem.variables[v].name, problem.variables[v].unit, [v](const Candidate& c) { return c.at[v]; });
+    }
+    const auto response = [&](const Response& r, auto&& member) {
+        const std::string unit = search.unit_of(r);
+        column(r.name, unit, [&](const Candidate& c) { return member(c).value; });
+        column(r.name + "_sigma", unit, [&](const Candidate& c) { return member(c).sigma; });
+    };
+    for (std::size_t k = 0; k < problem.objectives.size(); ++k) {
+        response(problem.objectives[k].response,
+                 [k](const Candidate& c) -> const ResponseValue& { return c.objectives[k]; });
+    }
+    for (std::size_t k = 0; k < problem.limits.size(); ++k) {
+        response(problem.limits[k].response, [k](const Candidate& c) -> const ResponseValue& { return c.limits[k]; });
+    }
+    column("chance_valid", "1", [](const Candidate& c) { return c.chance_valid; });
+    column("chance_solved", "1", [](const Candidate& c) { return c.chance_solved; });
+    column("level", "1", [](const Candidate& c) { return static_cast<double>(c.level); });
+    return result;
+}
+
+std::string DesignSearch::unit_of(const Response& response) const {
+    const Bound bound = bind(response);
+    const std::string& unit = bound.surrogate->unit();
+    if (response.slope_along.empty()) {
+        return unit;
+    }
+    for (const SearchVariable& v : bound.surrogate->variables()) {
+        if (v.name == response.slope_along) {
+            return v.unit == "1" ? unit : unit + "/" + v.unit;
+        }
+    }
+    return unit;
+}
+
+}  // namespace underbody::tables

@@ -1,0 +1,430 @@
+#include "surrogates/tables/search/design_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlopt.hpp>
+#include <numeric>
+#include <utility>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "surrogates/tables/search/acquisition.h"
+#include "surrogates/tables/search/sampling.h"
+
+namespace underbody::tables {
+
+namespace {
+
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t trust_region_from = 6;  // variables beyond which a plan cannot fill the space
+
+/// How often a run near `x` gave a result: runs count by their distance, and two that did stand for what is known
+/// before any.
+double chance_solved(const std::vector<SearchVariable>& variables, std::span<const double> x,
+                     const DesignSearch::NextOptions& options) {
+    constexpr double reach = 0.15, before = 2;
+    const auto weight = [&](const std::vector<double>& other) {
+        double square = 0;
+        for (std::size_t v = 0; v < variables.size(); ++v) {
+            square += std::pow((variables[v].scaled(x[v]) - variables[v].scaled(other[v])) / reach, 2);
+        }
+        return std::exp(-0.5 * square);
+    };
+    double good = before, bad = 0;
+    for (const std::vector<double>& design : options.solved) {
+        good += weight(design);
+    }
+    for (const std::vector<double>& design : options.failed) {
+        bad += 4 * weight(design);  // a failure tells more than a success of what lies around it
+    }
+    return good / (good + bad);
+}
+
+bool differs(const std::vector<SearchVariable>& variables, const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        if (std::abs(variables[v].scaled(a[v]) - variables[v].scaled(b[v])) > 1e-4) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+void TrustRegion::step(bool improved, std::size_t variables) {
+    successes = improved ? successes + 1 : 0;
+    failures = improved ? 0 : failures + 1;
+    if (successes == 3) {
+        length = std::min(1.6, 2 * length);
+        successes = 0;
+    } else if (failures >= static_cast<int>(std::max<std::size_t>(4, variables))) {
+        length /= 2;
+        failures = 0;
+    }
+}
+
+DesignSearch::DesignSearch(SearchProblem problem, std::map<std::string, Surrogate> surrogates)
+    : problem_(std::move(problem)), surrogates_(std::move(surrogates)) {
+    if (problem_.objectives.empty()) {
+        throw core::InputError("objective", "the search has no objective", {},
+                               "state what is to be made small or large");
+    }
+    for (const Objective& objective : problem_.objectives) {
+        (void)bind(objective.response);
+    }
+    for (const Limit& limit : problem_.limits) {
+        (void)bind(limit.response);
+    }
+}
+
+DesignSearch::Bound DesignSearch::bind(const Response& response) const {
+    const auto found = surrogates_.find(response.quantity);
+    if (found == surrogates_.end()) {
+        std::vector<std::string> names;
+        for (const auto& [name, surrogate] : surrogates_) {
+            names.push_back(name);
+        }
+        throw core::InputError(
+            "quantity", "\"" + response.name + "\" asks for " + response.quantity + ", of which there is no surrogate",
+            {}, core::did_you_mean(response.quantity, names));
+    }
+    Bound bound;
+    bound.surrogate = &found->second;
+    const std::vector<SearchVariable>& all = bound.surrogate->variables();
+    std::vector<std::string> names;
+    std::vector<double> point(all.size(), 0.0);
+    std::vector<bool> given(all.size(), false);
+    for (const SearchVariable& v : all) {
+        names.push_back(v.name);
+    }
+    const auto index = [&](const std::string& name) {
+        const auto at = std::find(names.begin(), names.end(), name);
+        return at == names.end() ? none : static_cast<std::size_t>(at - names.begin());
+    };
+    for (const core::NamedValue& condition : response.conditions) {
+        const std::size_t i = index(condition.name);
+        if (i == none) {
+            throw core::InputError(
+                "condition", "\"" + response.name + "\" states " + condition.name + ", which the runs do not vary", {},
+                core::did_you_mean(condition.name, names));
+        }
+        point[i] = condition.value;
+        given[i] = true;
+    }
+    for (const SearchVariable& v : problem_.variables) {
+        bound.filled.push_back(index(v.name));
+        if (bound.filled.back() != none) {
+            given[bound.filled.back()] = true;
+        }
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!given[i]) {
+            throw core::InputError("condition", "\"" + response.name + "\" does not say at which " + all[i].name, {},
+                                   "state it as a condition, or search it");
+        }
+    }
+    if (response.slope_along.empty()) {
+        bound.weights = {1};
+        bound.points = {point};
+        return bound;
+    }
+    const std::size_t along = index(response.slope_along);
+    if (along == none || !(response.half_width > 0)) {
+        throw core::InputError("slope",
+                               "\"" + response.name + "\" is a slope along " + response.slope_along +
+                                   (along == none ? ", which the runs do not vary" : " of no width"),
+                               {}, core::did_you_mean(response.slope_along, names));
+    }
+    bound.weights = {-0.5 / response.half_width, 0.5 / response.half_width};
+    bound.points = {point, point};
+    bound.points[0][along] -= response.half_width;
+    bound.points[1][along] += response.half_width;
+    return bound;
+}
+
+ResponseValue DesignSearch::value(const Bound& bound, std::span<const double> x) const {
+    std::vector<std::vector<double>> points = bound.points;
+    for (std::vector<double>& point : points) {
+        for (std::size_t v = 0; v < bound.filled.size(); ++v) {
+            if (bound.filled[v] != none) {
+                point[bound.filled[v]] = x[v];
+            }
+        }
+    }
+    const SurrogatePrediction p =
+        points.size() == 1 ? bound.surrogate->at(points.front()) : bound.surrogate->sum(bound.weights, points);
+    return {p.value, p.sigma};
+}
+
+ResponseValue DesignSearch::evaluate(const Response& response, std::span<const double> x) const {
+    return value(bind(response), x);
+}
+
+double DesignSearch::cost_of(const Objective& objective, double value) const {
+    switch (objective.sense) {
+        case Objective::Sense::minimise:
+            return value;
+        case Objective::Sense::maximise:
+            return -value;
+        case Objective::Sense::target:
+            return std::abs(value - objective.target);
+    }
+    return value;
+}
+
+bool DesignSearch::known_limits_hold(std::span<const double> x) const {
+    return std::all_of(problem_.known_limits.begin(), problem_.known_limits.end(),
+                       [&](const auto& limit) { return limit(x) <= 0; });
+}
+
+std::vector<double> DesignSearch::unscaled(std::span<const double> u) const {
+    std::vector<double> x;
+    for (std::size_t v = 0; v < problem_.variables.size(); ++v) {
+        x.push_back(problem_.variables[v].unscaled(u[v]));
+    }
+    return x;
+}
+
+Candidate DesignSearch::describe(std::span<const double> x) const {
+    Candidate result;
+    result.at.assign(x.begin(), x.end());
+    for (const Objective& objective : problem_.objectives) {
+        result.objectives.push_back(evaluate(objective.response, x));
+    }
+    double chance = 0;
+    for (const Limit& limit : problem_.limits) {
+        const ResponseValue v = evaluate(limit.response, x);
+        result.limits.push_back(v);
+        chance += log_chance_below(v.value, v.sigma, limit.upper).value +
+                  log_chance_below(-v.value, v.sigma, -limit.lower).value;
+    }
+    result.chance_valid = std::exp(chance);
+    return result;
+}
+
+double DesignSearch::best_of(const std::vector<std::vector<double>>& designs) const {
+    double best = std::numeric_limits<double>::quiet_NaN();
+    for (const std::vector<double>& x : designs) {
+        const Candidate c = describe(x);
+        bool valid = known_limits_hold(x);
+        for (std::size_t i = 0; i < problem_.limits.size(); ++i) {
+            const double v = c.limits[i].value;
+            valid = valid && v >= problem_.limits[i].lower && v <= problem_.limits[i].upper;
+        }
+        if (valid) {
+            best = std::fmin(best, cost_of(problem_.objectives.front(), c.objectives.front().value));
+        }
+    }
+    return best;
+}
+
+double DesignSearch::log_acquisition(std::span<const double> x, double best, const NextOptions& options,
+                                     Candidate* described) const {
+    if (!known_limits_hold(x)) {
+        return -infinity;
+    }
+    Candidate c = describe(x);
+    c.chance_solved = chance_solved(problem_.variables, x, options);
+    double value = std::log(std::max(c.chance_valid, 1e-300)) + std::log(c.chance_solved);
+    if (!std::isnan(best)) {  // with nothing valid yet, what is most likely valid comes first
+        const Objective& objective = problem_.objectives.front();
+        const ResponseValue v = c.objectives.front();
+        if (objective.sense == Objective::Sense::target) {
+            // |f - target| < best: the improvement on each side.
+            const double below = log_expected_improvement(objective.target - v.value, v.sigma, best).value;
+            const double above = log_expected_improvement(v.value - objective.target, v.sigma, best).value;
+            value += std::min(below, above);
+        } else {
+            value += log_expected_improvement(cost_of(objective, v.value), v.sigma, best).value;
+        }
+    }
+    c.log_value = value;
+    if (described != nullptr) {
+        *described = std::move(c);
+    }
+    return value;
+}
+
+void DesignSearch::choose_level(Candidate& candidate, const NextOptions& options) const {
+    const Bound bound = bind(problem_.objectives.front().response);
+    std::vector<double> point = bound.points.front();
+    for (std::size_t v = 0; v < bound.filled.size(); ++v) {
+        if (bound.filled[v] != none) {
+            point[bound.filled[v]] = candidate.at[v];
+        }
+    }
+    const std::size_t levels = bound.surrogate->process().levels();
+    candidate.sigma_now = bound.surrogate->at(point).sigma;
+    candidate.level = levels - 1;
+    double best = -1;
+    for (std::size_t t = 0; t < levels; ++t) {
+        const double cost = t < options.level_costs.size() ? options.level_costs[t] : 1;
+        const double after = bound.surrogate->sigma_after(point, point, t);
+        const double gain = (candidate.sigma_now * candidate.sigma_now - after * after) / cost;
+        if (gain > best) {
+            best = gain;
+            candidate.level = t;
+            candidate.sigma_after = after;
+        }
+    }
+}
+
+DesignSearch DesignSearch::with(const Candidate& candidate) const {
+    DesignSearch result = *this;
+    for (auto& [name, surrogate] : result.surrogates_) {
+        for (const Objective& objective : problem_.objectives) {
+            if (objective.response.quantity != name) {
+                continue;
+            }
+            const Bound bound = bind(objective.response);
+            for (std::vector<double> point : bound.points) {
+                for (std::size_t v = 0; v < bound.filled.size(); ++v) {
+                    if (bound.filled[v] != none) {
+                        point[bound.filled[v]] = candidate.at[v];
+                    }
+                }
+                surrogate = surrogate.with({point, candidate.level, std::numeric_limits<double>::quiet_NaN(), 0});
+            }
+        }
+    }
+    return result;
+}
+
+std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, core::Progress& progress) const {
+    const std::size_t axes = problem_.variables.size();
+    std::vector<Candidate> batch;
+    DesignSearch search = *this;
+    std::vector<double> centre;
+    double best = best_of(options.solved);
+    if (options.region && axes > trust_region_from && !std::isnan(best)) {
+        for (const std::vector<double>& x : options.solved) {
+            if (best_of({x}) == best) {
+                for (std::size_t v = 0; v < axes; ++v) {
+                    centre.push_back(problem_.variables[v].scaled(x[v]));
+                }
+                break;
+            }
+        }
+    }
+    while (batch.size() < options.count) {
+        progress.check();
+        std::vector<double> low(axes, 0.0), high(axes, 1.0);
+        for (std::size_t v = 0; v < centre.size(); ++v) {
+            low[v] = std::max(0.0, centre[v] - options.region->length / 2);
+            high[v] = std::min(1.0, centre[v] + options.region->length / 2);
+        }
+        const auto acquisition = [&](std::span<const double> u) {
+            const double value = search.log_acquisition(unscaled(u), best, options, nullptr);
+            return std::isfinite(value) ? value : -1e10;
+        };
+        std::vector<std::pair<double, std::vector<double>>> tried;
+        const std::size_t candidates = std::min<std::size_t>(4000, 500 * axes);
+        for (std::vector<double>& u : sobol_plan(candidates, axes, options.seed + batch.size())) {
+            for (std::size_t v = 0; v < axes; ++v) {
+                u[v] = low[v] + u[v] * (high[v] - low[v]);
+            }
+            const double value = acquisition(u);
+            tried.emplace_back(value, std::move(u));
+        }
+        const std::size_t refined = std::min<std::size_t>(6, tried.size());
+        std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(refined), tried.end(),
+                          [](const auto& a, const auto& b) { return a.first > b.first; });
+        if (tried.front().first <= -1e10) {
+            break;  // no design meets the known limits
+        }
+        for (std::size_t i = 0; i < refined; ++i) {
+            nlopt::opt local(nlopt::LN_SBPLX, static_cast<unsigned>(axes));
+            local.set_lower_bounds(low);
+            local.set_upper_bounds(high);
+            local.set_maxeval(static_cast<int>(60 * axes));
+            local.set_xtol_abs(1e-5);
+            local.set_initial_step(0.03);
+            nlopt::func f = [](unsigned n, const double* u, double*, void* data) {
+                return (*static_cast<decltype(acquisition)*>(data))(std::span<const double>(u, n));
+            };
+            local.set_max_objective(f, const_cast<void*>(static_cast<const void*>(&acquisition)));
+            double value = 0;
+            try {
+                local.optimize(tried[i].second, value);
+                tried[i].first = value;
+            } catch (const nlopt::roundoff_limited&) {
+                tried[i].first = acquisition(tried[i].second);
+            }
+        }
+        const auto chosen = std::max_element(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(refined),
+                                             [](const auto& a, const auto& b) { return a.first < b.first; });
+        Candidate candidate;
+        (void)search.log_acquisition(unscaled(chosen->second), best, options, &candidate);
+        search.choose_level(candidate, options);
+        const bool again = std::any_of(batch.begin(), batch.end(), [&](const Candidate& c) {
+            return !differs(problem_.variables, c.at, candidate.at);
+        });
+        if (again) {
+            break;  // the rest of the batch would say the same again
+        }
+        batch.push_back(candidate);
+        search = search.with(candidate);
+    }
+    return batch;
+}
+
+std::vector<Candidate> DesignSearch::next_to_learn(const NextOptions& options, core::Progress& progress) const {
+    const std::size_t axes = problem_.variables.size();
+    const Plan where = sobol_plan(64, axes, options.seed + 1000);
+    std::vector<Candidate> batch;
+    DesignSearch search = *this;
+    const Bound bound = bind(problem_.objectives.front().response);
+    const auto filled = [&](std::span<const double> u) {
+        std::vector<double> point = bound.points.front();
+        const std::vector<double> x = unscaled(u);
+        for (std::size_t v = 0; v < axes; ++v) {
+            if (bound.filled[v] != none) {
+                point[bound.filled[v]] = x[v];
+            }
+        }
+        return point;
+    };
+    while (batch.size() < options.count) {
+        progress.check();
+        const Surrogate& surrogate = search.surrogates_.at(problem_.objectives.front().response.quantity);
+        const std::size_t levels = surrogate.process().levels();
+        double most = 0;
+        Candidate chosen;
+        for (const std::vector<double>& u : sobol_plan(100, axes, options.seed + batch.size())) {
+            const std::vector<double> x = unscaled(u);
+            if (!known_limits_hold(x)) {
+                continue;
+            }
+            const double solved = chance_solved(problem_.variables, x, options);
+            for (std::size_t t = 0; t < levels; ++t) {
+                double gain = 0;
+                for (const std::vector<double>& other : where) {
+                    const std::vector<double> target = filled(other);
+                    const double now = surrogate.at(target).sigma;
+                    const double after = surrogate.sigma_after(target, filled(u), t);
+                    gain += now * now - after * after;
+                }
+                gain *= solved / (t < options.level_costs.size() ? options.level_costs[t] : 1);
+                if (gain > most) {
+                    most = gain;
+                    chosen = search.describe(x);
+                    chosen.chance_solved = solved;
+                    chosen.level = t;
+                    chosen.log_value = std::log(gain);
+                    chosen.sigma_now = surrogate.at(filled(u)).sigma;
+                    chosen.sigma_after = surrogate.sigma_after(filled(u), filled(u), t);
+                }
+            }
+        }
+        if (!(most > 0)) {
+            break;
+        }
+        batch.push_back(chosen);
+        search = search.with(chosen);
+    }
+    return batch;
+}
+
+}  // namespace underbody::tables

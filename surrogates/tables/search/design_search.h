@@ -1,0 +1,149 @@
+// Where to look next, and where the best is: searches on surrogates over shapes.
+//
+// A search varies some of the surrogates' variables; the others are conditions that each response states (lift at 5 mm
+// and zero pitch; the slope of the pitch moment over +-1 degree).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/units.h"
+#include "surrogates/tables/search/surrogate.h"
+
+namespace underbody::tables {
+
+/// A number that a design has: a quantity at stated conditions, or its difference quotient along one of them.
+struct Response {
+    std::string name;                          ///< as people call it: "lift at 5 mm"
+    std::string quantity;                      ///< of a surrogate
+    std::vector<core::NamedValue> conditions;  ///< SI; variables of the surrogate that are not searched
+    std::string slope_along;                   ///< a condition; empty: the value itself
+    double half_width = 0;                     ///< of the difference quotient, in the condition's SI unit
+};
+
+struct Objective {
+    enum class Sense { minimise, maximise, target };
+    Response response;
+    Sense sense = Sense::minimise;
+    double target = 0;  ///< with Sense::target: the distance to it is minimised
+};
+
+struct Limit {
+    Response response;
+    double lower = -1e300;
+    double upper = 1e300;
+};
+
+struct SearchProblem {
+    std::vector<SearchVariable> variables;  ///< searched
+    std::vector<Objective> objectives;      ///< one, or several for a Pareto front
+    std::vector<Limit> limits;
+    /// What is known without a run (size, certificate, clearance, buoyancy): <= 0 where it holds. May be empty.
+    std::vector<std::function<double(std::span<const double>)>> known_limits;
+};
+
+/// What a response is for a design: value and one sigma, SI.
+struct ResponseValue {
+    double value = 0;
+    double sigma = 0;
+};
+
+struct Candidate {
+    std::vector<double> at;  ///< SI, one a searched variable
+    std::vector<ResponseValue> objectives;
+    std::vector<ResponseValue> limits;
+    double log_value = 0;      ///< log of the acquisition, for candidates of next_designs()
+    double chance_valid = 1;   ///< that all limits hold
+    double chance_solved = 1;  ///< that a run gives a result, learned from runs that failed
+    std::size_t level = 0;     ///< fidelity that pays best
+    double sigma_now = 0;      ///< of the first objective at the candidate, highest fidelity
+    double sigma_after = 0;    ///< expected after its run on `level`
+};
+
+/// A box around the best design, for searches in more variables than a plan can fill (Eriksson et al. 2019).
+struct TrustRegion {
+    double length = 0.8;  ///< share of each range
+    int successes = 0;
+    int failures = 0;
+    /// After a step: doubled after three improvements in a row, halved after as many failures as there are variables.
+    void step(bool improved, std::size_t variables);
+    /// Too small to go on: start anew elsewhere.
+    [[nodiscard]] bool collapsed() const { return length < 0x1p-7; }
+};
+
+class DesignSearch {
+public:
+    /// Surrogates by quantity. Throws core::InputError: a response of an unknown quantity, a variable of a surrogate
+    /// that is neither searched nor given as a condition, a condition that no surrogate has (with the nearest).
+    DesignSearch(SearchProblem problem, std::map<std::string, Surrogate> surrogates);
+
+    [[nodiscard]] const SearchProblem& problem() const { return problem_; }
+    [[nodiscard]] ResponseValue evaluate(const Response& response, std::span<const double> x) const;
+    /// Objectives, limits and the chance that these hold.
+    [[nodiscard]] Candidate describe(std::span<const double> x) const;
+
+    struct NextOptions {
+        std::size_t count = 1;                    ///< for so many machines at once
+        std::vector<double> level_costs;          ///< core-seconds of a run of each fidelity; one entry: one fidelity
+        std::vector<std::vector<double>> solved;  ///< designs that were run, SI
+        std::vector<std::vector<double>> failed;  ///< designs whose run gave no result
+        std::optional<TrustRegion> region;        ///< around the best known design
+        std::uint64_t seed = 1;
+    };
+    /// Where a run improves the first objective most, in the logarithm of the expected improvement times the chances
+    /// that limits hold and that it is solved; the batch's earlier members count as run with what is predicted there.
+    /// Empty when no design meets the known limits.
+    [[nodiscard]] std::vector<Candidate> next_designs(const NextOptions& options,
+                                                      core::Progress& progress = core::Progress::none()) const;
+    /// Where the first objective's sigma, averaged over the searched ranges, falls most a core-second.
+    [[nodiscard]] std::vector<Candidate> next_to_learn(const NextOptions& options,
+                                                       core::Progress& progress = core::Progress::none()) const;
+
+    /// The best design that meets every limit by `sigmas` of its stated error: gradient-based from many starts. Empty
+    /// when none does.
+    [[nodiscard]] std::optional<Candidate> optimum(double sigmas, std::uint64_t seed,
+                                                   core::Progress& progress = core::Progress::none()) const;
+    /// Designs of which none is better in all objectives, at most `count`, along the first objective.
+    [[nodiscard]] std::vector<Candidate> pareto_front(std::size_t count, std::uint64_t seed,
+                                                      core::Progress& progress = core::Progress::none()) const;
+    /// The best of some designs as predicted (the first objective as something to be made small); NaN when none of them
+    /// is valid by its mean.
+    [[nodiscard]] double best_of(const std::vector<std::vector<double>>& designs) const;
+    /// SI unit of a response: a slope's is that of the quantity over that of the condition.
+    [[nodiscard]] std::string unit_of(const Response& response) const;
+
+private:
+    struct Bound {  ///< a response prepared for evaluation
+        const Surrogate* surrogate = nullptr;
+        std::vector<double> weights;
+        std::vector<std::vector<double>> points;  ///< templates, SI; searched variables are filled in
+        std::vector<std::size_t> filled;          ///< surrogate variable of each searched one (npos: none)
+    };
+    struct OnTheCube;
+    [[nodiscard]] Bound bind(const Response& response) const;
+    [[nodiscard]] ResponseValue value(const Bound& bound, std::span<const double> x) const;
+    void value_with_slopes(const Bound& bound, std::span<const double> x, ResponseValue& value,
+                           std::vector<double>& by_value, std::vector<double>& by_sigma) const;
+    [[nodiscard]] double cost_of(const Objective& objective, double value) const;
+    [[nodiscard]] double log_acquisition(std::span<const double> x, double best, const NextOptions& options,
+                                         Candidate* described) const;
+    [[nodiscard]] bool known_limits_hold(std::span<const double> x) const;
+    [[nodiscard]] std::vector<double> unscaled(std::span<const double> u) const;
+    void choose_level(Candidate& candidate, const NextOptions& options) const;
+    [[nodiscard]] DesignSearch with(const Candidate& candidate) const;
+
+    SearchProblem problem_;
+    std::map<std::string, Surrogate> surrogates_;
+};
+
+/// A design in a table: searched variables with units, objectives and limits with their sigmas, chances.
+core::Table table(const DesignSearch& search, const std::vector<Candidate>& candidates);
+
+}  // namespace underbody::tables
