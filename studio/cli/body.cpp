@@ -253,6 +253,7 @@ int make_body(const MakeOptions& o, Shell& shell) {
     const geometry::SurfaceMesh placed =
         body.placement ? geometry::placed(made, *body.placement) : geometry::SurfaceMesh{};
     const geometry::SurfaceMesh& shown = body.placement ? placed : made;
+    shell.hand_over(shown);
     nlohmann::json document = body;
     if (!o.out.empty()) {
         const geometry::MeshFormat format = geometry::mesh_format_of(o.out);

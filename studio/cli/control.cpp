@@ -183,6 +183,7 @@ int run_control(const ControlArguments& a, Shell& shell) {
     }
     const LoopEstimator estimator = design_loop_estimator(a.observer, plant, design_for(a, o));
     const LoopRun loop = close_loop(plant, law, estimator, o);
+    shell.hand_over("motion", [&] { return loop.table(); });
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), loop.table());
     }

@@ -137,6 +137,7 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
         throw core::UsageError("missing", "the extended filter has no linear form to export", {},
                                "choose --observer kalman, reduced, full, latent or disturbance");
     }
+    shell.hand_over("estimates", [&] { return result.table; });
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), result.table);
     }

@@ -162,7 +162,7 @@ void add_import_command(CLI::App& app, Shell& shell) {
                 postproc::ReadOptions read = options->field.read_options();
                 read.zones = options->field.zones;
                 read.arrays = options->arrays;
-                const auto field = postproc::read_field(file, read, shell.progress());
+                const auto field = shell.read_field(file, read);
                 shell.show(field.problems);
                 show_missing_arrays(shell, field, options->arrays);
                 show_new_folder(shell, outputs[i]);

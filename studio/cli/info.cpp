@@ -186,7 +186,7 @@ void add_info_command(CLI::App& app, Shell& shell) {
         }
         postproc::ReadOptions read = options->field.read_options();
         read.zones = options->field.zones;
-        const auto summary = postproc::summarise(postproc::read_field(options->file, read, shell.progress()));
+        const auto summary = postproc::summarise(shell.read_field(options->file, read));
         if (shell.json) {
             shell.print_json(summary);
         } else {

@@ -387,7 +387,7 @@ postproc::Field field_of(Shell& shell, const LoadsArguments& given, const std::s
     postproc::ReadOptions read = given.field.read_options();
     read.zones = given.field.zones;
     read.surfaces_only = true;
-    postproc::Field field = postproc::read_field(path, read, shell.progress());
+    postproc::Field field = shell.read_field(path, read);
     const bool all_there = std::all_of(read.zones.begin(), read.zones.end(), [&](const std::string& pattern) {
         return std::any_of(field.zones.begin(), field.zones.end(),
                            [&](const postproc::Zone& zone) { return postproc::matches(pattern, zone.name); });
@@ -395,7 +395,7 @@ postproc::Field field_of(Shell& shell, const LoadsArguments& given, const std::s
     if (!all_there) {
         read.zones.clear();
         field = {};
-        field = postproc::read_field(path, read, shell.progress());
+        field = shell.read_field(path, read);
     }
     return field;
 }
@@ -544,6 +544,7 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     shell.show(notes);
     show_studies(shell, cases);
     const bool several = cases.size() + failures.size() > 1 || (given.files.empty() && !given.manifest.empty());
+    shell.hand_over("loads", [&] { return postproc::loads_table(cases, batch.number_units); });
     const bool table = several || !given.manifest.empty() || !given.out.empty();
     if (!given.out.empty()) {
         core::write_csv(given.out, postproc::loads_table(cases, batch.number_units));

@@ -1,44 +1,11 @@
 #include <CLI/CLI.hpp>
 
-#include "studio/cli/commands.h"
+#include "studio/cli/program.h"
 #include "studio/cli/shell.h"
 
-namespace {
-
-/// What every command takes is said by every command's help.
-void mention_common_options(CLI::App& app) {
-    for (auto* command : app.get_subcommands([](CLI::App*) { return true; })) {
-        const std::string footer = command->get_footer();
-        command->footer(footer + (footer.empty() ? "" : "\n") +
-                        "With every command: --json, --quiet, --verbose, --threads N, --force (underbody --help)");
-        mention_common_options(*command);
-    }
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
-    using namespace underbody::studio;
-    CLI::App app{"Underbody: CFD post-processing and ground-effect design studio", "underbody"};
-    app.set_version_flag("--version", UNDERBODY_VERSION);
-    app.require_subcommand(1);
-    app.fallthrough();  // --json and the like may stand before or after the command
-    app.footer(
-        "Examples:\n"
-        "  underbody loads body.csv                       forces and moments of a CFD-Post export\n"
-        "  underbody table equilibria lift.csv --weight 0.3\n"
-        "  underbody study run cases/evie                 the shipped study, to a report\n"
-        "Each command has examples of its own: underbody COMMAND --help\n"
-        "Exit codes: 0 done, 1 defect of the program, 2 wrong use, 3 wrong input, 4 a check failed, 130 cancelled.");
-    Shell shell;
-    app.add_flag("--json", shell.json, "results as one JSON document on stdout");
-    app.add_flag("--quiet", shell.quiet, "no progress and no remarks");
-    app.add_flag("--verbose", shell.verbose, "say more of what is done");
-    app.add_flag("--force", shell.force, "replace files that underbody did not write, or that were changed since");
-    app.add_option("--threads", shell.threads, "threads to use (default: all cores)")->check(CLI::NonNegativeNumber);
-#define UNDERBODY_ADD(name) add_##name##_command(app, shell);
-    UNDERBODY_COMMANDS(UNDERBODY_ADD)
-#undef UNDERBODY_ADD
-    mention_common_options(app);
+    underbody::studio::Shell shell;
+    CLI::App app;
+    underbody::studio::add_commands(app, shell);
     return shell.run(app, argc, argv);
 }

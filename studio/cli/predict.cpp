@@ -34,6 +34,7 @@ int run_predict(const PredictArguments& a, Shell& shell) {
     options.horizon = core::parse_in(a.horizon, "s");
     const dynamics::Prediction prediction = dynamics::predict(model, data, options, shell.progress());
     shell.remark(prediction.remarks);
+    shell.hand_over("prediction", [&] { return prediction.table; });
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), prediction.table);
     }

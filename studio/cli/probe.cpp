@@ -150,7 +150,7 @@ void add_probe_command(CLI::App& app, Shell& shell) {
         "  underbody probe body.csv --point \"0,0,5 mm\" --arrays pressure");
     shell.on(command, [&shell, o] {
         postproc::ReadOptions read = o->field.read_options();
-        auto field = postproc::read_field(o->file, read, shell.progress());
+        auto field = shell.read_field(o->file, read);
         shell.show(field.problems);
         const auto density =
             o->density.empty() ? std::nullopt : std::optional<double>(core::parse_in(o->density, "kg/m^3"));
@@ -158,6 +158,7 @@ void add_probe_command(CLI::App& app, Shell& shell) {
             shell.warn(o->file + ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");
         }
         const core::Table table = look(field, *o, shell);
+        shell.hand_over("values", [&] { return table; });
         if (!o->out.empty()) {
             core::write_csv(o->out, table);
             shell.info("wrote " + o->out);

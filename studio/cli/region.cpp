@@ -112,6 +112,7 @@ int run_starts(const RegionArguments& a, const dynamics::Model& model, const dyn
     const core::Table starts = core::read_csv(std::filesystem::path(a.starts));
     std::vector<dynamics::EndClass> classes;
     const core::Table ends = dynamics::ends_of_starts(model, starts, options, classes, shell.progress());
+    shell.hand_over("map", [&] { return ends; });
     if (!a.table.empty()) {
         core::write_csv(std::filesystem::path(a.table), ends);
     }
@@ -281,6 +282,7 @@ int run_region(const RegionArguments& a, Shell& shell) {
     if (!a.table.empty()) {
         core::write_csv(std::filesystem::path(a.table), dynamics::region_table(region));
     }
+    shell.hand_over("map", [&] { return dynamics::region_table(region); });
     nlohmann::json json;
     dynamics::to_json(json, region);
     show_forces(shell, model, options.held, json);

@@ -1,6 +1,8 @@
 #include "studio/cli/shell.h"
 
 #include <unistd.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include "core/own_files.h"
 #include "core/parallel.h"
 #include "postproc/field/import_error.h"
+#include "studio/cli/caller.h"
 #include "studio/cli/option_words.h"
 #include "studio/cli/usage.h"
 
@@ -71,13 +74,21 @@ core::Progress::Listener listener(const bool& quiet) {
 
 Shell::Shell() : progress_(listener(quiet)) {}
 
+Shell::Shell(Caller& caller, core::Progress::Listener listener)
+    : json(true), caller_(&caller), progress_(std::move(listener)) {}
+
 void Shell::on(CLI::App* command, std::function<int()> action) {
     command->callback([this, action = std::move(action)] { action_ = action; });
 }
 
 void Shell::print_json(const nlohmann::json& document) {
     // NaN has no place in JSON: nlohmann writes null for it. Names of files may be of any bytes.
-    std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    std::string text = document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    if (caller_ != nullptr) {
+        caller_->document = std::move(text);
+    } else {
+        std::cout << text << '\n';
+    }
 }
 
 void Shell::print(const std::string& text) {
@@ -86,18 +97,77 @@ void Shell::print(const std::string& text) {
     }
 }
 
-void Shell::warn(const std::string& text) { std::cerr << "underbody: warning: " << with_flags(text) << '\n'; }
+void Shell::say(int level, const std::string& text) {
+    if (caller_ != nullptr) {
+        caller_->remarks.emplace_back(static_cast<Caller::Level>(level), with_flags(text));
+    } else {
+        std::cerr << (level == static_cast<int>(Caller::Level::warning) ? "underbody: warning: " : "underbody: ")
+                  << with_flags(text) << '\n';
+    }
+}
+
+void Shell::warn(const std::string& text) { say(static_cast<int>(Caller::Level::warning), text); }
 
 void Shell::info(const std::string& text) {
     if (!quiet) {
-        std::cerr << "underbody: " << with_flags(text) << '\n';
+        say(static_cast<int>(Caller::Level::info), text);
     }
 }
 
 void Shell::detail(const std::string& text) {
-    if (verbose) {
-        std::cerr << "underbody: " << with_flags(text) << '\n';
+    if (verbose || caller_ != nullptr) {
+        say(static_cast<int>(Caller::Level::detail), text);
     }
+}
+
+namespace {
+/// The same values in data sets of their own: who adds or takes an array leaves the original alone.
+postproc::Field apart(postproc::Field field) {
+    const auto copied = [](auto& data) {
+        if (data != nullptr) {
+            const auto original = data;
+            data.TakeReference(original->NewInstance());
+            data->ShallowCopy(original);
+        }
+    };
+    for (auto& zone : field.zones) {
+        copied(zone.surface);
+        copied(zone.volume);
+    }
+    return field;
+}
+}  // namespace
+
+postproc::Field Shell::read_field(const std::string& path, const postproc::ReadOptions& options) {
+    if (caller_ != nullptr) {
+        if (const auto known = caller_->fields.find(path); known != caller_->fields.end()) {
+            return apart(known->second);
+        }
+    }
+    return postproc::read_field(path, options, progress_);
+}
+
+void Shell::hand_over(const std::string& name, const std::function<core::Table()>& make) {
+    if (caller_ != nullptr) {
+        caller_->tables.emplace_back(name, make());
+    }
+}
+
+void Shell::hand_over(const geometry::SurfaceMesh& surface) {
+    if (caller_ != nullptr) {
+        caller_->surface = surface;
+    }
+}
+
+std::string Shell::program() const {
+    if (caller_ == nullptr) {
+        return std::filesystem::read_symlink("/proc/self/exe").string();
+    }
+    if (caller_->program.empty()) {
+        throw core::UsageError("missing", "the program 'underbody', which the jobs call, is not installed here", {},
+                               "install the Debian package underbody, or put the program's folder into PATH");
+    }
+    return caller_->program;
 }
 
 namespace {
@@ -136,7 +206,16 @@ void Shell::show(const core::Problems& problems) {
 }
 
 void Shell::report(const core::Error& error, const char* what) {
-    std::cerr << "underbody: " << what << ": " << with_flags(error.what()) << '\n';
+    if (caller_ != nullptr) {
+        caller_->error = with_flags(error.what());
+        caller_->error_class = dynamic_cast<const core::UsageError*>(&error) != nullptr    ? "UsageError"
+                               : dynamic_cast<const core::InputError*>(&error) != nullptr  ? "InputError"
+                               : dynamic_cast<const core::SystemError*>(&error) != nullptr ? "SystemError"
+                               : dynamic_cast<const core::Cancelled*>(&error) != nullptr   ? "Cancelled"
+                                                                                           : "Defect";
+    } else {
+        std::cerr << "underbody: " << what << ": " << with_flags(error.what()) << '\n';
+    }
     if (!json) {
         return;
     }
@@ -204,6 +283,10 @@ int Shell::run(CLI::App& app, int argc, const char* const* argv) {
     watched = &progress_;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
+    return execute(app, argc, argv);
+}
+
+int Shell::execute(CLI::App& app, int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -217,6 +300,9 @@ int Shell::run(CLI::App& app, int argc, const char* const* argv) {
         return wrong_usage;
     }
     const int code = run_action();
+    if (caller_ != nullptr) {
+        return code;
+    }
     std::cout.flush();
     if (!std::cout && code == done) {
         report(core::SystemError("write", "the output could not be written"), "error");

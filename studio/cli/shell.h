@@ -12,13 +12,30 @@ namespace CLI {
 class App;
 }
 
+namespace underbody::core {
+class Table;
+}
+
+namespace underbody::geometry {
+struct SurfaceMesh;
+}
+
+namespace underbody::postproc {
+struct Field;
+struct ReadOptions;
+}  // namespace underbody::postproc
+
 namespace underbody::studio {
+
+struct Caller;
 
 enum ExitCode { done = 0, defect = 1, wrong_usage = 2, wrong_input = 3, check_failed = 4, cancelled = 130 };
 
 class Shell {
 public:
     Shell();
+    /// For a program that runs commands in its own process: nothing goes to the terminal, all of it to the caller.
+    Shell(Caller& caller, core::Progress::Listener listener);
 
     bool json = false;
     bool quiet = false;
@@ -46,16 +63,30 @@ public:
     /// document must hold them itself, on stderr).
     void remark(const core::Problems& problems);
 
+    /// A CFD file, or the field that the caller read from it before.
+    postproc::Field read_field(const std::string& path, const postproc::ReadOptions& options);
+    /// A table of the results, whether or not it is written to a file: the caller takes it. `make` runs only for one.
+    void hand_over(const std::string& name, const std::function<core::Table()>& make);
+    void hand_over(const geometry::SurfaceMesh& surface);
+    /// Of the process that runs the command; nullptr: a terminal.
+    [[nodiscard]] const Caller* caller() const { return caller_; }
+    /// Path of `underbody`, for scripts that call it later. Throws core::UsageError where there is none.
+    [[nodiscard]] std::string program() const;
+
     /// Draws a bar on stderr when it is a terminal and nobody asked for quiet; Ctrl-C cancels it.
     core::Progress& progress() { return progress_; }
 
     /// Parses, runs, turns exceptions into exit codes and messages.
     int run(CLI::App& app, int argc, const char* const* argv);
+    /// run() that leaves the process's signals alone.
+    int execute(CLI::App& app, int argc, const char* const* argv);
 
 private:
     int run_action();
     void report(const core::Error& error, const char* what);
+    void say(int level, const std::string& text);
     std::function<int()> action_;
+    Caller* caller_ = nullptr;
     core::Progress progress_;
 };
 

@@ -250,6 +250,7 @@ void write_motion(const Motion& motion, const core::Figure& figure, const Simula
     if (!a.plot.empty()) {
         write_picture(figure, a.plot);
     }
+    shell.hand_over("motion", [&] { return motion.table(); });
     nlohmann::json json;
     show_forces(shell, job.model, job.inputs.signals.held, json);
     if (shell.json) {

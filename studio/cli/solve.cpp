@@ -149,7 +149,7 @@ int submit(Shell& shell, const cases::Study& study, const SweepArguments& given)
     }
     what.settings.throttle = given.throttle.value_or(what.settings.throttle);
     what.settings.max_array = given.max_array.value_or(what.settings.max_array);
-    what.program = fs::read_symlink("/proc/self/exe").string();
+    what.program = shell.program();
     what.keep_stale = given.stale == "keep";
     what.replace_stale = given.stale == "replace";
     const auto arrays = cases::submit_sweep(study, what, shell.progress());

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/cli/caller.h"
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "surrogates/dynamics/model/force_points.h"
@@ -124,6 +125,16 @@ core::Table TableOptions::points(Shell& shell) const {
     return std::move(found.points);
 }
 
+const std::vector<tables::ForceTable>* TableOptions::fitted(const Shell& shell) const {
+    if (shell.caller() == nullptr) {
+        return nullptr;
+    }
+    const auto known = shell.caller()->fitted.find(file);
+    const bool same =
+        known != shell.caller()->fitted.end() && (quantity.empty() || quantity == known->second.front().quantity());
+    return same ? &known->second : nullptr;
+}
+
 bool TableOptions::is_model() const { return std::filesystem::path(file).extension() == ".toml"; }
 
 std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, bool remarks) const {
@@ -155,6 +166,9 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
 }
 
 tables::ForceTable TableOptions::fit(Shell& shell) const {
+    if (const auto* known = fitted(shell)) {
+        return known->front();
+    }
     if (is_model()) {
         return of_model(shell, true, true).front();
     }
@@ -165,6 +179,9 @@ tables::ForceTable TableOptions::fit(Shell& shell) const {
 }
 
 std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks) const {
+    if (const auto* known = fitted(shell)) {
+        return *known;
+    }
     if (is_model()) {
         return of_model(shell, false, remarks);
     }

@@ -37,6 +37,8 @@ struct TableOptions {
     [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true) const;
 
 private:
+    /// Those that the caller fitted from the file before; nullptr: none.
+    [[nodiscard]] const std::vector<tables::ForceTable>* fitted(const Shell& shell) const;
     /// The forces of a model; only the first quantity when `one`.
     [[nodiscard]] std::vector<tables::ForceTable> of_model(Shell& shell, bool one, bool remarks) const;
 };

@@ -256,7 +256,7 @@ int run_views(Shell& shell, const ViewsArguments& given) {
     }
     std::vector<postproc::Field> fields;
     for (const auto& file : batch.files) {
-        fields.push_back(postproc::read_field(file.path, given.field.read_options(), shell.progress()));
+        fields.push_back(shell.read_field(file.path, given.field.read_options()));
         shell.show(fields.back().problems);
         use_density(shell, given, fields.back());
     }

@@ -1,0 +1,165 @@
+"""The commands of the command line as functions: the same options, the same figures, the same errors."""
+import inspect
+import json
+import keyword
+import logging
+import os
+import shutil
+import warnings
+
+from . import _errors, _underbody
+from ._results import Result
+from ._words import option_words, python_name, words_of
+
+log = logging.getLogger("underbody")
+
+COMMON = {"threads": "threads to use (default: all cores)",
+          "force": "replace files that underbody did not write, or that were changed since",
+          "progress": "called with the fraction done (0 to 1) and what is being done; what it raises ends the work"}
+_HIDDEN = {"--help", "--version", "--json", "--quiet", "--verbose", "--threads", "--force"}
+
+
+def _program():
+    """`underbody`, which jobs of a cluster call later: beside a build, or installed."""
+    beside = os.path.join(os.path.dirname(__file__), "..", "..", "bin", "underbody")
+    return os.path.abspath(beside) if os.access(beside, os.X_OK) else shutil.which("underbody") or ""
+
+
+def say(remarks, depth):
+    """Warnings as Python's warnings, the rest to the log 'underbody'."""
+    for level, text in remarks:
+        if level == 0:
+            warnings.warn(text, _errors.UnderbodyWarning, stacklevel=depth)
+        else:
+            log.log(logging.INFO if level == 1 else logging.DEBUG, "%s", text)
+
+
+def run(words, *, fields=None, fitted=None, progress=None, threads=None, force=False, depth=4):
+    """Runs a command given by its words, as on the command line without `underbody`."""
+    words = [*words, *([f"--threads={threads}"] if threads is not None else []), *(["--force"] if force else [])]
+    code, document, remarks, tables, surface, error_class, error = _underbody.run(
+        words, fields or {}, fitted or {}, _program(), progress)
+    say(remarks, depth)
+    data = json.loads(document) if document else {}
+    if error_class:
+        parts = data["error"]
+        raise getattr(_errors, error_class)(
+            error, kind=parts["kind"], problem=parts["message"], hint=parts["hint"], file=parts.get("file", ""),
+            line=parts.get("line"), column=parts.get("column"), byte=parts.get("byte"))
+    result = Result(data if isinstance(data, dict) else {"items": data}, tables, remarks, surface)
+    if code == 4:
+        said = [text for level, text in remarks if level < 2]
+        raise _errors.CheckFailed(said[-1] if said else "a check failed", result)
+    return result
+
+
+class Command:
+    """A command: call it, or its sub-commands by their names. See `help()` of each."""
+
+    def __init__(self, tree, path, given=None, objects=None):
+        self._tree = tree
+        self._path = path
+        self._given = given or {}  # arguments that an object gives
+        self._objects = objects or {}
+        self.__name__ = python_name(tree["name"])
+        self.__qualname__ = ".".join(path)
+        self.__doc__ = self._help()
+        self.__signature__ = self._signature()
+        for command in tree["commands"]:
+            setattr(self, python_name(command["name"]), Command(command, [*path, command["name"]], given, objects))
+
+    def _options(self):
+        return [one for one in self._tree["options"] if one["names"][0] not in _HIDDEN]
+
+    def _signature(self):
+        kinds = inspect.Parameter
+        parameters, needed = [], True
+        for one in self._tree["positionals"]:
+            name = python_name(one["name"])
+            if name in self._given:
+                continue
+            if one["several"]:
+                parameters.append(kinds(name, kinds.VAR_POSITIONAL))
+                needed = False
+            else:
+                needed = needed and one["required"]
+                parameters.append(kinds(name, kinds.POSITIONAL_OR_KEYWORD,
+                                        default=kinds.empty if needed else None))
+        for one in self._options():
+            name = python_name(one["names"][0])
+            default = kinds.empty if one["required"] else (False if one["flag"] else None)
+            parameters.append(kinds(name, kinds.KEYWORD_ONLY, default=default))
+        for name in COMMON:
+            parameters.append(kinds(name, kinds.KEYWORD_ONLY, default=False if name == "force" else None))
+        return inspect.Signature(parameters, return_annotation=Result)
+
+    def _help(self):
+        lines = [self._tree["description"] or self._tree["name"], ""]
+        for one in self._tree["positionals"]:
+            lines.append(f"{python_name(one['name'])}: {one['description']}")
+        for one in self._options():
+            lines.append(f"{python_name(one['names'][0])}: {one['description']}")
+        lines += [f"{name}: {text}" for name, text in COMMON.items()]
+        return "\n".join([*lines, "", "On the command line:", self._tree["examples"]])
+
+    def __call__(self, *values, **options):
+        try:
+            bound = self.__signature__.bind(*values, **options)
+        except TypeError as wrong:
+            raise _errors.UsageError(self._wrong(str(wrong), options), kind="usage") from None
+        given = {**self._given, **bound.arguments}
+        words, fields = list(self._path), {}
+        common = {name: given.pop(name) for name in COMMON if name in given}
+        try:
+            for one in self._options():
+                value = given.get(python_name(one["names"][0]))
+                if value is not None and value is not False:
+                    words += option_words(one, value)
+            places = []
+            for one in self._tree["positionals"]:
+                value = given.get(python_name(one["name"]))
+                if value is not None:
+                    fields.update(_fields_of(value if one["several"] else [value]))
+                    places += words_of(value, one["several"])
+        except TypeError as wrong:
+            raise _errors.UsageError(str(wrong), kind="usage") from None
+        if any(word.startswith("-") for word in places):
+            places.insert(0, "--")
+        return run([*words, *places], fields=fields, depth=5, **self._objects, **common)
+
+    def _wrong(self, text, options):
+        known = [name for name in self.__signature__.parameters]
+        for name in options:
+            if name not in known:
+                hint = _underbody.did_you_mean(name, known)
+                return f"'{self.__qualname__}' has no argument '{name}'" + (f" ({hint})" if hint else "")
+        return f"{self.__qualname__}: {text}"
+
+    def __repr__(self):
+        return f"<command {self.__qualname__}{self.__signature__}>"
+
+
+def _fields_of(values):
+    return {one.__underbody_path__(): one._native for one in values if hasattr(one, "_native_field")}
+
+
+TREE = json.loads(_underbody.tree())
+
+
+def find(*names):
+    """The part of the tree of a command."""
+    tree = TREE
+    for name in names:
+        tree = next(one for one in tree["commands"] if one["name"] == name)
+    return tree
+
+
+def all_commands():
+    """{name in Python: Command}"""
+    import builtins
+    found = {}
+    for tree in TREE["commands"]:
+        name = python_name(tree["name"])
+        name += "_" if hasattr(builtins, name) and not keyword.iskeyword(tree["name"]) else ""
+        found[name] = Command(tree, [tree["name"]])
+    return found
