@@ -31,7 +31,9 @@ class Shell;
     X(linear)                 \
     X(new)                    \
     X(list)                   \
-    X(theory)
+    X(theory)                 \
+    X(doctor)                 \
+    X(completion)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

@@ -21,10 +21,12 @@ void mention_common_options(CLI::App& app) {
 
 }  // namespace
 
+std::string version() { return UNDERBODY_VERSION; }
+
 void add_commands(CLI::App& app, Shell& shell, const std::string& only) {
     app.name("underbody");
     app.description("Underbody: CFD post-processing and ground-effect design studio");
-    app.set_version_flag("--version", UNDERBODY_VERSION);
+    app.set_version_flag("--version", version());
     app.require_subcommand(1);
     app.fallthrough();  // --json and the like may stand before or after the command
     app.footer(

@@ -31,6 +31,9 @@ struct Caller;
 
 enum ExitCode { done = 0, defect = 1, wrong_usage = 2, wrong_input = 3, check_failed = 4, cancelled = 130 };
 
+/// "0.1.0"
+std::string version();
+
 class Shell {
 public:
     Shell();

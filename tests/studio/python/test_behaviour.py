@@ -1,0 +1,195 @@
+"""Errors, warnings, progress, Ctrl-C, threads, stubs."""
+import inspect
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+import warnings
+
+import pytest
+import underbody
+
+FIELD = "fields/ellipse-h5-p0.csv"
+
+
+@pytest.mark.parametrize("words, call", [
+    (["loads", "nothing.csv"], lambda: underbody.loads("nothing.csv")),
+    (["loads", FIELD, "--density", "5 mm"], lambda: underbody.loads(FIELD, density="5 mm")),
+    (["loads", FIELD, "--fluid", "water"], lambda: underbody.loads(FIELD, fluid="water")),
+    (["loads", FIELD, "--zones", "hul"], lambda: underbody.loads(FIELD, zones=["hul"])),
+    (["body", "shapes/ellipse.toml", "--gap", "-1"], lambda: underbody.body("shapes/ellipse.toml", gap=-1)),
+    (["simulate", "glide.toml", "--from", "gab=1"], lambda: underbody.simulate("glide.toml", start={"gab": 1})),
+    (["simulate", "glide.toml", "--from", "gap=3 s"], lambda: underbody.simulate("glide.toml", start={"gap": "3 s"})),
+    (["region", "glide.toml", "--draws", "3", "--sweep", "speed=0:1"],
+     lambda: underbody.region("glide.toml", draws=3, sweep={"speed": (0, 1)})),
+    (["study", "list", "fields"], lambda: underbody.study.list("fields")),
+])
+def test_errors_have_the_same_words(program, words, call):
+    with pytest.raises(underbody.Error) as raised:
+        call()
+    assert str(raised.value) == program.sentence(*words)
+    expected = underbody.UsageError if program.run(*words).returncode == 2 else underbody.Error
+    assert isinstance(raised.value, expected)
+
+
+def test_errors_say_where(program, tmp_path):
+    bad = tmp_path / "bad.csv"
+    bad.write_text("gap [mm], lift_force [N]\n5, 1\n6, x\n")
+    with pytest.raises(underbody.InputError) as raised:
+        underbody.table(bad)
+    error = raised.value
+    assert (error.file, error.line) == (str(bad), 3) and error.column
+    assert str(error) == program.sentence("table", "fit", bad)
+    assert isinstance(error, ValueError)
+    with pytest.raises(underbody.InputError) as raised:
+        underbody.table.fit(bad)
+    assert (raised.value.line, raised.value.column, str(raised.value)) == (error.line, error.column, str(error))
+
+
+def test_reading_raises_too(tmp_path):
+    path = tmp_path / "no-cfd.bin"
+    path.write_bytes(b"\0\1\2\3" * 100)
+    with pytest.raises(underbody.InputError) as raised:
+        underbody.read(path)
+    assert str(path) in str(raised.value)
+
+
+def test_arguments_that_do_not_exist(program):
+    with pytest.raises(underbody.UsageError, match="has no argument 'symetry'.*did you mean 'symmetry'"):
+        underbody.loads(FIELD, symetry="y")
+    with pytest.raises(underbody.UsageError, match="neither a number"):
+        underbody.loads(FIELD, density=object())
+    with pytest.raises(underbody.UsageError, match="a range has two ends"):
+        underbody.region("glide.toml", axes={"gap": (0, 1, 2)})
+
+
+def test_warnings_are_pythons(program):
+    with pytest.warns(underbody.UnderbodyWarning) as said:
+        underbody.loads(FIELD)
+    line = program.run("loads", FIELD)
+    for one in said:
+        assert str(one.message) in line.stderr
+    assert said[0].filename == __file__
+
+
+def test_outside_the_table_is_said(program, tmp_path):
+    (tmp_path / "lift.csv").write_text("gap [mm], lift_force [N]\n" + "".join(f"{g}, {1 / g}\n" for g in range(2, 12)))
+    table = underbody.table(tmp_path / "lift.csv")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        table(gap=[0.003, 0.004])
+    with pytest.warns(underbody.UnderbodyWarning, match="1 of 2 points lie outside"):
+        assert table(gap=["3 mm", "50 mm"])[1] == table(gap="11 mm")
+    with pytest.warns(underbody.UnderbodyWarning):
+        assert table.at(gap=0.05).outside
+    refusing = underbody.table(tmp_path / "lift.csv", range="refuse")
+    with pytest.raises(underbody.InputError), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        refusing(gap=0.05)
+    with pytest.raises(underbody.UsageError):
+        table(gab=0.005)
+    with pytest.raises(underbody.Error):
+        table(gap="5 s")
+
+
+@pytest.mark.filterwarnings("ignore::underbody.UnderbodyWarning")
+def test_progress_is_told_and_may_stop(program):
+    told = []
+    underbody.region("glide.toml", grid="60x60", progress=lambda fraction, what: told.append((fraction, what)))
+    assert told and all(0 <= fraction <= 1 for fraction, _ in told) and isinstance(told[0][1], str)
+
+    class Enough(Exception):
+        pass
+
+    def stop(fraction, what):
+        raise Enough(what)
+
+    with pytest.raises(Enough):
+        underbody.region("glide.toml", grid="400x400", progress=stop)
+    assert underbody.region("glide.toml", grid="5x5").classes  # and the next call is as good as ever
+
+
+LONG = "import underbody\nunderbody.region('glide.toml', grid='8000x8000', threads=1)\n"
+
+
+def test_ctrl_c_stops_within_a_second(program):
+    script = "print('started', flush=True)\n" + LONG
+    running = subprocess.Popen([sys.executable, "-W", "ignore", "-c", "import underbody\n" + script],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    running.stdout.readline()
+    time.sleep(0.5)
+    assert running.poll() is None, running.stderr.read()
+    begin = time.monotonic()
+    running.send_signal(signal.SIGINT)
+    _, errors = running.communicate(timeout=30)
+    assert time.monotonic() - begin < 5
+    assert "KeyboardInterrupt" in errors and running.returncode in (1, 130, -signal.SIGINT)
+
+
+@pytest.mark.filterwarnings("ignore::underbody.UnderbodyWarning")
+def test_python_runs_on_meanwhile(program):
+    """Another thread counts while a call computes; two calls at once give what each gives alone."""
+    alone = underbody.region("glide.toml", grid="200x200", threads=1)
+    results, counted, stop = [None, None], [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    def work(k):
+        results[k] = underbody.region("glide.toml", grid="200x200", threads=1)
+
+    threads = [threading.Thread(target=count), *(threading.Thread(target=work, args=(k,)) for k in range(2))]
+    for one in threads:
+        one.start()
+    for one in threads[1:]:
+        one.join()
+    stop.set()
+    threads[0].join()
+    assert results[0] == results[1] == alone
+    assert counted[0] > 5
+
+
+def test_results_tell_their_keys(program):
+    result = underbody.info(FIELD)
+    assert "zones" in dir(result) and "format" in result and len(result) > 3
+    with pytest.raises(AttributeError, match="did you mean 'format'"):
+        result.formatt
+    assert result.zones[0].name
+    assert "<Result" in repr(result)
+
+
+def test_every_command_is_here_with_help():
+    for name in ("read", "loads", "body", "table", "model", "simulate", "region", "discover", "study", "import_", "info",
+                 "predict", "export", "learn", "estimate", "control", "linear", "sweep", "solve", "theory", "probe"):
+        assert callable(getattr(underbody, name)), name
+        assert getattr(underbody, name).__doc__, name
+    assert "symmetry" in inspect.signature(underbody.loads).parameters
+    assert "half model" in underbody.loads.__doc__
+    assert underbody._underbody.Zone.__doc__.startswith("A surface, a volume")  # the header's own words
+    assert "list" not in vars(underbody)  # Python's own stays
+
+
+def test_stubs_are_those_of_the_module(tmp_path):
+    if shutil.which("stubtest") is None or subprocess.run([sys.executable, "-c", "import mypy"]).returncode != 0:
+        pytest.skip("the Debian package mypy is not installed")
+    package = pathlib.Path(underbody.__file__).parent
+    stub = (package / "__init__.pyi").read_text()
+    for name, parameter in inspect.signature(underbody.loads).parameters.items():
+        assert f"{name}: " in stub
+    script = tmp_path / "user.py"
+    script.write_text("import underbody\n"
+                      "lift: float = underbody.loads('a.csv', symmetry='y', stations=3).lift_force\n"
+                      "table = underbody.table('lift.csv', kind='gp')\n"
+                      "print(table(gap='5 mm'), underbody.read('a.csv').zones[0]['pressure'].mean())\n"
+                      "underbody.region('m.toml', axes={'gap': (0, 1)}, force=True)\n"
+                      "underbody.loads('a.csv', symetry='y')\n")
+    done = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), str(script)],
+                          capture_output=True, text=True, env={**os.environ, "MYPYPATH": str(package.parent)})
+    errors = [line for line in done.stdout.splitlines() if "error" in line and "Found" not in line]
+    assert len(errors) == 1 and "symetry" in errors[0], done.stdout
