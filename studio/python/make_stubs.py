@@ -201,6 +201,7 @@ def stub(name, command):
 
 
 if __name__ == "__main__":
+    sys.path.pop(0)  # this folder, whose package has no module yet
     import underbody
     commands = {name: value for name, value in vars(underbody).items()
                 if isinstance(value, underbody._commands.Command)}

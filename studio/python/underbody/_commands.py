@@ -34,7 +34,7 @@ def say(remarks, depth):
             log.log(logging.INFO if level == 1 else logging.DEBUG, "%s", text)
 
 
-def run(words, *, fields=None, fitted=None, progress=None, threads=None, force=False, depth=4):
+def run(words, *, fields=None, fitted=None, progress=None, threads=None, force=False, depth=3):
     """Runs a command given by its words, as on the command line without `underbody`."""
     words = [*words, *([f"--threads={threads}"] if threads is not None else []), *(["--force"] if force else [])]
     code, document, remarks, tables, surface, error_class, error = _underbody.run(
@@ -125,7 +125,7 @@ class Command:
             raise _errors.UsageError(str(wrong), kind="usage") from None
         if any(word.startswith("-") for word in places):
             places.insert(0, "--")
-        return run([*words, *places], fields=fields, depth=5, **self._objects, **common)
+        return run([*words, *places], fields=fields, depth=4, **self._objects, **common)
 
     def _wrong(self, text, options):
         known = [name for name in self.__signature__.parameters]

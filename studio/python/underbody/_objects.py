@@ -163,7 +163,7 @@ class Table:
     def _look(self, points, held):
         rows, shape = self._points(points, held)
         if (remark := self._native.outside_remark(rows)) is not None:
-            say([(0, remark)], 5)
+            say([(0, remark)], 4)
         return rows, shape
 
     def __call__(self, points=None, **held):

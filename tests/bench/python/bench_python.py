@@ -1,0 +1,85 @@
+"""bench_python.py: the Python module against the command line; PYTHONPATH=build/release/python, Debian's python3.
+
+Goals: import in 0.3 s; 10^6 points of a table in 20 ms; loads of a field of many faces within 5 % of the command line's
+(both from the file; best of five, the module in a fresh process each time as well). FACES=5000000 for the full size.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+
+PROGRAM = os.environ.get("UNDERBODY_PROGRAM", "build/release/bin/underbody")
+FACES = int(os.environ.get("FACES", "1000000"))
+
+
+def best(work, times=5):
+    took = []
+    for _ in range(times):
+        begin = time.perf_counter()
+        work()
+        took.append(time.perf_counter() - begin)
+    return min(took)
+
+
+def sphere_csv(path, faces):
+    """A CFD-Post export of a sphere of quads with the pressure of a linear field: force = -gradient times volume."""
+    across = int((faces / 2) ** 0.5)
+    theta = numpy.linspace(0, numpy.pi, across + 1)
+    phi = numpy.linspace(0, 2 * numpy.pi, 2 * across, endpoint=False)
+    t, p = (one.ravel() for one in numpy.meshgrid(theta, phi, indexing="ij"))
+    x, y, z = numpy.sin(t) * numpy.cos(p), numpy.sin(t) * numpy.sin(p), numpy.cos(t)
+    i, j = (one.ravel() for one in numpy.meshgrid(numpy.arange(across), numpy.arange(2 * across), indexing="ij"))
+    n = 2 * across
+    quads = numpy.stack([i * n + j, (i + 1) * n + j, (i + 1) * n + (j + 1) % n, i * n + (j + 1) % n], axis=1)
+    with open(path, "w") as out:
+        out.write("\n[Name]\nhull\n\n[Data]\nNode Number, X [ m ], Y [ m ], Z [ m ], Pressure [ Pa ]\n")
+        numpy.savetxt(out, numpy.column_stack([numpy.arange(len(x)), x, y, z, 100 * z]),
+                      fmt="%d, %.9e, %.9e, %.9e, %.9e")
+        out.write("\n[Faces]\n")
+        numpy.savetxt(out, quads, fmt="%d, %d, %d, %d")
+
+
+def main():
+    quiet = [sys.executable, "-W", "ignore", "-c"]
+    nothing = best(lambda: subprocess.run([*quiet, "pass"], check=True))
+    alone = best(lambda: subprocess.run([*quiet, "import underbody"], check=True))
+    with_numpy = best(lambda: subprocess.run([*quiet, "import numpy"], check=True))
+    print(f"import underbody: {alone - nothing:.3f} s (NumPy alone {with_numpy - nothing:.3f} s), goal 0.3 s")
+
+    import underbody
+    import warnings
+    warnings.simplefilter("ignore")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        gaps, pitches = numpy.linspace(0.002, 0.05, 40), numpy.radians(numpy.linspace(-4, 4, 20))
+        with open(folder / "lift.csv", "w") as out:
+            out.write("gap [m], pitch [rad], lift_force [N]\n")
+            for gap in gaps:
+                for pitch in pitches:
+                    out.write(f"{gap!r}, {pitch!r}, {0.01 / gap * numpy.cos(9 * pitch)!r}\n")
+        table = underbody.table(folder / "lift.csv")
+        random = numpy.random.default_rng(1)
+        points = numpy.column_stack([random.uniform(0.002, 0.05, 1_000_000), random.uniform(-0.06, 0.06, 1_000_000)])
+        print(f"10^6 points, two axes: {1e3 * best(lambda: table(points)):.1f} ms, by names "
+              f"{1e3 * best(lambda: table(gap=points[:, 0], pitch=points[:, 1])):.1f} ms, with slopes "
+              f"{1e3 * best(lambda: table.slopes(points)):.1f} ms, goal 20 ms")
+
+        field = folder / "sphere.csv"
+        sphere_csv(field, FACES)
+        line = best(lambda: subprocess.run([PROGRAM, "loads", field, "--json"], check=True, capture_output=True))
+        own = best(lambda: underbody.loads(field))
+        script = f"import underbody; underbody.loads({str(field)!r})"
+        fresh = best(lambda: subprocess.run([*quiet, script], check=True))
+        read = underbody.read(field)
+        again = best(lambda: underbody.loads(read))
+        print(f"loads of {FACES} faces from the file ({field.stat().st_size / 1e6:.0f} MB): command line {line:.2f} s, "
+              f"module {own:.2f} s ({100 * (own / line - 1):+.1f} %), a script {fresh:.2f} s "
+              f"({100 * (fresh / line - 1):+.1f} %), of the field in memory {again:.3f} s")
+
+
+if __name__ == "__main__":
+    main()
