@@ -13,7 +13,7 @@ namespace {
 core::Progress* interrupted = nullptr;
 struct sigaction python_handler {};
 
-extern "C" void on_interrupt(int signal) {
+extern "C" void on_interrupt_in_python(int signal) {
     if (interrupted != nullptr) {
         interrupted->cancel();
     }
@@ -36,7 +36,7 @@ Interruptible::Interruptible(core::Progress& progress) : active_(on_main_thread(
     if (active_) {
         interrupted = &progress;
         struct sigaction ours {};
-        ours.sa_handler = on_interrupt;
+        ours.sa_handler = on_interrupt_in_python;
         ::sigemptyset(&ours.sa_mask);
         ::sigaction(SIGINT, nullptr, &before_);
         // Who ignores SIGINT, or has no Python handler, keeps that.

@@ -106,15 +106,15 @@ class Command:
         try:
             bound = self.__signature__.bind(*values, **options)
         except TypeError as wrong:
-            raise _errors.UsageError(self._wrong(str(wrong), options), kind="usage") from None
+            raise self._wrong(str(wrong), options) from None
         given = {**self._given, **bound.arguments}
-        words, fields = list(self._path), {}
+        options_words, fields = [], {}
         common = {name: given.pop(name) for name in COMMON if name in given}
         try:
             for one in self._options():
                 value = given.get(python_name(one["names"][0]))
                 if value is not None and value is not False:
-                    words += option_words(one, value)
+                    options_words += option_words(one, value)
             places = []
             for one in self._tree["positionals"]:
                 value = given.get(python_name(one["name"]))
@@ -122,18 +122,20 @@ class Command:
                     fields.update(_fields_of(value if one["several"] else [value]))
                     places += words_of(value, one["several"])
         except TypeError as wrong:
-            raise _errors.UsageError(str(wrong), kind="usage") from None
+            raise _errors.wrong_use(str(wrong)) from None
+        # Options that take several words would take the places too, were these behind them.
+        words = [*self._path, *places, *options_words]
         if any(word.startswith("-") for word in places):
-            places.insert(0, "--")
-        return run([*words, *places], fields=fields, depth=4, **self._objects, **common)
+            words = [*self._path, *options_words, "--", *places]
+        return run(words, fields=fields, depth=4, **self._objects, **common)
 
     def _wrong(self, text, options):
         known = [name for name in self.__signature__.parameters]
         for name in options:
             if name not in known:
-                hint = _underbody.did_you_mean(name, known)
-                return f"'{self.__qualname__}' has no argument '{name}'" + (f" ({hint})" if hint else "")
-        return f"{self.__qualname__}: {text}"
+                return _errors.wrong_use(f"'{self.__qualname__}' has no argument '{name}'",
+                                         _underbody.did_you_mean(name, known))
+        return _errors.wrong_use(f"{self.__qualname__}: {text}")
 
     def __repr__(self):
         return f"<command {self.__qualname__}{self.__signature__}>"

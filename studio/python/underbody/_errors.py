@@ -27,6 +27,11 @@ class UsageError(Error, ValueError):
     """An argument is wrong."""
 
 
+def wrong_use(problem, hint="", kind="usage"):
+    """A UsageError of this package's own, in the form of the others."""
+    return UsageError(problem + (f"\n  hint: {hint}" if hint else ""), kind=kind, problem=problem, hint=hint)
+
+
 class SystemError(Error):
     """The machine failed: disk full, no permission, no display. Nothing is half written."""
 

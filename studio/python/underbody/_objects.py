@@ -43,8 +43,8 @@ class Field:
         for zone in zones:
             if zone.name == name:
                 return zone
-        hint = _underbody.did_you_mean(name, [zone.name for zone in zones])
-        raise _errors.UsageError(f"the field has no zone '{name}'" + (f" ({hint})" if hint else ""), kind="name")
+        raise _errors.wrong_use(f"the field has no zone '{name}'",
+                                _underbody.did_you_mean(name, [zone.name for zone in zones]), "name")
 
     def __iter__(self):
         return iter(self.zones)
@@ -142,7 +142,7 @@ class Table:
         axes = self._native.axes
         if points is not None:
             if held:
-                raise _errors.UsageError("give points or axes by name, not both", kind="usage")
+                raise _errors.wrong_use("give points or axes by name, not both")
             points = numpy.ascontiguousarray(points, dtype=float)
             if points.ndim == 1 and len(axes) == 1:
                 return points.reshape(-1, 1), points.shape
@@ -206,7 +206,7 @@ class TableCommand(Command):
         try:
             words = {name: text_of(value) for name, value in given.items() if value is not None}
         except TypeError as wrong:
-            raise _errors.UsageError(str(wrong), kind="usage") from None
+            raise _errors.wrong_use(str(wrong)) from None
         native, remarks = _underbody.fit(words, progress)
         say(remarks, 3)
         return Table(native, words)

@@ -89,7 +89,7 @@ def test_zones_by_name(program):
     assert name in field and field[name].name == name
     with pytest.raises(underbody.UsageError, match="has no zone"):
         field[name + "x"]
-    with pytest.raises(underbody.UsageError, match="has no array 'presure'.*did you mean 'pressure'"):
+    with pytest.raises(underbody.UsageError, match=r"has no array 'presure'\s+hint: did you mean 'pressure'"):
         field[name]["presure"]
 
 
