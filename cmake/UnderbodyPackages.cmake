@@ -113,7 +113,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libvtk9-dev, libvtk9-qt-dev, libeigen3-dev, libcgal-dev, libopenmesh-dev, \
 libudunits2-dev, nlohmann-json3-dev, libhdf5-dev, libcgns-dev, libmatio-dev, libsqlitecpp-dev, libsqlite3-dev, \
-libsundials-dev, libtbb-dev, libxxhash-dev, zlib1g-dev, liblapack-dev, pkg-config")
+libsundials-dev, libnlopt-dev, libnlopt-cxx-dev, libtbb-dev, libxxhash-dev, zlib1g-dev, liblapack-dev, pkg-config")
 
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "ground-effect CFD studies, the Python module
  ${about}
