@@ -113,7 +113,7 @@ def test_progress_is_told_and_may_stop(program):
     assert underbody.region("glide.toml", grid="5x5").classes  # and the next call is as good as ever
 
 
-LONG = "import underbody\nunderbody.region('glide.toml', grid='8000x8000', threads=1)\n"
+LONG = "import underbody\nunderbody.region('glide.toml', grid='3000x3000', threads=1)\n"
 
 
 def test_ctrl_c_stops_within_a_second(program):
@@ -126,7 +126,7 @@ def test_ctrl_c_stops_within_a_second(program):
     begin = time.monotonic()
     running.send_signal(signal.SIGINT)
     _, errors = running.communicate(timeout=30)
-    assert time.monotonic() - begin < 5
+    assert time.monotonic() - begin < 2
     assert "KeyboardInterrupt" in errors and running.returncode in (1, 130, -signal.SIGINT)
 
 
