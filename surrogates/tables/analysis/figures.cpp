@@ -189,14 +189,6 @@ std::string caption_of(const ForceTable& table) {
 
 bool spans_decades(double lower, double upper) { return lower > 0 && upper >= 20 * lower; }
 
-std::string shown_unit(const ForceTable& table, const std::string& quantity) {
-    if (const core::Column* column = table.points().find(quantity); column != nullptr && !column->is_text()) {
-        return column->written_unit.empty() ? column->unit : column->written_unit;
-    }
-    const auto* known = core::find_quantity(quantity);
-    return known != nullptr ? known->unit : table.unit();
-}
-
 std::string unit_per(const std::string& unit, const std::string& of) {
     return unit + "/" + (of.find_first_of("/ ") == std::string::npos ? of : "(" + of + ")");
 }

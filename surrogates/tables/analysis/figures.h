@@ -1,7 +1,6 @@
 // Pictures of tables as core::Figure values: curves with error bands, points and equilibria; maps for two axes.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "core/figure.h"
 #include "surrogates/tables/analysis/equilibria.h"
 #include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/table_json.h"
 
 namespace underbody::tables {
 
@@ -40,14 +40,7 @@ core::Figure figure(const ForceTable& table, const FigureOptions& options = {});
 /// ones, small gaps above all, would share one column of pixels.
 bool spans_decades(double lower, double upper);
 
-/// Unit that people read this quantity in here: the one its column was written in, else the SI unit.
-std::string shown_unit(const ForceTable& table, const std::string& quantity);
-
 /// Unit of a slope: "N/m", "N/(m/s)".
 std::string unit_per(const std::string& unit, const std::string& of);
-
-/// Evaluation and table as JSON (SI).
-void to_json(nlohmann::json& json, const ForceTable& table);
-nlohmann::json to_json(const ForceTable& table, const std::vector<double>& point, const Evaluation& evaluation);
 
 }  // namespace underbody::tables

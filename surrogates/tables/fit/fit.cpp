@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -86,8 +87,8 @@ class Fits {
 public:
     Fits(SetPoints points, const FitOptions& options)
         : options_(options), suspects_(find_suspects(points)), smoothed_(points), followed_(std::move(points)) {
-        doubt(smoothed_, suspects_, false);
-        doubt(followed_, suspects_, true);
+        doubt(smoothed_, suspects_.found, false);
+        doubt(followed_, suspects_.found, true);
         for (SetPoints* p : {&smoothed_, &followed_}) {
             for (auto& kink : kinks(*p)) {
                 p->remarks.push_back(std::move(kink));
@@ -95,22 +96,18 @@ public:
         }
     }
     [[nodiscard]] std::shared_ptr<ForceTable::Impl> process(std::vector<double>* misses = nullptr) const {
-        return fit_gaussian_process(smoothed_, misses);
+        return fit_gaussian_process(smoothed_, misses, suspects_.candidates);
     }
     /// Through all points; of points without errors the scatter about a smooth curve is their error.
     [[nodiscard]] std::shared_ptr<ForceTable::Impl> interpolation() const {
         SetPoints points = followed_;
         const std::size_t n = points.x.size();
         if (!points.has_sigma() && n >= 8 && n >= points.axes.size() + 6 && n <= 60) {
-            const auto process = fit_gaussian_process(smoothed_, nullptr);
-            const ProcessMixture& mixture = *process->processes;
-            const Form& form = mixture.parts.front().form;
-            double mean = 0;
-            for (std::size_t i = 0; i < n && mixture.noise > 0; ++i) {
-                points.scatter.push_back(mixture.noise * form.size * form.factor(points.x[i]));
-                mean += points.scatter.back() / static_cast<double>(n);
-            }
-            if (mixture.noise_is_plain) {
+            const Scatter scatter = scatter_of(smoothed_, suspects_.candidates);
+            points.scatter = scatter.sigma;
+            if (scatter.plain) {
+                const double mean =
+                    std::accumulate(scatter.sigma.begin(), scatter.sigma.end(), 0.0) / static_cast<double>(n);
                 points.remarks.push_back({core::Problem::Severity::warning,
                                           "the points state no errors but scatter by about " +
                                               core::format_number(mean, 2) + " " + points.unit +
@@ -125,7 +122,7 @@ public:
     /// Leave-one-out misses of interpolation; NaN where none is known, and at suspect points.
     [[nodiscard]] std::vector<double> misses() const {
         auto known = interpolation_misses(followed_);
-        for (const Suspect& s : suspects_) {
+        for (const Suspect& s : suspects_.found) {
             known[s.point] = std::nan("");
         }
         return known;
@@ -133,7 +130,7 @@ public:
 
 private:
     const FitOptions& options_;
-    std::vector<Suspect> suspects_;
+    Suspects suspects_;
     SetPoints smoothed_, followed_;
 };
 

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "surrogates/tables/fit/error_model.h"
 #include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/process_candidates.h"
 #include "surrogates/tables/points/set_points.h"
 
 namespace underbody::tables {
@@ -34,7 +36,16 @@ ErrorModel::Growth end_growth(const CubicGrid& grid, std::size_t k);
 std::vector<double> interpolation_misses(const SetPoints& points, std::size_t at_most = SIZE_MAX);
 
 /// Gaussian process, any points. `misses` (may be null) gets its leave-one-out errors, in the order of the points.
-std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& points, std::vector<double>* misses);
+/// `candidates`: ranked_candidates of the points where they are known; empty: they are made.
+std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& points, std::vector<double>* misses,
+                                                       std::vector<Candidate> candidates = {});
+
+/// Scatter of points without errors about the process that suits them best.
+struct Scatter {
+    std::vector<double> sigma;  ///< of every point; empty: the points do not tell it
+    bool plain = false;         ///< well told, and more than a hundredth of the spread of the forces
+};
+Scatter scatter_of(const SetPoints& points, std::vector<Candidate> candidates = {});
 
 /// Exact interpolation of a full grid.
 std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, const FitOptions& options);

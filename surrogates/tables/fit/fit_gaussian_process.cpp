@@ -234,15 +234,6 @@ void widen(ProcessMixture& mixture, const SetPoints& points, const ProcessMixtur
     near = std::clamp((near + 3) / (near_weight + 3), least, 25.0);
     far = std::clamp((far + 3) / (far_weight + 3), least, 25.0);
     mixture.scatter_is_noise = !points.has_sigma();
-    const GaussianProcess& process = mixture.parts.front().process;
-    GpOptions options;
-    options.kernel = process.kernel();
-    options.expected_scatter = expected_scatter(points);
-    if (mixture.scatter_is_noise && n <= few_points) {
-        const double uncertainty = GaussianProcess::scatter_uncertainty(process.data(), options, process.parameters());
-        mixture.noise = uncertainty < 0.9 ? process.parameters().scatter : 0;
-        mixture.noise_is_plain = uncertainty < 0.5 && process.parameters().scatter > 0.01;
-    }
     mixture.misfit = squares;
     for (std::size_t i = 0; i < n; ++i) {
         mixture.misfit[i] /= near * (1 - left_out.share[i]) + far * left_out.share[i];
@@ -308,11 +299,34 @@ std::string described(const ProcessMixture& mixture, const SetPoints& points) {
 
 }  // namespace
 
-std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_points, std::vector<double>* misses) {
+Scatter scatter_of(const SetPoints& points, std::vector<Candidate> candidates) {
+    check_spread(points);
+    const std::size_t n = points.x.size();
+    Scatter scatter;
+    if (points.has_sigma() || n > few_points) {
+        return scatter;
+    }
+    Candidate best = candidates.empty() ? ranked_candidates(points).front() : std::move(candidates.front());
+    const GpData data = data_of(points, all_rows(n), best.form);
+    best.options.iterations = 40;
+    const auto process = GaussianProcess::fit(data, best.options);
+    const double uncertainty = GaussianProcess::scatter_uncertainty(data, best.options, process.parameters());
+    const double noise = process.parameters().scatter;
+    for (std::size_t i = 0; i < n && uncertainty < 0.9; ++i) {
+        scatter.sigma.push_back(noise * best.form.size * best.form.factor(points.x[i]));
+    }
+    scatter.plain = uncertainty < 0.5 && noise > 0.01;
+    return scatter;
+}
+
+std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_points, std::vector<double>* misses,
+                                                       std::vector<Candidate> candidates) {
     check_spread(all_points);
     core::Problems remarks = all_points.remarks;
     const SetPoints points = reduced(all_points, 1200, remarks);
-    const auto candidates = ranked_candidates(points);
+    if (candidates.empty() || points.x.size() != all_points.x.size()) {
+        candidates = ranked_candidates(points);
+    }
     auto mixture = std::make_shared<ProcessMixture>(mixture_of(points, candidates));
     const auto left_out = mixture->leave_one_out(points);
     widen(*mixture, points, left_out, misfits(*mixture, points, left_out, candidates.front().options));

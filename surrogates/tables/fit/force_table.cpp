@@ -7,11 +7,11 @@
 #include "core/random.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/fit/fit.h"
 #include "surrogates/tables/fit/force_table_impl.h"
 #include "surrogates/tables/fit/hull.h"
 #include "surrogates/tables/fit/table_batch.h"
+#include "surrogates/tables/fit/table_json.h"
 #include "surrogates/tables/points/select.h"
 #include "surrogates/tables/points/set_points.h"
 

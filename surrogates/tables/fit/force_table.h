@@ -11,21 +11,9 @@
 #include <vector>
 
 #include "core/table.h"
-#include "surrogates/tables/points/range_policy.h"
+#include "surrogates/tables/points/table_axis.h"
 
 namespace underbody::tables {
-
-inline constexpr std::size_t max_axes = 4;
-
-struct TableAxis {
-    std::string name;  ///< a quantity name: gap, pitch, speed, jet_voltage, ...
-    std::string unit;  ///< SI
-    double lower =
-        0;  ///< the range of the table; its grid lines may reach further (sums of tables that end in different places)
-    double upper = 0;
-    std::vector<double> points;  ///< distinct set points, ascending
-    RangePolicy range = RangePolicy::clamp;
-};
 
 struct Evaluation {
     double value = 0;
@@ -38,7 +26,7 @@ struct Evaluation {
     bool no_data = false;
 };
 
-struct FitOptions {
+struct FitOptions : AxisOptions {
     enum class Kind {
         automatic,  ///< full grids interpolated, unless points with errors scatter and a process meets left-out ones
                     ///< better; said in remarks()
@@ -47,8 +35,6 @@ struct FitOptions {
         gaussian_process,  ///< scattered or gridded points with errors
         spline,            ///< not-a-knot cubic spline: exact, C2, may overshoot; full grids only
     } kind = Kind::automatic;
-    RangePolicies range;            ///< a name that is no axis of the table: core::UsageError
-    std::vector<std::string> axes;  ///< columns to use as axes; empty: every known set-point column that varies
 };
 
 /// How a table is fitted, by its word: "automatic" ("auto"), "interpolation", "gaussian_process" ("gp"), "spline"; the

@@ -11,6 +11,7 @@
 
 namespace underbody::tables {
 
+using Eigen::ArrayXd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -26,71 +27,144 @@ KernelValue kernel_value(Kernel kernel, double a) {
 
 namespace {
 
-/// d log k / d log length, from the distance in lengths.
-double length_rate(Kernel kernel, double a) {
+/// Correlation along one axis at these distances: a factor, and what is to be added to the exponent, so that one
+/// exponential is enough for all axes.
+template <class Distances, class Factor, class Exponent>
+void times_correlation(Kernel kernel, double length, const Distances& distance, Factor&& factor, Exponent& exponent) {
     if (kernel == Kernel::squared_exponential) {
-        return a * a;
+        exponent += (distance * (1 / length)).square() * 0.5;
+        return;
     }
-    const double s = std::sqrt(5.0) * std::abs(a);
-    return s * s * (1 + s) / (3 + 3 * s + s * s);
+    const double rate = std::sqrt(5.0) / length;
+    factor *= 1 + rate * distance + (rate * distance).square() * (1.0 / 3);
+    exponent += rate * distance;
 }
 
-/// Covariance of the process alone, lower triangle filled and mirrored.
-MatrixXd process_covariance(const GpData& data, Kernel kernel, const GpParameters& p) {
-    const auto n = static_cast<Eigen::Index>(data.count());
-    MatrixXd k(n, n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-        const double own = p.scale * data.amplitude_of(static_cast<std::size_t>(j));
-        k(j, j) = own * own;
-        for (Eigen::Index i = j + 1; i < n; ++i) {
-            // One exponential for all axes: their exponents add.
-            double exponent = 0;
-            double factor = own * p.scale * data.amplitude_of(static_cast<std::size_t>(i));
-            for (std::size_t a = 0; a < data.axes; ++a) {
-                const double d = (data.x[i * data.axes + a] - data.x[j * data.axes + a]) / p.length[a];
-                if (kernel == Kernel::squared_exponential) {
-                    exponent += 0.5 * d * d;
-                } else {
-                    const double s = std::sqrt(5.0) * std::abs(d);
-                    exponent += s;
-                    factor *= 1 + s + s * s / 3;
+/// Correlations of all pairs of the data, by column j the rows i > j. Everything that the parameters do not change is
+/// kept from one evaluation of the likelihood to the next.
+class Pairs {
+public:
+    explicit Pairs(const GpData& data) : n_(static_cast<Eigen::Index>(data.count())), distance_(data.axes) {
+        const Eigen::Index pairs = n_ * (n_ - 1) / 2;
+        for (auto& d : distance_) {
+            d.resize(pairs);
+        }
+        Eigen::Index at = 0;
+        for (Eigen::Index j = 0; j < n_; ++j) {
+            for (Eigen::Index i = j + 1; i < n_; ++i, ++at) {
+                for (std::size_t a = 0; a < data.axes; ++a) {
+                    distance_[a](at) = std::abs(data.x[i * data.axes + a] - data.x[j * data.axes + a]);
                 }
             }
-            k(i, j) = k(j, i) = factor * std::exp(-exponent);
+        }
+        if (!data.amplitude.empty()) {
+            amplitude_ = Eigen::Map<const ArrayXd>(data.amplitude.data(), n_);
+        }
+        const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> h(
+            data.trend.data(), n_, static_cast<Eigen::Index>(data.trends));
+        base_.noalias() = data.trend_variance * h * h.transpose();
+        base_.diagonal() += Eigen::Map<const VectorXd>(data.noise.data(), n_);
+    }
+
+    /// Covariance of the process alone into the lower triangle.
+    void covariance(Kernel kernel, const GpParameters& p, MatrixXd& k) {
+        if (k.rows() != n_) {
+            k.setZero(n_, n_);
+        }
+        const double variance = p.scale * p.scale;
+        Eigen::Index at = 0;
+        for (Eigen::Index j = 0; j < n_; ++j) {
+            const Eigen::Index rows = n_ - 1 - j;
+            const double own = variance * (amplitude_.size() > 0 ? amplitude_(j) : 1);
+            k(j, j) = own * (amplitude_.size() > 0 ? amplitude_(j) : 1);
+            auto column = k.col(j).tail(rows).array();
+            sum_.setZero(rows);
+            column.setConstant(own);
+            for (std::size_t a = 0; a < distance_.size(); ++a) {
+                times_correlation(kernel, p.length[a], distance_[a].segment(at, rows), column, sum_);
+            }
+            column *= (-sum_).exp();
+            if (amplitude_.size() > 0) {
+                column *= amplitude_.tail(rows);
+            }
+            at += rows;
         }
     }
-    return k;
-}
 
-/// Adds trend, noise and scatter; factorises, with a jitter that grows until it works.
-Eigen::LLT<MatrixXd> factorised(const GpData& data, const GpParameters& p, MatrixXd k) {
-    const auto n = static_cast<Eigen::Index>(data.count());
-    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> h(
-        data.trend.data(), n, static_cast<Eigen::Index>(data.trends));
-    k.noalias() += data.trend_variance * h * h.transpose();
-    for (Eigen::Index i = 0; i < n; ++i) {
-        k(i, i) += data.noise[static_cast<std::size_t>(i)] + p.scatter * p.scatter;
+    /// Sums over all pairs of weight times d log k / d log length, for every axis; `weights` in the lower triangle.
+    void add_length_rates(Kernel kernel, const GpParameters& p, const MatrixXd& weights, double* sums) {
+        Eigen::Index at = 0;
+        for (Eigen::Index j = 0; j < n_; ++j) {
+            const Eigen::Index rows = n_ - 1 - j;
+            const auto weight = weights.col(j).tail(rows).array();
+            for (std::size_t a = 0; a < distance_.size(); ++a) {
+                const auto d = distance_[a].segment(at, rows);
+                if (kernel == Kernel::squared_exponential) {
+                    sums[a] += (weight * (d * (1 / p.length[a])).square()).sum();
+                } else {
+                    s_ = d * (std::sqrt(5.0) / p.length[a]);
+                    sums[a] += (weight * s_.square() * (1 + s_) / (3 + 3 * s_ + s_.square())).sum();
+                }
+            }
+            at += rows;
+        }
     }
+
+    /// What trend and known noise add; the lower triangle counts.
+    [[nodiscard]] const MatrixXd& base() const { return base_; }
+
+private:
+    Eigen::Index n_;
+    std::vector<ArrayXd> distance_;  ///< [axis](pair)
+    ArrayXd amplitude_;              ///< empty: 1
+    MatrixXd base_;
+    ArrayXd sum_, s_;
+};
+
+/// Of the covariance (its lower triangle), with a jitter that grows until it works.
+void factorise(MatrixXd& k, Eigen::LLT<MatrixXd>& factor) {
     double jitter = 0;
     for (int attempt = 0; attempt < 8; ++attempt) {
-        Eigen::LLT<MatrixXd> factor(k);
+        factor.compute(k);
         if (factor.info() == Eigen::Success) {
-            return factor;
+            return;
         }
         const double next = jitter == 0 ? 1e-12 * k.diagonal().maxCoeff() : 10 * jitter;
         k.diagonal().array() += next - jitter;
         jitter = next;
     }
-    return Eigen::LLT<MatrixXd>(MatrixXd(k.diagonal().asDiagonal()));
+    factor.compute(MatrixXd(k.diagonal().asDiagonal()));
+}
+
+/// Lower triangle of the inverse of a factorised matrix.
+void invert(const Eigen::LLT<MatrixXd>& factor, MatrixXd& lower, MatrixXd& inverse) {
+    const Eigen::Index n = factor.rows();
+    lower.setIdentity(n, n);
+    inverse.setZero(n, n);
+    if (n > 100) {
+        factor.matrixL().solveInPlace(lower);
+        inverse.selfadjointView<Eigen::Lower>().rankUpdate(lower.transpose());
+        return;
+    }
+    // Of few points the zeros above the diagonal are worth leaving out.
+    const MatrixXd& l = factor.matrixLLT();
+    for (Eigen::Index j = 0; j < n; ++j) {
+        for (Eigen::Index k = j; k < n; ++k) {
+            const double x = lower(k, j) / l(k, k);
+            lower(k, j) = x;
+            lower.col(j).tail(n - 1 - k) -= x * l.col(k).tail(n - 1 - k);
+        }
+    }
+    for (Eigen::Index j = 0; j < n; ++j) {
+        for (Eigen::Index i = j; i < n; ++i) {
+            inverse(i, j) = lower.col(i).tail(n - i).dot(lower.col(j).tail(n - i));
+        }
+    }
 }
 
 MatrixXd inverse_of(const Eigen::LLT<MatrixXd>& factor) {
-    const Eigen::Index n = factor.rows();
-    MatrixXd lower = MatrixXd::Identity(n, n);
-    factor.matrixL().solveInPlace(lower);
-    MatrixXd inverse = MatrixXd::Zero(n, n);
-    inverse.selfadjointView<Eigen::Lower>().rankUpdate(lower.transpose());
-    inverse.triangularView<Eigen::StrictlyUpper>() = inverse.transpose();
+    MatrixXd lower, inverse;
+    invert(factor, lower, inverse);
     return inverse;
 }
 
@@ -101,6 +175,49 @@ double log_determinant(const Eigen::LLT<MatrixXd>& factor) {
     }
     return sum;
 }
+
+/// Log marginal likelihood of the data as a function of the parameters, with buffers that are used again.
+class Likelihood {
+public:
+    Likelihood(const GpData& data, Kernel kernel) : data_(data), kernel_(kernel), pairs_(data) {}
+
+    double value(const GpParameters& p) {
+        const auto n = static_cast<Eigen::Index>(data_.count());
+        const Eigen::Map<const VectorXd> y(data_.y.data(), n);
+        pairs_.covariance(kernel_, p, process_);
+        whole_ = process_ + pairs_.base();
+        whole_.diagonal().array() += p.scatter * p.scatter;
+        factorise(whole_, factor_);
+        alpha_ = factor_.solve(y);
+        return -0.5 *
+               (alpha_.dot(y) + log_determinant(factor_) + static_cast<double>(n) * std::log(2 * std::numbers::pi));
+    }
+    /// By log length..., log scale, log scatter, at the parameters of the last value().
+    void gradient(const GpParameters& p, std::vector<double>& g) {
+        const auto n = static_cast<Eigen::Index>(data_.count());
+        invert(factor_, lower_, inverse_);
+        g.assign(data_.axes + 2, 0.0);
+        for (Eigen::Index j = 0; j < n; ++j) {
+            const double own = alpha_(j) * alpha_(j) - inverse_(j, j);
+            g[data_.axes] += own * process_(j, j);
+            g[data_.axes + 1] += own * p.scatter * p.scatter;
+            auto weight = inverse_.col(j).tail(n - 1 - j).array();
+            weight = (alpha_(j) * alpha_.tail(n - 1 - j).array() - weight) * process_.col(j).tail(n - 1 - j).array();
+            g[data_.axes] += 2 * weight.sum();
+        }
+        pairs_.add_length_rates(kernel_, p, inverse_, g.data());
+    }
+    [[nodiscard]] const Eigen::LLT<MatrixXd>& factor() const { return factor_; }
+    [[nodiscard]] const VectorXd& weights() const { return alpha_; }
+
+private:
+    const GpData& data_;
+    Kernel kernel_;
+    Pairs pairs_;
+    MatrixXd process_, whole_, lower_, inverse_;
+    VectorXd alpha_;
+    Eigen::LLT<MatrixXd> factor_;
+};
 
 std::vector<double> logs(const GpParameters& p) {
     std::vector<double> v;
@@ -122,22 +239,44 @@ GpParameters from_logs(const std::vector<double>& v) {
     return p;
 }
 
+/// Adds the log of the priors of fit() to value and gradient (may be null), up to a constant.
+double with_priors(double value, const GpOptions& options, const GpParameters& p, std::vector<double>* gradient) {
+    const auto v = logs(p);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const bool scatter = i + 1 == v.size();
+        const bool scale = i + 2 == v.size();
+        const double middle = scatter ? std::log(options.expected_scatter) : scale ? 0 : std::log(0.6);
+        const double width = scatter ? 2.0 : scale ? 1.5 : 1.0;
+        value -= 0.5 * std::pow((v[i] - middle) / width, 2);
+        if (gradient != nullptr) {
+            (*gradient)[i] -= (v[i] - middle) / (width * width);
+        }
+    }
+    return value;
+}
+
 /// Negative log posterior of the logs of the parameters.
 class Objective {
 public:
-    Objective(const GpData& data, const GpOptions& options) : data_(data), options_(options) {}
+    Objective(const GpData& data, const GpOptions& options) : likelihood_(data, options.kernel), options_(options) {}
 
-    double operator()(const std::vector<double>& v, std::vector<double>& gradient) const {
-        const double value = -GaussianProcess::log_posterior(data_, options_, from_logs(v), &gradient);
+    double value(const std::vector<double>& v) {
+        at_ = from_logs(v);
+        return -with_priors(likelihood_.value(at_), options_, at_, nullptr);
+    }
+    /// At the place of the last value().
+    void gradient(std::vector<double>& gradient) {
+        likelihood_.gradient(at_, gradient);
+        with_priors(0, options_, at_, &gradient);
         for (double& g : gradient) {
             g = -g;
         }
-        return value;
     }
 
 private:
-    const GpData& data_;
+    Likelihood likelihood_;
     const GpOptions& options_;
+    GpParameters at_;
 };
 
 struct Optimum {
@@ -146,10 +285,11 @@ struct Optimum {
 };
 
 /// BFGS with backtracking; a handful of unknowns, each evaluation dear.
-Optimum minimise(const Objective& f, std::vector<double> v, int evaluations, core::Progress& progress) {
+Optimum minimise(Objective& f, std::vector<double> v, int evaluations, core::Progress& progress) {
     const auto n = static_cast<Eigen::Index>(v.size());
     std::vector<double> g(v.size()), g_next(v.size()), next(v.size());
-    double value = f(v, g);
+    double value = f.value(v);
+    f.gradient(g);
     --evaluations;
     MatrixXd inverse = MatrixXd::Identity(n, n);
     while (evaluations > 0) {
@@ -169,9 +309,10 @@ Optimum minimise(const Objective& f, std::vector<double> v, int evaluations, cor
             for (Eigen::Index j = 0; j < n; ++j) {
                 next[j] = std::clamp(v[j] + share * step(j), -14.0, 6.0);
             }
-            next_value = f(next, g_next);
+            next_value = f.value(next);
             --evaluations;
             if (next_value < value + 1e-4 * share * step.dot(gradient)) {
+                f.gradient(g_next);
                 found = true;
                 break;
             }
@@ -207,9 +348,10 @@ GaussianProcess::GaussianProcess(GpData data, Kernel kernel, GpParameters parame
     state->kernel = kernel;
     state->parameters = std::move(parameters);
     const GpData& d = state->data;
-    state->factor = factorised(d, state->parameters, process_covariance(d, kernel, state->parameters));
-    const VectorXd alpha =
-        state->factor.solve(Eigen::Map<const VectorXd>(d.y.data(), static_cast<Eigen::Index>(d.count())));
+    Likelihood likelihood(d, kernel);
+    state->log_likelihood = likelihood.value(state->parameters);
+    state->factor = likelihood.factor();
+    const VectorXd& alpha = likelihood.weights();
     state->weights.assign(alpha.data(), alpha.data() + alpha.size());
     state->coefficients.assign(d.trends, 0.0);
     for (std::size_t i = 0; i < d.count(); ++i) {
@@ -223,7 +365,7 @@ GaussianProcess::GaussianProcess(GpData data, Kernel kernel, GpParameters parame
 }
 
 GaussianProcess GaussianProcess::fit(GpData data, const GpOptions& options, core::Progress& progress) {
-    const Objective objective(data, options);
+    Objective objective(data, options);
     std::vector<GpParameters> starts = options.starts;
     if (starts.empty()) {
         for (const double length : {0.25, 1.0}) {
@@ -248,56 +390,21 @@ Kernel GaussianProcess::kernel() const { return state_->kernel; }
 const GpParameters& GaussianProcess::parameters() const { return state_->parameters; }
 const std::vector<double>& GaussianProcess::weights() const { return state_->weights; }
 const std::vector<double>& GaussianProcess::coefficients() const { return state_->coefficients; }
-double GaussianProcess::log_likelihood() const {
-    return log_likelihood(state_->data, state_->kernel, state_->parameters, nullptr);
-}
+double GaussianProcess::log_likelihood() const { return state_->log_likelihood; }
 
 double GaussianProcess::log_likelihood(const GpData& data, Kernel kernel, const GpParameters& p,
                                        std::vector<double>* gradient) {
-    const auto n = static_cast<Eigen::Index>(data.count());
-    const MatrixXd k = process_covariance(data, kernel, p);
-    const auto factor = factorised(data, p, k);
-    const VectorXd alpha = factor.solve(Eigen::Map<const VectorXd>(data.y.data(), n));
-    const double fit = alpha.dot(Eigen::Map<const VectorXd>(data.y.data(), n));
-    const double value =
-        -0.5 * (fit + log_determinant(factor) + static_cast<double>(n) * std::log(2 * std::numbers::pi));
-    if (gradient == nullptr) {
-        return value;
-    }
-    const MatrixXd inverse = inverse_of(factor);
-    std::vector<double>& g = *gradient;
-    g.assign(data.axes + 2, 0.0);
-    for (Eigen::Index j = 0; j < n; ++j) {
-        const double own = alpha(j) * alpha(j) - inverse(j, j);
-        g[data.axes] += own * k(j, j);
-        g[data.axes + 1] += own * p.scatter * p.scatter;
-        for (Eigen::Index i = j + 1; i < n; ++i) {
-            const double w = 2 * (alpha(i) * alpha(j) - inverse(i, j)) * k(i, j);
-            g[data.axes] += w;
-            for (std::size_t a = 0; a < data.axes; ++a) {
-                const double d = (data.x[i * data.axes + a] - data.x[j * data.axes + a]) / p.length[a];
-                g[a] += 0.5 * w * length_rate(kernel, d);
-            }
-        }
+    Likelihood likelihood(data, kernel);
+    const double value = likelihood.value(p);
+    if (gradient != nullptr) {
+        likelihood.gradient(p, *gradient);
     }
     return value;
 }
 
 double GaussianProcess::log_posterior(const GpData& data, const GpOptions& options, const GpParameters& p,
                                       std::vector<double>* gradient) {
-    double value = log_likelihood(data, options.kernel, p, gradient);
-    const auto v = logs(p);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        const bool scatter = i + 1 == v.size();
-        const bool scale = i + 2 == v.size();
-        const double middle = scatter ? std::log(options.expected_scatter) : scale ? 0 : std::log(0.6);
-        const double width = scatter ? 2.0 : scale ? 1.5 : 1.0;
-        value -= 0.5 * std::pow((v[i] - middle) / width, 2);
-        if (gradient != nullptr) {
-            (*gradient)[i] -= (v[i] - middle) / (width * width);
-        }
-    }
-    return value;
+    return with_priors(log_likelihood(data, options.kernel, p, gradient), options, p, gradient);
 }
 
 std::vector<double> GaussianProcess::solved(std::vector<double> values) const {
@@ -329,29 +436,34 @@ std::vector<double> GaussianProcess::variances(std::span<const double> x, std::s
     const auto n = static_cast<Eigen::Index>(s.data.count());
     std::vector<double> result(count);
     constexpr std::size_t block = 128;
+    const std::size_t axes = s.data.axes;
+    const Eigen::Map<const Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> points(
+        s.data.x.data(), n, static_cast<Eigen::Index>(axes));
+    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> trends(
+        s.data.trend.data(), n, static_cast<Eigen::Index>(s.data.trends));
+    ArrayXd distance(n), exponent(n);
+    MatrixXd k;
     for (std::size_t begin = 0; begin < count; begin += block) {
         const std::size_t size = std::min(block, count - begin);
-        MatrixXd k(n, static_cast<Eigen::Index>(size));
+        k.resize(n, static_cast<Eigen::Index>(size));
         for (std::size_t q = 0; q < size; ++q) {
-            const double* at = &x[(begin + q) * s.data.axes];
-            const double* h = &trend[(begin + q) * s.data.trends];
+            const double* at = &x[(begin + q) * axes];
+            const Eigen::Map<const VectorXd> h(&trend[(begin + q) * s.data.trends],
+                                               static_cast<Eigen::Index>(s.data.trends));
             const double own = s.parameters.scale * (amplitude.empty() ? 1 : amplitude[begin + q]);
-            double prior = own * own;
-            for (std::size_t j = 0; j < s.data.trends; ++j) {
-                prior += s.data.trend_variance * h[j] * h[j];
+            result[begin + q] = own * own + s.data.trend_variance * h.squaredNorm();
+            auto column = k.col(static_cast<Eigen::Index>(q)).array();
+            column.setConstant(own * s.parameters.scale);
+            exponent.setZero();
+            for (std::size_t a = 0; a < axes; ++a) {
+                distance = (points.col(static_cast<Eigen::Index>(a)) - at[a]).abs();
+                times_correlation(s.kernel, s.parameters.length[a], distance, column, exponent);
             }
-            result[begin + q] = prior;
-            for (std::size_t i = 0; i < s.data.count(); ++i) {
-                double value = own * s.parameters.scale * s.data.amplitude_of(i);
-                for (std::size_t a = 0; a < s.data.axes; ++a) {
-                    value *=
-                        kernel_value(s.kernel, (at[a] - s.data.x[i * s.data.axes + a]) / s.parameters.length[a]).value;
-                }
-                for (std::size_t j = 0; j < s.data.trends; ++j) {
-                    value += s.data.trend_variance * h[j] * s.data.trend[i * s.data.trends + j];
-                }
-                k(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(q)) = value;
+            column *= (-exponent).exp();
+            if (!s.data.amplitude.empty()) {
+                column *= Eigen::Map<const ArrayXd>(s.data.amplitude.data(), n);
             }
+            column += s.data.trend_variance * (trends * h).array();
         }
         s.factor.matrixL().solveInPlace(k);
         for (std::size_t q = 0; q < size; ++q) {

@@ -17,6 +17,7 @@ struct GaussianProcess::State {
     Eigen::LLT<Eigen::MatrixXd> factor;
     std::vector<double> weights;
     std::vector<double> coefficients;
+    double log_likelihood = 0;
 };
 
 }  // namespace underbody::tables

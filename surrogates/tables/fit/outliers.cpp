@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/text.h"
 #include "core/units.h"
@@ -129,17 +130,19 @@ std::vector<std::size_t> strangest(const SetPoints& points, const Explained& all
 
 }  // namespace
 
-std::vector<Suspect> find_suspects(const SetPoints& points) {
-    std::vector<Suspect> found;
+Suspects find_suspects(const SetPoints& points) {
+    Suspects suspects;
+    std::vector<Suspect>& found = suspects.found;
     const std::size_t count = points.x.size();
     if (count < 8 || count < points.axes.size() + 6 || count > 150) {
-        return found;
+        return suspects;
     }
     const double least_odds = points.has_sigma() ? 5 : 50;
     std::vector<std::size_t> rows = all_rows(count);
     while (found.size() < count / 6) {
         const SetPoints all = without(points, rows);
-        const Explained explained(all);
+        auto candidates = ranked_candidates(all);
+        const Explained explained(all, candidates.front());
         Suspect clearest;
         double best = std::log(least_odds);
         std::vector<std::size_t> best_rows;
@@ -157,12 +160,15 @@ std::vector<Suspect> find_suspects(const SetPoints& points) {
             }
         }
         if (best_rows.empty()) {
+            if (found.empty()) {
+                suspects.candidates = std::move(candidates);
+            }
             break;
         }
         found.push_back(clearest);
         rows = best_rows;
     }
-    return found;
+    return suspects;
 }
 
 void doubt(SetPoints& points, const std::vector<Suspect>& suspects, bool followed) {

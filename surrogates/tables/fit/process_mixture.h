@@ -26,10 +26,6 @@ struct ProcessMixture {
     double widened_far = 1, widened_near = 1;
     bool scatter_is_noise = false;  ///< no errors were stated: what the process leaves unexplained is noise of the
                                     ///< points, not an error of the force
-    /// Noise of up to 60 points that state no errors, where they tell it (units of the process of the first part); 0
-    /// where they do not.
-    double noise = 0;
-    bool noise_is_plain = false;  ///< it is well told, and more than a hundredth of the spread of the forces
     std::vector<double>
         misfit;  ///< a point: square of its leave-one-out miss over the (widened) variance stated for it
     std::vector<double>

@@ -1,8 +1,9 @@
-// Tables and their values as JSON.
+#include "surrogates/tables/fit/table_json.h"
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "surrogates/tables/analysis/figures.h"
+#include "core/units.h"
 #include "surrogates/tables/fit/table_batch.h"
 
 namespace underbody::tables {
@@ -15,6 +16,14 @@ std::string common_policy(const std::vector<TableAxis>& axes) {
     return same ? to_string(axes.front().range) : "mixed";
 }
 }  // namespace
+
+std::string shown_unit(const ForceTable& table, const std::string& quantity) {
+    if (const core::Column* column = table.points().find(quantity); column != nullptr && !column->is_text()) {
+        return column->written_unit.empty() ? column->unit : column->written_unit;
+    }
+    const auto* known = core::find_quantity(quantity);
+    return known != nullptr ? known->unit : table.unit();
+}
 
 void to_json(nlohmann::json& json, const ForceTable& table) {
     json = nlohmann::json{{"quantity", table.quantity()},

@@ -5,8 +5,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/units.h"
-#include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/points/select.h"
+#include "surrogates/tables/points/table_files.h"
 
 namespace underbody::tables {
 
@@ -120,9 +120,9 @@ core::Table table_of(const nlohmann::json& json, const std::filesystem::path& pa
 }  // namespace
 
 core::Table read_points(const std::filesystem::path& path) {
-    for (const auto& format : export_formats()) {
-        if (path.extension() == format.ending && format.name != "csv" && format.name != "json") {
-            throw core::InputError("parse", "this is a table exported as " + format.name + ", which is not read back",
+    for (const TableFile& file : table_files()) {
+        if (path.extension() == file.ending && !file.read_back) {
+            throw core::InputError("parse", "this is a table exported as " + file.format + ", which is not read back",
                                    {path.string(), {}, {}, {}},
                                    "export it as csv or json too, or read the points it was made of");
         }

@@ -99,7 +99,7 @@ core::Table usable_rows(const core::Table& table, const std::string& quantity, c
     return table.selected(rows);
 }
 
-std::vector<std::string> named_axes(const core::Table& table, const std::string& quantity, const FitOptions& options) {
+std::vector<std::string> named_axes(const core::Table& table, const std::string& quantity, const AxisOptions& options) {
     std::set<std::string> seen;
     for (const auto& name : options.axes) {
         const Spread spread = spread_of(table.numbers(name));
@@ -389,7 +389,7 @@ void check_policies(const RangePolicies& policies, const std::vector<std::string
 
 }  // namespace
 
-SetPoints set_points(const core::Table& table, const std::string& quantity, const FitOptions& options) {
+SetPoints set_points(const core::Table& table, const std::string& quantity, const AxisOptions& options) {
     SetPoints points;
     points.quantity = quantity;
     points.table = usable_rows(table, quantity, points.remarks);

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/table.h"
-#include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/points/table_axis.h"
 
 namespace underbody::tables {
 
@@ -44,7 +44,7 @@ struct SetPoints {
 
 /// Throws core::InputError with file, line and column: unknown quantity, one point, an axis without spread, set points
 /// that repeat and disagree, sigma zero or negative or missing, missing set points, no axis at all, more than max_axes.
-SetPoints set_points(const core::Table& table, const std::string& quantity, const FitOptions& options);
+SetPoints set_points(const core::Table& table, const std::string& quantity, const AxisOptions& options);
 
 /// A point by its coordinates in the units of its file: "gap 5 mm, pitch 2 deg".
 std::string described(const SetPoints& points, std::size_t point);

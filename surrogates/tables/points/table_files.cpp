@@ -1,0 +1,23 @@
+#include "surrogates/tables/points/table_files.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace underbody::tables {
+
+const std::vector<TableFile>& table_files() {
+    static const std::vector<TableFile> files = {
+        {"c", ".h"},        {"csv", ".csv", true}, {"json", ".json", true}, {"mat", ".mat"},
+        {"jsbsim", ".xml"}, {"simulink", ".mat"},  {"modelica", ".combi"},  {"fmu", ".fmu"},
+    };
+    return files;
+}
+
+const std::string& table_ending(const std::string& format) {
+    const auto at = std::find_if(table_files().begin(), table_files().end(),
+                                 [&](const TableFile& file) { return file.format == format; });
+    assert(at != table_files().end());
+    return at->ending;
+}
+
+}  // namespace underbody::tables
