@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/file.h"
+#include "core/hash.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -14,6 +16,7 @@
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/estimator/control/loop_region.h"
+#include "surrogates/tables/exports/export.h"
 
 namespace underbody::studio {
 
@@ -24,7 +27,7 @@ using namespace estimator;
 struct ControlArguments {
     std::string model, hold, from, observer = "disturbance", conditions, out, plot, region, axes, limit, lag,
                                    step = "0.02 s", duration = "60 s", gap_noise, velocity_noise, disturbance,
-                                   feedback = "measured";
+                                   feedback = "measured", export_c;
     double pole1 = -1, pole2 = -1, observer_rate = 4;
     std::size_t columns = 60, rows = 40;
     std::uint64_t seed = 1;
@@ -115,8 +118,18 @@ nlohmann::json draw_region(const ControlArguments& a, const SeparatedPlant& plan
     return region;
 }
 
+/// What the controller in C is made of.
+std::vector<std::string> made_from(const ControlArguments& a) {
+    std::vector<std::string> lines{std::filesystem::path(a.model).filename().string() + ", content " +
+                                   core::content_hash_of_file(a.model).substr(0, 12)};
+    if (!a.conditions.empty()) {
+        lines.push_back("conditions " + a.conditions);
+    }
+    return lines;
+}
+
 int run_control(const ControlArguments& a, Shell& shell) {
-    for (const std::string& file : {a.out, a.plot, a.region}) {
+    for (const std::string& file : {a.out, a.plot, a.region, a.export_c}) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
@@ -172,6 +185,10 @@ int run_control(const ControlArguments& a, Shell& shell) {
         throw core::UsageError("name", "--observer does not know '" + a.observer + "'", {},
                                core::did_you_mean(a.observer, known));
     }
+    if (a.compare && !a.export_c.empty()) {
+        throw core::UsageError("option", "--export-c writes one controller, --compare compares them all", {},
+                               "leave one of them out");
+    }
     if (a.compare) {
         std::string text;
         const nlohmann::json list = compare_estimators(a, plant, law, o, text);
@@ -184,6 +201,10 @@ int run_control(const ControlArguments& a, Shell& shell) {
     const LoopEstimator estimator = design_loop_estimator(a.observer, plant, design_for(a, o));
     const LoopRun loop = close_loop(plant, law, estimator, o);
     shell.hand_over("motion", [&] { return loop.table(); });
+    if (!a.export_c.empty()) {
+        const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
+        core::write_file(a.export_c, export_controller_c(plant, law, estimator, o, name, made_from(a)));
+    }
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), loop.table());
     }
@@ -242,6 +263,9 @@ void add_control_command(CLI::App& app, Shell& shell) {
     command->add_option("--out", a->out, "the motion as a table (CSV)");
     command->add_option("--plot", a->plot, "the gap against time (.png, .pdf)");
     command->add_option("--region", a->region, "where starts end with the loop closed (.png, .pdf)");
+    command->add_option(
+        "--export-c", a->export_c,
+        "the controller (law, linear observer, actuator) as a C99 header; its name is that of the file");
     command->add_option("--axes", a->axes,
                         "of the region: gap=0:0.5,heave_velocity=-0.1:0.1 (default: the force table, 100 mm/s)");
     command->add_option("--columns", a->columns, "of the region (default 60)");
@@ -256,6 +280,8 @@ void add_control_command(CLI::App& app, Shell& shell) {
         "3mN\n"
         "  underbody control model.toml --hold 50mm --from gap=0.1 --limit 30mN --lag 0.2s --gap-noise 0.2mm --region "
         "loop.png\n"
+        "  underbody control model.toml --hold 20mm --from gap=0.25 --export-c hold.h      the controller for a "
+        "microcontroller\n"
         "u = -k_w w - k_h (gap - hold) - total_force_estimate - bias, gains from the two poles and the virtual mass.");
     shell.on(command, [a, &shell] { return run_control(*a, shell); });
 }

@@ -20,6 +20,7 @@
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/estimator/observe/information.h"
 #include "surrogates/estimator/observe/surface_bank.h"
+#include "surrogates/tables/exports/export.h"
 
 namespace underbody::studio {
 
@@ -142,7 +143,7 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
         core::write_csv(std::filesystem::path(a.out), result.table);
     }
     if (!a.export_c.empty()) {
-        const std::string name = std::filesystem::path(a.export_c).stem().string();
+        const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
         core::write_file(a.export_c, estimator::export_c(result.design.front().filter, name, {a.model}));
     }
     if (!a.plot.empty()) {

@@ -62,6 +62,8 @@ void check_loop(const LoopEstimator& e, const LoopOptions& o) {
 
 }  // namespace
 
+int loop_substeps(double step) { return std::max(1, static_cast<int>(std::ceil(step / 0.02))); }
+
 // What the loop keeps between samples.
 struct Loop::Impl {
     const SeparatedPlant& plant;
@@ -85,7 +87,7 @@ struct Loop::Impl {
          std::uint64_t stream)
         : plant(p), law(l), estimator(e), options(o), random(o.seed, stream), gap(h), velocity(w) {
         check_loop(e, o);
-        substeps = std::max(1, static_cast<int>(std::ceil(o.step / 0.02)));
+        substeps = loop_substeps(o.step);
         if (e.source == ForceSource::filter) {
             at = places_in(*e.filter);
             linear.emplace(*e.filter);
@@ -118,6 +120,8 @@ struct Loop::Impl {
             seen.ground = plant.ground_force(gap, slope);
             seen.drag = plant.drag(gap, velocity);
             seen.total = seen.ground - seen.drag;
+            seen.gap = h;
+            seen.velocity = w;
         }
         if (options.feedback == Feedback::measured) {
             seen.gap = h;

@@ -123,6 +123,19 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Steps of the plant over one sample of the loop.
+int loop_substeps(double step);
+
+/// The controller of the loop as one header of C99, no heap, no library: the law with its limit, its estimator where it
+/// is a linear filter, and what the model's actuator and `options.actuator_lag` make of the commands. struct
+/// NAME_state, NAME_start(state), then at every sample NAME_step(state, gap, heave_velocity), which gives the force to
+/// command (N, up); without a velocity sensor NAME_step(state, gap). NAME_step_with takes the mean force of the
+/// actuator over the sample before as a last argument, where that is measured. Throws core::InputError: NAME is no C
+/// identifier; an estimator that is no linear filter (extended, truth); what close_loop would refuse.
+std::string export_controller_c(const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
+                                const LoopOptions& options, const std::string& name,
+                                const std::vector<std::string>& made_from = {});
+
 /// Where the loop without cancellation parks: root of F_g(h) + bias (unless cancelled) = k_h (h - h_ref), from the
 /// start down the closed-loop motion (oracle O88). All roots, ascending, with stability.
 struct HoldPoint {
