@@ -43,10 +43,11 @@ tables::ExportOptions options_of(const ExportCommand& command) {
     options.name = command.name;
     options.overwrite = command.overwrite;
     options.self_test = command.self_test;
-    if (command.number != "double" && command.number != "float") {
-        throw core::UsageError("number", "numbers are double or float, not '" + command.number + "'");
+    if (command.number != "double" && command.number != "float" && command.number != "fixed") {
+        throw core::UsageError("number", "numbers are double, float or fixed, not '" + command.number + "'");
     }
     options.single_precision = command.number == "float";
+    options.fixed_point = command.number == "fixed";
     if (command.frame != "up" && command.frame != "ned") {
         throw core::UsageError("frame", "the frame is up or ned, not '" + command.frame + "'");
     }
@@ -176,7 +177,9 @@ void add_export_command(CLI::App& app, Shell& shell) {
     sub->add_option("--max-error", command->max_error,
                     "thins the grid to the smallest that stays within this share of the force's range, such as 0.5%");
     sub->add_option("--points", command->points, "evenly spaced points an axis, such as gap=40,pitch=9");
-    sub->add_option("--number", command->number, "double | float (C)")->capture_default_str();
+    sub->add_option("--number", command->number,
+                    "C: double | float | fixed (whole numbers of 32 bits, no floating point)")
+        ->capture_default_str();
     sub->add_option("--base-centre", command->base_centre,
                     "JSBSim: from the centre of gravity to the centre of the base, x forward, y starboard, z down, "
                     "such as \"0,0,50 mm\" (default: the model's)");

@@ -17,7 +17,7 @@ TEST(ExportCommand, WritesEveryFormatAndLeavesFilesOfOthersAlone) {
     core::TemporaryFolder folder;
     core::write_file(folder.path() / "lift.csv",
                      "gap [mm], lift_force [N]\n1, .66\n2, .4\n3, .296\n5, .27\n10, .297\n");
-    for (const char* format : {"c", "csv", "json", "mat", "jsbsim", "fmu"}) {
+    for (const char* format : {"c", "csv", "json", "mat", "jsbsim", "simulink", "modelica", "fmu"}) {
         const std::string out = std::string("out.") + format;
         const auto run = run_underbody({"export", "lift.csv", "--format", format, "--out", out}, folder.path());
         EXPECT_EQ(run.exit_code, 0) << format << run.errors;

@@ -298,6 +298,7 @@ private:
         const std::string x = name_ + "_x" + id;
         const ExportAxis& axis = g_.axes[k];
         const std::size_t cells = axis.points.size() - 1;
+        const std::string inside = "        } else {\n            /* inside */\n        }\n";
         const std::string last = x + "[" + std::to_string(cells) + "]";
         out_ += "    {\n        const " + real + " v = point[" + id + "];\n        " + real + " p = v;\n";
         out_ += "        result->beyond[" + id + "] = " + number(0) + ";\n        over[" + id + "] = " + number(0) +
@@ -307,13 +308,13 @@ private:
         out_ += "            over[" + id + "] = v - p;\n";
         out_ += "        } else if (v > " + last + ") {\n            p = " + last + ";\n            held[" + id +
                 "] = 1;\n";
-        out_ += "            over[" + id + "] = v - p;\n        }\n";
+        out_ += "            over[" + id + "] = v - p;\n" + inside;
         const std::string lower = axis.ends_with_range() ? x + "[0]" : number(axis.lower),
                           upper = axis.ends_with_range() ? last : number(axis.upper);
         out_ += "        if (!(v >= " + lower + ")) {\n            result->beyond[" + id + "] = v - " + lower +
                 ";\n            result->outside = 1;\n";
         out_ += "        } else if (v > " + upper + ") {\n            result->beyond[" + id + "] = v - " + upper +
-                ";\n            result->outside = 1;\n        }\n";
+                ";\n            result->outside = 1;\n" + inside;
         out_ += "        cell[" + id + "] = " + name_ + "_cell(" + x + ", " + name_ + "_first" + id + ", " +
                 std::to_string(cells) + "u, " + std::to_string(buckets_[k]) + "u, " + number(per_unit_[k]) + ", p);\n";
         out_ += "        {\n            const " + real + " h = " + x + "[cell[" + id + "] + 1u] - " + x + "[cell[" +
@@ -325,7 +326,8 @@ private:
         if (axis.range == RangePolicy::extrapolate) {
             // The functions of the end cell go on along their tangents.
             out_ += "            if (held[" + id +
-                    "]) {\n                unsigned m;\n                for (m = 0; m < 4u; ++m) {\n                   "
+                    "] != 0) {\n                unsigned m;\n                for (m = 0; m < 4u; ++m) {\n              "
+                    "     "
                     " w[" +
                     id + "][m] += over[" + id + "] * d[" + id + "][m];\n                }\n            }\n";
         }
@@ -432,7 +434,7 @@ private:
             const std::string id = std::to_string(k);
             const RangePolicy range = g_.axes[k].range;
             if (range == RangePolicy::clamp) {
-                out_ += "    if (held[" + id + "]) {\n";
+                out_ += "    if (held[" + id + "] != 0) {\n";
                 for (const auto& q : g_.quantities) {
                     out_ += "        " + member(q, "slope") + "[" + id + "] = " + number(0) + ";\n";
                 }
@@ -445,7 +447,7 @@ private:
         }
         out_ += "    result->refused = " + (refused.empty() ? "0" : "(" + refused + ") ? 1 : 0") + ";\n";
         if (!refused.empty()) {
-            out_ += "    if (result->refused) {\n        const " + name_ + "_real zero = " + number(0) + ";\n";
+            out_ += "    if (result->refused != 0) {\n        const " + name_ + "_real zero = " + number(0) + ";\n";
             for (const auto& q : g_.quantities) {
                 out_ += "        " + member(q, "value") + " = zero / zero;\n";
                 for (std::size_t k = 0; k < n_; ++k) {
@@ -509,6 +511,15 @@ private:
 }  // namespace
 
 void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result) {
+    if (grid.fixed_point) {
+        ExportGrid rounded = grid;
+        core::write_file(path, c_fixed_point(rounded));
+        for (std::size_t q = 0; q < rounded.quantities.size(); ++q) {
+            result.errors[q].second = rounded.quantities[q].difference;
+        }
+        result.error = rounded.first().difference;
+        return;
+    }
     core::write_file(path, Writer(grid).text());
     if (grid.self_test) {
         write_c_self_test(grid, path);

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "surrogates/tables/exports/export_grid.h"
+#include "surrogates/tables/points/table_files.h"
 
 namespace underbody::tables {
 
@@ -20,16 +21,28 @@ struct Exporter {
 
 const std::vector<Exporter>& exporters() {
     static const std::vector<Exporter> all = {
-        {{"c", ".h", "C99 header: no heap, no library, constant time; double or float"}, export_c},
-        {{"csv", ".csv", "table with slopes and error that this program reads back exactly"}, export_csv},
-        {{"json", ".json", "grid, Hermite data and error"}, export_json},
-        {{"mat", ".mat", "MATLAB and Octave: .mat and a .m that looks it up"}, export_mat, false, mat_function},
-        {{"jsbsim", ".xml", "JSBSim functions with tables, fine enough for its linear interpolation"},
+        {{"c", table_ending("c"), "C99 header: no heap, no library, constant time; double or float"}, export_c},
+        {{"csv", table_ending("csv"), "table with slopes and error that this program reads back exactly"}, export_csv},
+        {{"json", table_ending("json"), "grid, Hermite data and error"}, export_json},
+        {{"mat", table_ending("mat"), "MATLAB and Octave: .mat and a .m that looks it up"},
+         export_mat,
+         false,
+         mat_function},
+        {{"jsbsim", table_ending("jsbsim"), "JSBSim functions with tables, fine enough for its linear interpolation"},
          export_jsbsim,
          true,
          nullptr,
          3},
-        {{"fmu", ".fmu", "FMU 2.0, model exchange and co-simulation, Linux x86-64, source included"}, export_fmu},
+        {{"simulink", table_ending("simulink"), "breakpoints and data of Simulink's n-D Lookup Table in one .mat"},
+         export_simulink,
+         true},
+        {{"modelica", table_ending("modelica"), "text that Modelica's CombiTable1Ds and CombiTable2Ds read"},
+         export_modelica,
+         true,
+         nullptr,
+         2},
+        {{"fmu", table_ending("fmu"), "FMU 2.0, model exchange and co-simulation, Linux x86-64, source included"},
+         export_fmu},
     };
     return all;
 }
@@ -110,13 +123,18 @@ ExportResult export_tables(const std::vector<ForceTable>& tables, const std::str
     if (options.self_test && format != "c") {
         throw core::UsageError("format", "a self-test is written beside a C header, not beside " + format);
     }
+    if (options.fixed_point && (format != "c" || options.single_precision || options.self_test)) {
+        throw core::UsageError("format", format != "c"              ? "whole numbers are written as C, not as " + format
+                                         : options.single_precision ? "numbers are float or whole numbers, not both"
+                                                                    : "a self-test compares double or float");
+    }
     if (options.self_test) {
         check_path(c_self_test(path), tables.front(), options.overwrite);
     }
     progress.report(0, "export");
     ExportOptions named = options;
     named.name = identifier(options.name.empty() ? path.stem().string() : options.name);
-    const ExportGrid grid = export_grid(tables, named, found->straight, progress);
+    const ExportGrid grid = export_grid(tables, named, found->straight || options.fixed_point, progress);
     ExportResult result;
     result.files.push_back(path);
     result.error = grid.first().difference;

@@ -25,6 +25,7 @@ enum class Frame {
 struct ExportOptions {
     std::string name;               ///< prefix of C identifiers, model name; empty: that of the file
     bool single_precision = false;  ///< C: float instead of double
+    bool fixed_point = false;       ///< C: whole numbers of 32 bits instead; straight lines between the points
     Frame frame = Frame::up;
     double max_error = 0;  ///< > 0: thin the grid to the smallest that stays within this share of the force's range
     std::vector<std::pair<std::string, std::size_t>> points;  ///< axis -> that many evenly spaced points
@@ -50,6 +51,9 @@ struct ExportFormat {
     std::string description;  ///< one line
 };
 const std::vector<ExportFormat>& export_formats();
+
+/// A name that C, MATLAB and Modelica take: letters, digits and underscores, a letter first.
+std::string identifier(const std::string& text);
 
 /// Throws core::UsageError for an unknown format, an axis that is none, a share that makes no sense; core::InputError
 /// (kind "exists") when the path holds something this program did not write, or the file that the table was made of;

@@ -421,6 +421,7 @@ ExportGrid export_grid(const std::vector<ForceTable>& tables, const ExportOption
     grid.frame = options.frame;
     grid.lever = options.lever;
     grid.single_precision = options.single_precision;
+    grid.fixed_point = options.fixed_point;
     grid.self_test = options.self_test;
     std::vector<Chosen> all;
     for (const ForceTable& table : tables) {

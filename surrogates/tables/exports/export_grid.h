@@ -54,6 +54,7 @@ struct ExportGrid {
     std::optional<Lever> lever;
     core::Problems remarks;
     bool single_precision = false;
+    bool fixed_point = false;
     bool self_test = false;
 
     [[nodiscard]] const ExportQuantity& first() const { return quantities.front(); }
@@ -90,25 +91,35 @@ std::vector<std::vector<double>> points_for_straight_lines(const CubicGrid& surf
                                                            core::Progress& progress);
 Resampled thinned_for_straight_lines(const CubicGrid& full, const CubicGrid& surface, double allowed, std::size_t most,
                                      core::Progress& progress);
+/// 1 where the grid has no data (outside its range, in an empty corner of its box), 0 where it has some, as a table for
+/// a consumer that draws straight lines between its points and holds its ends: every change lies between two numbers
+/// next to each other, so that no place sees another value.
+struct Steps {
+    std::vector<std::vector<double>> points;  ///< an axis
+    std::vector<double> value;                ///< last axis fastest
+};
+Steps no_data_steps(const ExportGrid& grid);
+
 /// What the file does outside its axes, one line for each; for formats that follow every policy.
 std::vector<std::string> outside_lines(const ExportGrid& grid);
 /// origin, then these lines.
 std::vector<std::string> header_lines(const ExportGrid& grid);
-
-/// Letters, digits and underscores; starts with a letter.
-std::string identifier(const std::string& text);
 
 // The formats.
 std::filesystem::path c_self_test(const std::filesystem::path& path);  ///< NAME_test.c beside NAME.h
 /// A program without a library that says 0 when the header gives the values, slopes, errors and flags of the grid at
 /// points in and around it.
 void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& header);
+/// The header in whole numbers; adds their rounding to the differences of the grid.
+std::string c_fixed_point(ExportGrid& grid);
 void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_csv(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_json(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 std::filesystem::path mat_function(const std::filesystem::path& path);  ///< NAME_at.m that looks NAME.mat up
 void export_mat(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_jsbsim(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
+void export_modelica(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
+void export_simulink(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_fmu(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 
 }  // namespace underbody::tables

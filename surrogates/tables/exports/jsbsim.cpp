@@ -28,8 +28,10 @@ public:
             "  JSBSim interpolates linearly and has no cubics: the points are so dense that this differs from the "
             "table by no more than said above.\n";
         out_ +=
-            "  Outside the range of an axis JSBSim holds the end value; it cannot refuse, extrapolate or say that it "
-            "is outside.\n";
+            "  Outside the range of an axis JSBSim holds the end value; it cannot refuse or extrapolate.\n"
+            "  " +
+            property("outside") + " is 1 there, else 0; " + property("no_data") +
+            " is 1 where no points of the table lie around: outside, or in an empty corner of its box.\n";
         out_ +=
             "  Use: <external_reactions file=\"...\"/> in the aircraft. The forces act at the centre of the base, the "
             "moments are about it.\n";
@@ -42,6 +44,7 @@ public:
         for (const auto& q : g_.quantities) {
             tables(q);
         }
+        flags();
         reactions();
         return out_ + "</external_reactions>\n";
     }
@@ -124,22 +127,38 @@ private:
         }
     }
 
+    using Lines = std::vector<std::vector<double>>;
+
     void tables(const ExportQuantity& q) {
         const auto& data = q.surface.hermite();
-        table(q.name, q.name + " [" + q.unit + "]", [&](std::size_t node) { return data[node << n_]; });
+        Lines x;
+        for (const auto& axis : g_.axes) {
+            x.push_back(axis.points);
+        }
+        table(q.name, q.name + " [" + q.unit + "]", x, [&](std::size_t node) { return data[node << n_]; });
         for (std::size_t k = 0; k < n_; ++k) {
             table(q.name + "_per_" + g_.axes[k].name,
-                  "slope along " + g_.axes[k].name + ", " + q.unit + " per " + g_.axes[k].unit,
+                  "slope along " + g_.axes[k].name + ", " + q.unit + " per " + g_.axes[k].unit, x,
                   [&](std::size_t node) { return data[(node << n_) + (std::size_t{1} << k)]; });
         }
-        table(q.name + "_sigma", "one standard deviation, " + q.unit,
+        table(q.name + "_sigma", "one standard deviation, " + q.unit, x,
               [&](std::size_t node) { return q.error.empty() ? 0 : q.error.node_sigma()[node]; });
     }
 
-    [[nodiscard]] const std::vector<double>& x(std::size_t k) const { return g_.axes[k].points; }
+    void flags() {
+        std::string beyond;
+        for (const auto& axis : g_.axes) {
+            const std::string at = from(property(axis.name));
+            beyond += element("lt", at + value(axis.lower)) + element("gt", at + value(axis.upper));
+        }
+        function("outside", "1 outside the range of an axis, else 0", element("or", beyond));
+        const Steps steps = no_data_steps(g_);
+        table("no_data", "1 where no points of the table lie around, else 0", steps.points,
+              [&](std::size_t node) { return steps.value[node]; });
+    }
 
     template <class F>
-    void table(const std::string& name, const std::string& what, F&& f) {
+    void table(const std::string& name, const std::string& what, const Lines& x, F&& f) {
         std::string out = "<table>\n";
         static const char* lookups[] = {"row", "column", "table"};
         for (std::size_t k = 0; k < n_; ++k) {
@@ -148,16 +167,16 @@ private:
         }
         if (n_ == 1) {
             out += "   <tableData>\n";
-            for (std::size_t i = 0; i < x(0).size(); ++i) {
-                out += "    " + core::format_number(x(0)[i]) + " " + core::format_number(f(i)) + "\n";
+            for (std::size_t i = 0; i < x[0].size(); ++i) {
+                out += "    " + core::format_number(x[0][i]) + " " + core::format_number(f(i)) + "\n";
             }
             out += "   </tableData>\n";
         } else if (n_ == 2) {
-            out += "   <tableData>\n" + block(f, 1, 0) + "   </tableData>\n";
+            out += "   <tableData>\n" + block(x, f, 1, 0) + "   </tableData>\n";
         } else {
-            for (std::size_t i = 0; i < x(2).size(); ++i) {
-                out += "   <tableData breakPoint=\"" + core::format_number(x(2)[i]) + "\">\n" +
-                       block(f, x(2).size(), i) + "   </tableData>\n";
+            for (std::size_t i = 0; i < x[2].size(); ++i) {
+                out += "   <tableData breakPoint=\"" + core::format_number(x[2][i]) + "\">\n" +
+                       block(x, f, x[2].size(), i) + "   </tableData>\n";
             }
         }
         function(name, what, out + "  </table>");
@@ -165,16 +184,16 @@ private:
 
     /// Rows along axis 0, columns along axis 1, out of nodes with the last axis fastest.
     template <class F>
-    std::string block(F&& f, std::size_t layers, std::size_t layer) {
+    static std::string block(const Lines& x, F&& f, std::size_t layers, std::size_t layer) {
         std::string out = "    ";
-        for (const double y : x(1)) {
+        for (const double y : x[1]) {
             out += " " + core::format_number(y);
         }
         out += "\n";
-        for (std::size_t i = 0; i < x(0).size(); ++i) {
-            out += "    " + core::format_number(x(0)[i]);
-            for (std::size_t j = 0; j < x(1).size(); ++j) {
-                out += " " + core::format_number(f((i * x(1).size() + j) * layers + layer));
+        for (std::size_t i = 0; i < x[0].size(); ++i) {
+            out += "    " + core::format_number(x[0][i]);
+            for (std::size_t j = 0; j < x[1].size(); ++j) {
+                out += " " + core::format_number(f((i * x[1].size() + j) * layers + layer));
             }
             out += "\n";
         }

@@ -1,48 +1,11 @@
 // MATLAB and Octave: a .mat (level 5, by matio) and a .m that looks it up.
-#include <matio.h>
-
-#include <cstring>
-#include <memory>
-
-#include "core/error.h"
 #include "core/file.h"
 #include "surrogates/tables/exports/export_grid.h"
+#include "surrogates/tables/exports/mat_file.h"
 
 namespace underbody::tables {
 
 namespace {
-
-class MatFile {
-public:
-    explicit MatFile(const std::filesystem::path& path)
-        : file_(Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, force table by Underbody", MAT_FT_MAT5)) {
-        if (file_ == nullptr) {
-            throw core::SystemError("write", "the file cannot be written", {path.string(), {}, {}, {}});
-        }
-    }
-    ~MatFile() { Mat_Close(file_); }
-    MatFile(const MatFile&) = delete;
-    MatFile& operator=(const MatFile&) = delete;
-
-    void reals(const std::string& name, const std::vector<double>& values, std::size_t rows, std::size_t columns) {
-        std::size_t sizes[2] = {rows, columns};
-        write(Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes, const_cast<double*>(values.data()), 0));
-    }
-    void text(const std::string& name, const std::string& value) {
-        std::size_t sizes[2] = {1, value.size()};
-        write(Mat_VarCreate(name.c_str(), MAT_C_CHAR, MAT_T_UTF8, 2, sizes, const_cast<char*>(value.data()), 0));
-    }
-
-private:
-    void write(matvar_t* variable) {
-        const int failed = variable == nullptr ? 1 : Mat_VarWrite(file_, variable, MAT_COMPRESSION_NONE);
-        Mat_VarFree(variable);
-        if (failed != 0) {
-            throw core::SystemError("write", "a variable of the .mat file cannot be written");
-        }
-    }
-    mat_t* file_;
-};
 
 /// Variables of the first quantity have no ending, those of the others _2, _3, ...
 std::string ending(std::size_t quantity) { return quantity == 0 ? "" : "_" + std::to_string(quantity + 1); }

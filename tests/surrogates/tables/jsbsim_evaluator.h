@@ -191,6 +191,13 @@ private:
             needs(1);
             return e.name == "sin" ? std::sin(of[0]) : e.name == "cos" ? std::cos(of[0]) : std::abs(of[0]);
         }
+        if (e.name == "lt" || e.name == "gt") {
+            needs(2);
+            return (e.name == "lt" ? of[0] < of[1] : of[0] > of[1]) ? 1 : 0;
+        }
+        if (e.name == "or" && of.size() > 1) {
+            return std::any_of(of.begin(), of.end(), [](double v) { return v > 0.5; }) ? 1 : 0;
+        }
         if (e.name == "quotient" || e.name == "pow") {
             needs(2);
             return e.name == "pow" ? std::pow(of[0], of[1]) : of[0] / of[1];

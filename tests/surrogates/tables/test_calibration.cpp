@@ -22,7 +22,8 @@ void judge(std::size_t axes, std::size_t seeds) {
         }
         const auto c = test::calibration(setting, judging, long_run() ? 3 * setting.seeds : seeds);
         std::cout << setting.name << ": " << c.share << " within one standard deviation, " << c.share_two
-                  << " within two; the narrowest band that holds 68 % is " << c.scale << " of the stated one\n";
+                  << " within two; the narrowest band that holds 68 % is " << c.scale
+                  << " of the stated one; stated bands are " << c.width << " times the narrowest an interval of gaps\n";
         // Exact points that are interpolated: their error is that of forces as CFD has them, with kinks; smoother ones
         // are met better.
         const bool exact = setting.name.ends_with("exact") && !setting.grid.empty();

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "surrogates/tables/fit/table_batch.h"
 #include "tests/surrogates/tables/exports_support.h"
 #include "tests/surrogates/tables/jsbsim_evaluator.h"
 
@@ -65,7 +66,7 @@ TEST(ExportsOfJsbsim, InterpolateLinearlyWithinWhatTheySay) {
                 EXPECT_EQ(
                     std::system(
                         ("python3 -c \"import xml.dom.minidom as m;d=m.parse('" + (folder.path() / "t.xml").string() +
-                         "');assert len([f for f in d.getElementsByTagName('table')])==" + std::to_string(2 + n) + "\"")
+                         "');assert len([f for f in d.getElementsByTagName('table')])==" + std::to_string(3 + n) + "\"")
                             .c_str()),
                     0);
             }
@@ -85,6 +86,44 @@ TEST(ExportsOfJsbsim, InterpolateLinearlyWithinWhatTheySay) {
             EXPECT_THAT(xml, HasSubstr("Differs from the full table by at most"));
             EXPECT_THAT(xml, HasSubstr("interpolates linearly"));
             EXPECT_THAT(xml, HasSubstr("lift_force [N]"));
+        }
+    }
+}
+
+TEST(ExportsOfJsbsim, SayWhereTheyHaveNoData) {
+    core::TemporaryFolder folder;
+    for (const auto& table : {test::one_axis(), test::two_axes(), test::three_axes(), test::band()}) {
+        const std::size_t n = table.axes().size();
+        export_table(table, "jsbsim", folder.path() / "t.xml");
+        const std::string xml = core::read_file(folder.path() / "t.xml");
+        Linear outside(xml, "outside", table), no_data(xml, "no_data", table);
+        const auto points = test::random_points(table, 2000);
+        int empty = 0;
+        for (std::size_t i = 0; i < points.size(); i += n) {
+            const auto e = table.at({&points[i], n});
+            ASSERT_EQ(outside.at(&points[i]), e.outside ? 1 : 0);
+            ASSERT_EQ(no_data.at(&points[i]), e.no_data ? 1 : 0);
+            empty += e.no_data && !e.outside ? 1 : 0;
+        }
+        EXPECT_EQ(empty > 0, table.kind() == "Gaussian process") << "the band has empty corners, the grids have none";
+    }
+}
+
+/// To the last bit on both sides of every line between a cell with data and one without.
+TEST(ExportsOfJsbsim, ChangeTheFlagAtTheLinesThemselves) {
+    core::TemporaryFolder folder;
+    const auto table = test::band();
+    export_table(table, "jsbsim", folder.path() / "t.xml");
+    Linear no_data(core::read_file(folder.path() / "t.xml"), "no_data", table);
+    const tables::Support& support = *tables::data_support(table);
+    for (const double gap : support.lines()[0]) {
+        for (const double pitch : support.lines()[1]) {
+            for (const double g : {gap, std::nextafter(gap, 0.0)}) {
+                for (const double p : {pitch, std::nextafter(pitch, -1.0)}) {
+                    const double at[2] = {g, p};
+                    ASSERT_EQ(no_data.at(at), table.at(at).no_data ? 1 : 0) << g << " " << p;
+                }
+            }
         }
     }
 }
