@@ -1,8 +1,10 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <utility>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "surrogates/estimator/observe/observer.h"
 
 namespace underbody::estimator {
@@ -76,12 +78,16 @@ std::string export_c(const LinearFilter& f, const std::string& name, const std::
     out +=
         " * measured:  " + list(f.measured) + "\n * input:     " + list(f.inputs) + " (held since the last sample)\n";
     out += " * estimates: " + list(f.estimates) + "\n";
-    for (const auto& line : made_from) {
+    for (std::string line : made_from) {
+        for (std::size_t at; (at = line.find("*/")) != std::string::npos;) {
+            line.replace(at, 2, "* /");
+        }
         out += " * made from: " + line + "\n";
     }
     out += " * C99, no heap, no library. Call " + name + "_start with the first sample, then " + name +
            "_step with each next one. */\n";
-    out += "#ifndef " + name + "_H\n#define " + name + "_H\n\n";
+    std::string head;
+    std::swap(head, out);
     out += "enum { " + name + "_states = " + count(n) + ", " + name + "_measured = " + count(m) + ", " + name +
            "_inputs = " + count(q) + ", " + name + "_estimates = " + count(p) + " };\n\n";
     out += "typedef struct {\n    double s[" + count(n) + "];\n    double last[" + count(m) + "];\n} " + name +
@@ -116,7 +122,9 @@ std::string export_c(const LinearFilter& f, const std::string& name, const std::
     out += "    for (i = 0; i < " + count(n) + "; ++i) {\n        o->s[i] = next[i];\n    }\n";
     out += "    for (i = 0; i < " + count(m) + "; ++i) {\n        o->last[i] = measured[i];\n    }\n";
     out += "    " + name + "_read(o, estimates);\n}\n\n#endif\n";
-    return out;
+    // Another observer of the same name has another guard: a compiler then says what is defined twice.
+    const std::string guard = "UNDERBODY_" + name + "_" + core::content_hash(out).substr(0, 12) + "_H";
+    return head + "#ifndef " + guard + "\n#define " + guard + "\n\n" + out;
 }
 
 }  // namespace underbody::estimator

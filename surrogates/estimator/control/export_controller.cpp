@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/text.h"
 #include "surrogates/estimator/control/closed_loop.h"
 
@@ -69,15 +71,18 @@ public:
           shares_(shares(plant.actuator.delay, options.step, parts_)) {}
 
     std::string text(const std::vector<std::string>& made_from) {
-        if (filter_ != nullptr) {
-            out_ = export_c(*filter_, name_ + "_observer", made_from) + "\n";
-        }
-        comment(made_from);
-        out_ += "#ifndef " + name_ + "_H\n#define " + name_ + "_H\n\n";
         state();
         command();
         actuator();
-        return out_ + "\n#endif\n";
+        std::string content;
+        std::swap(content, out_);
+        if (filter_ != nullptr) {
+            out_ = export_c(*filter_, name_ + "_observer") + "\n";
+        }
+        comment(made_from);
+        // Another controller of the same name has another guard: a compiler then says what is defined twice.
+        const std::string guard = "UNDERBODY_" + name_ + "_" + core::content_hash(content).substr(0, 12) + "_H";
+        return out_ + "#ifndef " + guard + "\n#define " + guard + "\n\n" + content + "\n#endif\n";
     }
 
 private:
