@@ -300,10 +300,10 @@ private:
                 std::to_string(axis.upper) + "));\n            result->outside = 1;\n" +
                 (g_.axes[k].range == RangePolicy::refuse ? "            result->refused = 1;\n" : "") + "        }\n";
         out_ += "        cell[" + id + "] = " + name_ + "_cell(" + x + ", " + cells +
-                ", p);\n        {\n            const uint64_t from = (uint64_t)((int64_t)p - " + x + "[cell[" + id +
-                "]]);\n            const uint64_t share = (from * " + name_ + "_rate" + id + "[cell[" + id + "]]) >> " +
-                name_ + "_shift" + id + "[cell[" + id + "]];\n            t[" + id +
-                "] = (int32_t)share;\n        }\n    }\n";
+                ", p);\n        {\n            const int64_t past = (int64_t)p - " + x + "[cell[" + id +
+                "]];\n            const uint64_t from = (uint64_t)past;\n            const uint64_t share = (from * " +
+                name_ + "_rate" + id + "[cell[" + id + "]]) >> " + name_ + "_shift" + id + "[cell[" + id +
+                "]];\n            t[" + id + "] = (int32_t)share;\n        }\n    }\n";
     }
 
     void quantity_part(std::size_t at) {

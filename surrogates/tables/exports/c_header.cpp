@@ -445,9 +445,10 @@ private:
                            " <= " + number(0) + ")";
             }
         }
-        out_ += "    result->refused = " + (refused.empty() ? "0" : "(" + refused + ") ? 1 : 0") + ";\n";
+        out_ += "    result->refused = 0;\n";
         if (!refused.empty()) {
-            out_ += "    if (result->refused != 0) {\n        const " + name_ + "_real zero = " + number(0) + ";\n";
+            out_ += "    if (" + refused + ") {\n        const " + name_ + "_real zero = " + number(0) +
+                    ";\n        result->refused = 1;\n";
             for (const auto& q : g_.quantities) {
                 out_ += "        " + member(q, "value") + " = zero / zero;\n";
                 for (std::size_t k = 0; k < n_; ++k) {

@@ -339,6 +339,7 @@ TEST(ExportOfC, KeepsToTheRequiredRulesOfMisra) {
         tables::ExportOptions options;
         options.single_precision = single;
         options.fixed_point = fixed;
+        options.max_error = 0.05;
         export_tables(tables, "c", folder.path() / (std::string(name) + ".h"), options);
         core::write_file(
             folder.path() / (std::string(name) + ".c"),

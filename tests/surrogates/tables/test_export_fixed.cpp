@@ -106,7 +106,7 @@ TEST_P(FixedPoint, IsWithinWhatItSaysOfTheTable) {
                 // Beyond an end the value goes on with the slope there; sigma grows as the table's.
                 ASSERT_GE(o[1], (1 - 1e-5) * e.at.sigma);
             }
-            for (std::size_t k = 0; k < n; ++k) {
+            for (std::size_t k = 0; k < n && !e.at.outside; ++k) {
                 ASSERT_LE(std::abs(o[4 + k] - e.at.slope[k]), 0.5 * sizes.slope[k]) << "of the right sign and size";
             }
         }
