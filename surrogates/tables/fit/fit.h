@@ -38,14 +38,14 @@ std::vector<double> interpolation_misses(const SetPoints& points, std::size_t at
 /// Gaussian process, any points. `misses` (may be null) gets its leave-one-out errors, in the order of the points.
 /// `candidates`: ranked_candidates of the points where they are known; empty: they are made.
 std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& points, std::vector<double>* misses,
-                                                       std::vector<Candidate> candidates = {});
+                                                       std::vector<ProcessCandidate> candidates = {});
 
 /// Scatter of points without errors about the process that suits them best.
 struct Scatter {
     std::vector<double> sigma;  ///< of every point; empty: the points do not tell it
     bool plain = false;         ///< well told, and more than a hundredth of the spread of the forces
 };
-Scatter scatter_of(const SetPoints& points, std::vector<Candidate> candidates = {});
+Scatter scatter_of(const SetPoints& points, std::vector<ProcessCandidate> candidates = {});
 
 /// Exact interpolation of a full grid.
 std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, const FitOptions& options);

@@ -123,11 +123,11 @@ SetPoints reduced(const SetPoints& points, std::size_t most, core::Problems& rem
 }
 
 /// Few points leave open which law holds and how long the lengths are: the table is then the mean over what they allow.
-ProcessMixture mixture_of(const SetPoints& points, std::vector<Candidate> candidates) {
+ProcessMixture mixture_of(const SetPoints& points, std::vector<ProcessCandidate> candidates) {
     const auto rows = all_rows(points.x.size());
     ProcessMixture mixture;
     if (rows.size() > 120) {
-        Candidate& best = candidates.front();
+        ProcessCandidate& best = candidates.front();
         best.options.iterations = 14;
         GpData data = data_of(points, rows, best.form);
         GaussianProcess process =
@@ -137,7 +137,7 @@ ProcessMixture mixture_of(const SetPoints& points, std::vector<Candidate> candid
         return mixture;
     }
     const double best_score = candidates.front().score;
-    for (Candidate& candidate : candidates) {
+    for (ProcessCandidate& candidate : candidates) {
         const double weight = std::exp(candidate.score - best_score);
         if (weight < 0.05 || mixture.parts.size() > 30) {
             break;
@@ -299,14 +299,14 @@ std::string described(const ProcessMixture& mixture, const SetPoints& points) {
 
 }  // namespace
 
-Scatter scatter_of(const SetPoints& points, std::vector<Candidate> candidates) {
+Scatter scatter_of(const SetPoints& points, std::vector<ProcessCandidate> candidates) {
     check_spread(points);
     const std::size_t n = points.x.size();
     Scatter scatter;
     if (points.has_sigma() || n > few_points) {
         return scatter;
     }
-    Candidate best = candidates.empty() ? ranked_candidates(points).front() : std::move(candidates.front());
+    ProcessCandidate best = candidates.empty() ? ranked_candidates(points).front() : std::move(candidates.front());
     const GpData data = data_of(points, all_rows(n), best.form);
     best.options.iterations = 40;
     const auto process = GaussianProcess::fit(data, best.options);
@@ -320,7 +320,7 @@ Scatter scatter_of(const SetPoints& points, std::vector<Candidate> candidates) {
 }
 
 std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_points, std::vector<double>* misses,
-                                                       std::vector<Candidate> candidates) {
+                                                       std::vector<ProcessCandidate> candidates) {
     check_spread(all_points);
     core::Problems remarks = all_points.remarks;
     const SetPoints points = reduced(all_points, 1200, remarks);

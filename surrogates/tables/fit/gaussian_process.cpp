@@ -437,8 +437,6 @@ std::vector<double> GaussianProcess::variances(std::span<const double> x, std::s
     std::vector<double> result(count);
     constexpr std::size_t block = 128;
     const std::size_t axes = s.data.axes;
-    const Eigen::Map<const Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> points(
-        s.data.x.data(), n, static_cast<Eigen::Index>(axes));
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> trends(
         s.data.trend.data(), n, static_cast<Eigen::Index>(s.data.trends));
     ArrayXd distance(n), exponent(n);
@@ -456,7 +454,7 @@ std::vector<double> GaussianProcess::variances(std::span<const double> x, std::s
             column.setConstant(own * s.parameters.scale);
             exponent.setZero();
             for (std::size_t a = 0; a < axes; ++a) {
-                distance = (points.col(static_cast<Eigen::Index>(a)) - at[a]).abs();
+                distance = (s.x.col(static_cast<Eigen::Index>(a)) - at[a]).abs();
                 times_correlation(s.kernel, s.parameters.length[a], distance, column, exponent);
             }
             column *= (-exponent).exp();

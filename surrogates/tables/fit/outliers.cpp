@@ -40,7 +40,7 @@ struct Explained {
     GaussianProcess process;
     double log_density;
 
-    Explained(const SetPoints& points, Candidate candidate)
+    Explained(const SetPoints& points, ProcessCandidate candidate)
         : form(candidate.form),
           process(GaussianProcess::fit(data_of(points, all_rows(points.x.size()), form), candidate.options)) {
         log_density = GaussianProcess::log_posterior(process.data(), candidate.options, process.parameters(), nullptr) -
@@ -95,7 +95,7 @@ bool lies_between(const SetPoints& points, std::size_t i) {
 double quick_gain(const SetPoints& points, const Explained& all, std::size_t i) {
     std::vector<std::size_t> rest = all_rows(points.x.size());
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-    Candidate candidate{all.form, {}, 0};
+    ProcessCandidate candidate{all.form, {}, 0};
     candidate.options.kernel = all.process.kernel();
     candidate.options.expected_scatter = expected_scatter(points);
     candidate.options.iterations = 12;

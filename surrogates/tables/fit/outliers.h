@@ -17,7 +17,8 @@ struct Suspect {
 
 struct Suspects {
     std::vector<Suspect> found;
-    std::vector<Candidate> candidates;  ///< ranked_candidates of the points, where none is suspect and they were made
+    std::vector<ProcessCandidate>
+        candidates;  ///< ranked_candidates of the points, where none is suspect and they were made
 };
 
 /// Each point is tried as an outlier: the others are fitted anew without it, and it counts as one when a broad

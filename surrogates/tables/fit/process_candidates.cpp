@@ -38,9 +38,9 @@ double score_of(const GaussianProcess& process, const SetPoints& points, const s
 
 }  // namespace
 
-std::vector<Candidate> ranked_candidates(const SetPoints& points) {
+std::vector<ProcessCandidate> ranked_candidates(const SetPoints& points) {
     const auto rows = spread_rows(points.x.size(), points.axes.size() > 2 ? 120 : 150);
-    std::vector<Candidate> all;
+    std::vector<ProcessCandidate> all;
     const auto consider = [&](Form form, Kernel kernel, std::vector<GpParameters> starts) {
         GpOptions options;
         options.kernel = kernel;
@@ -56,9 +56,9 @@ std::vector<Candidate> ranked_candidates(const SetPoints& points) {
     for (const Form& form : candidate_forms(points)) {
         consider(form, Kernel::matern52, {});
     }
-    const auto better = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
+    const auto better = [](const ProcessCandidate& a, const ProcessCandidate& b) { return a.score > b.score; };
     std::stable_sort(all.begin(), all.end(), better);
-    const Candidate best = all.front();
+    const ProcessCandidate best = all.front();
     consider(best.form, Kernel::squared_exponential, best.options.starts);
     std::stable_sort(all.begin(), all.end(), better);
     return all;

@@ -9,14 +9,14 @@
 namespace underbody::tables {
 
 /// A form with a kernel, fitted to the points (or a share of them).
-struct Candidate {
+struct ProcessCandidate {
     Form form;
     GpOptions options;  ///< starts with the fitted parameters
     double score = -INFINITY;
 };
 
 /// All candidates, the best by leave-one-out score first.
-std::vector<Candidate> ranked_candidates(const SetPoints& points);
+std::vector<ProcessCandidate> ranked_candidates(const SetPoints& points);
 
 /// Middle of the prior of the scatter. Points without stated errors are mostly computed ones: little is expected beside
 /// the stated error.
