@@ -538,6 +538,9 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
         study.bodies.push_back({unique_name(table, bodies), table.file("shape")});
     }
     study.sweep = read_sweep(study, root);
+    if (root.has("design")) {
+        study.design = read_design(root.table("design"), study.folder_);
+    }
     for (auto& solved : solved_cases(study, study.notes)) {
         if (files.emplace(solved.file.lexically_normal().string(), "[sweep]")
                 .second) {  // a [[case]] may name them itself

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cases/design_spec.h"
 #include "core/error.h"
 #include "core/figure.h"
 #include "core/progress.h"
@@ -179,6 +180,7 @@ public:
     bool thesis_dynamics = false;  ///< check its statements on springs, sizes, voltages, releases and heading
     std::vector<CompareSpec> comparisons;
     std::optional<SweepSpec> sweep;
+    std::optional<DesignSpec> design;
     core::Problems notes;  ///< what was left out on opening: cases of the sweep that are stale
 
     [[nodiscard]] std::vector<const Case*> select(const Conditions& where) const;

@@ -1,5 +1,6 @@
 #include "cases/study_format.h"
 
+#include "cases/design_spec.h"
 #include "cases/study.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -208,8 +209,8 @@ const core::FileFormat& study_format() {
     static const core::FileFormat format = [] {
         core::FileFormat made{"study", "study.toml", "a folder of cases that becomes one report", {}};
         made.tables = {study_keys::top(), study_keys::frame(), study_keys::reference()};
-        for (const auto& group :
-             {study_keys::inputs(), study_keys::sweep(), study_keys::results(), study_keys::checks()}) {
+        for (const auto& group : {study_keys::inputs(), study_keys::sweep(), design_tables(), study_keys::results(),
+                                  study_keys::checks()}) {
             made.tables.insert(made.tables.end(), group.begin(), group.end());
         }
         return made;

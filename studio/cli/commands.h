@@ -25,6 +25,7 @@ class Shell;
     X(study)                  \
     X(solve)                  \
     X(sweep)                  \
+    X(design)                 \
     X(learn)                  \
     X(estimate)               \
     X(control)                \

@@ -1,0 +1,101 @@
+// A search for a better shape: the plan, its runs, what was learned, what to run next, the best. Everything that was
+// decided stands in files under [design] folder, so that a search that was stopped goes on, and runs of any other
+// solver can be put in:
+//
+//     plan.csv      one row a design: name, the varied numbers, fidelity, why it was taken, "planned" or why it cannot
+//     be shapes/       NAME.toml of each runs/FIDELITY/  the cases of OpenFOAM results.csv   one row a run: design,
+//     varied numbers, conditions, fidelity, loads with NAME_sigma, state
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "cases/design_spec.h"
+#include "cases/sweep.h"
+#include "core/html.h"
+#include "core/progress.h"
+#include "core/table.h"
+#include "surrogates/tables/search/sensitivity.h"
+#include "surrogates/tables/search/surrogate.h"
+
+namespace underbody::cases {
+
+struct PlannedDesign {
+    std::string name;        ///< "design-007"
+    std::vector<double> at;  ///< SI, one a variable of the shape
+    std::string fidelity;
+    std::string why;    ///< "plan", "expected improvement ...", "typed"
+    std::string state;  ///< "planned", or why there is no such shape
+};
+
+/// Loads of one design at one condition.
+struct DesignRun {
+    std::string design;
+    std::vector<double> at;  ///< SI, one of DesignSpec::all_variables()
+    std::string fidelity;
+    std::map<std::string, double> loads, sigmas;  ///< SI; by quantity
+    std::string state;                            ///< "solved", "not settled", or what failed
+    [[nodiscard]] bool usable() const { return state == "solved"; }
+};
+
+class Design {
+public:
+    /// Of a study with [design]. Reads plan and results where they are. Throws core::InputError: no [design], a plan or
+    /// results of other variables than the study's (with the column), an unknown fidelity.
+    static Design open(const Study& study);
+
+    [[nodiscard]] const DesignSpec& spec() const { return spec_; }
+    [[nodiscard]] const std::vector<PlannedDesign>& plan() const { return plan_; }
+    [[nodiscard]] const std::vector<DesignRun>& runs() const { return runs_; }
+    core::Problems notes;  ///< rows left out, and why
+
+    /// Adds the first plan's designs that are not there yet (`points` of [design]; the sequence goes on where it was),
+    /// writes their shapes and plan.csv. Returns how many are new.
+    std::size_t make_plan(core::Progress& progress = core::Progress::none());
+    /// Adds designs that a search chose.
+    void add(const std::vector<tables::Candidate>& candidates, const std::string& why);
+    /// Solves what is planned and has no result with OpenFOAM here, `jobs` at a time, and reads loads into results.csv.
+    /// A case that fails is kept as failed with its reason and the others go on.
+    void solve(const Study& study, int jobs, core::Progress& progress = core::Progress::none());
+
+    /// A surrogate a quantity. Throws core::InputError when there are too few runs.
+    [[nodiscard]] std::map<std::string, tables::Surrogate> surrogates(
+        core::Progress& progress = core::Progress::none()) const;
+    /// The search that [design] asks for. Throws core::InputError without an objective.
+    [[nodiscard]] tables::DesignSearch search(std::map<std::string, tables::Surrogate> surrogates) const;
+    /// What was run and what failed, for the search.
+    [[nodiscard]] tables::DesignSearch::NextOptions known() const;
+    /// Indices of a quantity over the shape's variables and the conditions, of the surrogate's mean.
+    [[nodiscard]] tables::SobolIndices sensitivity(const tables::Surrogate& surrogate) const;
+
+    [[nodiscard]] core::Table plan_table() const;
+    [[nodiscard]] core::Table results_table() const;
+
+private:
+    void write() const;
+    DesignSpec spec_;
+    geometry::BodyShape base_;
+    std::vector<PlannedDesign> plan_;
+    std::vector<DesignRun> runs_;
+};
+
+/// Predicted against computed, each shape left out once: with bands.
+core::Figure left_out_figure(const tables::Surrogate& surrogate);
+core::Figure sensitivity_figure(const tables::Surrogate& surrogate, const tables::SobolIndices& indices);
+/// One variable at a time through `at`, with two-sigma bands.
+std::vector<core::Figure> one_at_a_time(const tables::Surrogate& surrogate, const std::vector<double>& at);
+/// The best valid value of the first objective by the order of the runs.
+core::Figure convergence_figure(const Design& design, const tables::DesignSearch& search);
+/// Two objectives against each other.
+core::Figure front_figure(const tables::DesignSearch& search, const std::vector<tables::Candidate>& front,
+                          const std::vector<tables::Candidate>& known);
+/// Where the plan lies over each pair of neighbouring variables.
+core::Figure coverage_figure(const Design& design, std::size_t x, std::size_t y);
+
+/// The report: plan, fits with their check, sensitivities, the best, the front. `renderer` may be empty: no pictures.
+std::string design_report(const Design& design, const FigureRenderer& renderer,
+                          core::Progress& progress = core::Progress::none());
+
+}  // namespace underbody::cases

@@ -1,0 +1,71 @@
+// [design] of study.toml: which numbers of a shape vary, at which conditions each design is computed, what is wanted.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/file_format.h"
+#include "core/toml.h"
+#include "geometry/body/body_shape.h"
+#include "surrogates/tables/search/design_search.h"
+
+namespace underbody::cases {
+
+/// [[design.fidelity]]: a mesh, the cheapest first.
+struct FidelitySpec {
+    std::string name;
+    double cell = 0.125;    ///< as in [sweep]
+    int surface_level = 3;  ///< as in [sweep]
+    int layers = 3;
+    int iterations = 400;
+    double cost = 1;  ///< core-seconds of a case
+};
+
+/// [[design.tie]]: a number of the shape that follows another one.
+struct TieSpec {
+    std::string key, of;
+    double factor = 1, offset = 0;  ///< SI
+};
+
+/// [[design.limit]] on what needs no run: the volume (and with it the buoyancy) of the body.
+struct GeometryLimit {
+    std::string measure;                   ///< one of geometry_measures()
+    double lower = -1e300, upper = 1e300;  ///< SI
+};
+const std::vector<std::string>& geometry_measures();
+
+struct DesignSpec {
+    std::filesystem::path shape;   ///< the file that is varied
+    std::filesystem::path folder;  ///< of plan, shapes, runs and results
+    std::string plan = "sobol";
+    std::size_t points = 24;
+    std::uint64_t seed = 1;
+    std::vector<double> gaps, pitches, speeds;  ///< every design is computed at all of them; m, rad, m/s
+    std::vector<std::string> quantities;
+    std::vector<tables::SearchVariable> variables;  ///< of the shape
+    std::vector<TieSpec> ties;
+    std::vector<FidelitySpec> fidelities;  ///< at least one
+    std::vector<tables::Objective> objectives;
+    std::vector<tables::Limit> limits;
+    std::vector<GeometryLimit> geometry_limits;
+
+    /// Variables of the surrogates: those of the shape, then the conditions that take several values.
+    [[nodiscard]] std::vector<tables::SearchVariable> all_variables() const;
+};
+
+/// Throws core::InputError with file and line: an unknown number of the shape, an empty range, an objective without a
+/// quantity that is computed, a fidelity twice.
+DesignSpec read_design(const core::TomlTable& design, const std::filesystem::path& study_folder);
+/// The tables of [design], for the format of study.toml.
+std::vector<core::FileTable> design_tables();
+
+/// The shape at a design, its ties drawn. Throws core::InputError where there is no such shape.
+geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at);
+
+/// > 0 where a limit on the geometry is broken, by how much (in units of the limit); 1 where there is no such shape.
+double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at);
+
+}  // namespace underbody::cases

@@ -1,0 +1,325 @@
+// underbody design STEP STUDY: a search for a better shape, from the plan to the best design.
+#include "cases/design.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "core/own_files.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/commands.h"
+#include "studio/cli/shell.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+namespace {
+
+using nlohmann::json;
+
+struct Arguments {
+    std::string study;
+    int jobs = 1;
+    std::size_t count = 1;
+    bool learn = false;
+    bool add = false;
+    double sigmas = 1;
+    std::size_t front = 0;
+    std::string out;
+};
+
+std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
+
+std::string shown(double value, const std::string& unit) {
+    const std::string u = shown_unit(unit);
+    return core::format_number(core::convert(value, unit, u), 6) + (u == "1" ? "" : " " + u);
+}
+
+cases::Design open(Shell& shell, const Arguments& a) {
+    cases::Design design = cases::Design::open(cases::Study::open(a.study));
+    shell.remark(design.notes);
+    return design;
+}
+
+json notes_json(const cases::Design& design) {
+    json list = json::array();
+    for (const auto& note : design.notes) {
+        list.push_back(note.message);
+    }
+    return list;
+}
+
+json json_of(const tables::DesignSearch& search, const cases::DesignSpec& spec, const tables::Candidate& c) {
+    const auto& problem = search.problem();
+    json result = {{"variables", json::object()},
+                   {"objectives", json::object()},
+                   {"limits", json::object()},
+                   {"chance_valid", c.chance_valid},
+                   {"chance_solved", c.chance_solved},
+                   {"fidelity", spec.fidelities.at(std::min(c.level, spec.fidelities.size() - 1)).name},
+                   {"log_value", c.log_value},
+                   {"sigma_now", c.sigma_now},
+                   {"sigma_after", c.sigma_after}};
+    for (std::size_t v = 0; v < problem.variables.size(); ++v) {
+        result["variables"][problem.variables[v].name] = c.at[v];
+    }
+    const auto put = [](json& to, const std::string& name, const tables::ResponseValue& value,
+                        const std::string& unit) {
+        to[name] = {{"value", value.value}, {"sigma", value.sigma}, {"unit", unit}};
+    };
+    for (std::size_t k = 0; k < c.objectives.size(); ++k) {
+        const auto& response = problem.objectives[k].response;
+        put(result["objectives"], response.name, c.objectives[k], search.unit_of(response));
+    }
+    for (std::size_t k = 0; k < c.limits.size(); ++k) {
+        const auto& response = problem.limits[k].response;
+        put(result["limits"], response.name, c.limits[k], search.unit_of(response));
+    }
+    return result;
+}
+
+std::string text_of(const tables::DesignSearch& search, const tables::Candidate& c) {
+    const auto& problem = search.problem();
+    std::string text;
+    for (std::size_t v = 0; v < problem.variables.size(); ++v) {
+        text += "  " + problem.variables[v].name + " = " + shown(c.at[v], problem.variables[v].unit) + "\n";
+    }
+    const auto line = [&](const tables::Response& response, const tables::ResponseValue& value) {
+        text += "  " + response.name + ": " + core::format_number(value.value, 4) + " +- " +
+                core::format_number(value.sigma, 2) + " " + search.unit_of(response) + "\n";
+    };
+    for (std::size_t k = 0; k < c.objectives.size(); ++k) {
+        line(problem.objectives[k].response, c.objectives[k]);
+    }
+    for (std::size_t k = 0; k < c.limits.size(); ++k) {
+        line(problem.limits[k].response, c.limits[k]);
+    }
+    if (!c.limits.empty()) {
+        text += "  all limits hold with a chance of " + core::format_number(100 * c.chance_valid, 3) + " %\n";
+    }
+    return text;
+}
+
+int plan(Shell& shell, const Arguments& a) {
+    cases::Design design = open(shell, a);
+    const std::size_t fresh = design.make_plan(shell.progress());
+    const cases::Design written = cases::Design::open(cases::Study::open(a.study));  // with what shapes cannot be made
+    std::size_t refused = 0;
+    for (const auto& d : written.plan()) {
+        refused += d.state != "planned" ? 1 : 0;
+    }
+    const std::string file = (design.spec().folder / "plan.csv").string();
+    if (shell.json) {
+        shell.print_json({{"plan", file}, {"designs", written.plan().size()}, {"new", fresh}, {"refused", refused}});
+    }
+    shell.print(
+        file + ": " + std::to_string(written.plan().size()) + " designs, " + std::to_string(fresh) + " of them new" +
+        (refused > 0 ? ", " + std::to_string(refused) + " of them no possible shape (column state)" : "") + "\n");
+    return done;
+}
+
+int run(Shell& shell, const Arguments& a) {
+    const cases::Study study = cases::Study::open(a.study);
+    cases::Design design = cases::Design::open(study);
+    if (design.plan().empty()) {
+        design.make_plan(shell.progress());
+    }
+    design.solve(study, a.jobs, shell.progress());
+    std::size_t good = 0;
+    json failed = json::array();
+    std::string text;
+    for (const auto& one : design.runs()) {
+        good += one.usable() ? 1 : 0;
+        if (!one.usable()) {
+            failed.push_back({{"design", one.design}, {"fidelity", one.fidelity}, {"state", one.state}});
+            text += one.design + " (" + one.fidelity + "): " + one.state + "\n";
+        }
+    }
+    const std::string file = (design.spec().folder / "results.csv").string();
+    if (shell.json) {
+        shell.print_json({{"results", file}, {"runs", design.runs().size()}, {"usable", good}, {"failed", failed}});
+    }
+    shell.print(text + file + ": " + std::to_string(good) + " of " + std::to_string(design.runs().size()) +
+                " runs can be used\n");
+    return done;
+}
+
+int fit(Shell& shell, const Arguments& a) {
+    const cases::Design design = open(shell, a);
+    json list = json::array();
+    std::string text;
+    for (const auto& [name, surrogate] : design.surrogates(shell.progress())) {
+        list.push_back(surrogate);
+        const auto& check = surrogate.check();
+        text += name + ": " + std::to_string(check.points) + " runs of " + std::to_string(check.shapes) +
+                " shapes; on shapes left out the error is " + core::format_number(check.root_mean_square, 3) + " " +
+                surrogate.unit() +
+                (std::isfinite(check.nearest_shape) ? " (" + core::format_number(check.nearest_shape, 3) + " " +
+                                                          surrogate.unit() + " by the nearest shape)"
+                                                    : "") +
+                ", " + core::format_number(100 * check.inside_95, 3) +
+                " % lie inside the 95 % band (errors scaled by " + core::format_number(surrogate.error_factor(), 3) +
+                ")\n";
+    }
+    if (shell.json) {
+        shell.print_json({{"surrogates", list}, {"notes", notes_json(design)}});
+    }
+    shell.print(text);
+    return done;
+}
+
+int next(Shell& shell, const Arguments& a) {
+    cases::Design design = open(shell, a);
+    const tables::DesignSearch search = design.search(design.surrogates(shell.progress()));
+    auto options = design.known();
+    options.count = a.count;
+    if (search.problem().variables.size() > 6) {
+        options.region = tables::TrustRegion{};
+    }
+    const auto designs =
+        a.learn ? search.next_to_learn(options, shell.progress()) : search.next_designs(options, shell.progress());
+    json list = json::array();
+    std::string text;
+    for (const auto& c : designs) {
+        list.push_back(json_of(search, design.spec(), c));
+        text += "fidelity " + design.spec().fidelities.at(std::min(c.level, design.spec().fidelities.size() - 1)).name +
+                ": the error there falls from " + core::format_number(c.sigma_now, 3) + " to " +
+                core::format_number(c.sigma_after, 3) + "; it is solved with a chance of " +
+                core::format_number(100 * c.chance_solved, 3) + " %\n" + text_of(search, c);
+    }
+    if (designs.empty()) {
+        text = "No design meets the limits that are known without a run.\n";
+    }
+    if (a.add && !designs.empty()) {
+        design.add(designs, a.learn ? "largest drop of the error" : "expected improvement");
+        text += "added to " + (design.spec().folder / "plan.csv").string() + "\n";
+    }
+    if (shell.json) {
+        shell.print_json({{"next", list}, {"added", a.add}, {"notes", notes_json(design)}});
+    }
+    shell.print(text);
+    return done;
+}
+
+int optimise(Shell& shell, const Arguments& a) {
+    const cases::Design design = open(shell, a);
+    const tables::DesignSearch search = design.search(design.surrogates(shell.progress()));
+    const auto best = search.optimum(a.sigmas, design.spec().seed, shell.progress());
+    const auto front = a.front > 0 ? search.pareto_front(a.front, design.spec().seed, shell.progress())
+                                   : std::vector<tables::Candidate>{};
+    json list = json::array();
+    std::string text =
+        best ? "Best by the surrogates, with every limit met by " + core::format_number(a.sigmas, 3) +
+                   " standard deviations. It is a prediction: compute it.\n" + text_of(search, *best)
+             : "No design meets every limit by " + core::format_number(a.sigmas, 3) + " standard deviations.\n";
+    for (const auto& c : front) {
+        list.push_back(json_of(search, design.spec(), c));
+        text += "front:\n" + text_of(search, c);
+    }
+    if (!a.out.empty()) {
+        std::vector<tables::Candidate> all = front;
+        if (front.empty() && best) {
+            all.push_back(*best);
+        }
+        core::write_csv(a.out, tables::table(search, all));
+    }
+    if (shell.json) {
+        shell.print_json({{"best", best ? json_of(search, design.spec(), *best) : json()},
+                          {"front", list},
+                          {"notes", notes_json(design)}});
+    }
+    shell.print(text);
+    return best || !front.empty() ? done : check_failed;
+}
+
+int sensitivity(Shell& shell, const Arguments& a) {
+    const cases::Design design = open(shell, a);
+    json list = json::array();
+    std::string text;
+    const auto interval = [](const tables::SobolIndex& i) {
+        return json{{"value", i.value}, {"lower", i.lower}, {"upper", i.upper}};
+    };
+    for (const auto& [name, surrogate] : design.surrogates(shell.progress())) {
+        const tables::SobolIndices indices = design.sensitivity(surrogate);
+        json variables = json::array();
+        text += name + " (share of the variance: alone, with interactions)\n";
+        for (std::size_t v = 0; v < surrogate.variables().size(); ++v) {
+            variables.push_back({{"name", surrogate.variables()[v].name},
+                                 {"first", interval(indices.first[v])},
+                                 {"total", interval(indices.total[v])}});
+            text += "  " + surrogate.variables()[v].name + ": " + core::format_number(indices.first[v].value, 2) +
+                    ", " + core::format_number(indices.total[v].value, 2) + " (" +
+                    core::format_number(indices.total[v].lower, 2) + " to " +
+                    core::format_number(indices.total[v].upper, 2) + ")\n";
+        }
+        list.push_back(
+            {{"quantity", name}, {"mean", indices.mean}, {"variance", indices.variance}, {"variables", variables}});
+    }
+    if (shell.json) {
+        shell.print_json({{"sensitivities", list}, {"notes", notes_json(design)}});
+    }
+    shell.print(text);
+    return done;
+}
+
+int report(Shell& shell, const Arguments& a) {
+    const std::string file =
+        a.out.empty() ? (cases::Study::open(a.study).folder() / "report" / "design.html").string() : a.out;
+    Shell::will_write(file);
+    const cases::Design design = open(shell, a);
+    std::filesystem::create_directories(std::filesystem::absolute(file).parent_path());
+    core::write_file(file,
+                     cases::design_report(
+                         design, [](const core::Figure& figure) { return render_png(figure); }, shell.progress()));
+    if (shell.json) {
+        shell.print_json({{"report", file}});
+    }
+    shell.print("report: " + file + "\n");
+    return done;
+}
+
+}  // namespace
+
+void add_design_command(CLI::App& app, Shell& shell) {
+    CLI::App* command = app.add_subcommand("design", "a search for a better shape: [design] of study.toml");
+    command->require_subcommand(1);
+    auto a = std::make_shared<Arguments>();
+    const auto step = [&](const char* name, const char* what, int (*action)(Shell&, const Arguments&)) {
+        CLI::App* sub = command->add_subcommand(name, what);
+        sub->add_option("study", a->study, "folder with study.toml, which has a [design]")->required();
+        shell.on(sub, [action, a, &shell] { return action(shell, *a); });
+        return sub;
+    };
+    step("plan", "the first designs, into plan.csv and shapes", plan);
+    step("run", "computes what is planned and has no result, by OpenFOAM", run)
+        ->add_option("--jobs", a->jobs, "cases at a time, each on one core")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    step("fit", "surrogates of the loads, checked on shapes left out", fit);
+    CLI::App* more = step("next", "what to compute next, and what it is worth", next);
+    more->add_option("--count", a->count, "designs at once, for so many machines")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    more->add_flag("--learn", a->learn, "where the error of the first objective falls most, not where it improves");
+    more->add_flag("--add", a->add, "into the plan, to be run");
+    CLI::App* best = step("optimise", "the best design by the surrogates, and fronts of several objectives", optimise);
+    best->add_option("--sigmas", a->sigmas, "limits are met by so many standard deviations")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    best->add_option("--front", a->front, "designs of the front of all objectives")->capture_default_str();
+    best->add_option("--out", a->out, "CSV of the designs found");
+    step("sensitivity", "which variables the loads depend on: Sobol's indices", sensitivity);
+    step("report", "everything as one page", report)
+        ->add_option("--out", a->out, "HTML file (default STUDY/report/design.html)");
+    command->footer(
+        "Examples:\n"
+        "  underbody design plan cases/my-search\n"
+        "  underbody design run cases/my-search --jobs 2\n"
+        "  underbody design next cases/my-search --count 2 --add\n"
+        "  underbody design optimise cases/my-search --front 10\n");
+}
+
+}  // namespace underbody::studio
