@@ -14,6 +14,7 @@
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/static/load_cell.h"
 #include "surrogates/discovery/wording.h"
+#include "surrogates/estimator/observe/made_again.h"
 
 namespace underbody::studio {
 
@@ -132,6 +133,42 @@ int reduce(Shell& shell, const DiscoverArguments& arguments) {
     return static_cast<int>(ExitCode::done);
 }
 
+/// Separation along the gap and stability map with the new model beside those with the old one: figures for the report,
+/// keys of `consequence`, and a few words.
+std::string make_again(discovery::Discovery& found, const dynamics::Model& model, const dynamics::Measurements& data,
+                       Shell& shell) {
+    if (found.verdict == "none") {
+        return {};
+    }
+    const estimator::MadeAgain again = estimator::make_again(model, found.model, data, shell.progress());
+    for (const core::Figure& figure : again.figures()) {
+        found.figures.push_back(figure);
+    }
+    found.made_again = std::make_shared<const nlohmann::json>(again);
+    std::string text;
+    if (again.separation_before && again.separation_after) {
+        const auto millinewton = [](double force) { return core::format_number(1e3 * force, 3); };
+        text += "Separation along the gap made again: what departs from the model's forces " +
+                millinewton(again.separation_before->departure) + " -> " +
+                millinewton(again.separation_after->departure) + " mN rms\n";
+    }
+    if (again.map_before && again.map_after) {
+        const auto safe = [](const dynamics::StabilityRegion& map) {
+            double share = 0;
+            for (const dynamics::EndClass& end : map.classes) {
+                share += end.kind == dynamics::EndKind::attractor ? end.fraction : 0;
+            }
+            return core::format_number(100 * share, 3) + " %";
+        };
+        text += "Stability map made again: starts that end at an attractor " + safe(*again.map_before) + " -> " +
+                safe(*again.map_after) + "\n";
+    }
+    for (const std::string& reason : again.left_out) {
+        text += "Not made again: " + reason + "\n";
+    }
+    return text;
+}
+
 }  // namespace
 
 void add_discover_command(CLI::App& app, Shell& shell) {
@@ -196,13 +233,15 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         for (const std::string& name : options.candidates) {
             (void)dynamics::effect(name);  // says the nearest name where there is none
         }
-        const discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
+        discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
         shell.remark(found.problems);
+        const std::string again = make_again(found, model, data, shell);
         discovery::write_discovery(found, model, data, arguments->out, renderer);
         if (shell.json) {
             shell.print_json(discovery::to_json(found));
         }
         print(shell, found, arguments->out);
+        shell.print(again);
         return static_cast<int>(ExitCode::done);
     });
 }

@@ -132,9 +132,17 @@ int run_export(Shell& shell, const ExportCommand& command) {
     for (const auto points : result.grid) {
         grid += (grid.empty() ? "" : " x ") + std::to_string(points);
     }
+    std::uintmax_t bytes = 0;
     for (const auto& file : result.files) {
         shell.print(file.string());
+        bytes += std::filesystem::file_size(file);
     }
+    const bool thinned = options.max_error > 0 || !options.points.empty();
+    shell.info(core::format_number(static_cast<double>(bytes) / 1000, 3) + " kB" +
+               (bytes > 50000 && !thinned
+                    ? ": every set point and every cell of the table; --max-error 0.5% or --points "
+                      "make it smaller"
+                    : ""));
     nlohmann::json errors = nlohmann::json::array();
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto& table = all[i];
@@ -152,9 +160,11 @@ int run_export(Shell& shell, const ExportCommand& command) {
                                 {"quantity", all.front().quantity()},
                                 {"quantities", errors}};
         document["files"] = nlohmann::json::array();
+        document["bytes"] = bytes;
         for (const auto& file : result.files) {
             document["files"].push_back(file.string());
         }
+        command.table.describe(document);
         shell.print_json(document);
     }
     return done;
@@ -164,6 +174,7 @@ int run_export(Shell& shell, const ExportCommand& command) {
 
 void add_export_command(CLI::App& app, Shell& shell) {
     auto command = std::make_shared<ExportCommand>();
+    command->table.print_held = false;  // stdout lists the files
     CLI::App* sub = app.add_subcommand("export", "writes a force table for a controller");
     command->table.add_to(*sub);
     std::string formats;

@@ -14,6 +14,7 @@
 #include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
+#include "surrogates/dynamics/linear/trim_error.h"
 #include "surrogates/dynamics/simulate/feedback.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
@@ -46,7 +47,26 @@ nlohmann::json matrix_json(const dynamics::Dense& m) {
     return rows;
 }
 
-nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vector<dynamics::Mode>& modes) {
+/// "29.7 +- 1.1"; no error where none is stated.
+std::string with_error(double value, double sigma, int digits) {
+    return core::format_number(value, digits) + (sigma > 0 ? " +- " + core::format_number(sigma, 2) : "");
+}
+
+nlohmann::json number_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
+
+/// One standard deviation of the trim itself.
+void add_error(nlohmann::json& json, const dynamics::TrimError& error) {
+    json["errors_stated"] = error.stated;
+    json["sigma"] = error.gap;
+    json["force_sigma"] = error.force;
+    json["stiffness_sigma"] = error.stiffness;
+    if (error.stated) {
+        json["stable_share"] = number_or_null(error.stable);
+    }
+}
+
+nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vector<dynamics::Mode>& modes,
+                           const dynamics::TrimError& error = {}) {
     const dynamics::Controllability control = dynamics::controllability(system);
     nlohmann::json json = {{"states", system.states},
                            {"inputs", system.inputs},
@@ -54,27 +74,49 @@ nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vect
                            {"B", matrix_json(system.b)}};
     json["controllability"] = {{"rank", control.rank}, {"of", system.a.rows()}, {"weakness", control.weakness}};
     json["modes"] = nlohmann::json::array();
-    for (const dynamics::Mode& mode : modes) {
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+        const dynamics::Mode& mode = modes[i];
         json["modes"].push_back({{"name", mode.name},
                                  {"real", mode.value.real()},
                                  {"imaginary", mode.value.imag()},
                                  {"frequency", mode.frequency},
                                  {"damping_ratio", mode.damping_ratio},
                                  {"stable", mode.stable}});
+        if (i < error.modes.size()) {
+            const dynamics::ModeError& own = error.modes[i];
+            json["modes"].back().update({{"real_sigma", number_or_null(own.real)},
+                                         {"imaginary_sigma", number_or_null(own.imaginary)},
+                                         {"frequency_sigma", number_or_null(own.frequency)},
+                                         {"damping_ratio_sigma", number_or_null(own.damping_ratio)}});
+        }
     }
     return json;
 }
 
-std::string mode_text(const dynamics::Mode& mode) {
-    std::string text = "  " + mode.name + ": " + core::format_number(mode.value.real(), 5);
+std::string mode_text(const dynamics::Mode& mode, const dynamics::ModeError& error = {}) {
+    constexpr double two_pi = 6.283185307179586;
+    std::string text = "  " + mode.name + ": ";
     if (mode.value.imag() != 0) {
-        text += " +- " + core::format_number(mode.value.imag(), 5) + " i 1/s, " +
-                core::format_number(mode.frequency / 6.283185307179586, 4) + " Hz, damping ratio " +
-                core::format_number(mode.damping_ratio, 3);
+        text += core::format_number(mode.value.real(), 5) + " +- " + core::format_number(mode.value.imag(), 5) +
+                " i 1/s, " + with_error(mode.frequency / two_pi, error.frequency / two_pi, 4) + " Hz, damping ratio " +
+                with_error(mode.damping_ratio, error.damping_ratio, 3);
     } else {
-        text += " 1/s";
+        text += with_error(mode.value.real(), error.real, 5) + " 1/s";
     }
+    text += std::isnan(error.real) ? " (its kind changes within the errors of the forces)" : "";
     return text + (mode.stable ? "" : "  unstable") + "\n";
+}
+
+std::string modes_text(const std::vector<dynamics::Mode>& modes, const dynamics::TrimError& error) {
+    std::string text;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+        text += mode_text(modes[i], i < error.modes.size() ? error.modes[i] : dynamics::ModeError{});
+    }
+    if (error.stated && error.stable > 0.005 && error.stable < 0.995) {
+        text +=
+            "  stable in " + core::format_number(100 * error.stable, 3) + " % of the draws from the stated errors\n";
+    }
+    return text;
 }
 
 std::vector<double> weights_of(const std::string& text) {
@@ -143,18 +185,14 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
     const dynamics::HeavePlant plant(model, held);
     json["heave"] = nlohmann::json::array();
     for (const dynamics::HeaveEquilibrium& e : trims(dynamics::heave_equilibria(plant), at)) {
-        double slope = 0;
-        const double mass = plant.inertia(e.gap, slope), speed = 1e-7, step = 1e-6;
-        const double damping = (plant.resistance(e.gap, speed) - plant.resistance(e.gap, -speed)) / (2 * speed);
-        const double stiffness = -(plant.static_force(e.gap + step) - plant.static_force(e.gap - step)) / (2 * step);
-        dynamics::LinearSystem system;
-        system.a = dynamics::Dense{{-damping / mass, -stiffness / mass}, {1, 0}};
-        system.b = dynamics::Dense{{1 / mass}, {0}};
-        system.states = {"heave_velocity", "gap"};
-        system.inputs = {"input_force"};
+        double slope = 0, stiffness = 0;
+        const double mass = plant.inertia(e.gap, slope);
+        const dynamics::LinearSystem system = dynamics::heave_system(plant, e.gap, &stiffness);
+        const double damping = -system.a(0, 0) * mass;
+        const dynamics::TrimError error = dynamics::heave_trim_error(model, held, e.gap, !at);
         const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"heave", "heave"});
         const dynamics::HeaveFeedback gains = dynamics::heave_lqr(plant, e.gap, q[0], q[1], q[2]);
-        nlohmann::json one = system_json(system, modes);
+        nlohmann::json one = system_json(system, modes, error);
         const double trim_force = plant.static_force(e.gap);
         one["name"] = e.name;
         one["gap"] = e.gap;
@@ -164,14 +202,14 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
         one["damping"] = damping;
         one["virtual_mass"] = mass;
         one["force_at_rest"] = trim_force;
+        add_error(one, error);
         one["lqr"] = {{"velocity_gain", gains.velocity_gain}, {"gap_gain", gains.gap_gain}};
         json["heave"].push_back(one);
         text += e.name + (stiffness > 0 ? " (stable" : " (unstable") + pitch_held + ") at " +
-                core::format_number(1e3 * e.gap, 6) + " mm: stiffness " + core::format_number(stiffness, 4) + " N/m";
-        text += at ? ", held by " + core::format_number(-trim_force, 4) + " N up\n" : "\n";
-        for (const dynamics::Mode& mode : modes) {
-            text += mode_text(mode);
-        }
+                with_error(1e3 * e.gap, 1e3 * error.gap, 6) + " mm: stiffness " +
+                with_error(stiffness, error.stiffness, 4) + " N/m";
+        text += at ? ", held by " + with_error(-trim_force, error.force, 4) + " N up\n" : "\n";
+        text += modes_text(modes, error);
         text += "  LQR: u = -" + core::format_number(gains.velocity_gain, 5) + " N s/m w - " +
                 core::format_number(gains.gap_gain, 5) + " N/m (gap - " + core::format_number(e.gap, 5) + " m)\n";
     }
@@ -185,7 +223,10 @@ void heave_pitch(const dynamics::Model& model, const dynamics::Conditions& held,
         const dynamics::LinearSystem system = plant.linearised(e.gap, e.pitch);
         const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"heave", "heave", "pitch", "pitch"});
         const dynamics::PitchFeedback gains = dynamics::pitch_lqr(plant, e.gap, e.pitch, {});
-        nlohmann::json one = system_json(system, modes);
+        const dynamics::TrimError error = dynamics::pitch_trim_error(model, held, e.gap, e.pitch, !at);
+        nlohmann::json one = system_json(system, modes, error);
+        add_error(one, error);
+        one["pitch_sigma"] = error.pitch;
         one["name"] = e.name;
         one["gap"] = e.gap;
         one["pitch"] = e.pitch;
@@ -196,11 +237,10 @@ void heave_pitch(const dynamics::Model& model, const dynamics::Conditions& held,
             one["lqr"]["poles"].push_back(complex_json(pole));
         }
         json["heave_pitch"].push_back(one);
-        text += "heave and pitch, " + e.name + " at " + core::format_number(1e3 * e.gap, 6) + " mm, " +
-                core::format_number(57.29577951308232 * e.pitch, 4) + " deg nose up\n";
-        for (const dynamics::Mode& mode : modes) {
-            text += mode_text(mode);
-        }
+        constexpr double degrees = 57.29577951308232;
+        text += "heave and pitch, " + e.name + " at " + with_error(1e3 * e.gap, 1e3 * error.gap, 6) + " mm, " +
+                with_error(degrees * e.pitch, degrees * error.pitch, 4) + " deg nose up\n";
+        text += modes_text(modes, error);
         text += rank_text(system, "force and moment");
     }
 }

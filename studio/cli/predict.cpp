@@ -61,10 +61,11 @@ int run_predict(const PredictArguments& a, Shell& shell) {
         }
         text += "\n";
     }
-    if (prediction.input_between == "linear") {
-        text += "input_force read as linear between its samples (" +
-                std::string(prediction.input_between_from == "data" ? "the measured motion fits that better"
-                                                                    : "the model says so") +
+    if (const std::string read = dynamics::reading_text(prediction.records); !read.empty()) {
+        text += "logs read as " + read + " (" +
+                (prediction.input_between == "linear" && prediction.input_between_from == "data"
+                     ? "between its samples the measured motion fits that better"
+                     : "the model's [records]") +
                 ")\n";
     }
     shell.print(text);

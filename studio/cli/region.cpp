@@ -13,6 +13,7 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/region_loop.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/simulate/feedback.h"
@@ -24,7 +25,7 @@ namespace {
 struct RegionArguments {
     std::string model;
     std::string axes;
-    std::string grid = "200x200";
+    std::string grid;
     std::string duration = "60 s";
     std::string conditions;
     std::string out;
@@ -42,6 +43,7 @@ struct RegionArguments {
     bool safe = false;
     bool through_contact = false;
     std::vector<std::string> variants;
+    RegionLoopOptions loop;
 };
 
 /// Feedback in the motion that the map is of.
@@ -68,7 +70,8 @@ dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Mod
     if (!a.axes.empty() || a.starts.empty()) {
         options.axes = core::parse_ranges(a.axes.empty() ? "gap=0:0.5,heave_velocity=-0.1:0.1" : a.axes);
     }
-    const std::vector<std::string_view> sizes = core::split(a.grid, 'x');
+    const std::string usual = a.loop.given() ? "60x40" : "200x200";
+    const std::vector<std::string_view> sizes = core::split(a.grid.empty() ? usual : a.grid, 'x');
     const auto columns = core::parse_integer(sizes.front()), rows = core::parse_integer(sizes.back());
     if (sizes.size() > 2 || !columns || !rows || *columns < 1 || *rows < 1 || *columns > 20000 || *rows > 20000) {
         throw core::UsageError("range", "--grid '" + a.grid + "' is not two counts", {}, "for instance --grid 400x400");
@@ -253,15 +256,24 @@ void check_kind(const RegionArguments& a) {
     refuse("--table", !a.table.empty(), kind.empty() || kind == "--starts");
     refuse("--safe", a.safe, kind.empty());
     refuse("--shares", !a.shares.empty(), kind == "--sweep");
+    refuse("--observer", a.loop.given(), kind.empty() || kind == "--draws");
+    if (a.loop.given() && (a.safe || a.through_contact || !a.escape.empty())) {
+        throw core::UsageError("conflict", "--safe, --through-contact and --escape are of maps without an estimator",
+                               {}, "leave them out, or --observer");
+    }
 }
 
 int run_region(const RegionArguments& a, Shell& shell) {
     check_kind(a);
+    a.loop.check();
     for (const std::string& file : {a.out, a.table, a.shares}) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::RegionOptions options = options_of(a, model);
+    if (a.loop.given()) {
+        return run_region_with_estimator(a.loop, model, options, a.draws, a.seed, a.out, a.table, shell);
+    }
     if (!a.starts.empty()) {
         return run_starts(a, model, options, shell);
     }
@@ -319,7 +331,8 @@ void add_region_command(CLI::App& app, Shell& shell) {
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--axes", a->axes,
                         "the two axes of starts and their ranges (default gap=0:0.5,heave_velocity=-0.1:0.1)");
-    command->add_option("--grid", a->grid, "starts along the two axes (default 200x200)");
+    command->add_option("--grid", a->grid,
+                        "starts along the two axes (default 200x200; 60x40 with an estimator in the loop)");
     command->add_option("--for", a->duration, "time of motion given to each start (default 60 s)");
     command->add_option("--conditions", a->conditions, "what is held: speed=0.5m/s,jet_voltage=8V, ...");
     command->add_option("--escape", a->escape,
@@ -327,6 +340,7 @@ void add_region_command(CLI::App& app, Shell& shell) {
                         "highest of given starts)");
     command->add_option("--feedback", a->feedback, feedback_help());
     command->add_option("--lqr", a->lqr, lqr_help());
+    a->loop.add_to(*command);
     command
         ->add_option("--motion", a->motion,
                      "heave, heave-pitch, or auto: heave and pitch where an axis is pitch or pitch_rate")

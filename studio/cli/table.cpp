@@ -14,6 +14,7 @@
 #include "studio/cli/table_analysis.h"
 #include "studio/cli/table_options.h"
 #include "studio/figures/render.h"
+#include "surrogates/dynamics/model/model.h"
 #include "surrogates/tables/analysis/equilibria.h"
 #include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/fit/line.h"
@@ -49,6 +50,7 @@ int run_fit(Shell& shell, const FitCommand& command) {
         shell.print(text);
         document["tables"].push_back(entry);
     }
+    command.table.describe(document);
     if (!command.picture.empty()) {
         write_picture(tables::figure(all.front()), command.picture);
         document["picture"] = command.picture;
@@ -64,47 +66,63 @@ struct AtCommand {
     std::vector<std::string> points;
 };
 
+/// Prints a force at a point; the same as JSON.
+nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Held& asked, std::set<std::string>& said) {
+    core::Problems remarks;
+    const auto point = tables::held_point(table, {}, asked, &remarks);
+    const auto e = table.at(point);
+    tables::Held named;
+    for (std::size_t k = 0; k < point.size(); ++k) {
+        named.emplace_back(table.axes()[k].name, point[k]);
+    }
+    for (auto& remark : tables::outside_remarks(table, named)) {
+        remarks.push_back(std::move(remark));
+    }
+    std::erase_if(remarks, [&](const core::Problem& remark) { return !said.insert(remark.message).second; });
+    shell.show(remarks);
+    std::string line = table.quantity() + " " + shown(table, table.quantity(), table.unit(), e.value, 7);
+    if (e.sigma > 0) {
+        line += " +- " + shown(table, table.quantity(), table.unit(), e.sigma, 3);
+    }
+    for (std::size_t k = 0; k < point.size(); ++k) {
+        const auto& axis = table.axes()[k];
+        line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " +
+                tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
+    }
+    if (e.no_data && !e.outside) {
+        line += "   no points around";
+    }
+    if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
+        shell.warn(
+            "no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
+            " % of the axes' ranges outside them): the value is an extrapolation, its error says how far to trust "
+            "it");
+    }
+    shell.print(line);
+    return tables::to_json(table, point, e);
+}
+
 int run_at(Shell& shell, const AtCommand& command) {
     nlohmann::json document;
     document["values"] = nlohmann::json::array();
     std::set<std::string> said;  // of a point once, not for every force
-    for (const auto& table : command.table.fit_all(shell)) {
-        for (const auto& text : command.points) {
-            core::Problems remarks;
-            const auto point = tables::held_point(table, {}, read_assignments(text), &remarks);
-            const auto e = table.at(point);
-            tables::Held named;
-            for (std::size_t k = 0; k < point.size(); ++k) {
-                named.emplace_back(table.axes()[k].name, point[k]);
+    std::vector<ForceTable> of_all =
+        command.table.is_model() ? std::vector<ForceTable>{} : command.table.fit_all(shell);
+    const std::size_t passes = command.table.is_model() ? command.points.size() : 1;
+    for (std::size_t pass = 0; pass < passes; ++pass) {
+        // The forces of a model are taken anew at what each point holds beside their axes.
+        tables::Held asked = command.table.is_model() ? read_assignments(command.points[pass]) : tables::Held{};
+        if (command.table.is_model()) {
+            of_all = command.table.fit_all(shell, true, &asked);
+        }
+        for (const auto& table : of_all) {
+            for (std::size_t i = 0; i < (command.table.is_model() ? 1 : command.points.size()); ++i) {
+                const tables::Held point = command.table.is_model() ? asked : read_assignments(command.points[i]);
+                document["values"].push_back(value_at(shell, table, point, said));
             }
-            for (auto& remark : tables::outside_remarks(table, named)) {
-                remarks.push_back(std::move(remark));
-            }
-            std::erase_if(remarks, [&](const core::Problem& remark) { return !said.insert(remark.message).second; });
-            shell.show(remarks);
-            nlohmann::json entry = tables::to_json(table, point, e);
-            std::string line = table.quantity() + " " + shown(table, table.quantity(), table.unit(), e.value, 7);
-            if (e.sigma > 0) {
-                line += " +- " + shown(table, table.quantity(), table.unit(), e.sigma, 3);
-            }
-            for (std::size_t k = 0; k < point.size(); ++k) {
-                const auto& axis = table.axes()[k];
-                line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " +
-                        tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
-            }
-            if (e.no_data && !e.outside) {
-                line += "   no points around";
-            }
-            if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
-                shell.warn("no points of " + table.quantity() + " lie around this place (" +
-                           core::format_number(100 * beyond, 2) +
-                           " % of the axes' ranges outside them): the value is an extrapolation, its error says how "
-                           "far to trust it");
-            }
-            shell.print(line);
-            document["values"].push_back(std::move(entry));
         }
     }
+    command.table.describe(document);
     // One value lies at the top too: the usual question has one answer.
     for (const auto& [key, value] : document["values"][0].items()) {
         document[key] = value;
@@ -117,7 +135,7 @@ int run_at(Shell& shell, const AtCommand& command) {
 
 struct EquilibriaCommand {
     TableOptions table;
-    std::string weight = "0 N";
+    std::string weight;
     std::string mass;
     std::string damping;
     std::string held;
@@ -155,14 +173,40 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
     return text;
 }
 
+/// Net weight and virtual mass of a model where the command does not say them. Returns where the weight is from.
+std::string take_vehicle(Shell& shell, const EquilibriaCommand& command, tables::EquilibriumOptions& options) {
+    const dynamics::Model model = dynamics::read_model(command.table.file).resolved();
+    std::string text;
+    if (command.weight.empty()) {
+        options.net_weight = model.vehicle.net_weight;
+        text = "net weight " + core::format_number(options.net_weight, 6) + " N";
+    }
+    if (command.mass.empty() && model.heave_mass() > 0) {
+        options.virtual_mass = model.heave_mass();
+        text += std::string(text.empty() ? "" : ", ") + "virtual mass " + core::format_number(options.virtual_mass, 6) +
+                " kg";
+    }
+    if (!text.empty()) {
+        shell.print("of the model: " + text);
+    }
+    return command.weight.empty() ? "model" : "given";
+}
+
 int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
-    const auto table = command.table.fit(shell);
     tables::EquilibriumOptions options;
-    options.net_weight = option_value("--weight", command.weight, "N");
+    options.held = read_assignments(command.held);
+    const auto table = command.table.fit(shell, command.table.is_model() ? &options.held : nullptr);
+    nlohmann::json of_model = nlohmann::json::object();
+    std::string weight_from = command.weight.empty() ? "default" : "given";
+    options.net_weight = command.weight.empty() ? 0 : option_value("--weight", command.weight, "N");
     options.virtual_mass = command.mass.empty() ? 0 : option_value("--mass", command.mass, "kg");
+    if (command.table.is_model()) {
+        weight_from = take_vehicle(shell, command, options);
+        command.table.describe(of_model);
+        of_model["net_weight_from"] = weight_from;
+    }
     options.damping = command.damping.empty() ? 0 : option_value("--damping", command.damping, "N s/m");
     options.scale = command.scale;
-    options.held = read_assignments(command.held);
     options.draws = command.draws;
     const auto found = tables::equilibria(table, options);
     shell.show(found.remarks);
@@ -176,6 +220,13 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
                     shown(table, found.axis, found.axis_unit, found.upper));
     }
     nlohmann::json document = found;
+    for (const auto& [key, value] : of_model.items()) {
+        if (key == "held") {
+            document["model_conditions"] = value;  // "held" has the other axes of the table
+        } else {
+            document[key] = value;
+        }
+    }
     if (!command.picture.empty()) {
         tables::FigureOptions figure;
         figure.axis = found.axis;
@@ -223,9 +274,12 @@ void add_table_command(CLI::App& app, Shell& shell) {
     auto eq = std::make_shared<EquilibriaCommand>();
     CLI::App* eq_command = table->add_subcommand("equilibria", "where lift and net weight balance, and how firmly");
     eq->table.add_to(*eq_command);
-    eq_command->add_option("--weight", eq->weight, "net weight: weight less buoyancy, positive sinks (default 0 N)");
-    eq_command->add_option("--mass", eq->mass,
-                           "virtual mass in heave, mass + added mass; gives frequency and kick velocity");
+    eq_command->add_option("--weight", eq->weight,
+                           "net weight: weight less buoyancy, positive sinks (default 0 N, of a model its own)");
+    eq_command->add_option(
+        "--mass", eq->mass,
+        "virtual mass in heave, mass + added mass; gives frequency and kick velocity (of a model its "
+        "own)");
     eq_command->add_option("--damping", eq->damping, "linear damping in heave, such as \"0.4 N s/m\"");
     eq_command->add_option("--held", eq->held, "values of the other axes, such as pitch=1deg,speed=0.5");
     eq_command->add_option("--scale", eq->scale, "factor on the table's force, such as (speed/reference)^2");

@@ -64,7 +64,6 @@ void show_curve(Shell& shell, const tables::ForceTable& table, const tables::Equ
 }
 
 int run_continue(Shell& shell, const ContinueCommand& command) {
-    const auto table = command.table.fit(shell);
     const std::size_t equals = command.along.find('=');
     const std::size_t colon = command.along.find(':');
     if (equals == std::string::npos || colon == std::string::npos || colon < equals) {
@@ -79,6 +78,9 @@ int run_continue(Shell& shell, const ContinueCommand& command) {
     options.upper = option_value("--along", command.along.substr(colon + 1), unit);
     options.base.net_weight = option_value("--weight", command.weight, "N");
     options.base.held = read_assignments(command.held);
+    TableOptions of_table = command.table;
+    of_table.free_axis = options.parameter;
+    const auto table = of_table.fit(shell, of_table.is_model() ? &options.base.held : nullptr);
     options.exponent = command.exponent;
     const auto named = [&](const auto& entry) { return entry.first == options.parameter; };
     const auto& conditions = table.conditions();
@@ -157,8 +159,9 @@ void show_coupled(Shell& shell, const tables::ForceTable& lift, const std::vecto
 int run_pitch(Shell& shell, const PitchCommand& command) {
     TableOptions table = command.table;
     table.quantity = "pitch_moment";
-    const auto moment = table.fit(shell);
-    const auto held = read_assignments(command.held);
+    auto held = read_assignments(command.held);
+    auto held_for_lift = held;
+    const auto moment = table.fit(shell, table.is_model() ? &held : nullptr);
     shell.show(tables::outside_remarks(moment, held));
     const auto holds = [&](const char* name) {
         return std::any_of(held.begin(), held.end(), [&](const auto& h) { return h.first == name; });
@@ -176,7 +179,7 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
     }
     if (!command.weight.empty()) {
         table.quantity = "lift_force";
-        const auto lift = table.fit(shell);
+        const auto lift = table.fit(shell, table.is_model() ? &held_for_lift : nullptr);
         tables::CoupledOptions options;
         options.net_weight = option_value("--weight", command.weight, "N");
         options.trim_torque = command.trim.empty() ? 0 : option_value("--trim", command.trim, "N m");

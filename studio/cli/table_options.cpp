@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -12,6 +13,7 @@
 #include "studio/cli/shell.h"
 #include "surrogates/dynamics/model/force_points.h"
 #include "surrogates/dynamics/model/force_tables.h"
+#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/points/select.h"
 
@@ -90,6 +92,37 @@ dynamics::Conditions held_of(const std::string& where) {
     return held;
 }
 
+/// Values that go with a request: of an axis of the model's tables they are asked later, others are held.
+/// Returns those.
+tables::Held take_asked(const dynamics::Model& model, tables::Held& asked, dynamics::ForceTablesOptions& options) {
+    tables::Held held;
+    std::erase_if(asked, [&](const std::pair<std::string, double>& value) {
+        dynamics::Channel channel{};
+        if (!dynamics::find_channel(value.first, channel)) {
+            return false;  // refused by name where it is used
+        }
+        const auto has_axis = [&](const tables::ForceTable& table) {
+            return std::any_of(table.axes().begin(), table.axes().end(),
+                               [&](const tables::TableAxis& axis) { return axis.name == value.first; });
+        };
+        const bool of_a_force = std::any_of(model.forces.begin(), model.forces.end(),
+                                            [&](const dynamics::ForceSource& one) { return has_axis(one.table); });
+        const bool of_a_correction =
+            std::any_of(model.effects.begin(), model.effects.end(),
+                        [&](const dynamics::EffectUse& use) { return use.table && has_axis(*use.table); });
+        if (of_a_force || of_a_correction ||
+            std::any_of(options.axes.begin(), options.axes.end(),
+                        [&](const auto& axis) { return axis.name == value.first; })) {
+            options.asked.push_back(channel);
+            return false;
+        }
+        options.held[channel] = value.second;
+        held.push_back(value);
+        return true;
+    });
+    return held;
+}
+
 /// "gap,pitch,speed=0:0.8,jet_voltage=0:12V"
 std::vector<dynamics::ForceAxis> axes_of(const std::string& text) {
     std::vector<dynamics::ForceAxis> axes;
@@ -137,7 +170,8 @@ const std::vector<tables::ForceTable>* TableOptions::fitted(const Shell& shell) 
 
 bool TableOptions::is_model() const { return std::filesystem::path(file).extension() == ".toml"; }
 
-std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, bool remarks) const {
+std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, bool remarks,
+                                                       tables::Held* asked) const {
     if (kind != "automatic" && kind != "auto") {
         throw core::UsageError(
             "kind", "the forces of a model are taken as it simulates them: --kind " + kind + " is for points", {},
@@ -147,6 +181,10 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
     dynamics::ForceTablesOptions options;
     options.held = held_of(where);
     options.axes = axes_of(axes);
+    const tables::Held given = asked != nullptr ? take_asked(model, *asked, options) : tables::Held{};
+    if (dynamics::Channel free{}; dynamics::find_channel(free_axis, free)) {
+        options.asked.push_back(free);
+    }
     options.quantities = names_of(quantity);
     options.range = tables::parse_range_policies(range);
     if (options.quantities.empty() || options.quantities.front() == "all") {
@@ -157,6 +195,31 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
     }
     auto found = dynamics::force_tables(model, options, shell.progress());
     shell.show(found.remarks);
+    held_ = found.held;
+    for (const auto& [name, value] : given) {
+        if (std::none_of(held_.begin(), held_.end(), [&, wanted = name](const dynamics::HeldChannel& one_held) {
+                return channel_name(one_held.channel) == wanted;
+            })) {
+            throw core::UsageError("axis", "no force of the model depends on " + name, {file, {}, {}, {}},
+                                   "leave it out");
+        }
+    }
+    dynamics::Conditions held;
+    std::string text;
+    for (const dynamics::HeldChannel& one_held : held_) {
+        held[one_held.channel] = one_held.value;
+        text += (text.empty() ? "the model's forces at " : ", ") + std::string(channel_name(one_held.channel)) + " " +
+                core::format_number(one_held.value, 6) + " " + channel_unit(one_held.channel) + " (" + one_held.from +
+                ")";
+    }
+    warnings_ = dynamics::held_outside(model, held);
+    if (text != said_) {
+        said_ = text;
+        if (!text.empty()) {
+            print_held ? shell.print(text) : shell.info(text);
+        }
+        print_held ? shell.remark(warnings_) : shell.show(warnings_);
+    }
     for (const auto& table : found.tables) {
         if (remarks) {
             shell.show(table.remarks());
@@ -165,12 +228,27 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
     return std::move(found.tables);
 }
 
-tables::ForceTable TableOptions::fit(Shell& shell) const {
+void TableOptions::describe(nlohmann::json& document) const {
+    if (!is_model()) {
+        return;
+    }
+    document["held"] = nlohmann::json::object();
+    for (const dynamics::HeldChannel& held : held_) {
+        document["held"][channel_name(held.channel)] = {
+            {"value", held.value}, {"unit", channel_unit(held.channel)}, {"from", held.from}};
+    }
+    document["warnings"] = nlohmann::json::array();
+    for (const core::Problem& problem : warnings_) {
+        document["warnings"].push_back(problem.message);
+    }
+}
+
+tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
     if (const auto* known = fitted(shell)) {
         return known->front();
     }
     if (is_model()) {
-        return of_model(shell, true, true).front();
+        return of_model(shell, true, true, asked).front();
     }
     const auto table = points(shell);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
@@ -178,12 +256,12 @@ tables::ForceTable TableOptions::fit(Shell& shell) const {
     return fitted;
 }
 
-std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks) const {
+std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks, tables::Held* asked) const {
     if (const auto* known = fitted(shell)) {
         return *known;
     }
     if (is_model()) {
-        return of_model(shell, false, remarks);
+        return of_model(shell, false, remarks, asked);
     }
     const auto table = points(shell);
     std::vector<tables::ForceTable> all;

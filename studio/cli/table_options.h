@@ -1,11 +1,14 @@
 // Options that all commands on force tables share: which rows, which quantity, how to fit.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "surrogates/dynamics/model/force_tables.h"
 #include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/fit/line.h"
 
 namespace CLI {
 class App;
@@ -22,6 +25,8 @@ struct TableOptions {
     std::string axes;
     std::string kind = "automatic";
     std::string range;
+    std::string free_axis;   ///< a channel that the caller moves along: the conditions of a model do not hold it
+    bool print_held = true;  ///< what a model's forces are held at goes to stdout, above the numbers
 
     /// Adds TABLE.csv, --quantity, --where, --axes, --kind, --range.
     void add_to(CLI::App& command);
@@ -31,16 +36,26 @@ struct TableOptions {
     /// Is the file a model? Then its forces are taken as it simulates them, not fitted.
     [[nodiscard]] bool is_model() const;
     /// Fits one quantity: the one asked for, or the first force of the table. Remarks go to the shell.
-    [[nodiscard]] tables::ForceTable fit(Shell& shell) const;
+    /// Of a model, `asked` has the values that the caller gives beside --where: those that no table has as an axis
+    /// (what only scales the forces) are held and taken off the list.
+    [[nodiscard]] tables::ForceTable fit(Shell& shell, tables::Held* asked = nullptr) const;
     /// All quantities asked for ("a,b"), or all forces of the table.
     /// `remarks`: false for who prints them beside each table.
-    [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true) const;
+    [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true,
+                                                          tables::Held* asked = nullptr) const;
+    /// Adds `held` (what the forces of a model are taken at beside their axes, and whence) and `warnings` to the JSON
+    /// of a command; nothing for a table.
+    void describe(nlohmann::json& document) const;
 
 private:
     /// Those that the caller fitted from the file before; nullptr: none.
     [[nodiscard]] const std::vector<tables::ForceTable>* fitted(const Shell& shell) const;
     /// The forces of a model; only the first quantity when `one`.
-    [[nodiscard]] std::vector<tables::ForceTable> of_model(Shell& shell, bool one, bool remarks) const;
+    [[nodiscard]] std::vector<tables::ForceTable> of_model(Shell& shell, bool one, bool remarks,
+                                                           tables::Held* asked) const;
+    mutable std::vector<dynamics::HeldChannel> held_;  ///< of the model last taken
+    mutable core::Problems warnings_;
+    mutable std::string said_;  ///< about what is held, once
 };
 
 /// A value in the unit that the user's file has for the quantity.

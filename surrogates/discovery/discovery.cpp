@@ -169,6 +169,9 @@ nlohmann::json to_json(const Discovery& d) {
                                             {"unit", limit.unit}});
     }
     json["consequence"] = to_json(d.consequence);
+    if (d.made_again) {
+        json["consequence"].update(*d.made_again);
+    }
     if (d.placebo.twins > 0) {
         json["placebo"] = {{"twins", d.placebo.twins},
                            {"false_alarms", d.placebo.alarms},

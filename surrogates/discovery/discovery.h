@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -110,6 +111,9 @@ struct Discovery {
     core::Problems problems;
     dynamics::Model model;  ///< with the effect added
     std::vector<core::Figure> figures;
+    /// Keys that a caller adds to `consequence` in discovery.json: what rooms beside this one made again with the new
+    /// model (its figures go into `figures`). May be empty.
+    std::shared_ptr<const nlohmann::json> made_again;
     double seconds = 0;
 };
 

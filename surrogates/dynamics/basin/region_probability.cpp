@@ -1,26 +1,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/random.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region.h"
 #include "surrogates/dynamics/basin/region_parts.h"
+#include "surrogates/dynamics/model/force_error.h"
 
 namespace underbody::dynamics {
-
-namespace {
-
-/// The model with every force table drawn anew from its error.
-Model drawn(const Model& model, std::uint64_t seed, std::size_t draw) {
-    Model result = model;
-    core::Random random(seed, draw);
-    for (ForceSource& source : result.forces) {
-        source.table = source.table.drawn(random.bits());
-    }
-    return result;
-}
-
-}  // namespace
 
 ProbabilityMap probability_map(const Model& model, const RegionOptions& options, std::size_t draws, std::uint64_t seed,
                                core::Progress& progress) {
@@ -40,7 +26,7 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
     for (std::size_t draw = 0; draw < draws; ++draw) {
         progress.check();
         progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing force tables");
-        const StabilityRegion region = stability_region(drawn(model, seed, draw), each, progress);
+        const StabilityRegion region = stability_region(drawn_model(model, seed, draw), each, progress);
         std::size_t safe = 0;
         for (std::size_t i = 0; i < region.index.size(); ++i) {
             const bool back = region.classes[static_cast<std::size_t>(region.index[i])].kind == EndKind::attractor;

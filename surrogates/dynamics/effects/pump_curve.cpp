@@ -5,7 +5,6 @@
 
 #include "surrogates/dynamics/effects/catalogue.h"
 #include "surrogates/dynamics/model/model.h"
-#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 
@@ -22,16 +21,11 @@ double reference_voltage(const Model& model) {
     return 10;
 }
 
-/// The voltage over the reference, past the dead zone and to its power, without saturation.
-double plain(double voltage, double reference, const EffectUse& use) {
-    const double dead = std::min(use.values[0], 0.99 * reference);
-    return std::pow(std::max(0.0, voltage - dead) / (reference - dead), 1 + use.values[2] / 2);
-}
-
 double seen_by_the_law(double voltage, double reference, const EffectUse& use) {
     const double dead = std::min(use.values[0], 0.99 * reference);
     const double x = std::max(0.0, voltage - dead) / (reference - dead);
-    return reference * plain(voltage, reference, use) * std::sqrt((1 + use.values[1]) / (1 + use.values[1] * x * x));
+    return reference * std::pow(x, 1 + use.values[2] / 2) *
+           std::sqrt((1 + use.values[1]) / (1 + use.values[1] * x * x));
 }
 
 class PumpCurveEffect final : public Effect {
@@ -55,25 +49,6 @@ public:
         if (point.conditions.has(Channel::jet_voltage)) {
             point.conditions[Channel::jet_voltage] =
                 seen_by_the_law(point.conditions[Channel::jet_voltage], reference_voltage(*point.model), use);
-        }
-    }
-
-    /// A voltage that is held runs through the curve; one that varies in time gets the dead zone and the power (no
-    /// saturation).
-    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& model) const override {
-        for (HeaveSource& source : terms.sources) {
-            for (HeaveSource::Scale& scale : source.scales) {
-                if (scale.channel == Channel::jet_voltage) {
-                    const double reference = reference_voltage(model);
-                    const double power = scale.exponent * (1 + use.values[2] / 2);
-                    const double seen = seen_by_the_law(scale.held, reference, use) / reference;
-                    const double levelled =
-                        seen > 0 ? std::pow(seen / plain(scale.held, reference, use), scale.exponent) : 1;
-                    source.factor *= levelled;
-                    scale.dead_band = std::min(use.values[0], 0.99 * reference);
-                    scale.exponent = power;
-                }
-            }
         }
     }
 };

@@ -4,7 +4,6 @@
 
 #include "surrogates/dynamics/effects/catalogue.h"
 #include "surrogates/dynamics/model/model.h"
-#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 
@@ -70,19 +69,6 @@ public:
         const double factor = std::pow(ratio, use.values[0] - declared.exponent);
         const double still = part_without_speed(*seen.model, quantity, seen.conditions);
         return still + (value - still) * factor;
-    }
-
-    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
-        if (!concerns(use, "lift_force")) {
-            return;
-        }
-        for (HeaveSource& source : terms.sources) {
-            for (HeaveSource::Scale& scale : source.scales) {
-                if (scale.channel == Channel::speed) {
-                    scale.exponent = use.values[0];
-                }
-            }
-        }
     }
 };
 

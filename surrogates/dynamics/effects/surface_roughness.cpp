@@ -24,6 +24,9 @@ public:
     }
 
     void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
+        if (!concerns(use, "lift_force")) {
+            return;
+        }
         terms.rough_near = use.values[0];
         terms.rough_far = use.values[1];
         terms.rough_length = use.values[2];

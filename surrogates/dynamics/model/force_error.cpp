@@ -2,40 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+
+#include "core/random.h"
 
 namespace underbody::dynamics {
 
 namespace {
-
-/// A table of the same quantity over the same axes that holds one value.
-tables::ForceTable flat(const tables::ForceTable& like, double value) {
-    const auto& axes = like.axes();
-    std::vector<std::vector<double>> columns(axes.size());
-    for (std::size_t corner = 0; corner < std::size_t{1} << axes.size(); ++corner) {
-        for (std::size_t k = 0; k < axes.size(); ++k) {
-            columns[k].push_back((corner >> k & 1) != 0 ? axes[k].upper : axes[k].lower);
-        }
-    }
-    core::Table points;
-    tables::FitOptions options;
-    options.kind = tables::FitOptions::Kind::interpolation;
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-        points.add_numbers(axes[k].name, axes[k].unit, columns[k]);
-        options.axes.push_back(axes[k].name);
-    }
-    points.add_numbers(like.quantity(), like.unit(), std::vector<double>(std::size_t{1} << axes.size(), value));
-    return tables::ForceTable::fit(points, like.quantity(), options);
-}
-
-/// Of the sources of the quantity, only the table `one` at 1 (none: SIZE_MAX).
-StaticModel with_only(Model model, const std::string& quantity, std::size_t one) {
-    for (std::size_t i = 0; i < model.forces.size(); ++i) {
-        if (model.forces[i].quantity == quantity) {
-            model.forces[i].table = flat(model.forces[i].table, i == one ? 1 : 0);
-        }
-    }
-    return {model, quantity};
-}
 
 std::vector<Channel> channels_of(const tables::ForceTable& table) {
     std::vector<Channel> channels;
@@ -66,21 +39,23 @@ bool states_error(const tables::ForceTable& table) {
     return table.sigma(middle) > 0 || table.sigma(beyond) > 0;
 }
 
+/// Tables of one file have one error.
+std::string file_of(const ForceSource& source) { return source.table_path.string() + "|" + source.table_file; }
+
 }  // namespace
 
 ForceError::ForceError(const Model& model, const std::string& quantity)
-    : model_(model, quantity), quantity_(quantity), nothing_(with_only(model.resolved(), quantity, SIZE_MAX)) {
-    const Model resolved = model.resolved();
+    : model_(model, quantity), quantity_(quantity), shares_(model, quantity) {
     std::vector<std::string> files;
-    for (std::size_t i = 0; i < resolved.forces.size(); ++i) {
-        const ForceSource& source = resolved.forces[i];
-        if (source.quantity == quantity && states_error(source.table)) {
-            const std::string file = source.table_path.string() + "|" + source.table_file;
+    for (std::size_t i = 0; i < shares_.sources().size(); ++i) {
+        const ForceSource& source = model_.model().forces[shares_.sources()[i]];
+        if (states_error(source.table)) {
+            const std::string file = file_of(source);
             const auto group = static_cast<std::size_t>(std::find(files.begin(), files.end(), file) - files.begin());
             if (group == files.size()) {
                 files.push_back(file);
             }
-            sources_.push_back({i, group, with_only(resolved, quantity, i)});
+            sources_.push_back({i, group});
         }
     }
     groups_ = files.size();
@@ -112,13 +87,13 @@ double ForceError::operator()(const Conditions& set_point) const {
     double sum = 0;
     if (!sources_.empty()) {
         const Conditions seen = model_.seen(set_point);
-        const double nothing = nothing_(set_point);
+        const double nothing = shares_.without_tables(set_point);
         for (std::size_t group = 0; group < groups_; ++group) {
             double sigma = 0;
             for (const Source& source : sources_) {
-                const ForceSource& declared = model_.model().forces[source.index];
+                const ForceSource& declared = model_.model().forces[shares_.sources()[source.share]];
                 sigma += source.group == group
-                             ? (source.alone(set_point) - nothing) * sigma_at(declared.table, declared.axes, seen)
+                             ? shares_(source.share, set_point, nothing) * sigma_at(declared.table, declared.axes, seen)
                              : 0;
             }
             sum += sigma * sigma;
@@ -134,6 +109,29 @@ double ForceError::operator()(const Conditions& set_point) const {
         sum += sigma * sigma;
     }
     return std::sqrt(sum);
+}
+
+Model drawn_model(const Model& model, std::uint64_t seed, std::size_t draw) {
+    Model result = model;
+    core::Random random(seed, draw);
+    std::map<std::string, std::uint64_t> seeds;
+    for (ForceSource& source : result.forces) {
+        const auto own = seeds.try_emplace(file_of(source), random.bits()).first;
+        source.table = source.table.drawn(own->second);
+    }
+    for (EffectUse& use : result.effects) {
+        const std::vector<EffectParameter>& parameters = effect(use.name).info().parameters;
+        for (std::size_t p = 0; p < use.values.size(); ++p) {
+            if (use.sigmas[p] > 0) {
+                use.values[p] = std::clamp(use.values[p] + use.sigmas[p] * random.normal(), parameters[p].lower,
+                                           parameters[p].upper);
+            }
+        }
+        if (use.table) {
+            use.table = use.table->drawn(random.bits());
+        }
+    }
+    return result;
 }
 
 }  // namespace underbody::dynamics

@@ -1,10 +1,12 @@
 // How sure a model is of a force: the errors of its tables and of its effects' parameters, as they reach the force.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/model/source_shares.h"
 
 namespace underbody::dynamics {
 
@@ -20,12 +22,9 @@ public:
     [[nodiscard]] bool none() const { return sources_.empty() && parameters_.empty() && corrections_.empty(); }
 
 private:
-    /// The force with one table at 1 and all others at 0: less the force with all at 0, how much of the table's error
-    /// arrives.
     struct Source {
-        std::size_t index = 0;
+        std::size_t share = 0;  ///< index into shares_.sources()
         std::size_t group = 0;  ///< of those with the same table file
-        StaticModel alone;
     };
     struct Parameter {
         StaticModel above, below;  ///< the value moved by `sigma`, as far as its bounds allow
@@ -33,11 +32,15 @@ private:
     };
     StaticModel model_;
     std::string quantity_;
-    StaticModel nothing_;
+    SourceShares shares_;
     std::vector<Source> sources_;  ///< whose tables state an error
     std::size_t groups_ = 0;
     std::vector<Parameter> parameters_;
     std::vector<std::pair<tables::ForceTable, std::vector<Channel>>> corrections_;
 };
+
+/// The model with its force tables drawn anew from their errors (tables of one file by one draw) and every number of
+/// its effects from its own deviation, within its bounds. Draws with the same seed and number are the same.
+Model drawn_model(const Model& model, std::uint64_t seed, std::size_t draw);
 
 }  // namespace underbody::dynamics

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "surrogates/dynamics/model/source_shares.h"
+
 namespace underbody::dynamics {
 
 bool driven_by_jet(const ForceSource& source) {
@@ -57,9 +59,19 @@ ForceSources::ForceSources(const Model& model, const std::string& quantity, cons
         }
         sources_.push_back(std::move(source));
     }
+    Model acting = model.resolved();
+    acting.effects = effects_on_tables(acting, quantity);
+    if (!acting.effects.empty()) {
+        with_effects_ = std::make_shared<const StaticModel>(acting, quantity);
+        held_ = held;
+    }
 }
 
-double ForceSources::operator()(const Conditions& seen) const {
+double ForceSources::operator()(const Conditions& at) const {
+    return with_effects_ ? (*with_effects_)(at.over(held_)) : sum(at);
+}
+
+double ForceSources::sum(const Conditions& seen) const {
     double sum = 0;
     for (const Source& source : sources_) {
         std::array<double, tables::max_axes> point = source.held;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ inline double shelter_factor(double speed, double limit_speed) {
     return 1 / (1 + ratio * ratio);
 }
 
-/// Sum of the sources of one quantity in a motion. Immutable, safe to use from many threads.
+/// Sum of the sources of one quantity in a motion, with the effects that act on its tables (effects_on_tables).
+/// Immutable, safe to use from many threads.
 class ForceSources {
 public:
     ForceSources() = default;
@@ -41,7 +43,7 @@ public:
 
     [[nodiscard]] bool empty() const { return sources_.empty(); }
     /// N or N m.
-    [[nodiscard]] double operator()(const Conditions& seen) const;
+    [[nodiscard]] double operator()(const Conditions& at) const;
     /// Range of a channel that every table with this axis covers; infinite where none has it.
     [[nodiscard]] double lower(Channel channel) const { return lower_[static_cast<std::size_t>(channel)]; }
     [[nodiscard]] double upper(Channel channel) const { return upper_[static_cast<std::size_t>(channel)]; }
@@ -55,8 +57,11 @@ private:
         std::vector<ForceScale> scales;                     ///< that vary
         double shelter_speed = 0;                           ///< 0: not sheltered, or folded
     };
+    [[nodiscard]] double sum(const Conditions& seen) const;
     std::vector<Source> sources_;
     std::array<double, channel_count> lower_{}, upper_{};
+    std::shared_ptr<const StaticModel> with_effects_;  ///< nullptr: no effect acts on the tables
+    Conditions held_;
 };
 
 }  // namespace underbody::dynamics

@@ -83,6 +83,7 @@ public:
         }
         hold_the_rest(channels);
         hold_scales(model_, channels, held_, out_.remarks);
+        list_held(channels);
         for (const std::string& quantity : quantities_) {
             models_.emplace_back(model_, quantity);
         }
@@ -102,7 +103,15 @@ private:
         if (options_.axes.empty()) {
             for (std::size_t i = 0; i < channel_count; ++i) {
                 const auto channel = static_cast<Channel>(i);
-                if (!held_.has(channel) && !table_axes(model_, channel).empty()) {
+                const bool asked =
+                    std::find(options_.asked.begin(), options_.asked.end(), channel) != options_.asked.end();
+                const bool by_condition = model_.conditions.has(channel) && channel != Channel::gap && !asked;
+                if (held_.has(channel) || table_axes(model_, channel).empty()) {
+                    continue;
+                }
+                if (by_condition) {
+                    held_[channel] = model_.conditions[channel];
+                } else {
                     add_axis({channel_name(channel), {}, {}});
                 }
             }
@@ -160,17 +169,12 @@ private:
     /// Of a channel that scales forces, or that an effect knows.
     void scale_range(const ForceAxis& asked, ModelAxis& axis) {
         double reference = 0;
-        bool matters = axis.channel == Channel::speed && model_.coupling.kind == Coupling::Kind::sheltered;
         for (const ForceSource& source : model_.forces) {
             for (const ForceScale& scale : source.scales) {
                 reference = scale.channel == axis.channel ? std::max(reference, scale.reference) : reference;
             }
         }
-        for (const EffectUse& use : model_.effects) {
-            const auto& depends = effect(use.name).info().depends_on;
-            matters = matters || std::find(depends.begin(), depends.end(), asked.name) != depends.end();
-        }
-        if (reference == 0 && !matters) {
+        if (!matters(axis.channel)) {
             throw core::UsageError("axis", "no force of the model depends on " + asked.name, {model_.name, {}, {}, {}},
                                    "its forces depend on their tables' axes and scales");
         }
@@ -201,6 +205,39 @@ private:
                                         {model_.name, {}, {}, {}}});
             }
         }
+    }
+
+    /// What the forces depend on beside the axes.
+    void list_held(const std::vector<Channel>& channels) {
+        for (std::size_t i = 0; i < channel_count; ++i) {
+            const auto channel = static_cast<Channel>(i);
+            if (std::find(channels.begin(), channels.end(), channel) != channels.end() || !matters(channel)) {
+                continue;
+            }
+            if (options_.held.has(channel)) {
+                out_.held.push_back({channel, options_.held[channel], "given"});
+            } else if (model_.conditions.has(channel)) {
+                out_.held.push_back({channel, model_.conditions[channel], "condition of the model"});
+            } else if (held_.has(channel)) {
+                const bool by_table = !table_axes(model_, channel).empty();
+                out_.held.push_back({channel, held_[channel], by_table ? "default" : "reference of its scale"});
+            }
+        }
+    }
+
+    /// Does a table, a scale, the coupling or an effect know the channel?
+    [[nodiscard]] bool matters(Channel channel) const {
+        bool known = !table_axes(model_, channel).empty() ||
+                     (channel == Channel::speed && model_.coupling.kind == Coupling::Kind::sheltered);
+        for (const ForceSource& source : model_.forces) {
+            known = known || std::any_of(source.scales.begin(), source.scales.end(),
+                                         [&](const ForceScale& scale) { return scale.channel == channel; });
+        }
+        for (const EffectUse& use : model_.effects) {
+            const auto& depends = effect(use.name).info().depends_on;
+            known = known || std::find(depends.begin(), depends.end(), channel_name(channel)) != depends.end();
+        }
+        return known;
     }
 
     [[nodiscard]] Conditions at(const std::vector<Channel>& channels, const double* point) const {

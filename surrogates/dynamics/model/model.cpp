@@ -185,6 +185,11 @@ double sum_of_sources(const Model& model, const std::string& quantity, const Con
 
 StaticModel::StaticModel(const Model& model, const std::string& quantity)
     : model_(model.resolved()), quantity_(quantity) {
+    // Corrections add to the force as the vehicle's other effects leave it, as in the equation of motion.
+    std::stable_partition(model_.effects.begin(), model_.effects.end(), [](const EffectUse& use) {
+        const EffectInfo& info = effect(use.name).info();
+        return !info.takes_table && !info.belongs_to_the_rig;
+    });
     for (const EffectUse& use : model_.effects) {
         kinds_.push_back(&effect(use.name));
     }

@@ -52,17 +52,17 @@ double Curve::value(double x, double& slope) const noexcept {
 
 double Curve::value(double x, double& slope, double& curvature) const noexcept {
     slope = curvature = 0;
-    if (x <= x_.front()) {
+    if (x < x_.front()) {
         return end_[0];
     }
-    if (x >= x_.back()) {
+    if (x > x_.back()) {
         return end_[1];
     }
     const Piece& p = pieces_[piece(x)];
     const double d = x - p.x;
     slope = p.c1 + d * (2 * p.c2 + d * 3 * p.c3);
     curvature = 2 * p.c2 + d * 6 * p.c3;
-    return p.c0 + d * (p.c1 + d * (p.c2 + d * p.c3));
+    return x == x_.back() ? end_[1] : p.c0 + d * (p.c1 + d * (p.c2 + d * p.c3));
 }
 
 double Curve::integral(double x) const noexcept {
@@ -101,9 +101,7 @@ double inner_slope(const Curve& curve, double at, double toward) {
         (at == curve.upper() && toward > at)) {
         return 0;
     }
-    const double inside = at + 1e-9 * (toward - at);
-    static_cast<void>(curve.value(
-        std::clamp(inside, std::nextafter(curve.lower(), 1e300), std::nextafter(curve.upper(), -1e300)), slope));
+    static_cast<void>(curve.value(at, slope));  // pieces meet with one slope, ends have that of the inside
     return slope;
 }
 

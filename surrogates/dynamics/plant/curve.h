@@ -24,7 +24,8 @@ public:
     [[nodiscard]] double upper() const { return x_.back(); }
     [[nodiscard]] const std::vector<double>& knots() const { return x_; }
 
-    /// The value, and its slope and integral (from lower()) when asked for.
+    /// The value, and its slope and integral (from lower()) when asked for. At its ends the slope is that of the
+    /// inside, as ForceTable has it; beyond them it is 0.
     [[nodiscard]] double operator()(double x) const noexcept {
         if (x <= x_.front()) {
             return end_[0];

@@ -60,10 +60,12 @@ std::vector<Channel> varying_channels(const InputSignals& inputs) {
 core::Problems effects_without_motion(const Model& model) {
     core::Problems remarks;
     for (const EffectUse& use : model.effects) {
-        if (effect(use.name).info().seen_in == SeenIn::static_set) {
-            remarks.push_back({core::Problem::Severity::warning,
-                               "effect " + use.name + " changes static measurements; it leaves the motion as it is",
-                               {}});
+        const EffectInfo& info = effect(use.name).info();
+        if (info.seen_in == SeenIn::static_set && info.belongs_to_the_rig) {
+            remarks.push_back(
+                {core::Problem::Severity::warning,
+                 "effect " + use.name + " belongs to the rig of a static measurement; it leaves the motion as it is",
+                 {}});
         }
     }
     return remarks;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -117,6 +118,7 @@ private:
     std::vector<Channel> varying_channels_;
     bool needs_channels_ = false, keeps_channels_ = false;
     Conditions held_;
+    std::shared_ptr<const StaticModel> seen_by_tables_;  ///< where effects change what the tables are asked at
     [[nodiscard]] HeaveLoad varying_lift(double h, double w, const Moment& moment) const;
     template <bool Slopes>
     double evaluate(double h, double w, const Moment& moment, const double* memory, HeaveSlopes& slopes) const;

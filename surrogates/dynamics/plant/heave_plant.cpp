@@ -29,7 +29,8 @@ double held_value(const ForceSource& source, std::size_t axis, const Conditions&
         {model.name, {}, {}, {}}, "give it as a condition, or under [conditions] in the model");
 }
 
-HeaveSource compile(const ForceSource& source, const Model& model, const Conditions& held,
+/// `seen`: the held conditions as the effects of the model let the tables see them.
+HeaveSource compile(const ForceSource& source, const Model& model, const Conditions& held, const Conditions& seen,
                     const std::vector<Channel>& varying) {
     HeaveSource compiled;
     compiled.factor = source.factor;
@@ -50,7 +51,7 @@ HeaveSource compile(const ForceSource& source, const Model& model, const Conditi
         } else if (contains(varying, source.axes[i]) || source.axes[i] == Channel::heave_velocity) {
             others_held = false;
         } else {
-            at[i] = held_value(source, i, held, model);
+            at[i] = held_value(source, i, seen, model);
         }
     }
     if (!others_held) {
@@ -110,9 +111,25 @@ HeavePlant::HeavePlant(const Model& declared, const Conditions& held, const std:
     terms.table_lower = range.lower;
     terms.table_upper = range.upper;
     terms.contact_gap = dynamics::contact_gap(model);
+    Model acting = model;
+    acting.effects = effects_on_tables(model, "lift_force");
+    Conditions seen = held_;
+    std::shared_ptr<const SourceShares> shares;
+    if (!acting.effects.empty()) {
+        seen_by_tables_ = std::make_shared<const StaticModel>(acting, "lift_force");
+        seen = seen_by_tables_->seen(held_);
+        shares = std::make_shared<const SourceShares>(acting, "lift_force");
+    }
     for (const ForceSource& source : model.forces) {
         if (source.quantity == "lift_force") {
-            terms.sources.push_back(compile(source, model, held_, varying));
+            HeaveSource compiled = compile(source, model, held_, seen, varying);
+            compiled.shares = shares;
+            compiled.share = terms.sources.size();
+            compiled.held = held_;
+            for (const Channel state : {Channel::gap, Channel::heave_velocity}) {  // shares are the same at all of them
+                compiled.held[state] = held_.get(state, 0);
+            }
+            terms.sources.push_back(std::move(compiled));
         }
     }
     for (const EffectUse& use : model.effects) {
@@ -134,15 +151,15 @@ void HeavePlant::refresh() {
         const HeaveSource& source = terms.sources[s];
         bool varies = !source.table.empty();
         needs_channels_ = needs_channels_ || varies;
-        double factor = source.factor;
-        for (const HeaveSource::Scale& scale : source.scales) {
-            varies = varies || contains(varying_channels_, scale.channel);
-            factor *= scale.factor(scale.held);
+        for (const Channel channel : varying_channels_) {
+            const bool scales = std::any_of(source.scales.begin(), source.scales.end(),
+                                            [&](const HeaveSource::Scale& scale) { return scale.channel == channel; });
+            varies = varies || scales || (source.shares && channel != Channel::input_force);
         }
         if (varies) {
             varying_.push_back(s);
         } else {
-            folded_ = folded_.plus(1, source.curve, factor);
+            folded_ = folded_.plus(1, source.curve, source.multiplier());
         }
     }
     for (const HeaveTerms::Correction& correction : terms.corrections) {
@@ -154,15 +171,7 @@ HeaveLoad HeavePlant::varying_lift(double h, double w, const Moment& moment) con
     HeaveLoad sum;
     for (std::size_t k = 0; k < varying_.size(); ++k) {
         const HeaveSource& source = terms.sources[varying_[k]];
-        double factor = 0;
-        if (moment.factors) {
-            factor = moment.factors[k];
-        } else {
-            factor = source.factor;
-            for (const HeaveSource::Scale& scale : source.scales) {
-                factor *= scale.factor(scale.held);
-            }
-        }
+        const double factor = moment.factors ? moment.factors[k] : source.multiplier();
         if (source.table.empty()) {
             double slope = 0;
             sum.force += factor * source.curve.value(h, slope);
@@ -170,12 +179,17 @@ HeaveLoad HeavePlant::varying_lift(double h, double w, const Moment& moment) con
             continue;
         }
         double point[tables::max_axes] = {}, slope[tables::max_axes] = {};
+        Conditions at = held_;
+        if (moment.channels) {
+            std::copy(moment.channels, moment.channels + channel_count, at.value.begin());
+        }
+        if (seen_by_tables_) {
+            at = seen_by_tables_->seen(at);
+        }
+        at[Channel::gap] = h;
+        at[Channel::heave_velocity] = w;
         for (std::size_t i = 0; i < source.axes.size(); ++i) {
-            const auto index = static_cast<std::size_t>(source.axes[i]);
-            point[i] = source.axes[i] == Channel::gap              ? h
-                       : source.axes[i] == Channel::heave_velocity ? w
-                       : moment.channels                           ? moment.channels[index]
-                                                                   : held_.value[index];
+            point[i] = at.get(source.axes[i], 0);  // a pitch that nobody gives
         }
         sum.force += factor * source.table[0].value(point, slope);
         for (std::size_t i = 0; i < source.axes.size(); ++i) {

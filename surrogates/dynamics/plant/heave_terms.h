@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "surrogates/dynamics/model/channels.h"
 #include "surrogates/dynamics/model/mixed_drag.h"
+#include "surrogates/dynamics/model/source_shares.h"
 #include "surrogates/dynamics/plant/actuator.h"
 #include "surrogates/dynamics/plant/curve.h"
 #include "surrogates/tables/fit/force_table.h"
@@ -28,6 +30,31 @@ struct HeaveSource {
     };
     std::vector<Scale> scales;
     double factor = 1;
+    /// Where effects of the model act on its tables: the share of this one, in place of scales and factor.
+    std::shared_ptr<const SourceShares> shares;
+    std::size_t share = 0;  ///< number of this source there
+    Conditions held;        ///< of channels that nobody supplies
+
+    /// What multiplies the table, with the channels `given(channel, held value)` supplies.
+    template <typename Given>
+    [[nodiscard]] double multiplier(const Given& given) const {
+        if (shares) {
+            Conditions at = held;
+            for (std::size_t c = 0; c < channel_count; ++c) {
+                at.value[c] = given(static_cast<Channel>(c), held.value[c]);
+            }
+            return (*shares)(share, at);
+        }
+        double product = factor;
+        for (const Scale& scale : scales) {
+            product *= scale.factor(given(scale.channel, scale.held));
+        }
+        return product;
+    }
+    /// The same with everything as held.
+    [[nodiscard]] double multiplier() const {
+        return multiplier([](Channel, double value) { return value; });
+    }
 };
 
 /// M(h) dw/dt + 1/2 M'(h) w^2 = F(t, h, w), dh/dt = w   (Lagrange: kinetic energy 1/2 M(h) w^2)

@@ -49,6 +49,8 @@ public:
     void close_loop(const PitchFeedback& feedback);
     /// What the feedback asks of the force, N up, before the actuator; 0 without a loop.
     [[nodiscard]] double force_command(const PitchState& y) const;
+    /// How far the base's centre lies ahead of the centre of gravity, along the ground, m.
+    [[nodiscard]] double arm(double pitch) const { return depth_ * std::sin(pitch) + forward_ * std::cos(pitch); }
     /// Velocity of the centre of gravity, up, m/s.
     [[nodiscard]] double centre_velocity(const PitchState& y) const { return y[1] - arm(y[2]) * y[3]; }
 
@@ -93,7 +95,6 @@ private:
         double slope = 0;
         return vertical_.inertia(gap, slope) + vertical_.history_mass();
     }
-    [[nodiscard]] double arm(double pitch) const { return depth_ * std::sin(pitch) + forward_ * std::cos(pitch); }
     [[nodiscard]] double arm_slope(double pitch) const { return depth_ * std::cos(pitch) - forward_ * std::sin(pitch); }
     [[nodiscard]] double input_force(const PitchState& y, const Surroundings& around) const;
     [[nodiscard]] Conditions seen(const PitchState& y, const Surroundings& around) const;

@@ -127,12 +127,9 @@ HeaveRun::HeaveRun(const HeavePlant& plant, const InputSignals& inputs, double m
     for (std::size_t k = 0; k < factor_count_; ++k) {
         const HeaveSource& source = terms.sources[plant.varying_[k]];
         for (std::size_t i = 0; i < count; ++i) {
-            double factor = source.factor;
-            for (const HeaveSource::Scale& scale : source.scales) {
-                factor *=
-                    scale.factor(value_of(scale.channel, half_time_[i], inputs.held.get(scale.channel, scale.held)));
-            }
-            factors_[i * factor_count_ + k] = factor;
+            factors_[i * factor_count_ + k] = source.multiplier([&](Channel channel, double held) {
+                return value_of(channel, half_time_[i], inputs.held.get(channel, held));
+            });
         }
     }
     if (plant.needs_channels_) {

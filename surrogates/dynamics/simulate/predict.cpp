@@ -289,31 +289,35 @@ SeriesPrediction predict_runs(const Model& model, const RecordReading& records, 
 }
 
 /// Held or linear between samples: as the model says, else what the measured motion fits; held where that tells
-/// nothing.
-SeriesPrediction predict_as_read(const Model& model, const Measurements& data, const PredictOptions& options,
-                                 Prediction& out, core::Progress& progress) {
-    RecordReading records = model.records;
+/// nothing. The runs predicted so, where that had to be worked out or `wanted`.
+std::optional<SeriesPrediction> predict_as_read(const Model& model, const Measurements& data,
+                                                const PredictOptions& options, bool wanted, InputReading& reading,
+                                                core::Progress& progress) {
     using Between = RecordReading::Between;
+    reading.records = model.records;
     const bool varies = std::any_of(data.runs.begin(), data.runs.end(), [](const MeasuredRun& run) {
         const InputSignals signals = signals_of(run);
         return std::any_of(signals.signals.begin(), signals.signals.end(),
                            [](const auto& signal) { return signal.channel == Channel::input_force; });
     });
-    out.input_between = !varies ? "" : records.input_between == Between::linear ? "linear" : "held";
-    out.input_between_from = !varies ? "" : records.input_between == Between::unsaid ? "data" : "declared";
-    if (!varies || records.input_between != Between::unsaid) {
-        return predict_runs(model, records, data, options, progress);
+    reading.between = !varies ? "" : reading.records.input_between == Between::linear ? "linear" : "held";
+    reading.from = !varies ? "" : reading.records.input_between == Between::unsaid ? "data" : "declared";
+    if (!varies || reading.records.input_between != Between::unsaid) {
+        return wanted ? std::optional(predict_runs(model, reading.records, data, options, progress)) : std::nullopt;
     }
     std::vector<double> noise;
     for (const MeasuredRun& run : data.runs) {
         noise.push_back(channel_noise(data, run, "gap", 1e-4));
     }
-    SeriesPrediction held = predict_runs(model, records, data, options, progress);
-    records.input_between = Between::linear;
-    SeriesPrediction linear = predict_runs(model, records, data, options, progress);
+    reading.records.input_between = Between::held;
+    SeriesPrediction held = predict_runs(model, reading.records, data, options, progress);
+    RecordReading other = reading.records;
+    other.input_between = Between::linear;
+    SeriesPrediction linear = predict_runs(model, other, data, options, progress);
     const double by_held = held.squares(noise), by_linear = linear.squares(noise);
     if (by_linear < 0.98 * by_held && by_held - by_linear > 10) {
-        out.input_between = "linear";
+        reading.between = "linear";
+        reading.records = other;
         return linear;
     }
     return held;
@@ -361,7 +365,11 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
                           core::Progress& progress) {
     Prediction out;
     out.time_series = true;
-    const SeriesPrediction all = predict_as_read(model, data, options, out, progress);
+    InputReading reading;
+    const SeriesPrediction all = *predict_as_read(model, data, options, true, reading, progress);
+    out.input_between = reading.between;
+    out.input_between_from = reading.from;
+    out.records = reading.records;
     check_bounds(all, model, data, out);
     std::vector<std::string> names;
     std::vector<double> window, time, gap, gap_predicted, velocity, velocity_predicted;
@@ -412,6 +420,31 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
 }
 
 }  // namespace
+
+InputReading input_reading(const Model& model, const Measurements& data, const PredictOptions& options,
+                           core::Progress& progress) {
+    InputReading reading;
+    (void)predict_as_read(model, data, options, false, reading, progress);
+    return reading;
+}
+
+std::string reading_text(const RecordReading& records) {
+    std::string text;
+    const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+    if (records.input_factor != 1) {
+        add("input_force times " + core::format_number(records.input_factor, 6));
+    }
+    if (records.input_advance != 0) {
+        add("input_force " + core::format_number(records.input_advance, 4) + " s earlier than logged");
+    }
+    if (records.velocity_factor != 1) {
+        add("heave_velocity times " + core::format_number(records.velocity_factor, 6));
+    }
+    if (records.input_between == RecordReading::Between::linear) {
+        add("input_force linear between its samples");
+    }
+    return text;
+}
 
 std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records) {
     std::vector<double> values = run.has(channel) ? run.values(channel) : std::vector<double>{};
@@ -554,6 +587,9 @@ void to_json(nlohmann::json& json, const Prediction& prediction) {
     if (prediction.time_series) {
         json["windows"] = prediction.windows;
         json["diverged_windows"] = prediction.diverged;
+    }
+    if (const std::string read = reading_text(prediction.records); !read.empty()) {
+        json["logs_read_as"] = read;
     }
     if (!prediction.input_between.empty()) {
         json["input_between"] = {{"value", prediction.input_between}, {"from", prediction.input_between_from}};

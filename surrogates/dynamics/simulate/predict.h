@@ -40,8 +40,22 @@ struct Prediction {
     std::size_t windows = 0, diverged = 0;  ///< windows in all, and those that leave every bound (time series)
     std::string input_between;  ///< "held" or "linear": how the input was read between its samples; empty: none varies
     std::string input_between_from;  ///< "declared" or "data"
+    RecordReading records;           ///< how the logs were read
     core::Problems remarks;
 };
+
+/// How the logs of a data set are read: as the model's [records] say, and where they do not say whether input_force is
+/// held or linear between its samples, as the measured motion fits clearly better; held where that tells nothing. What
+/// predict() and the estimator take.
+struct InputReading {
+    RecordReading records;
+    std::string between;  ///< "held" or "linear"; empty: no input varies
+    std::string from;     ///< "declared" or "data"
+};
+InputReading input_reading(const Model& model, const Measurements& data, const PredictOptions& options = {},
+                           core::Progress& progress = core::Progress::none());
+/// What the logs say and how it is read instead, for people: "input_force times -1; ..."; empty: as logged.
+std::string reading_text(const RecordReading& records);
 
 /// Throws core::InputError when the model lacks what the data need (a static quantity without a force source, ...);
 /// a predicted motion that is not finite (kind "integration").

@@ -43,9 +43,10 @@ struct Judge {
     const LoopOptions& loop;
     double far = 0, tolerance = 0;
 
-    [[nodiscard]] Outcome of(double gap, double velocity) const {
+    [[nodiscard]] Outcome of(double gap, double velocity, std::uint64_t draw = 0) const {
         const std::uint64_t place =
-            std::bit_cast<std::uint64_t>(gap) * 0x9e3779b97f4a7c15ULL ^ std::bit_cast<std::uint64_t>(velocity);
+            (std::bit_cast<std::uint64_t>(gap) * 0x9e3779b97f4a7c15ULL ^ std::bit_cast<std::uint64_t>(velocity)) +
+            draw * 0xd1b54a32d192ed03ULL;
         Loop run(plant, law, estimator, loop, gap, velocity, place);
         const auto samples = static_cast<std::size_t>(std::round(loop.duration / loop.step));
         // At rest: the mean gap of one window after another stays, and so does the gap within each. Noise widens the
@@ -110,8 +111,10 @@ std::vector<double> resting_places(const std::vector<Outcome>& outcomes, double 
 }
 
 std::string rule_of(const LoopEstimator& e, const ControlLaw& law, const LoopOptions& o) {
-    std::string text = "loop closed, forces cancelled by: " + (law.cancel ? e.name : std::string("none")) +
-                       ", sample time " + core::format_number(o.step, 3) + " s";
+    const bool by_estimates = o.feedback == Feedback::estimated;
+    std::string text = "loop closed, feedback on " + (by_estimates ? "the estimates of " + e.name : "the sensors") +
+                       ", forces cancelled by: " + (law.cancel ? e.name : std::string("none")) + ", sample time " +
+                       core::format_number(o.step, 3) + " s";
     if (std::isfinite(law.limit)) {
         text += ", limit " + core::format_number(1e3 * law.limit, 3) + " mN";
     }
@@ -125,11 +128,15 @@ std::string rule_of(const LoopEstimator& e, const ControlLaw& law, const LoopOpt
     return text;
 }
 
-}  // namespace
+/// The grid of starts and who judges them.
+struct Prepared {
+    dynamics::RegionOptions grid;
+    bool swapped = false;  ///< the first axis is heave_velocity
+    Judge judge;
+};
 
-dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const ControlLaw& law,
-                                      const LoopEstimator& estimator, const LoopOptions& loop,
-                                      const LoopRegionOptions& options, core::Progress& progress) {
+Prepared prepared(const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
+                  const LoopOptions& loop, const LoopRegionOptions& options) {
     dynamics::RegionOptions grid;
     grid.axes = options.axes;
     grid.columns = options.columns;
@@ -144,7 +151,72 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
     }
     const double length = gaps.upper - gaps.lower;
     const double tolerance = options.hold_tolerance > 0 ? options.hold_tolerance : 0.02 * length;
-    const Judge judge{plant, law, estimator, loop, gaps.upper + length, tolerance};
+    return {grid, swapped, {plant, law, estimator, loop, gaps.upper + length, tolerance}};
+}
+
+}  // namespace
+
+dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const ControlLaw& law,
+                                          const LoopEstimator& estimator, const LoopOptions& loop,
+                                          const LoopRegionOptions& options, std::size_t draws,
+                                          core::Progress& progress) {
+    if (draws < 1) {
+        throw core::UsageError("range", "a probability map needs at least one draw");
+    }
+    const Prepared ready = prepared(plant, law, estimator, loop, options);
+    dynamics::ProbabilityMap map;
+    map.axes = ready.grid.axes;
+    map.columns = ready.grid.columns;
+    map.rows = ready.grid.rows;
+    map.draws = draws;
+    const std::size_t count = map.columns * map.rows;
+    map.safe.assign(count, 0.0F);
+    double sum = 0, squares = 0;
+    for (std::size_t draw = 0; draw < draws; ++draw) {
+        progress.check();
+        progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing the sensors' noise");
+        std::vector<unsigned char> held(count, 0);
+        dynamics::region_grid(ready.grid, [&](std::span<const double> x, std::span<const double> y, std::span<End>) {
+            core::parallel_for(
+                count,
+                [&](std::size_t i) {
+                    const Outcome end =
+                        ready.swapped ? ready.judge.of(y[i], x[i], draw) : ready.judge.of(x[i], y[i], draw);
+                    held[i] = end.kind == EndKind::attractor &&
+                              std::abs(end.gap - law.reference_gap) <= ready.judge.tolerance;
+                },
+                progress);
+        });
+        std::size_t good = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            map.safe[i] += held[i] != 0 ? 1.0F : 0.0F;
+            good += held[i];
+        }
+        const double share = static_cast<double>(good) / static_cast<double>(count);
+        sum += share;
+        squares += share * share;
+    }
+    const auto n = static_cast<double>(draws);
+    for (float& value : map.safe) {
+        value /= static_cast<float>(draws);
+    }
+    map.area_mean = sum / n;
+    map.area_sigma =
+        draws > 1 ? std::sqrt(std::max(0.0, squares / n - map.area_mean * map.area_mean) * n / (n - 1)) : 0.0;
+    if (!(loop.gap_noise > 0 || loop.velocity_noise > 0)) {
+        map.remarks.push_back({core::Problem::Severity::note, "the sensors have no noise: every draw is the same", {}});
+    }
+    return map;
+}
+
+dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const ControlLaw& law,
+                                      const LoopEstimator& estimator, const LoopOptions& loop,
+                                      const LoopRegionOptions& options, core::Progress& progress) {
+    const Prepared ready = prepared(plant, law, estimator, loop, options);
+    dynamics::RegionOptions grid = ready.grid;
+    const bool swapped = ready.swapped;
+    const Judge& judge = ready.judge;
+    const double tolerance = judge.tolerance;
     const auto outcomes_of = [&](std::span<const double> x, std::span<const double> y) {
         std::vector<Outcome> outcomes(x.size());
         core::parallel_for(

@@ -24,4 +24,12 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
                                       const LoopRegionOptions& options,
                                       core::Progress& progress = core::Progress::none());
 
+/// Chance that the loop holds the gap from each start, over `draws` of the sensors' noise: ProbabilityMap::safe is the
+/// share of the draws that end "held". Without noise one draw says it all. The classes of a single draw are those of
+/// loop_region.
+dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const ControlLaw& law,
+                                          const LoopEstimator& estimator, const LoopOptions& loop,
+                                          const LoopRegionOptions& options, std::size_t draws,
+                                          core::Progress& progress = core::Progress::none());
+
 }  // namespace underbody::estimator

@@ -48,6 +48,7 @@ struct Estimation {
     std::vector<RunEstimate> runs;
     FilterNoise noise;
     bool gap_noise_declared = false, density_chosen = false;
+    double departure_rms = 0;  ///< N, of what the data show to depart from the declared laws; extended filter only
     /// Label per quantity: "observed" or "model-dependent".
     std::vector<std::pair<std::string, std::string>> labels;
     std::string explanation;

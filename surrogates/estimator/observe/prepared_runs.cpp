@@ -18,8 +18,9 @@ void note(core::Problems& problems, const std::string& text) {
 namespace {
 
 // Plant at a run's conditions; channels that vary within the run are held at their mean.
-SeparatedPlant plant_of(const dynamics::Model& model, const dynamics::MeasuredRun& run, core::Problems& remarks) {
-    const dynamics::InputSignals signals = dynamics::signals_of(run, model.records);
+SeparatedPlant plant_of(const dynamics::Model& model, const dynamics::RecordReading& records,
+                        const dynamics::MeasuredRun& run, core::Problems& remarks) {
+    const dynamics::InputSignals signals = dynamics::signals_of(run, records);
     dynamics::Conditions held = signals.held;
     for (const auto& signal : signals.signals) {
         if (signal.channel == dynamics::Channel::input_force) {
@@ -35,7 +36,7 @@ SeparatedPlant plant_of(const dynamics::Model& model, const dynamics::MeasuredRu
                           " varies; the force table is taken at its mean and the departure carries the rest");
     }
     SeparatedPlant plant = separate(model, held);
-    plant.actuator.delay -= model.records.input_advance;
+    plant.actuator.delay -= records.input_advance;
     if (held.has(dynamics::Channel::input_force) && !run.table.find("input_force")) {
         plant.bias += plant.actuator.felt(held[dynamics::Channel::input_force]);
     }
@@ -75,9 +76,16 @@ std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Meas
         throw core::InputError("kind", "the estimator needs time series; this data set is static",
                                {data.folder.string(), {}, {}, {}}, "static forces are compared by 'underbody predict'");
     }
+    const dynamics::InputReading reading = dynamics::input_reading(model, data);
+    if (const std::string read = dynamics::reading_text(reading.records); !read.empty()) {
+        note(remarks, "logs read as " + read + " (" +
+                          (reading.from == "data" ? "the measured motion fits that better" : "the model's [records]") +
+                          ")");
+    }
     std::vector<Prepared> all;
     for (const auto& run : data.runs) {
-        all.push_back({&run, plant_of(model, run, remarks), signals_of_run(run, remarks, model.records)});
+        all.push_back(
+            {&run, plant_of(model, reading.records, run, remarks), signals_of_run(run, remarks, reading.records)});
         all.back().signals = through_actuator(all.back().plant, std::move(all.back().signals));
         if (!(range_of(all.back().signals.gap) > 0)) {
             note(remarks, "run '" + run.name + "': the gap does not vary; a dead sensor looks like that");

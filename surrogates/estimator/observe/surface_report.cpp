@@ -27,13 +27,15 @@ double largest_force(const SeparatedPlant& plant) {
 SurfaceReport identify_surfaces(const std::vector<std::pair<std::string, dynamics::Model>>& surfaces,
                                 const dynamics::Measurements& data, const FilterNoise& noise, double switching) {
     SurfaceReport report;
+    const dynamics::RecordReading records =
+        surfaces.empty() ? dynamics::RecordReading{} : dynamics::input_reading(surfaces.front().second, data).records;
     for (const auto& run : data.runs) {
         core::Problems remarks;
-        const RunSignals signals = signals_of_run(run, remarks);
+        const RunSignals signals = signals_of_run(run, remarks, records);
         std::vector<Surface> bank;
         double largest = 0;
         for (const auto& [name, model] : surfaces) {
-            bank.push_back({name, separate(model, dynamics::signals_of(run, model.records).held)});
+            bank.push_back({name, separate(model, dynamics::signals_of(run, records).held)});
             largest = std::max(largest, largest_force(bank.back().plant));
         }
         SurfaceOptions options;

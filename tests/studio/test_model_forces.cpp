@@ -1,0 +1,175 @@
+// A model's forces at the command line: its conditions hold, its errors stand beside its trims, its logs are read as it
+// says, and the loop with its estimator has a map.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "core/random.h"
+#include "core/table.h"
+#include "tests/support/support.h"
+
+namespace underbody::test {
+
+namespace {
+
+using testing::HasSubstr;
+
+class ModelForces : public testing::Test {
+protected:
+    core::TemporaryFolder folder_;
+
+    /// Lift over gap and speed with errors: one stable and one unstable balance at 30 mN.
+    void SetUp() override {
+        std::string rows = "gap [mm], speed [m/s], lift_force [mN], lift_force_sigma [mN]\n";
+        for (const double speed : {0.4, 0.5, 0.6, 0.8}) {
+            for (const double gap : {1., 2., 3., 5., 8., 12., 18., 26., 36., 50.}) {
+                const double force = speed * speed / 0.25 * (60 / gap + 0.09 * gap * gap * std::exp(-gap / 14)) - 2;
+                rows += std::to_string(gap) + ", " + std::to_string(speed) + ", " + std::to_string(force) + ", 0.4\n";
+            }
+        }
+        core::write_file(folder_.path() / "lift.csv", rows);
+        model("model.toml", "[conditions]\nspeed = \"0.5 m/s\"\n");
+        model("bare.toml", "");
+    }
+    void model(const std::string& file, const std::string& more) {
+        core::write_file(folder_.path() / file,
+                         "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\nnet_weight = \"10 mN\"\n"
+                         "[drag.heave]\nlinear = 0.3\nquadratic = 6\n"
+                         "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\nfit = \"interpolation\"\n" +
+                             more);
+    }
+    nlohmann::json json(std::vector<std::string> arguments) {
+        arguments.emplace_back("--json");
+        const auto run = run_underbody(arguments, folder_.path());
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        return nlohmann::json::parse(run.output);
+    }
+};
+
+TEST_F(ModelForces, TableAtTakesTheConditionsOfTheModelUnlessThePointSaysOtherwise) {
+    const nlohmann::json held = json({"table", "at", "model.toml", "gap=4mm"}),
+                         given = json({"table", "at", "bare.toml", "gap=4mm,speed=0.5"}),
+                         other = json({"table", "at", "model.toml", "gap=4mm,speed=0.6", "gap=4mm"});
+    EXPECT_NEAR(held["value"].get<double>(), given["value"].get<double>(), 1e-12);
+    EXPECT_EQ(held["held"]["speed"]["from"], "condition of the model");
+    EXPECT_NEAR(held["held"]["speed"]["value"].get<double>(), 0.5, 1e-12);
+    EXPECT_GT(other["values"][0]["value"].get<double>(), 1.2 * held["value"].get<double>());
+    EXPECT_NEAR(other["values"][1]["value"].get<double>(), held["value"].get<double>(), 1e-9)
+        << "each point holds what it says, the model the rest";
+    const auto text = run_underbody({"table", "at", "model.toml", "gap=4mm"}, folder_.path());
+    EXPECT_THAT(text.output, HasSubstr("speed 0.5 m/s (condition of the model)"));
+    const auto wrong = run_underbody({"table", "at", "model.toml", "gap=4mm,depth=1"}, folder_.path());
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.errors, HasSubstr("no force of the model depends on depth"));
+    model("outside.toml", "[conditions]\nspeed = \"3 m/s\"\n");
+    EXPECT_THAT(run_underbody({"table", "at", "outside.toml", "gap=4mm"}, folder_.path()).output,
+                HasSubstr("speed 3 m/s is outside the lift_force table"));
+    EXPECT_EQ(json({"table", "at", "outside.toml", "gap=4mm"})["warnings"].size(), 1U);
+}
+
+TEST_F(ModelForces, EquilibriaAndLinearAgreeWithTheTableOnGapAndError) {
+    const nlohmann::json by_table = json(
+        {"table", "equilibria", "lift.csv", "--kind", "interpolation", "--held", "speed=0.5", "--weight", "10 mN"});
+    const nlohmann::json by_model = json({"table", "equilibria", "model.toml"}),
+                         linear = json({"linear", "model.toml"});
+    ASSERT_GE(by_table["equilibria"].size(), 2U);
+    ASSERT_EQ(by_model["equilibria"].size(), by_table["equilibria"].size());
+    ASSERT_EQ(linear["heave"].size(), by_table["equilibria"].size());
+    EXPECT_EQ(by_model["net_weight_from"], "model");
+    EXPECT_NEAR(by_model["virtual_mass"].get<double>(), 3.954, 1e-9);
+    for (std::size_t i = 0; i < by_table["equilibria"].size(); ++i) {
+        const double gap = by_table["equilibria"][i]["gap"], sigma = by_table["equilibria"][i]["sigma"],
+                     stiffness = by_table["equilibria"][i]["stiffness"];
+        EXPECT_GT(sigma, 0);
+        EXPECT_NEAR(by_model["equilibria"][i]["gap"].get<double>(), gap, 1e-6);
+        EXPECT_NEAR(by_model["equilibria"][i]["sigma"].get<double>(), sigma, 0.03 * sigma);
+        EXPECT_NEAR(linear["heave"][i]["gap"].get<double>(), gap, 1e-6);
+        EXPECT_NEAR(linear["heave"][i]["sigma"].get<double>(), sigma, 0.03 * sigma);
+        EXPECT_NEAR(linear["heave"][i]["stiffness"].get<double>(), stiffness, 1e-3 * std::abs(stiffness));
+        EXPECT_GT(linear["heave"][i]["stiffness_sigma"].get<double>(), 0);
+        EXPECT_GT(linear["heave"][i]["modes"][0]["real_sigma"].get<double>() +
+                      linear["heave"][i]["modes"][0]["frequency_sigma"].get<double>(),
+                  0);
+    }
+    const auto text = run_underbody({"linear", "model.toml"}, folder_.path());
+    EXPECT_THAT(text.output,
+                testing::ContainsRegex("at [0-9.]+ \\+- [0-9.]+ mm: stiffness -?[0-9.]+ \\+- [0-9.]+ N/m"));
+    // Effects of the motion count too: a constant force with an error moves the balance.
+    model(
+        "pushed.toml",
+        "[conditions]\nspeed = \"0.5 m/s\"\n[[effect]]\nname = \"constant_force\"\nforce = { value = \"0 N\", sigma = "
+        "\"2 mN\" }\n");
+    const nlohmann::json pushed = json({"linear", "pushed.toml"})["heave"][0];
+    const double k = pushed["stiffness"], table_sigma = linear["heave"][0]["sigma"];
+    EXPECT_NEAR(pushed["sigma"].get<double>(), std::hypot(table_sigma, 2e-3 / k), 1e-3 * table_sigma);
+}
+
+TEST_F(ModelForces, ExportHoldsTheConditionsOfTheModelAndSaysSo) {
+    const nlohmann::json held = json({"export", "model.toml", "--out", "lift.json"});
+    EXPECT_EQ(held["grid"].size(), 1U);
+    EXPECT_NEAR(held["held"]["speed"]["value"].get<double>(), 0.5, 1e-12);
+    EXPECT_GT(held["bytes"].get<double>(), 100);
+    const nlohmann::json all = json({"export", "model.toml", "--axes", "gap,speed", "--out", "both.json"});
+    EXPECT_EQ(all["grid"].size(), 2U);
+    const nlohmann::json one = json({"table", "at", "lift.json", "gap=4mm"}),
+                         two = json({"table", "at", "both.json", "gap=4mm,speed=0.5"});
+    EXPECT_NEAR(one["value"].get<double>(), two["value"].get<double>(), 1e-12);
+    const auto text = run_underbody({"export", "model.toml", "--out", "again.h"}, folder_.path());
+    EXPECT_THAT(text.errors, HasSubstr("speed 0.5 m/s (condition of the model)"));
+    EXPECT_THAT(text.errors, HasSubstr(" kB"));
+}
+
+TEST_F(ModelForces, TheLoopWithItsEstimatorAndSensorsHasAMapAndChances) {
+    const std::vector<std::string> loop{"region", "model.toml",
+                                        "--axes", "gap=2mm:40mm,heave_velocity=-0.03:0.03",
+                                        "--grid", "8x6",
+                                        "--for",  "20",
+                                        "--lqr",  "reference=20mm,gap=1000"};
+    const auto with = [&](std::vector<std::string> more) {
+        std::vector<std::string> all = loop;
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    const nlohmann::json map =
+        json(with({"--observer", "extended", "--gap-noise", "0.1mm", "--step", "0.05", "--no-velocity"}));
+    EXPECT_EQ(map["loop"]["observer"], "extended");
+    EXPECT_EQ(map["loop"]["feedback_on"], "estimated");
+    EXPECT_NEAR(map["loop"]["sample_time"].get<double>(), 0.05, 1e-12);
+    double sum = 0, held = 0;
+    for (const auto& end : map["classes"]) {
+        sum += end["fraction"].get<double>();
+        held += end["name"] == "held" ? end["fraction"].get<double>() : 0;
+    }
+    EXPECT_NEAR(sum, 1, 1e-9);
+    EXPECT_GT(held, 0.2);
+    const nlohmann::json chance = json(
+        with({"--observer", "extended", "--gap-noise", "0.1mm", "--step", "0.05", "--no-velocity", "--draws", "3"}));
+    EXPECT_EQ(chance["draws"], 3);
+    EXPECT_EQ(chance["safe"].size(), 48U);
+    EXPECT_NEAR(chance["area_mean"].get<double>(), held, 0.15);
+    EXPECT_EQ(run_underbody(with({"--observer", "disturbance"}), folder_.path()).exit_code, 2);
+    EXPECT_EQ(run_underbody(with({"--gap-noise", "1mm"}), folder_.path()).exit_code, 2);
+    EXPECT_EQ(run_underbody({"region", "model.toml", "--observer", "extended"}, folder_.path()).exit_code, 2);
+}
+
+TEST_F(ModelForces, ADelayedActuatorChangesTheMapOfALoop) {
+    model("slow.toml",
+          "[conditions]\nspeed = \"0.5 m/s\"\n[[effect]]\nname = \"input_delay\"\ndelay = { value = \"1.5 s\" }\n");
+    const auto held = [&](const std::string& file) {
+        double sum = 0;
+        for (const auto& end :
+             json({"region", file, "--axes", "gap=2mm:40mm,heave_velocity=-0.05:0.05", "--grid", "20x20", "--feedback",
+                   "gap_gain=20,velocity_gain=15,reference=20mm"})["classes"]) {
+            sum += end["kind"] == "attractor" ? end["fraction"].get<double>() : 0;
+        }
+        return sum;
+    };
+    EXPECT_LT(held("slow.toml"), held("model.toml") - 0.1);
+}
+
+}  // namespace
+
+}  // namespace underbody::test
