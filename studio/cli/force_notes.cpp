@@ -4,6 +4,7 @@
 
 #include "studio/cli/shell.h"
 #include "surrogates/dynamics/model/table_notes.h"
+#include "surrogates/dynamics/plant/environment.h"
 
 namespace underbody::studio {
 
@@ -20,6 +21,9 @@ void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Con
         }
     };
     for (const core::Problem& problem : dynamics::held_outside(model, held.over(model.conditions))) {
+        say(problem);
+    }
+    for (const core::Problem& problem : dynamics::effects_without_motion(model)) {
         say(problem);
     }
     for (const dynamics::ForceSource& source : model.forces) {

@@ -65,6 +65,9 @@ void add_error(nlohmann::json& json, const dynamics::TrimError& error) {
     }
 }
 
+/// A state that nothing brings back and nothing drives away, such as heading or place.
+bool neutral(const dynamics::Mode& mode) { return std::abs(mode.value) < 1e-7; }
+
 nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vector<dynamics::Mode>& modes,
                            const dynamics::TrimError& error = {}) {
     const dynamics::Controllability control = dynamics::controllability(system);
@@ -81,7 +84,8 @@ nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vect
                                  {"imaginary", mode.value.imag()},
                                  {"frequency", mode.frequency},
                                  {"damping_ratio", mode.damping_ratio},
-                                 {"stable", mode.stable}});
+                                 {"stable", mode.stable},
+                                 {"neutral", neutral(mode)}});
         if (i < error.modes.size()) {
             const dynamics::ModeError& own = error.modes[i];
             json["modes"].back().update({{"real_sigma", number_or_null(own.real)},
@@ -104,7 +108,7 @@ std::string mode_text(const dynamics::Mode& mode, const dynamics::ModeError& err
         text += with_error(mode.value.real(), error.real, 5) + " 1/s";
     }
     text += std::isnan(error.real) ? " (its kind changes within the errors of the forces)" : "";
-    return text + (mode.stable ? "" : "  unstable") + "\n";
+    return text + (neutral(mode) ? "  neutral" : mode.stable ? "" : "  unstable") + "\n";
 }
 
 std::string modes_text(const std::vector<dynamics::Mode>& modes, const dynamics::TrimError& error) {

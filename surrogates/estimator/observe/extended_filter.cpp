@@ -1,18 +1,14 @@
 #include "surrogates/estimator/observe/extended_filter.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
 #include "surrogates/dynamics/simulate/start_state.h"
-#include "surrogates/estimator/observe/three.h"
 
 namespace underbody::estimator {
 
-using internal::inverse_of;
-using internal::product;
-using internal::Square;
-using internal::transposed;
 using Belief = ExtendedRunner::Belief;
 
 void check_run(const RunSignals& run) {
@@ -65,27 +61,21 @@ double input_over(const RunSignals& run, std::size_t k) {  // mean over the step
 
 namespace {
 
+using Square = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using ConstSquare = Eigen::Map<const Square>;
+
 void smooth_back(const ExtendedRunner& filter, const std::vector<Belief>& filtered,
-                 const std::vector<Belief>& predicted, const std::vector<Square>& transitions,
+                 const std::vector<Belief>& predicted, const std::vector<std::array<double, 9>>& transitions,
                  std::vector<FilterEstimate>& estimates) {
     Belief next = filtered.back();
     for (std::size_t k = filtered.size() - 1; k-- > 0;) {
-        const Square gain =
-            product(product(filtered[k].p, transposed(transitions[k + 1])), inverse_of(predicted[k + 1].p));
+        const ConstSquare own(filtered[k].p.data()), ahead(predicted[k + 1].p.data()), later(next.p.data());
+        const Square gain = own * ConstSquare(transitions[k + 1].data()).transpose() * ahead.inverse();
         Belief b = filtered[k];
-        Square difference{};
-        for (std::size_t i = 0; i < 9; ++i) {
-            difference[i] = next.p[i] - predicted[k + 1].p[i];
-        }
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j) {
-                b.x[i] += gain[3 * i + j] * (next.x[j] - predicted[k + 1].x[j]);
-            }
-        }
-        const Square change = product(product(gain, difference), transposed(gain));
-        for (std::size_t i = 0; i < 9; ++i) {
-            b.p[i] += change[i];
-        }
+        const Eigen::Vector3d moved = gain * (Eigen::Map<const Eigen::Vector3d>(next.x.data()) -
+                                              Eigen::Map<const Eigen::Vector3d>(predicted[k + 1].x.data()));
+        Eigen::Map<Eigen::Vector3d>(b.x.data()) += moved;
+        Eigen::Map<Square>(b.p.data()) += gain * (later - ahead) * gain.transpose();
         filter.describe(b, estimates[k]);
         next = b;
     }
@@ -102,7 +92,7 @@ FilterResult extended_filter(const SeparatedPlant& plant, const RunSignals& run,
     FilterResult result;
     result.estimates.resize(n);
     std::vector<Belief> filtered, predicted;
-    std::vector<Square> transitions;
+    std::vector<std::array<double, 9>> transitions;
     double last = NAN, squares = 0, neighbours = 0;
     for (std::size_t k = 0; k < n; ++k) {
         FilterEstimate& e = result.estimates[k];

@@ -1,17 +1,22 @@
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/error.h"
 #include "surrogates/estimator/observe/extended_filter.h"
-#include "surrogates/estimator/observe/three.h"
 
 namespace underbody::estimator {
 
-using internal::product;
-using internal::Square;
-using internal::State;
-using internal::transposed;
+namespace {
+
+using State = Eigen::Vector3d;  // gap, velocity, departure
+using Square = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Eigen::Map<Square> square(std::array<double, 9>& p) { return Eigen::Map<Square>(p.data()); }
+Eigen::Map<const Square> square(const std::array<double, 9>& p) { return Eigen::Map<const Square>(p.data()); }
+
+}  // namespace
 
 ExtendedRunner::ExtendedRunner(const SeparatedPlant& plant, const FilterNoise& noise)
     : plant_(&plant), noise_(&noise), departure_sigma_(noise.departure_sigma) {
@@ -55,32 +60,18 @@ void over_step(const dynamics::HeaveSlopes& slopes, double relaxation, double q,
         ++doublings;
     }
     const double a10 = slopes.gap, a11 = slopes.velocity, a12 = s, a22 = -relaxation, h = 0.5 * step * step;
-    f = {1 + h * a10,
-         step + h * a11,
-         h * a12,
-         step * a10 + h * a11 * a10,
-         1 + step * a11 + h * (a10 + a11 * a11),
-         step * a12 + h * (a11 * a12 + a12 * a22),
-         0,
-         0,
-         std::exp(step * a22)};
+    f << 1 + h * a10, step + h * a11, h * a12,  //
+        step * a10 + h * a11 * a10, 1 + step * a11 + h * (a10 + a11 * a11),
+        step * a12 + h * (a11 * a12 + a12 * a22),  //
+        0, 0, std::exp(step * a22);
     // Integrated through velocity and gap (Van Loan's series).
     const double t3 = step * step * step;
-    noise = {q * s * s * t3 * step * step / 20,
-             q * s * s * t3 * step / 8,
-             q * s * t3 / 6,
-             q * s * s * t3 * step / 8,
-             q * s * s * t3 / 3,
-             q * s * step * step / 2,
-             q * s * t3 / 6,
-             q * s * step * step / 2,
-             q * step};
+    noise << q * s * s * t3 * step * step / 20, q * s * s * t3 * step / 8, q * s * t3 / 6,  //
+        q * s * s * t3 * step / 8, q * s * s * t3 / 3, q * s * step * step / 2,             //
+        q * s * t3 / 6, q * s * step * step / 2, q * step;
     for (; doublings > 0; --doublings) {
-        const Square later = product(product(f, noise), transposed(f));
-        for (std::size_t k = 0; k < 9; ++k) {
-            noise[k] += later[k];
-        }
-        f = product(f, f);
+        noise += (f * noise * f.transpose()).eval();
+        f = (f * f).eval();
     }
 }
 
@@ -95,15 +86,12 @@ void ExtendedRunner::predict(double dt, double input, double time) {
         const double now = time + step * i;
         dynamics::HeaveSlopes slopes;
         plant_->acceleration(b.x[0], b.x[1], input + b.x[2], now, slopes);
-        Square f{}, noise{};
+        Square f, noise;
         over_step(slopes, noise_->force_time > 0 ? 1 / noise_->force_time : 0, noise_->force_density, step, f, noise);
         plant_->advance(b.x[0], b.x[1], input + b.x[2], step, now);
-        b.x[2] *= f[8];
-        b.p = product(product(f, b.p), transposed(f));
-        for (std::size_t k = 0; k < 9; ++k) {
-            b.p[k] += noise[k];
-        }
-        phi_ = product(f, phi_);
+        b.x[2] *= f(2, 2);
+        square(b.p) = (f * square(b.p) * f.transpose() + noise).eval();
+        square(phi_) = (f * square(phi_)).eval();
     }
 }
 
@@ -116,18 +104,14 @@ bool ExtendedRunner::update(std::size_t c, double value, double sigma, double& i
     if (!trust_always && noise_->gate > 0 && innovation * innovation > noise_->gate * noise_->gate * spread) {
         return false;
     }
-    const State k{belief_.p[c] / spread, belief_.p[3 + c] / spread, belief_.p[6 + c] / spread};
-    Square keep{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const auto component = static_cast<Eigen::Index>(c);
+    const State k = square(belief_.p).col(component) / spread;
+    Square keep = Square::Identity();
+    keep.col(component) -= k;
     for (std::size_t i = 0; i < 3; ++i) {
-        belief_.x[i] += k[i] * innovation;
-        keep[3 * i + c] -= k[i];
+        belief_.x[i] += k[static_cast<Eigen::Index>(i)] * innovation;
     }
-    belief_.p = product(product(keep, belief_.p), transposed(keep));  // Joseph's form
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            belief_.p[3 * i + j] += k[i] * k[j] * r;
-        }
-    }
+    square(belief_.p) = (keep * square(belief_.p) * keep.transpose() + r * k * k.transpose()).eval();  // Joseph's form
     return true;
 }
 
@@ -151,13 +135,7 @@ void ExtendedRunner::describe(const Belief& b, FilterEstimate& e) const {
     e.covariance = b.p;
     const auto sigma_along = [&](double gh, double gw, double gd) {
         const State g{gh, gw, gd};
-        double v = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j) {
-                v += g[i] * b.p[3 * i + j] * g[j];
-            }
-        }
-        return std::sqrt(std::max(v, 0.0));
+        return std::sqrt(std::max(g.dot(square(b.p) * g), 0.0));
     };
     e.gap_sigma = sigma_along(1, 0, 0);
     e.velocity_sigma = sigma_along(0, 1, 0);
