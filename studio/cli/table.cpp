@@ -109,17 +109,24 @@ int run_at(Shell& shell, const AtCommand& command) {
     std::vector<ForceTable> of_all =
         command.table.is_model() ? std::vector<ForceTable>{} : command.table.fit_all(shell);
     const std::size_t passes = command.table.is_model() ? command.points.size() : 1;
+    std::vector<std::vector<nlohmann::json>> values;  // by force, then by point
     for (std::size_t pass = 0; pass < passes; ++pass) {
         // The forces of a model are taken anew at what each point holds beside their axes.
         tables::Held asked = command.table.is_model() ? read_assignments(command.points[pass]) : tables::Held{};
         if (command.table.is_model()) {
             of_all = command.table.fit_all(shell, true, &asked);
         }
-        for (const auto& table : of_all) {
+        values.resize(of_all.size());
+        for (std::size_t t = 0; t < of_all.size(); ++t) {
             for (std::size_t i = 0; i < (command.table.is_model() ? 1 : command.points.size()); ++i) {
                 const tables::Held point = command.table.is_model() ? asked : read_assignments(command.points[i]);
-                document["values"].push_back(value_at(shell, table, point, said));
+                values[t].push_back(value_at(shell, of_all[t], point, said));
             }
+        }
+    }
+    for (const auto& of_one : values) {
+        for (const auto& value : of_one) {
+            document["values"].push_back(value);
         }
     }
     command.table.describe(document);
