@@ -14,15 +14,16 @@
 
 namespace underbody::estimator {
 
-/// The separate forces that the extended filter gives over measured runs, as means over stretches of gap. SI; sigmas are
-/// root mean squares of the stated standard deviations.
+/// The separate forces that the extended filter gives over measured runs, as means over stretches of gap. SI; sigmas
+/// are root mean squares of the stated standard deviations.
 struct SeparationAlongGap {
     std::vector<double> gap, ground_force, drag_force, ground_sigma, drag_sigma, total_sigma;
-    double force_density = 0;           ///< N^2/s, the likeliest departure from the model's forces
+    double force_density = 0;            ///< N^2/s, the likeliest departure from the model's forces
     double mean_squared_innovation = 0;  ///< 1 for a model that explains the motion
     double departure = 0;                ///< N, root mean square of what departs from the model's forces
 };
-/// `bins` stretches of equal width over the gaps that were measured; empty ones are left out. Throws as estimate() does.
+/// `bins` stretches of equal width over the gaps that were measured; empty ones are left out. Throws as estimate()
+/// does.
 SeparationAlongGap separation_along_gap(const dynamics::Model& model, const dynamics::Measurements& data,
                                         std::size_t bins = 30, core::Progress& progress = core::Progress::none());
 
