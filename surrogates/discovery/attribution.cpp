@@ -3,12 +3,28 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+
+#include "surrogates/discovery/guards.h"
 
 namespace underbody::discovery {
 
+namespace {
+
+constexpr double no_finding = 30;  ///< of a log weight: what is no finding keeps its place in the list and nothing else
+
+}  // namespace
+
 std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects) {
+    std::vector<std::size_t> all(hypotheses.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return best_hypothesis(hypotheses, effects, all);
+}
+
+std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects,
+                            const std::vector<std::size_t>& among) {
     std::size_t best = hypotheses.size();
-    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    for (const std::size_t i : among) {
         if (hypotheses[i].hypothesis.names.size() <= effects &&
             (best == hypotheses.size() ||
              hypotheses[i].score() - 2 * std::log(hypotheses[i].hypothesis.prior) <
@@ -27,7 +43,17 @@ double structure_left(const SmoothFit& rest, double explained) {
 Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest,
                       const Calibration& calibration) {
     Attribution result;
-    result.chosen = best_hypothesis(hypotheses, 2);
+    const auto most = static_cast<std::size_t>(calibration.most_effects);
+    std::vector<bool> finding(hypotheses.size());
+    std::vector<std::size_t> findings;
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+        finding[i] = differs_from_neutral(hypotheses[i], calibration.neutral_sigmas);
+        if (finding[i]) {
+            findings.push_back(i);
+        }
+    }
+    const bool any = !findings.empty();
+    result.chosen = any ? best_hypothesis(hypotheses, most, findings) : best_hypothesis(hypotheses, most);
     if (result.chosen >= hypotheses.size()) {
         result.verdict = gate_p < calibration.gate ? "unknown" : "none";
         result.none_probability = result.verdict == "none" ? 1 : 0;
@@ -46,10 +72,12 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
             continue;  // a second effect that did not earn its place
         }
         const double evidence = one.score() - one.occam - (best.score() - best.occam);
-        const double weight = std::log(one.hypothesis.prior) - 0.5 * (evidence / temperature + one.occam - best.occam);
-        const auto [place, first] = by_names.try_emplace(one.hypothesis.names, Attribution::Share{i, weight});
-        if (!first && weight > place->second.probability) {
-            place->second = {i, weight};
+        // a number that may as well be the one at which its effect does nothing is no finding
+        const double weight = std::log(one.hypothesis.prior) - 0.5 * (evidence / temperature + one.occam - best.occam) -
+                              (any && !finding[i] ? no_finding : 0.0);
+        const auto [known, first] = by_names.try_emplace(one.hypothesis.names, Attribution::Share{i, weight});
+        if (!first && weight > known->second.probability) {
+            known->second = {i, weight};
         }
     }
     double total = 0;
@@ -79,7 +107,7 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     if (gate_p >= calibration.gate) {
         result.verdict = "none";
     } else {
-        result.verdict = unexplained ? "unknown" : "effect";
+        result.verdict = unexplained || !any ? "unknown" : "effect";
     }
     result.chosen = result.shares.front().hypothesis;
     return result;

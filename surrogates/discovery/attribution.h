@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "surrogates/discovery/calibration.h"
 #include "surrogates/discovery/hypothesis.h"
 
 namespace underbody::discovery {
@@ -16,18 +17,6 @@ struct SmoothFit {
     double degrees = 0;               ///< effective degrees of freedom
     double p = 1;                     ///< chance of such a gain from noise, from simulation where it was made
     std::vector<double> gain_of_row;  ///< of each reading; static sets alone
-};
-
-/// Constants that the bench sets (tests/bench/discovery); they are the same for every data set of a kind.
-struct Calibration {
-    double gate = 0.01;        ///< the gate opens below this chance
-    double form_share = 0.01;  ///< share of what is explained that a law of another form may miss: widens probabilities
-    double unknown_share =
-        0.15;                  ///< share of the structure that the best named effect may leave before it is "unknown"
-    double unknown_p = 0.002;  ///< and the chance below which what is left is real
-    double pair_share = 0.05;  ///< least share of the explained part that a second effect must add
-    double pair_gain = 25;     ///< and its least gain in -2 log likelihood
-    std::string origin;        ///< where the constants came from
 };
 
 struct Attribution {
@@ -52,5 +41,8 @@ double structure_left(const SmoothFit& rest, double explained);
 
 /// The hypothesis of least score among those with at most `effects` names.
 std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects);
+/// The same of the hypotheses with these indices.
+std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects,
+                            const std::vector<std::size_t>& among);
 
 }  // namespace underbody::discovery

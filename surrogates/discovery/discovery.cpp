@@ -161,6 +161,16 @@ nlohmann::json to_json(const Discovery& d) {
             json["errors"].push_back(to_json(change));
         }
     }
+    if (!d.error.empty() && d.rest.twins > 0) {
+        const double unit = d.error.front().noise > 0 ? d.error.front().noise : 1;
+        json["rest"] = {{"is_noise", d.rest.is_noise},
+                        {"unexplained_in_noise", d.rest.is_noise ? 0.0 : d.rest.unexplained / unit},
+                        {"twins_in_noise", d.rest.twins / unit},
+                        {"depends_on", d.rest.depends_on}};
+    }
+    if (!d.mended.empty()) {
+        json["records_mended"] = d.mended;
+    }
     json["detection_limits"] = nlohmann::json::array();
     for (const DetectionLimit& limit : d.limits) {
         json["detection_limits"].push_back({{"name", limit.name},

@@ -90,6 +90,14 @@ struct Placebo {
     double error_ratio = 1;  ///< their held-out error after over before, root mean square
 };
 
+/// What the model as found still leaves of the held-out runs, beside twins: the same rig with the model as found.
+struct UnexplainedRest {
+    double twins = 0;        ///< held-out error of the twins, in the unit of the first error; 0: not simulated
+    double unexplained = 0;  ///< root of the difference of squares, in that unit
+    bool is_noise = true;    ///< the error is no more than the allowed factor above the twins'
+    std::vector<std::string> depends_on;
+};
+
 struct Discovery {
     std::string verdict;   ///< none, effect, unknown
     std::string sentence;  ///< the verdict for people
@@ -102,6 +110,8 @@ struct Discovery {
     std::map<std::string, NoiseUsed> noise;
     std::vector<ErrorChange> error;  ///< the first is the chief one
     std::string held_out;            ///< which data the error is from
+    std::string mended;              ///< how the records are read anew ([records] of the model); empty: as logged
+    UnexplainedRest rest;
     std::vector<DetectionLimit> limits;
     Consequence consequence;
     Placebo placebo;
@@ -121,6 +131,8 @@ struct DiscoverOptions {
     double horizon = 2;  ///< s, of the windows of the time-series error
     std::uint64_t seed = 1;
     std::vector<std::string> candidates;  ///< effects to consider; empty: all that such data can show
+    /// Numbers of Calibration that shall have another value, by name: for the bench that sets them.
+    std::map<std::string, double> constants;
     bool consequence = true;
     bool figures = true;
     std::size_t placebo_twins =

@@ -387,7 +387,7 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
             hypothesis.parameters[0].lower = hypothesis.parameters[1].lower =
                 0;  // deeper near, weaker far: not the other way round
         } else if (info.name == "tether_stiffness") {
-            start({{0.03, 0.1}});
+            start({{0.03, 0.1}, {0.5, 0.03}, {0.5, 0.15}, {4, 0.02}, {4, 0.1}});
         } else if (info.name != "periodic_disturbance") {  // its starts come from a scan over frequency
             start({{}});
             for (const FitParameter& p : hypothesis.parameters) {

@@ -100,9 +100,38 @@ std::string named(const FoundEffect& effect) {
 
 }  // namespace
 
+std::string rest_sentence(const Discovery& discovery) {
+    const UnexplainedRest& rest = discovery.rest;
+    if (rest.is_noise || discovery.error.empty()) {
+        return "";
+    }
+    const ErrorChange& chief = discovery.error.front();
+    const bool random = rest.depends_on.empty() || rest.depends_on == std::vector<std::string>{"time"};
+    return " A rest of " + core::format_number(rest.unexplained / std::max(chief.noise, 1e-300), 3) +
+           " noises is unexplained" +
+           (random ? std::string(" and follows no variable that was measured, as a random disturbance would")
+                   : ", over " + list_of(rest.depends_on)) +
+           ".";
+}
+
+namespace {
+
+std::string unknown_sentence(const Discovery& discovery, const std::string& error) {
+    const bool corrected = std::any_of(discovery.effects.begin(), discovery.effects.end(),
+                                       [](const FoundEffect& effect) { return !effect.uses.empty(); });
+    const bool over_time = discovery.depends_on == std::vector<std::string>{"time"};
+    return "Something real is missing that no effect of the catalogue explains; it depends on " +
+           list_of(discovery.depends_on) + "." +
+           (corrected   ? " A smooth correction was put into the model." + error
+            : over_time ? " The model is as declared: what one record did over time says nothing of the next."
+                        : " The model is as declared: no correction lowers the held-out error beyond its interval.");
+}
+
+}  // namespace
+
 std::string verdict_sentence(const Discovery& discovery) {
     const std::string error =
-        discovery.error.empty() || discovery.verdict == "none"
+        discovery.error.empty() || (discovery.verdict == "none" && discovery.mended.empty())
             ? ""
             : " On held-out data the error of " + discovery.error.front().channel +
                   (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from "
@@ -112,12 +141,14 @@ std::string verdict_sentence(const Discovery& discovery) {
                   " (noise " + core::format_number(discovery.error.front().noise, 3) + " " +
                   discovery.error.front().unit + ").";
     if (discovery.verdict == "none") {
-        return "Nothing is missing: what the model leaves looks like noise (chance of as much structure in noise: " +
-               core::format_number(discovery.gate, 2) + ").";
+        return (discovery.mended.empty()
+                    ? std::string("Nothing is missing")
+                    : "Nothing is missing once the logs are read right (" + discovery.mended + "; the model says so)") +
+               ": what the model leaves looks like noise (chance of as much structure in noise: " +
+               core::format_number(discovery.gate, 2) + ")." + error;
     }
     if (discovery.verdict == "unknown") {
-        return "Something real is missing that no effect of the catalogue explains; it depends on " +
-               list_of(discovery.depends_on) + ". A smooth correction was put into the model." + error;
+        return unknown_sentence(discovery, error) + rest_sentence(discovery);
     }
     std::string text = "The model lacks ";
     for (std::size_t i = 0; i < discovery.effects.size(); ++i) {
@@ -130,7 +161,7 @@ std::string verdict_sentence(const Discovery& discovery) {
                     core::format_number(rival.probability, 2) + ").";
         }
     }
-    return text + error;
+    return text + error + rest_sentence(discovery);
 }
 
 }  // namespace underbody::discovery

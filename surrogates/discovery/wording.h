@@ -18,6 +18,10 @@ std::string verdict_names(const Discovery& discovery);
 /// The verdict for people, one or two sentences.
 std::string verdict_sentence(const Discovery& discovery);
 
+/// What the model as found leaves unexplained of the held-out data, as a sentence that begins with a space; empty where
+/// it is noise.
+std::string rest_sentence(const Discovery& discovery);
+
 /// "9.8 ± 0.4 mN".
 std::string value_text(const FoundParameter& parameter);
 

@@ -21,28 +21,35 @@ void HeaveLoop::warn(const std::string& text) {
 }
 
 void HeaveLoop::measure_error() {
-    const HeaveRecords& records = test_records_ ? *test_records_ : records_;
-    HeaveExperiment test(model_, records, test_, data_.declared_noise("gap"), data_.declared_noise("heave_velocity"));
-    test.set_hold(experiment_->hold());
-    for (const double horizon : {options_.horizon, 5 * options_.horizon, std::numeric_limits<double>::infinity()}) {
+    const HeaveExperiment& test = held_out_runs();
+    const auto estimate = [&](const WindowSquares& windows) {
+        const BlockSquares sums = windows.by_record(test_.size());
+        return error_by_groups(sums.square, sums.count, options_.seed);
+    };
+    Answer before = answer_of({}, declared_noise_);
+    if (as_logged_) {
+        // the declared model with the log taken at its word
+        HeaveExperiment logged(model_, *as_logged_, test_, data_.declared_noise("gap"),
+                               data_.declared_noise("heave_velocity"));
+        logged.set_hold(experiment_->hold());
+        for (std::size_t i = 0; i < horizons().size(); ++i) {
+            before.windows[i] = window_errors(logged, {}, declared_noise_, horizons()[i]);
+        }
+    }
+    const Answer after = uses_.empty() ? answer_of({}, declared_noise_) : answer_of(uses_, after_noise_);
+    for (std::size_t i = 0; i < horizons().size(); ++i) {
         ErrorChange change;
         change.channel = std::string("gap");
         change.unit = std::string("m");
-        change.horizon = horizon;
+        change.horizon = horizons()[i];
         change.noise = std::hypot(null_noise_.gap, null_noise_.slow);
-        std::vector<double> square, count;
-        horizon_errors(test, {}, null_noise_, horizon, square, count);
-        change.before = error_by_groups(square, count, options_.seed);
-        change.after = change.before;
-        if (!uses_.empty()) {
-            horizon_errors(test, uses_, after_noise_, horizon, square, count);
-            change.after = error_by_groups(square, count, options_.seed);
-        }
+        change.before = estimate(before.windows[i]);
+        change.after = estimate(after.windows[i]);
         if (std::isfinite(change.before.rmse) && std::isfinite(change.after.rmse)) {
             result_.error.push_back(change);
         }
     }
-    result_.consequence.estimator_before = estimator_error(test, {}, null_noise_, uses_, after_noise_);
+    result_.consequence.estimator_before = estimator_error(test, {}, declared_noise_, uses_, after_noise_);
     result_.consequence.estimator_after = uses_.empty()
                                               ? result_.consequence.estimator_before
                                               : estimator_error(test, uses_, after_noise_, uses_, after_noise_);

@@ -10,30 +10,13 @@
 
 namespace underbody::discovery {
 
-namespace {
-
-/// Set on the bench of tests/bench/discovery; see its README for the data sets.
-Calibration heave_calibration() {
-    Calibration c;
-    c.gate = 0.002;
-    c.form_share = 0.01;
-    c.unknown_share = 0.3;
-    c.unknown_p = 1e-4;
-    c.pair_share = 0.1;
-    c.pair_gain = 40;
-    c.origin = "tests/bench/discovery, heave runs";
-    return c;
-}
-
-}  // namespace
-
 HeaveLoop::HeaveLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
                      core::Progress& progress)
     : model_(model),
       data_(data),
       options_(options),
       progress_(progress),
-      calibration_(heave_calibration()),
+      calibration_(heave_calibration(options.constants)),
       records_(prepare_heave_records(model, data)),
       records_read_(model.records) {}
 
@@ -42,10 +25,12 @@ Discovery HeaveLoop::run() {
     experiment_.emplace(model_, records_, train_, data_.declared_noise("gap"), data_.declared_noise("heave_velocity"));
     progress_.report(0.02, "noise");
     fit_null();
+    drop_accidents();
     progress_.report(0.08, "fitting the effects of the catalogue");
     fit_singles();
     try_hold();
     colour_noise();
+    absorb_small_shift();
     progress_.report(0.5, "testing what is left");
     open_gate();
     if (gate_ < calibration_.gate) {
@@ -53,6 +38,7 @@ Discovery HeaveLoop::run() {
         smooth_corrections();
         progress_.report(0.65, "pairs of effects");
         fit_pairs();
+        fit_further();
     }
     decide();
     progress_.report(0.8, "clean twins");
@@ -118,6 +104,62 @@ void HeaveLoop::fit_null() {
     experiment_->fit_process({}, noise);
     experiment_->fit_noise({}, noise);
     set_null(noise);
+}
+
+/// Readings far from what the filter expects while their neighbours are not: they would move states and figures.
+void HeaveLoop::drop_accidents() {
+    constexpr double far = 6;      // standard deviations
+    constexpr double most = 0.01;  // of the readings: more are no accidents
+    std::size_t dropped = 0;
+    const auto drop = [&](HeaveRecords& records, const std::vector<std::size_t>& chosen,
+                          const HeaveExperiment& experiment) {
+        for (const std::size_t r : chosen) {
+            HeaveRecord& record = records.records[r];
+            const std::size_t channels = record.velocity.empty() ? 1 : 2;
+            std::vector<double> innovations;
+            filter_innovations(record, experiment.explanation(r, {}), null_noise_, innovations);
+            std::vector<std::size_t> bad;
+            const std::size_t n = record.time.size();
+            for (std::size_t k = 25; k + 3 < n; ++k) {
+                const double own = std::abs(innovations[channels * k]);
+                bool peak = own > far;
+                for (std::size_t d = 1; d <= 3; ++d) {
+                    peak = peak && own > std::abs(innovations[channels * (k - d)]) &&
+                           own > std::abs(innovations[channels * (k + d)]);
+                }
+                if (peak) {
+                    bad.push_back(k);
+                }
+            }
+            if (static_cast<double>(bad.size()) < most * static_cast<double>(n)) {
+                for (const std::size_t k : bad) {
+                    record.gap[k] = std::nan("");
+                }
+                dropped += bad.size();
+            }
+        }
+    };
+    for (int round = 0; round < 3; ++round) {
+        const std::size_t before = dropped;
+        drop(records_, train_, *experiment_);
+        if (dropped == before) {
+            break;
+        }
+        fit_null();
+    }
+    if (dropped > 0) {
+        warn(std::to_string(dropped) +
+             " gap readings lie more than six standard deviations from what the motion before "
+             "them and after them says: not used");
+    }
+    // the same for what is held out, with the noise that was found
+    HeaveRecords& records = test_records_ ? *test_records_ : records_;
+    if (test_ != train_ || test_records_) {
+        const HeaveExperiment test(model_, records, test_, null_noise_.gap, {});
+        for (int round = 0; round < 3; ++round) {
+            drop(records, test_, test);
+        }
+    }
 }
 
 void HeaveLoop::set_null(HeaveNoise noise) {
@@ -270,6 +312,35 @@ void HeaveLoop::colour_noise() {
     }
 }
 
+/// A shift in time below a sample is how the log was written (held, linear, stamped before or after), no effect: the
+/// record is read so, and everything is judged again.
+void HeaveLoop::absorb_small_shift() {
+    const FittedHypothesis& best = fitted_[best_single_];
+    const std::string& name = best.hypothesis.names.front();
+    const double shift = best.fit.parameters.front();
+    const bool in_time = name == "input_delay" || name == "gap_sensor_delay" || name == "actuator_lag";
+    if (!records_.input_recorded || !in_time || std::abs(shift) >= records_.raw_step || best.explained < 10) {
+        return;
+    }
+    change_input(shift, 1);
+    records_read_.input_advance -= shift;
+    const double before = null_cost_;
+    const HeaveNoise noise = null_noise_;
+    fit_null();
+    if (null_cost_ > before) {
+        change_input(-shift, 1);
+        records_read_.input_advance += shift;
+        set_null(noise);
+        return;
+    }
+    result_.problems.push_back({core::Problem::Severity::note,
+                                "input_force and gap are " + core::format_number(1000 * shift, 3) +
+                                    " ms apart, less than a sample: read so, and no finding",
+                                core::Place{data_.folder.string(), {}, {}, {}}});
+    fit_singles();
+    colour_noise();
+}
+
 /// How logs like these are to be read: what model.toml says of them, so that a prediction reads them as this did.
 dynamics::RecordReading HeaveLoop::reading_found() const {
     dynamics::RecordReading reading = records_read_;
@@ -340,9 +411,12 @@ void HeaveLoop::check_input() {
         experiment_->set_hold(hold);
         return;
     }
+    as_logged_ = test_records_ ? *test_records_ : records_;
     change_input(-early, factor);
     records_read_.input_advance += early;
     records_read_.input_factor *= factor;
+    result_.mended = factor == 1 ? "input_force " + core::format_number(early, 2) + " s earlier"
+                                 : "input_force times " + core::format_number(factor, 4);
     if (factor == 1) {
         warn("the recorded input comes about " + core::format_number(early, 2) +
              " s after the motion that it makes: the clocks of input_force and gap differ; the input was moved forward "

@@ -10,15 +10,14 @@
 
 namespace underbody::discovery {
 
-void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
-                    const HeaveNoise& fitted_noise, double horizon, std::vector<double>& sum_of_squares,
-                    std::vector<double>& counts) {
+WindowSquares window_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
+                            const HeaveNoise& fitted_noise, double horizon) {
     // a filter that takes its model for perfect would carry the model's error into the state that a window starts from
     HeaveNoise noise = fitted_noise;
     noise.process = std::max(noise.process, 1e-9);
+    const double reading_noise = experiment.noise().gap;  // the same for whatever is compared
     const std::vector<std::size_t>& chosen = experiment.chosen();
-    sum_of_squares.assign(chosen.size(), 0);
-    counts.assign(chosen.size(), 0);
+    WindowSquares windows;
     std::vector<double> innovations, states, memories, input, predicted;
     // `unknown` comes as a table: the smooth force it was made from is gone by then, so the table itself is used
     for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -44,19 +43,62 @@ void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamic
             }
             free_run(record, explanation, input, first, last, states[2 * first], states[2 * first + 1], predicted,
                      memories.data() + first * dynamics::history_states);
+            windows.record.push_back(c);
+            windows.square.push_back(0);
+            windows.count.push_back(0);
             for (std::size_t k = first + 1; k <= last; ++k) {
                 if (std::isfinite(record.gap[k])) {
                     // the average of m readings carries 1/m of their variance: the rest is put back, so that the figure
                     // is one of readings
                     const double share = record.gap_share[k] * record.gap_share[k];
                     const double difference = record.gap[k] - predicted[k - first];
-                    sum_of_squares[c] += difference * difference + (1 - share) * noise.gap * noise.gap;
-                    counts[c] += 1;
+                    windows.square.back() += difference * difference + (1 - share) * reading_noise * reading_noise;
+                    windows.count.back() += 1;
                 }
             }
             first = last;
         }
     }
+    return windows;
+}
+
+BlockSquares WindowSquares::by_record(std::size_t records) const {
+    BlockSquares sums{std::vector<double>(records, 0), std::vector<double>(records, 0)};
+    for (std::size_t w = 0; w < record.size(); ++w) {
+        sums.square[record[w]] += square[w];
+        sums.count[record[w]] += count[w];
+    }
+    return sums;
+}
+
+BlockSquares WindowSquares::blocks(std::size_t records, std::size_t wanted) const {
+    BlockSquares sums;
+    const std::size_t each = std::max<std::size_t>(1, (wanted + records - 1) / std::max<std::size_t>(records, 1));
+    for (std::size_t begin = 0; begin < record.size();) {
+        std::size_t end = begin;
+        while (end < record.size() && record[end] == record[begin]) {
+            ++end;
+        }
+        const std::size_t parts = std::min(each, end - begin);
+        for (std::size_t p = 0; p < parts; ++p) {
+            sums.square.push_back(0);
+            sums.count.push_back(0);
+            for (std::size_t w = begin + (end - begin) * p / parts; w < begin + (end - begin) * (p + 1) / parts; ++w) {
+                sums.square.back() += square[w];
+                sums.count.back() += count[w];
+            }
+        }
+        begin = end;
+    }
+    return sums;
+}
+
+void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
+                    const HeaveNoise& noise, double horizon, std::vector<double>& sum_of_squares,
+                    std::vector<double>& counts) {
+    BlockSquares sums = window_errors(experiment, uses, noise, horizon).by_record(experiment.chosen().size());
+    sum_of_squares = std::move(sums.square);
+    counts = std::move(sums.count);
 }
 
 double estimator_error(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
@@ -83,26 +125,45 @@ double estimator_error(const HeaveExperiment& experiment, const std::vector<dyna
     return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-dynamics::EffectUse force_table(const FlexibleForce& force) {
+namespace {
+
+/// Grid lines over what was seen, and one on either side at which the correction has faded to nothing.
+std::vector<double> fading_lines(double lower, double upper, std::size_t inside) {
+    constexpr double fade = 0.1;  ///< of the range
+    std::vector<double> lines{lower - fade * (upper - lower)};
+    for (std::size_t i = 0; i < inside; ++i) {
+        lines.push_back(lower + (upper - lower) * static_cast<double>(i) / static_cast<double>(inside - 1));
+    }
+    lines.push_back(upper + fade * (upper - lower));
+    return lines;
+}
+
+}  // namespace
+
+dynamics::EffectUse force_table(const FlexibleForce& force, double largest) {
     const std::size_t variables = force.variables.size();
-    const std::size_t each = variables == 1 ? 97 : 33;
+    const std::size_t inside = variables == 1 ? 97 : 33;
+    const std::size_t each = inside + 2;
     std::size_t count = 1;
+    std::vector<std::vector<double>> lines;
     for (std::size_t v = 0; v < variables; ++v) {
         count *= each;
+        lines.push_back(fading_lines(force.lower[v], force.upper[v], inside));
     }
     std::vector<std::vector<double>> grid(variables, std::vector<double>(count));
     std::vector<double> values(count);
     for (std::size_t i = 0; i < count; ++i) {
         std::size_t rest = i;
         double point[4] = {0, 0, 0, 0};
+        bool faded = false;
         for (std::size_t v = 0; v < variables; ++v) {
-            const double x = force.lower[v] + (force.upper[v] - force.lower[v]) * static_cast<double>(rest % each) /
-                                                  static_cast<double>(each - 1);
-            grid[v][i] = x;
+            const std::size_t line = rest % each;
             rest /= each;
-            point[static_cast<std::size_t>(force.variables[v])] = x;
+            grid[v][i] = lines[v][line];
+            faded = faded || line == 0 || line + 1 == each;
+            point[static_cast<std::size_t>(force.variables[v])] = grid[v][i];
         }
-        values[i] = force(point[0], point[1], point[2], point[3]);
+        values[i] = faded ? 0 : std::clamp(force(point[0], point[1], point[2], point[3]), -largest, largest);
     }
     core::Table table;
     table.source = "correction-lift_force.csv";

@@ -6,12 +6,26 @@
 
 #include "core/progress.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/heave/heave_experiment.h"
 
 namespace underbody::discovery {
 
+/// Squared error of each window of a prediction, in the order of the records.
+struct WindowSquares {
+    std::vector<std::size_t> record;  ///< index into the experiment's chosen records
+    std::vector<double> square, count;
+    /// Summed by record.
+    [[nodiscard]] BlockSquares by_record(std::size_t records) const;
+    /// Summed over neighbouring windows of one record: about `wanted` blocks in all, none across two records.
+    [[nodiscard]] BlockSquares blocks(std::size_t records, std::size_t wanted) const;
+};
+
 /// Windows of `horizon` seconds one after the other, each from the filtered state at its start; measured readings (not
-/// averages) less prediction, summed by record.
+/// averages) less prediction.
+WindowSquares window_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
+                            const HeaveNoise& noise, double horizon);
+/// The same summed by record.
 void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                     const HeaveNoise& noise, double horizon, std::vector<double>& sum_of_squares,
                     std::vector<double>& counts);
@@ -22,8 +36,9 @@ double estimator_error(const HeaveExperiment& experiment, const std::vector<dyna
                        const HeaveNoise& noise, const std::vector<dynamics::EffectUse>& better,
                        const HeaveNoise& better_noise);
 
-/// A smooth force as an effect for model.toml: a table over its variables.
-dynamics::EffectUse force_table(const FlexibleForce& force);
+/// A smooth force as an effect for model.toml: a table over its variables, nowhere larger than `largest` (N), that
+/// fades to zero over a tenth of the range beyond what was seen.
+dynamics::EffectUse force_table(const FlexibleForce& force, double largest);
 
 /// Equilibria and stability region of the free motion before and after.
 Consequence heave_consequence(const dynamics::Model& before, const dynamics::Model& after, const HeaveRecords& records,

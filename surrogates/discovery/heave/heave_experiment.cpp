@@ -188,14 +188,18 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
         }
         return false;
     };
+    // coloured noise leaves little scatter from reading to reading: it may be several times as large as that
     for (const double time : {0.08, 0.3, 1.0}) {
-        for (const double size : {0.4, 1.0, 2.0}) {
-            HeaveNoise trial = noise;
-            trial.slow = size * noise.gap;
-            trial.slow_time = time;
-            for (const double share : {1.0, 1e-2, 1e-4, 1e-7}) {
-                trial.process = std::max(process_floor, noise.process * share);
-                attempt(trial);
+        for (const double size : {0.4, 1.0, 2.0, 4.0}) {
+            for (const double white : {1.0, 0.3}) {
+                HeaveNoise trial = noise;
+                trial.slow = size * noise.gap;
+                trial.slow_time = time;
+                trial.gap = white * noise.gap;
+                for (const double share : {1.0, 1e-2, 1e-4, 1e-7}) {
+                    trial.process = std::max(process_floor, noise.process * share);
+                    attempt(trial);
+                }
             }
         }
     }

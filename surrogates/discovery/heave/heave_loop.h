@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "surrogates/discovery/attribution.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/heave/heave_error.h"
 #include "surrogates/discovery/heave/heave_experiment.h"
 
 namespace underbody::discovery {
@@ -32,6 +33,8 @@ private:
     void fit_singles();
     void try_hold();
     void colour_noise();
+    void drop_accidents();
+    void absorb_small_shift();
     void check_input();
     void change_input(double seconds, double factor);
     [[nodiscard]] dynamics::RecordReading reading_found() const;
@@ -67,11 +70,44 @@ private:
 
     // heave_verdict.cpp
     void fit_pairs();
+    void fit_both(const std::vector<std::pair<std::size_t, std::size_t>>& pairs, std::vector<FittedHypothesis>& found,
+                  std::vector<HeaveNoise>& noises) const;
+    void fit_further();
     [[nodiscard]] bool plausible_pair(const FittedHypothesis& pair) const;
     void decide();
     [[nodiscard]] double stability() const;
 
-    // heave_twins.cpp
+    // heave_guards.cpp: what the verdict may say
+    /// What a model predicts of the held-out runs, over each of the horizons.
+    struct Answer {
+        std::vector<dynamics::EffectUse> uses;
+        HeaveNoise noise;
+        std::vector<WindowSquares> windows;
+        std::vector<std::string> variables;  ///< of a smooth correction
+    };
+    const HeaveExperiment& held_out_runs();
+    [[nodiscard]] std::vector<double> horizons() const;
+    [[nodiscard]] Answer answer_of(const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise);
+    [[nodiscard]] Answer declared_answer(const HeaveNoise& other);
+    [[nodiscard]] double held_out_error(const Answer& answer) const;  ///< m, over the first horizon
+    [[nodiscard]] bool falls(const Answer& before, const Answer& after) const;
+    [[nodiscard]] bool rest_is_noise(const Answer& answer);
+    /// Share of what the declared model misses beyond the twins that an answer leaves.
+    [[nodiscard]] double share_left(const Answer& declared, const Answer& answer) const;
+    [[nodiscard]] std::optional<Answer> smooth_answer();
+    void guard();
+    void refuse(const std::string& reason);
+    void call_rest_unknown(Answer& kept, Answer& declared);
+    /// N: as far as the residual force of the runs goes that a correction explains.
+    [[nodiscard]] double largest_force(const HeaveExperiment::Smooth& smooth) const;
+
+    // heave_null_simulation.cpp
+    /// Twins of an experiment's runs: the model with `uses` moves, `noise` is the filter's, `drawn` what is drawn.
+    [[nodiscard]] HeaveRecords twins_of(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
+                                        const HeaveNoise& noise, const HeaveNoise& drawn, std::uint64_t stream) const;
+    /// m: error of the held-out runs' twins over the first horizon.
+    [[nodiscard]] double twins_error(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses,
+                                     const HeaveNoise& noise) const;
     void run_placebo();
 
     // heave_describe.cpp
@@ -90,9 +126,12 @@ private:
     Calibration calibration_;
     HeaveRecords records_;
     std::optional<HeaveRecords> test_records_;
+    std::optional<HeaveRecords> as_logged_;  ///< the held-out records before the input was found to be wrong and mended
     std::vector<std::size_t> train_, test_;
     std::optional<HeaveExperiment> experiment_;
+    std::optional<HeaveExperiment> held_out_;
     HeaveNoise null_noise_, after_noise_;
+    HeaveNoise declared_noise_;  ///< of the filter that serves the model as declared best on the held-out runs
     double null_cost_ = 0;
     std::vector<double> null_innovations_, null_by_record_;
     std::vector<Hypothesis> candidates_;

@@ -1,8 +1,10 @@
-// Clean twins of the runs: the same motion by the declared model alone, to see how often this procedure finds what is
-// not there.
+// Twins of the runs: the same rig with its controller in the loop, moved by a model in which nothing is missing.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "surrogates/discovery/heave/heave_controller.h"
+#include "surrogates/discovery/heave/heave_error.h"
 #include "surrogates/discovery/heave/heave_loop.h"
 #include "surrogates/discovery/statistics.h"
 
@@ -10,59 +12,136 @@ namespace underbody::discovery {
 
 namespace {
 
-constexpr double track_rate = 3;  ///< 1/s, of the controller that keeps a twin on the measured track
+constexpr double track_rate = 3;  ///< 1/s, of a controller that keeps a twin on the measured track
+constexpr double lost = 3;        ///< of the range of the gap: a twin so far from its record has left it
 
-/// The declared model on the smoothed track of a record, with the input that this takes and fresh sensor noise.
-HeaveRecord twin_of(const HeaveRecord& record, const HeaveExplanation& best, const HeaveExplanation& declared,
-                    const HeaveNoise& noise, core::Random& random) {
-    HeaveNoise calm = noise;
-    calm.process = 1e-9;
-    const SmoothedRun track = smooth_with_force(record, best, calm, 0.001 * best.terms.mass);
-    const double mass = declared.terms.mass;
-    HeaveRecord twin = record;
-    std::vector<double> input;
-    transform_input(record, declared, input);
+/// What feeds a twin's input: the rig's own controller, or one that keeps it on the smoothed track.
+struct Loop {
+    const ControllerAnswer* own = nullptr;
+    const SmoothedRun* track = nullptr;
+};
+
+struct Twin {
+    HeaveRecord record;
+    bool stayed = true;  ///< near the record's own motion
+};
+
+/// `model` moves from the state at the beginning of the track, with fresh sensor noise and process noise; its readings
+/// go back to the controller.
+Twin simulate(const HeaveRecord& record, const HeaveExplanation& model, const SmoothedRun& track, const Loop& loop,
+              const HeaveNoise& noise, core::Random& random) {
+    Twin twin{record, true};
+    std::vector<double> input, answered(record.time.size(), 0), apart(record.time.size(), 0);
+    transform_input(record, model, input);
+    const auto [low, high] = std::minmax_element(track.gap.begin(), track.gap.end());
+    const double range = std::max(*high - *low, 20 * noise.gap);
     double h = track.gap.front();
     double w = track.velocity.front();
     double slow = noise.slow * random.normal();
-    const std::size_t n = record.time.size();
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < record.time.size(); ++k) {
         if (k > 0) {
-            input[k] += mass * track_rate * (track_rate * (track.gap[k - 1] - h) + 2 * (track.velocity[k - 1] - w));
-            step_once(record, declared, input, k, h, w);
-            const double phi = std::exp(-(record.time[k] - record.time[k - 1]) / noise.slow_time);
+            const double dt = record.time[k] - record.time[k - 1];
+            if (loop.own != nullptr) {
+                for (std::size_t i = 0; i < loop.own->input.size() && i < k; ++i) {
+                    answered[k] += loop.own->input[i] * answered[k - 1 - i];
+                }
+                for (std::size_t i = 0; i < loop.own->reading.size() && i < k; ++i) {
+                    answered[k] += loop.own->reading[i] * apart[k - 1 - i];
+                }
+            } else {
+                answered[k] = model.terms.mass * track_rate *
+                              (track_rate * (track.gap[k - 1] - h) + 2 * (track.velocity[k - 1] - w));
+            }
+            input[k] += answered[k];
+            w += std::sqrt(noise.process * dt) * random.normal();
+            step_once(record, model, input, k, h, w);
+            const double phi = std::exp(-dt / noise.slow_time);
             slow = phi * slow + noise.slow * std::sqrt(1 - phi * phi) * random.normal();
         }
-        twin.gap[k] =
-            std::isfinite(record.gap[k]) ? h + slow + noise.gap * record.gap_share[k] * random.normal() : std::nan("");
+        if (!std::isfinite(h) || h < 0 || std::abs(h - track.gap[k]) > lost * range) {
+            twin.stayed = false;
+            return twin;
+        }
+        const double reading = h + model.terms.sensor_bias - model.terms.sensor_delay * w + slow +
+                               noise.gap * record.gap_share[k] * random.normal();
+        twin.record.gap[k] = std::isfinite(record.gap[k]) ? reading : std::nan("");
+        apart[k] = std::isfinite(record.gap[k]) ? reading - record.gap[k] : 0;
         if (!record.velocity.empty() && std::isfinite(record.velocity[k])) {
-            twin.velocity[k] = w + noise.velocity * record.velocity_share[k] * random.normal();
+            twin.record.velocity[k] = w + noise.velocity * record.velocity_share[k] * random.normal();
         }
     }
-    // as a recorded input it is held from step to step
-    twin.raw_time = record.time;
-    twin.raw_input.assign(input.begin() + 1, input.end());
-    twin.raw_input.push_back(input.back());
-    prepare_input(twin);
+    // as a recorded input it is held from step to step, and stands for what the body felt
+    twin.record.raw_time = record.time;
+    twin.record.raw_input.assign(input.begin() + 1, input.end());
+    twin.record.raw_input.push_back(input.back());
+    prepare_input(twin.record);
     return twin;
+}
+
+/// The input of a twin is what the body felt: the effects between command and body are in it.
+std::vector<dynamics::EffectUse> without_actuator(const std::vector<dynamics::EffectUse>& uses,
+                                                  const dynamics::Model& model) {
+    std::vector<dynamics::EffectUse> kept;
+    for (const dynamics::EffectUse& use : uses) {
+        dynamics::HeaveTerms terms;
+        dynamics::effect(use.name).add_to(terms, use, model);
+        if (terms.actuator.ideal()) {
+            kept.push_back(use);
+        }
+    }
+    return kept;
 }
 
 }  // namespace
 
+HeaveRecords HeaveLoop::twins_of(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
+                                 const HeaveNoise& noise, const HeaveNoise& drawn, std::uint64_t stream) const {
+    const HeaveRecords& records = experiment.records();
+    HeaveRecords twins;
+    twins.velocity_measured = records.velocity_measured;
+    twins.input_recorded = true;
+    twins.gap_noise = records.gap_noise;
+    twins.velocity_noise = records.velocity_noise;
+    const ControllerAnswer own = fit_controller(records, experiment.chosen());
+    core::Random random(options_.seed + 77, stream);
+    for (const std::size_t r : experiment.chosen()) {
+        const HeaveRecord& record = records.records[r];
+        const HeaveExplanation model = experiment.explanation(r, uses);
+        HeaveNoise calm = noise;
+        calm.process = 1e-9;
+        const SmoothedRun track = smooth_with_force(record, model, calm, 0.001 * model.terms.mass);
+        Twin twin = simulate(record, model, track, {&own, nullptr}, drawn, random);
+        if (!twin.stayed) {
+            twin = simulate(record, model, track, {nullptr, &track}, drawn, random);
+        }
+        twins.records.push_back(std::move(twin.record));
+    }
+    return twins;
+}
+
+double HeaveLoop::twins_error(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses,
+                              const HeaveNoise& noise) const {
+    constexpr std::size_t twins = 4;
+    HeaveNoise drawn = noise;
+    drawn.process = 0;  // a random force on the body is no noise of a sensor: it is said
+    std::vector<std::size_t> all(test.chosen().size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    double square = 0;
+    for (std::size_t t = 0; t < twins; ++t) {
+        const HeaveRecords records = twins_of(test, uses, noise, drawn, 1000 + t);
+        HeaveExperiment clean(model_, records, all, test.noise().gap, {});
+        clean.set_noise(test.noise());
+        const std::vector<dynamics::EffectUse> felt = without_actuator(uses, model_);
+        square += std::pow(window_errors(clean, felt, noise, options_.horizon).by_record(all.size()).rmse(), 2);
+    }
+    return std::sqrt(square / twins);
+}
+
 void HeaveLoop::run_placebo() {
     for (std::size_t t = 0; t < options_.placebo_twins; ++t) {
-        HeaveRecords records;
-        records.velocity_measured = records_.velocity_measured;
-        records.input_recorded = true;
-        core::Random random(options_.seed + 77, t);
-        for (const std::size_t r : train_) {
-            records.records.push_back(twin_of(records_.records[r], experiment_->explanation(r, uses_),
-                                              experiment_->explanation(r, {}), after_noise_, random));
-        }
+        const HeaveRecords records = twins_of(*experiment_, {}, after_noise_, after_noise_, t);
         std::vector<std::size_t> all(records.records.size());
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            all[k] = k;
-        }
+        std::iota(all.begin(), all.end(), std::size_t{0});
         HeaveExperiment clean(model_, records, all, {}, {});
         HeaveNoise noise = after_noise_;
         clean.fit_process({}, noise);

@@ -17,19 +17,48 @@ namespace {
 constexpr std::size_t seconds_tried = 5;
 
 /// Effects whose laws can stand in for parts of each other.
-bool one_kind(const std::vector<std::string>& names) {
-    static const std::vector<std::set<std::string>> kinds{
+const std::vector<std::set<std::string>>& kinds() {
+    static const std::vector<std::set<std::string>> list{
         {"linear_damping", "quadratic_damping", "squeeze_film_damping", "coulomb_friction", "history_force",
          "ambient_heave_current"},
         {"added_mass", "gap_dependent_added_mass", "history_force"},
         {"constant_force", "tether_stiffness", "surface_roughness", "gap_sensor_bias", "declared_parameter"},
         {"input_gain", "input_dead_zone", "input_delay", "actuator_lag", "gap_sensor_delay"}};
-    return std::any_of(kinds.begin(), kinds.end(), [&](const std::set<std::string>& kind) {
+    return list;
+}
+
+bool one_kind(const std::vector<std::string>& names) {
+    return std::any_of(kinds().begin(), kinds().end(), [&](const std::set<std::string>& kind) {
         return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return kind.count(name) > 0; });
     });
 }
 
 }  // namespace
+
+/// Both of each pair at once; appended.
+void HeaveLoop::fit_both(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
+                         std::vector<FittedHypothesis>& found, std::vector<HeaveNoise>& noises) const {
+    const std::size_t first = found.size();
+    found.resize(first + pairs.size());
+    noises.resize(first + pairs.size());
+    core::parallel_for(
+        pairs.size(),
+        [&](std::size_t k) {
+            const auto [a, b] = pairs[k];
+            const Hypothesis& second = fitted_[b].hypothesis;
+            std::vector<double> start = second.starts.empty() ? fitted_[b].fit.parameters : second.starts.front();
+            if (second.names.front() == "periodic_disturbance") {
+                const auto starts =
+                    experiment_->periodic_starts(fitted_[a].hypothesis.with(fitted_[a].fit.parameters), noises_[a], 1);
+                start = starts.empty() ? start : starts.front();
+            }
+            HeaveExperiment::Result result =
+                fitted(joined(fitted_[a].hypothesis, fitted_[a].fit.parameters, second, start), noises_[a]);
+            found[first + k] = std::move(result.fitted);
+            noises[first + k] = result.noise;
+        },
+        progress_);
+}
 
 /// A second effect is looked for where the best single one leaves structure, and stays when it earns its place.
 void HeaveLoop::fit_pairs() {
@@ -59,25 +88,26 @@ void HeaveLoop::fit_pairs() {
             add(other, beside.second[k]);
         }
     }
-    std::vector<FittedHypothesis> found(pairs.size());
-    std::vector<HeaveNoise> noises(pairs.size());
-    core::parallel_for(
-        pairs.size(),
-        [&](std::size_t k) {
-            const auto [a, b] = pairs[k];
-            const Hypothesis& second = fitted_[b].hypothesis;
-            std::vector<double> start = second.starts.empty() ? fitted_[b].fit.parameters : second.starts.front();
-            if (second.names.front() == "periodic_disturbance") {
-                const auto starts =
-                    experiment_->periodic_starts(fitted_[a].hypothesis.with(fitted_[a].fit.parameters), noises_[a], 1);
-                start = starts.empty() ? start : starts.front();
+    std::vector<FittedHypothesis> found;
+    std::vector<HeaveNoise> noises;
+    fit_both(pairs, found, noises);
+    if (!found.empty()) {
+        // either of the best two may stand in for one that is like it
+        const auto [a, b] = pairs[best_hypothesis(found, 2)];
+        const std::size_t before = pairs.size();
+        for (std::size_t c = 0; c < singles_; ++c) {
+            const std::string& name = fitted_[c].hypothesis.names.front();
+            if (one_kind({name, fitted_[b].hypothesis.names.front()})) {
+                add(a, c);
             }
-            HeaveExperiment::Result result =
-                fitted(joined(fitted_[a].hypothesis, fitted_[a].fit.parameters, second, start), noises_[a]);
-            found[k] = std::move(result.fitted);
-            noises[k] = result.noise;
-        },
-        progress_);
+            if (one_kind({name, fitted_[a].hypothesis.names.front()})) {
+                add(b, c);
+            }
+        }
+        const std::vector<std::pair<std::size_t, std::size_t>> more(pairs.begin() + static_cast<std::ptrdiff_t>(before),
+                                                                    pairs.end());
+        fit_both(more, found, noises);
+    }
     for (std::size_t k = found.size(); k-- > 0;) {
         if (!plausible_pair(found[k])) {
             found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
@@ -107,9 +137,54 @@ void HeaveLoop::fit_pairs() {
     }
 }
 
+/// A third and a fourth effect, one at a time, where the best set so far leaves structure that noise does not make.
+void HeaveLoop::fit_further() {
+    for (std::size_t count = 3; count <= static_cast<std::size_t>(calibration_.most_effects); ++count) {
+        const std::size_t base = best_hypothesis(fitted_, count - 1);
+        if (fitted_[base].hypothesis.names.size() + 1 != count || rest_.fit.p > calibration_.unknown_p) {
+            return;
+        }
+        std::vector<FittedHypothesis> found(std::min(seconds_tried, rest_.second.size()));
+        std::vector<HeaveNoise> noises(found.size());
+        core::parallel_for(
+            found.size(),
+            [&](std::size_t k) {
+                const FittedHypothesis& other = fitted_[rest_.second[k]];
+                const Hypothesis& next = other.hypothesis;
+                HeaveExperiment::Result result =
+                    fitted(joined(fitted_[base].hypothesis, fitted_[base].fit.parameters, next,
+                                  next.starts.empty() ? other.fit.parameters : next.starts.front()),
+                           noises_[base]);
+                found[k] = std::move(result.fitted);
+                noises[k] = result.noise;
+            },
+            progress_);
+        std::size_t best = found.size();
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (differs_from_neutral(found[k], calibration_.neutral_sigmas) &&
+                found[k].hypothesis.names.size() == count &&
+                (best == found.size() || found[k].score() < found[best].score())) {
+                best = k;
+            }
+        }
+        // each has to bring as much as a second one must
+        const double before = null_cost_ - fitted_[base].cost;
+        if (best == found.size() || fitted_[base].score() - found[best].score() <
+                                        std::max(calibration_.pair_gain, 0.5 * calibration_.pair_share * before)) {
+            return;
+        }
+        rest_ = rest_beside(found[best], noises[best]);
+        fitted_.push_back(std::move(found[best]));
+        noises_.push_back(noises[best]);
+    }
+}
+
 /// Two laws of one kind that work against each other are no two effects: together they bend into a law that neither
 /// has.
 bool HeaveLoop::plausible_pair(const FittedHypothesis& pair) const {
+    if (!differs_from_neutral(pair, calibration_.neutral_sigmas)) {
+        return false;
+    }
     static const std::set<std::string> signed_alike{
         "linear_damping", "quadratic_damping", "squeeze_film_damping",    "coulomb_friction",
         "history_force",  "added_mass",        "gap_dependent_added_mass"};
@@ -135,7 +210,7 @@ bool HeaveLoop::plausible_pair(const FittedHypothesis& pair) const {
 
 void HeaveLoop::decide() {
     SmoothFit rest = rest_.fit;
-    const std::size_t chosen = best_hypothesis(fitted_, 2);
+    const std::size_t chosen = best_hypothesis(fitted_, static_cast<std::size_t>(calibration_.most_effects));
     if (!whole_list_.empty() && chosen < fitted_.size()) {
         // a law without a name must do better on runs that it was not fitted to
         double smooth = 0;
@@ -166,15 +241,8 @@ void HeaveLoop::decide() {
     result_.none_probability = attribution_.none_probability;
     result_.model = model_;
     result_.model.records = reading_found();
-    after_noise_ = null_noise_;
-    if (result_.verdict == "effect") {
-        uses_ = found_effect(fitted_[attribution_.chosen], 1).uses;
-        after_noise_ = noises_[attribution_.chosen];
-    } else if (result_.verdict == "unknown" && !whole_list_.empty()) {
-        const HeaveExperiment::Smooth smooth = refined(best_smooth(whole_list_));
-        uses_ = {force_table(smooth.force)};
-        after_noise_ = smooth.noise;
-    }
+    after_noise_ = declared_noise_ = null_noise_;
+    guard();
     for (const dynamics::EffectUse& use : uses_) {
         result_.model = result_.model.with_effect(use);
     }

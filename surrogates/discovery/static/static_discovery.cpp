@@ -15,30 +15,13 @@ namespace underbody::discovery {
 
 using dynamics::Channel;
 
-namespace {
-
-/// Set on the bench of tests/bench/discovery; see its README for the data sets.
-Calibration static_calibration() {
-    Calibration c;
-    c.gate = 0.002;
-    c.form_share = 0.003;
-    c.unknown_share = 0.12;
-    c.unknown_p = 0.002;
-    c.pair_share = 0.05;
-    c.pair_gain = 20;
-    c.origin = "tests/bench/discovery, static sets";
-    return c;
-}
-
-}  // namespace
-
 StaticLoop::StaticLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
                        core::Progress& progress)
     : model_(model),
       data_(data),
       options_(options),
       progress_(progress),
-      calibration_(static_calibration()),
+      calibration_(static_calibration(options.constants)),
       experiment_(model, data) {}
 
 Discovery StaticLoop::run() {

@@ -90,6 +90,8 @@ public:
     [[nodiscard]] double estimated() const { return degrees_ >= 6 ? std::sqrt(std::max(rest_, 0.0) / degrees_) : 0; }
     /// Relative error of estimated().
     [[nodiscard]] double spread() const { return degrees_ > 0 ? 1 / std::sqrt(2 * degrees_) : 1; }
+    /// True where it is the scatter of repeats; else of what smooth laws leave, which a law without that form inflates.
+    [[nodiscard]] bool of_repeats() const { return repeats_; }
     [[nodiscard]] double of_all() const { return root_mean_square(left_); }
 
 private:
@@ -151,7 +153,18 @@ void StaticExperiment::estimate_noise() {
         figure.declared = scatter.declared();
         figure.estimated = scatter.estimated();
         const double ratio = figure.declared > 0 && figure.estimated > 0 ? figure.estimated / figure.declared : 1;
-        const bool wrong = std::abs(std::log(ratio)) > std::max(0.15, 3.5 * scatter.spread());
+        const bool apart = std::abs(std::log(ratio)) > std::max(0.15, 3.5 * scatter.spread());
+        const bool wrong = apart && (ratio < 1 || scatter.of_repeats());
+        if (apart && !wrong) {
+            problems_.push_back({core::Problem::Severity::note,
+                                 "the declared noise of " + quantities_[q] + " (" +
+                                     core::format_number(figure.declared, 3) + " " + figure.unit +
+                                     ") is less than what smooth laws leave (" +
+                                     core::format_number(figure.estimated, 3) + " " + figure.unit +
+                                     "); without repeats of set points that is no measure of noise: the declared "
+                                     "figure is used",
+                                 {}});
+        }
         if (figure.declared > 0 && !wrong) {
             figure.value = figure.declared;
             figure.from = "declared";

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/parallel.h"
+#include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/static/static_loop.h"
 #include "surrogates/discovery/statistics.h"
@@ -88,7 +89,9 @@ void StaticLoop::fit_pairs() {
                                      second.starts.empty() ? second.start() : second.starts.front()));
         },
         progress_);
-    std::erase_if(found, [&](const FittedHypothesis& pair) { return cancels(pair); });
+    std::erase_if(found, [&](const FittedHypothesis& pair) {
+        return cancels(pair) || !differs_from_neutral(pair, calibration_.neutral_sigmas);
+    });
     const std::size_t best = best_hypothesis(found, 2);
     if (best >= found.size()) {
         return;

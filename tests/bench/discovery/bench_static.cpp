@@ -9,7 +9,8 @@ using namespace underbody;
 namespace {
 
 const char* const usage =
-    "bench_discovery_static [--family glide|towed|jet|both] [--kind single|clean|unknown|pair|noise] [--only EFFECT] "
+    "bench_discovery_static [--family glide|towed|jet|both] [--kind single|clean|unknown|pair|noise|rig] [--only "
+    "EFFECT] "
     "[--level X]\n"
     "                       [--seeds N] [--first-seed N] [--threads N] [--no-peers] [--markdown] [--verbose]\n"
     "Constants of the program were set on seeds 1 to 99; figures are quoted from seeds 1000 and up.\n";
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
         const std::string other = family == "jet" ? "pump_curve" : "current";
         cases("pair", {"force_bias", other}, "", 4);
         cases("pair", {"gap_offset", "drift"}, "", 4);
+        cases("rig scale and offset", {"gap_offset", "sensor_gain"}, "", 25);
         cases("noise single", {"gap_offset"}, "", 2);
         cases("noise single", {"sensor_gain"}, "", 2);
         cases("noise clean", {}, "", 0, 50);

@@ -30,15 +30,19 @@ void describe(const Case& wanted, const Outcome& one, const discovery::Discovery
     for (const std::string& name : found.depends_on) {
         on += name + " ";
     }
-    std::printf("   %-60s -> %s %.2f gate %.2g: %s; dep %s; err %.2f -> %.2f (best %.2f) pull %.1f; %.1f s\n",
-                wanted.text().c_str(), one.verdict.c_str(), one.stated, found.gate, said.c_str(), on.c_str(),
-                one.before, one.after, one.best, one.pull, one.seconds);
+    std::printf(
+        "   %-60s -> %s %.2f gate %.2g: %s; dep %s; err %.2f -> %.2f (best %.2f, twins "
+        "%.2f, noise %.3g %s) pull %.1f; %.1f s\n",
+        wanted.text().c_str(), one.verdict.c_str(), one.stated, found.gate, said.c_str(), on.c_str(), one.before,
+        one.after, one.best, found.rest.twins / found.error.front().noise, found.error.front().noise,
+        found.noise.empty() ? "" : found.noise.begin()->second.from.c_str(), one.pull, one.seconds);
     std::fflush(stdout);
 }
 
 Outcome peer_outcome(const PeerAnswer& answer, const Sample& sample, const std::string& channel, double noise) {
     Outcome one;
     one.truth = sample.names;
+    one.also = sample.also;
     one.verdict = answer.verdict;
     one.names = answer.verdict == "unknown" ? std::vector<std::string>{"unknown"} : answer.names;
     std::vector<std::string> truth = sample.depends_on, said = answer.depends_on;
@@ -79,6 +83,8 @@ Options read_options(int argc, char** argv, const char* usage) {
             o.verbose = true;
         else if (std::strcmp(argv[i], "--markdown") == 0)
             o.markdown = true;
+        else if (std::strcmp(argv[i], "--recalibrate") == 0)
+            o.recalibrate = true;
         else if (std::strcmp(argv[i], "--no-peers") == 0)
             o.peers = false;
         else {
@@ -93,7 +99,7 @@ Options read_options(int argc, char** argv, const char* usage) {
 bool Campaign::wants(const std::string& kind, const std::vector<std::string>& names, const std::string& law,
                      double level) const {
     const std::string word = kind.substr(0, kind.find(' '));
-    if (options_.kind != "all" && options_.kind != word) {
+    if (options_.kind != "all" && options_.kind != word && options_.kind != kind) {
         return false;
     }
     if (!options_.only.empty() && std::find(names.begin(), names.end(), options_.only) == names.end() &&
@@ -113,10 +119,12 @@ void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::
     data.runs.insert(data.runs.end(), sample.test.runs.begin(), sample.test.runs.end());
     discovery::DiscoverOptions settings;
     settings.figures = settings.consequence = false;
+    settings.constants = options_.constants;
     const std::clock_t begin = std::clock();
     const discovery::Discovery found = discovery::discover(model, data, settings);
     Outcome one = outcome_of(found, sample.names, sample.depends_on);
     one.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;  // of all threads: fair on a busy machine
+    one.also = sample.also;
     const std::string channel = found.error.front().channel;
     const double noise = noise_of(wanted, channel);
     one.before = found.error.front().before.rmse / noise;
@@ -143,6 +151,16 @@ void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::
 Tally Campaign::tally(const std::string& kind, const std::string& method) const {
     const auto found = tallies_.find(kind);
     return found == tallies_.end() || found->second.count(method) == 0 ? Tally{} : found->second.at(method);
+}
+
+std::vector<std::string> Campaign::kinds() const {
+    std::vector<std::string> list;
+    for (const auto& [kind, methods] : tallies_) {
+        if (kind.find("   ") == std::string::npos && kind.find(' ') != std::string::npos) {
+            list.push_back(kind);
+        }
+    }
+    return list;
 }
 
 void Campaign::print_markdown() const {

@@ -20,6 +20,8 @@ struct Options {
     int coloured = -1, velocity = -1;  ///< -1: by seed
     int threads = 0;
     bool verbose = false, peers = true, markdown = false;
+    bool recalibrate = false;                 ///< once more with half and twice each number that decides a verdict
+    std::map<std::string, double> constants;  ///< of those numbers, by name
 };
 
 /// Prints `usage` and leaves with exit code 2 where the command line is wrong.
@@ -43,6 +45,10 @@ public:
 
     /// All counts, calibration, coverage, time and memory; the table of the README with --markdown.
     void print() const;
+
+    /// Of one kind, by discover() itself; empty where none was run.
+    [[nodiscard]] Tally of(const std::string& kind) const { return tally(kind, "discover"); }
+    [[nodiscard]] std::vector<std::string> kinds() const;
 
 private:
     void print_markdown() const;

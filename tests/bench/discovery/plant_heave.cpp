@@ -99,6 +99,9 @@ struct Plant {
                 f += e.a * (u - 0.03) * std::exp(-std::pow((h - 0.09) / 0.04, 2));
             else if (n == "jump_in_gap")
                 f += e.a * std::tanh((h - 0.1 - 0.06 * e.b) / 0.008);
+            else if (n == "wavy_floor")
+                lift +=
+                    jet_lift(std::max(0.004, h + e.a * std::sin(2 * pi * (0.1 + 0.3 * e.b) * t + e.c))) - jet_lift(h);
         }
         const double drag = linear * relative + quadratic * relative * std::abs(relative);
         double slope = 0;
@@ -110,10 +113,40 @@ struct Plant {
 struct Track {
     std::vector<double> time, gap, velocity, input;  ///< at the sampling times; true gap and velocity
     std::vector<double> sensed, sensed_velocity;     ///< what a perfect reading would be
+    std::vector<double> reading;                     ///< as logged, where the controller was fed with it
+};
+
+/// The gap sensor of a rig whose controller is fed what is logged.
+class Sensor {
+public:
+    Sensor(const Rig& rig, double step) : rig_(rig), step_(step) {}
+
+    /// True gap after each fine step, oldest first.
+    void moved(double gap) { past_.push_back(gap); }
+
+    double reading(double t, double delay, double bias, core::Random& random) {
+        const double back = delay / step_;
+        const double place = std::max(0.0, static_cast<double>(past_.size() - 1) - back);
+        const std::size_t i = std::min(static_cast<std::size_t>(place), past_.size() - 1);
+        const double part = place - static_cast<double>(i);
+        const double gap = past_[i] + part * (past_[std::min(i + 1, past_.size() - 1)] - past_[i]);
+        noise_ = begun_ ? rig_.ar * noise_ + std::sqrt(1 - rig_.ar * rig_.ar) * random.normal() : random.normal();
+        begun_ = true;
+        double value = gap + bias + 2e-4 * (noise_ + rig_.drift * t / 40);
+        value += random.uniform() < rig_.outliers ? 0.02 * (random.uniform() - 0.5) : 0;
+        const double step = 2e-4 * rig_.rounding;
+        return step > 0 ? step * std::round(value / step) : value;
+    }
+
+private:
+    const Rig& rig_;
+    double step_, noise_ = 0;
+    bool begun_ = false;
+    std::vector<double> past_;
 };
 
 /// One closed-loop run. `style` 0: steps under a soft controller; 1: sines under a stiffer one.
-Track one_run(const Plant& plant, double rate, double seconds, int style, core::Random& random) {
+Track one_run(const Plant& plant, const Rig& rig, double rate, double seconds, int style, core::Random& random) {
     const double dt = 1 / rate;
     const int sub = std::max(1, static_cast<int>(std::lround(dt / fine)));
     const double step = dt / sub;
@@ -141,6 +174,18 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
     for (const Extra& e : plant.extras) {
         history = e.name == "history_force" ? e.a : history;
     }
+    Sensor sensor(rig, step);
+    sensor.moved(h);
+    // a random force (first order) and a thruster whose command must turn by a play before it follows
+    double gust = 0, gust_size = 0, gust_time = 1, play = 0, played = 0, last_seen = h;
+    for (const Extra& e : plant.extras) {
+        if (e.name == "gusts") {
+            gust_size = e.a;
+            gust_time = 0.3 + 2.5 * e.b;
+            gust = gust_size * random.normal();
+        }
+        play = e.name == "backlash" ? e.a : play;
+    }
     const int samples = static_cast<int>(std::lround(seconds * rate));
     for (int k = 0; k < samples; ++k) {
         const double t = k * dt;
@@ -153,7 +198,14 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
             reference = 0.14 + 0.09 * std::sin(rates[0] * t + phases[0]) + 0.03 * std::sin(rates[2] * t + phases[2]);
         }
         // an observer of its own, fed by a noisy reading
-        const double reading = h + 2e-4 * random.normal();
+        double reading = h + 2e-4 * random.normal();
+        if (rig.feedback) {
+            reading = sensor.reading(t, plant.sensor_delay, plant.bias, random);
+            const bool lost = random.uniform() < rig.dropouts;
+            track.reading.push_back(lost ? std::nan("") : reading);
+            reading = lost ? last_seen : reading;
+            last_seen = reading;
+        }
         const double innovation = reading - estimate;
         estimate += slope * dt + 0.15 * innovation * dt * 50;
         slope += 0.25 * innovation * dt * 50;
@@ -178,6 +230,10 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
                     m = 0;
                 }
             }
+            if (play > 0) {
+                played = k == 0 && s == 0 ? held : std::clamp(played, held - play, held + play);
+                held = played;
+            }
             felt = held;
             if (plant.lag > 0) {
                 const double rise = 1 - std::exp(-step / plant.lag);
@@ -198,7 +254,7 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
             };
             const auto rates_of = [&](double hh, double ww, double tt, double remembered) {
                 const double m = plant.inertia(hh, slope_of_mass) + extra_mass;
-                return (plant.force(tt, hh, ww, felt) + remembered) / m;
+                return (plant.force(tt, hh, ww, felt) + gust + remembered) / m;
             };
             const double a1 = rates_of(h, w, now, basset(0, 0));
             const double hm = h + 0.5 * step * w, wm = w + 0.5 * step * a1;
@@ -213,6 +269,11 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
             }
             h += step * wm;
             w += step * a2;
+            sensor.moved(h);
+            if (gust_size > 0) {
+                const double phi = std::exp(-step / gust_time);
+                gust = phi * gust + gust_size * std::sqrt(1 - phi * phi) * random.normal();
+            }
         }
     }
     track.sensed.resize(track.gap.size());
@@ -227,10 +288,10 @@ Track one_run(const Plant& plant, double rate, double seconds, int style, core::
 }
 
 /// A run that keeps clear of the ground: the body would touch and the rig's owner would throw the run away.
-Track run(const Plant& plant, double rate, double seconds, int style, core::Random& random) {
+Track run(const Plant& plant, const Rig& rig, double rate, double seconds, int style, core::Random& random) {
     Track track;
     for (int attempt = 0; attempt < 40; ++attempt) {
-        track = one_run(plant, rate, seconds, style, random);
+        track = one_run(plant, rig, rate, seconds, style, random);
         const auto [low, high] = std::minmax_element(track.gap.begin(), track.gap.end());
         if (*low > 0.012 && *high < 0.6) {
             return track;
@@ -321,7 +382,7 @@ core::Table table_of(const Track& track, const Case& wanted, core::Random& rando
     for (std::size_t k = 0; k < track.time.size(); ++k) {
         slow = k == 0 ? random.normal() : phi * slow + std::sqrt(1 - phi * phi) * random.normal();
         const double noise = wanted.coloured ? 0.7 * random.normal() + 0.7 * slow : random.normal();
-        gap.push_back(track.sensed[k] + 2e-4 * noise);
+        gap.push_back(track.reading.empty() ? track.sensed[k] + 2e-4 * noise : track.reading[k]);
         velocity.push_back(track.velocity[k] + 1e-3 * random.normal());
     }
     core::Table table;
@@ -348,12 +409,20 @@ Sample make_heave(const Case& wanted) {
     if (laws == std::vector<std::string>{"unknown"}) {
         laws = {wanted.law};
     }
+    if (wanted.rig.gusts > 0) {
+        laws.emplace_back("gusts");
+    }
     std::vector<double> strength(laws.size()), shape(laws.size());
-    const double target = wanted.level * 2e-4;
     for (std::size_t i = 0; i < laws.size(); ++i) {
         const double sign = random.uniform() < 0.5 ? -1 : 1;
         shape[i] = random.uniform();
         strength[i] = sign * 1e-4;
+        const double target = 2e-4 * (laws[i] == "gusts" ? wanted.rig.gusts : wanted.level);
+        if (laws[i] == "tether_stiffness" && wanted.strong) {
+            strength[i] = 1.5 + 4.5 * random.uniform();
+            shape[i] = -0.24 + 0.2 * random.uniform();  // pulls towards 2 to 32 mm
+            continue;
+        }
         if (laws[i].find("delay") != std::string::npos || laws[i] == "actuator_lag" || laws[i] == "added_mass" ||
             laws[i] == "gap_dependent_added_mass" || laws[i] == "linear_damping" || laws[i] == "declared_parameter" ||
             laws[i] == "input_gain" || laws[i] == "surface_roughness") {
@@ -361,6 +430,8 @@ Sample make_heave(const Case& wanted) {
         } else if (laws[i] == "quadratic_damping" || laws[i] == "one_sided" || laws[i] == "cross" ||
                    laws[i] == "film_cell" || laws[i] == "thrust_near_wall" || laws[i] == "history_force") {
             strength[i] = sign * 0.3;
+        } else if (laws[i] == "wavy_floor" || laws[i] == "backlash") {
+            strength[i] = 5e-4;
         } else if (laws[i] == "squeeze_film_damping") {
             strength[i] = sign * 3e-6;
         } else if (laws[i] == "input_dead_zone") {
@@ -371,7 +442,7 @@ Sample make_heave(const Case& wanted) {
             std::vector<Track> probe;
             for (int k = 0; k < 3; ++k) {
                 core::Random own(wanted.seed * 31 + 5, static_cast<std::uint64_t>(k));
-                probe.push_back(run(plant_of({laws[i]}, {strength[i]}, {shape[i]}), 50, 40, 0, own));
+                probe.push_back(run(plant_of({laws[i]}, {strength[i]}, {shape[i]}), {}, 50, 40, 0, own));
             }
             const double error = declared_error(probe);
             strength[i] *= std::clamp(target / std::max(error, 1e-9), 0.02, 50.0);
@@ -381,20 +452,30 @@ Sample make_heave(const Case& wanted) {
     Sample sample;
     sample.names = wanted.names;
     sample.in_catalogue_terms = std::nan("");
+    if (wanted.rig.drift != 0) {
+        sample.names = {"gap_sensor_drift"};
+        sample.depends_on = {"time"};
+        sample.also = {{"gap_sensor_bias"}, {"unknown"}};
+    } else if (wanted.rig.gusts > 0 && wanted.names.empty()) {
+        sample.also = {{"none"}, {"random_disturbance"}, {"unknown"}};
+    } else if (wanted.law == "backlash" || wanted.law == "wavy_floor" || wanted.law == "thrust_near_wall") {
+        sample.also = {{wanted.law == "thrust_near_wall" ? "thrust_by_gap" : wanted.law}};
+    }
     if (laws.size() == 1 && means_the_same(laws.front())) {
         sample.in_catalogue_terms = plant.lag + plant.input_delay + plant.sensor_delay + plant.bias +
                                     (plant.extras.empty() ? 0 : plant.extras.front().a) +
                                     (laws.front() == "input_gain" || laws.front() == "declared_parameter" ? 1 : 0);
     }
-    if (!laws.empty() && wanted.names.front() == "unknown") {
-        sample.depends_on = wanted.law == "bump" || wanted.law == "ripple" || wanted.law == "jump_in_gap"
-                                ? std::vector<std::string>{"gap"}
-                            : wanted.law == "thrust_near_wall" ? std::vector<std::string>{"gap", "input_force"}
-                            : wanted.law == "cross" || wanted.law == "film_cell"
-                                ? std::vector<std::string>{"gap", "heave_velocity"}
-                            : wanted.law == "warming"   ? std::vector<std::string>{"time"}
-                            : wanted.law == "rectifier" ? std::vector<std::string>{"input_force"}
-                                                        : std::vector<std::string>{"heave_velocity"};
+    if (!wanted.names.empty() && wanted.names.front() == "unknown") {
+        sample.depends_on =
+            wanted.law == "bump" || wanted.law == "ripple" || wanted.law == "jump_in_gap"
+                ? std::vector<std::string>{"gap"}
+            : wanted.law == "thrust_near_wall"                      ? std::vector<std::string>{"gap", "input_force"}
+            : wanted.law == "cross" || wanted.law == "film_cell"    ? std::vector<std::string>{"gap", "heave_velocity"}
+            : wanted.law == "warming"                               ? std::vector<std::string>{"time"}
+            : wanted.law == "wavy_floor"                            ? std::vector<std::string>{"gap", "time"}
+            : wanted.law == "rectifier" || wanted.law == "backlash" ? std::vector<std::string>{"input_force"}
+                                                                    : std::vector<std::string>{"heave_velocity"};
         sample.missing = [plant](double t, double h, double w, double u) {
             return plant.force(t, h, w, u) - Plant().force(t, h, w, u);
         };
@@ -413,7 +494,7 @@ Sample make_heave(const Case& wanted) {
             core::Random own(wanted.seed * 101 + static_cast<std::uint64_t>(style) * 17, static_cast<std::uint64_t>(k));
             dynamics::MeasuredRun one;
             one.name = (style == 0 ? "run-" : "test-") + std::to_string(k + 1);
-            one.table = table_of(run(plant, wanted.rate, 40, style, own), wanted, own);
+            one.table = table_of(run(plant, wanted.rig, wanted.rate, 40, style, own), wanted, own);
             one.use = style == 0 ? dynamics::RunUse::train : dynamics::RunUse::test;
             data.runs.push_back(std::move(one));
         }

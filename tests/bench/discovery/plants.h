@@ -13,6 +13,17 @@
 
 namespace underbody::bench {
 
+/// What a rig does beside the effect: by default it feeds its controller a reading of its own.
+struct Rig {
+    bool feedback = false;  ///< the controller is fed the reading that is logged
+    double ar = 0;          ///< correlation of the reading's noise from one to the next (first order)
+    double gusts = 0;       ///< random force: its strength as `level`
+    double drift = 0;       ///< of the gap sensor over a run, in noises
+    double rounding = 0;    ///< step of the readings, in noises
+    double outliers = 0;    ///< share of readings that are far off
+    double dropouts = 0;    ///< share of readings that are missing
+};
+
 struct Case {
     std::string family;  ///< heave; static: glide, towed (with pitch and depth), jet, both (glide and jet at once)
     std::vector<std::string> names;  ///< true effects; empty: clean; "unknown": out of the catalogue
@@ -22,6 +33,8 @@ struct Case {
     bool coloured = false;           ///< sensor noise with a correlation time of 0.3 s beside the white
     double declared_noise = 1;       ///< declared noise over the true one; 0: not declared
     double rate = 50;                ///< Hz
+    Rig rig;                         ///< heave
+    bool strong = false;             ///< heave: a tether of 1.5 to 6 N/m, whatever `level` says
     std::uint64_t seed = 1;
     [[nodiscard]] std::string text() const;
 };
@@ -30,7 +43,8 @@ struct Sample {
     dynamics::Measurements train;
     dynamics::Measurements test;  ///< another controller and excitation (heave), other set points (static)
     std::vector<std::string> names;
-    std::vector<std::string> depends_on;  ///< of an unknown law
+    std::vector<std::string> depends_on;         ///< of an unknown law
+    std::vector<std::vector<std::string>> also;  ///< other verdicts that are right ({"none"}: nothing)
     double in_catalogue_terms = 0;  ///< what the catalogue's first parameter should come out as; NaN: another form
     std::function<double(double t, double h, double w, double u)>
         missing;  ///< heave, unknown laws: the force that the model lacks, N

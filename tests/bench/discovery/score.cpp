@@ -30,6 +30,10 @@ std::string text(const char* format, Values... values) {
 }  // namespace
 
 bool Outcome::right() const {
+    const std::vector<std::string> said = verdict == "none" ? std::vector<std::string>{"none"} : sorted(names);
+    if (std::any_of(also.begin(), also.end(), [&](const auto& one) { return said == sorted(one); })) {
+        return true;
+    }
     if (truth.empty()) {
         return verdict == "none";
     }

@@ -13,8 +13,9 @@ namespace underbody::bench {
 
 /// One data set, one method.
 struct Outcome {
-    std::vector<std::string> truth;  ///< names; empty: clean; {"unknown"}
-    std::string verdict;             ///< none, effect, unknown
+    std::vector<std::string> truth;              ///< names; empty: clean; {"unknown"}
+    std::vector<std::vector<std::string>> also;  ///< other names that are right; {"none"}: saying nothing
+    std::string verdict;                         ///< none, effect, unknown
     std::vector<std::string> names;
     std::vector<std::pair<std::string, double>> rivals;
     bool variables = false;        ///< those of an unknown law were named rightly

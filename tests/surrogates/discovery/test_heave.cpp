@@ -354,11 +354,12 @@ TEST(HeaveInput, OfAContinuousControllerIsNoDamping) {
             options);
         EXPECT_EQ(found.verdict, "none") << rate << ": " << found.sentence;
     }
-    // and a damping of just that size under a controller that holds its force is one
+    // A damping of just that size under a controller that holds its force shows in the fitted runs, but one held-out
+    // run is not predicted better beyond chance: it gets no name, and that is said.
     const Discovery found =
         discover(model, test::heave_runs([](double, double, double w) { return -0.0078 * w; }, 6, 50, 23), options);
-    ASSERT_EQ(found.verdict, "effect") << found.sentence;
-    EXPECT_EQ(found.effects.at(0).name, "linear_damping") << found.sentence;
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+    EXPECT_TRUE(says(found.problems, "the held-out error does not fall")) << found.sentence;
 }
 
 TEST(HeaveInput, RunsOutsideTheDeclaredTablesAreRefusedWithTheirGaps) {

@@ -1,0 +1,74 @@
+#include "surrogates/discovery/calibration.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace underbody::discovery {
+
+const std::vector<CalibratedNumber>& calibrated_numbers() {
+    using C = Calibration;
+    const char* const unmeasured = "not measured since the guards judge the verdict";
+    static const std::vector<CalibratedNumber> list{
+        {"gate", &C::gate, "heave seeds 4000 to 4501, static seeds 1 to 99", "2026-11-21", unmeasured},
+        {"form_share", &C::form_share, "heave 4000 to 4501, static 1 to 99: stated against frequencies", "2026-11-22",
+         unmeasured},
+        {"unknown_share", &C::unknown_share, "heave 5000 and 5001 (laws outside), static 1 to 99", "2026-11-22",
+         unmeasured},
+        {"unknown_p", &C::unknown_p, "heave 4000 to 4501, static 1 to 99", "2026-11-21", unmeasured},
+        {"pair_share", &C::pair_share, "pairs: heave 40 to 43, static 40 to 43", "2026-11-21", unmeasured},
+        {"pair_gain", &C::pair_gain, "pairs: heave 40 to 43, static 40 to 43", "2026-11-21", unmeasured},
+        {"most_effects", &C::most_effects, "definition", "2026-11-22", unmeasured},
+        {"fall_tail", &C::fall_tail, "definition: a two-sided interval of 95 %", "2026-11-22", unmeasured},
+        {"most_over_twins", &C::most_over_twins, "definition: a third more than noise", "2026-11-22", unmeasured},
+        {"most_left", &C::most_left, "rigs of seed 15001; thruster by gap and backlash", "2026-11-22", unmeasured},
+        {"neutral_sigmas", &C::neutral_sigmas, "definition: two standard deviations", "2026-11-22", unmeasured},
+        {"correction_reach", &C::correction_reach, "definition: all but two states in a thousand", "2026-11-22",
+         unmeasured}};
+    return list;
+}
+
+namespace {
+
+Calibration changed_by(Calibration c, const std::map<std::string, double>& changed) {
+    std::vector<std::string> known;
+    for (const CalibratedNumber& number : calibrated_numbers()) {
+        known.push_back(number.name);
+    }
+    for (const auto& [name, value] : changed) {
+        const auto place = std::find(known.begin(), known.end(), name);
+        if (place == known.end()) {
+            throw core::InputError("name", "no number of discovery is called '" + name + "'", {},
+                                   core::did_you_mean(name, known));
+        }
+        c.*calibrated_numbers()[static_cast<std::size_t>(place - known.begin())].value = value;
+    }
+    return c;
+}
+
+}  // namespace
+
+Calibration static_calibration(const std::map<std::string, double>& changed) {
+    Calibration c;
+    c.gate = 0.002;
+    c.form_share = 0.003;
+    c.unknown_share = 0.12;
+    c.unknown_p = 0.002;
+    c.pair_share = 0.05;
+    c.pair_gain = 20;
+    return changed_by(c, changed);
+}
+
+Calibration heave_calibration(const std::map<std::string, double>& changed) {
+    Calibration c;
+    c.gate = 0.002;
+    c.form_share = 0.01;
+    c.unknown_share = 0.3;
+    c.unknown_p = 1e-4;
+    c.pair_share = 0.1;
+    c.pair_gain = 40;
+    return changed_by(c, changed);
+}
+
+}  // namespace underbody::discovery

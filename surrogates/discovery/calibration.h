@@ -1,0 +1,43 @@
+// Every number that decides a verdict: its name, what it does, on which seeds of tests/bench/discovery it was set and
+// when, and how much it matters. `bench_discovery --recalibrate` moves each and prints what changes.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace underbody::discovery {
+
+/// The same for every data set of a kind.
+struct Calibration {
+    double gate = 0.01;        ///< the gate opens below this chance
+    double form_share = 0.01;  ///< share of what is explained that a law of another form may miss: widens probabilities
+    double unknown_share = 0.15;   ///< share of the structure that the best name may leave before it is "unknown"
+    double unknown_p = 0.002;      ///< and the chance below which what is left is real
+    double pair_share = 0.05;      ///< least share of the explained part that a second effect must add
+    double pair_gain = 25;         ///< and its least gain in -2 log likelihood
+    double most_effects = 4;       ///< at once
+    double fall_tail = 0.025;      ///< chance beyond each end of the interval of the held-out error's fall
+    double most_over_twins = 1.3;  ///< held-out error over that of twins in which nothing is missing: above, no noise
+    double most_left = 0.08;       ///< share of what the declared model misses beyond its twins that a name may leave
+    double neutral_sigmas = 2;     ///< a number nearer to where its effect does nothing is no finding
+    double correction_reach = 0.998;  ///< quantile of a correction's force over the states seen that it may not exceed
+};
+
+/// One number of Calibration, for people and for the bench.
+struct CalibratedNumber {
+    std::string name;
+    double Calibration::*value;
+    std::string source;       ///< a reference, a definition, or the seeds it was set on
+    std::string date;         ///< when it was set
+    std::string sensitivity;  ///< what half and twice the value do
+};
+const std::vector<CalibratedNumber>& calibrated_numbers();
+
+/// Values by kind of data, with numbers of `changed` by name in their place. Throws core::InputError for an unknown
+/// name.
+Calibration static_calibration(const std::map<std::string, double>& changed = {});
+Calibration heave_calibration(const std::map<std::string, double>& changed = {});
+
+}  // namespace underbody::discovery
