@@ -75,7 +75,6 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
     WORLD_READ WORLD_EXECUTE)
-set(CPACK_OUTPUT_FILE_PREFIX ${package_folder})
 set(CPACK_COMPONENTS_ALL ${package_components})
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -86,29 +85,29 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 
-set(about "This package is part of Underbody: from the fields that ANSYS or OpenFOAM exported
- to loads, force tables, equilibria, stability maps and controller tables of
- vehicles that glide close to a surface under water, and from measured runs
- back to what the model lacks.")
+set(about "This package is part of Underbody: from the fields that ANSYS or OpenFOAM
+exported to loads, force tables, equilibria, stability maps and controller
+tables of vehicles that glide close to a surface under water, and from
+measured runs back to what the model lacks.")
 foreach(component IN LISTS package_components)
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${package_name_${component}})
 endforeach()
 # The first line is the short description.
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "ground-effect CFD studies, the command line
- ${about}")
+${about}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "fonts-dejavu-core, libqt5gui5")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "xvfb, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "openfoam, slurm-client, underbody-studio, gcc")
 
 set(CPACK_COMPONENT_STUDIO_DESCRIPTION "ground-effect CFD studies, the desktop
- ${about}")
+${about}")
 set(CPACK_DEBIAN_STUDIO_PACKAGE_DEPENDS "underbody (= ${PROJECT_VERSION}), fonts-dejavu-core")
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "ground-effect CFD studies, the libraries
- ${about}
- .
- Static libraries, headers and a CMake package: find_package(Underbody).")
+${about}
+
+Static libraries, headers and a CMake package: find_package(Underbody).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libvtk9-dev, libvtk9-qt-dev, libeigen3-dev, libcgal-dev, libopenmesh-dev, \
@@ -116,9 +115,9 @@ libudunits2-dev, nlohmann-json3-dev, libhdf5-dev, libcgns-dev, libmatio-dev, lib
 libsundials-dev, libnlopt-dev, libnlopt-cxx-dev, libtbb-dev, libxxhash-dev, zlib1g-dev, liblapack-dev, pkg-config")
 
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "ground-effect CFD studies, the Python module
- ${about}
- .
- Every command as a function; fields as NumPy arrays and VTK objects.")
+${about}
+
+Every command as a function; fields as NumPy arrays and VTK objects.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11~), python3 (<< 3.12), python3-numpy, libqt5gui5")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "fonts-dejavu-core, xvfb")
