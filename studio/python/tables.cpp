@@ -102,11 +102,31 @@ py::tuple at(const ForceTable& table, const Points& points) {
                           flags(outside), flags(no_data));
 }
 
+/// Do all points lie within the axes? The usual case, in one quick pass.
+bool all_inside(const ForceTable& table, const double* first, std::size_t rows) {
+    const std::size_t axes = table.axes().size();
+    for (std::size_t k = 0; k < axes; ++k) {
+        double lowest = table.axes()[k].lower, highest = table.axes()[k].upper;
+        const double* x = first + k;
+        for (std::size_t i = 0; i < rows; ++i, x += axes) {
+            lowest = *x < lowest ? *x : lowest;
+            highest = *x > highest ? *x : highest;
+        }
+        if (lowest < table.axes()[k].lower || highest > table.axes()[k].upper) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /// The remark of the point that lies furthest outside, and how many do; nothing when all lie inside.
 py::object outside_remark(const ForceTable& table, const Points& points) {
     const std::size_t rows = rows_of(table, points);
     const std::size_t axes = table.axes().size();
     const double* first = points.data();
+    if (all_inside(table, first, rows)) {
+        return py::none();
+    }
     std::size_t count = 0, worst = 0;
     double furthest = 0;
     for (std::size_t i = 0; i < rows; ++i) {
@@ -121,9 +141,6 @@ py::object outside_remark(const ForceTable& table, const Points& points) {
             furthest = beyond;
             worst = i;
         }
-    }
-    if (count == 0) {
-        return py::none();
     }
     tables::Held held;
     for (std::size_t k = 0; k < axes; ++k) {
