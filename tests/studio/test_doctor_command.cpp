@@ -90,7 +90,7 @@ std::string tabbed(const std::string& line) {
     EXPECT_EQ(script.exit_code, 0) << script.errors;
     core::write_file(folder.path() / "completion", script.output);
     core::write_file(folder.path() / "try",
-                     "source completion\nread -ra COMP_WORDS <<< \"$1\"\n[[ $1 == *' ' ]] && COMP_WORDS+=('')\n"
+                     "source ./completion\nread -ra COMP_WORDS <<< \"$1\"\n[[ $1 == *' ' ]] && COMP_WORDS+=('')\n"
                      "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_underbody\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n");
     const auto run = run_program("/bin/bash", {"try", line}, folder.path());
     EXPECT_EQ(run.exit_code, 0) << run.errors;

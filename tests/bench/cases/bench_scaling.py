@@ -35,15 +35,20 @@ def make_study(folder, count):
         '[[table]]\nname = "lift"\nquantity = "lift_force"\naxes = ["gap"]\nwhere = { variant = "v0" }\n')
 
 
+def processor():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def timed(words):
-    """Seconds, largest memory in MB and the output of a command."""
-    begin = time.perf_counter()
+    """Wall-clock and processor seconds, and the output of a command."""
+    begin, before = time.perf_counter(), processor()
     child = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     output, errors = child.communicate()
     took = time.perf_counter() - begin
     if child.returncode != 0:
         sys.exit(f"{' '.join(map(str, words))}: {errors[-2000:]}")
-    return took, output
+    return took, processor() - before, output
 
 
 def main():
@@ -57,8 +62,8 @@ def main():
                                 ("one changed", ["study", "run", folder]), ("list", ["study", "list", folder])):
                 if name == "one changed":
                     write_case(folder / "fields" / "v0-h5.csv", 150)
-                took, output = timed([program, *map(str, words), "--json", "--quiet"])
-                line.append(f"{name} {took:.2f} s,")
+                took, used, output = timed([program, *map(str, words), "--json", "--quiet"])
+                line.append(f"{name} {took:.2f} s ({used:.2f} processor),")
             cases = json.loads(output).get("cases", [])
             line.append(f"{len(cases)} listed,")
             memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
