@@ -323,6 +323,7 @@ void Design::solve(const Study& study, int jobs, core::Progress& progress) {
         sweep.gaps = spec_.gaps;
         sweep.pitches = spec_.pitches;
         sweep.speeds = spec_.speeds;
+        sweep.mesher = "snappy";  // what a fidelity says is of its cells
         sweep.cell = fidelity.cell;
         sweep.surface_level = fidelity.surface_level;
         sweep.layers = fidelity.layers;

@@ -236,6 +236,11 @@ bool mesh_is_whole(const fs::path& folder) {
     return true;
 }
 
+/// Of an Allrun that Underbody wrote.
+bool makes_its_mesh(const std::string& script) {
+    return script.find("# Makes the mesh and runs the case. Needs OpenFOAM") != std::string::npos;
+}
+
 fs::path free_name(const fs::path& wanted) {
     fs::path name = wanted;
     for (int i = 2; fs::exists(fs::symlink_status(name)); ++i) {
@@ -261,7 +266,9 @@ std::string tail_of(const fs::path& file, long bytes) {
 }
 
 bool solves_anew(const fs::path& folder) {
-    return text_of(folder / "Allrun").find("# Makes the mesh and runs the case. Needs OpenFOAM") != std::string::npos;
+    const std::string script = text_of(folder / "Allrun");
+    return makes_its_mesh(script) ||
+           script.find("# Checks the mesh that is there and runs the case. Needs OpenFOAM") != std::string::npos;
 }
 
 std::vector<TimeFolder> times_of(const fs::path& case_folder) {
@@ -329,7 +336,8 @@ SolveEnd solve_end(const fs::path& folder) {
     const std::string control = control_of(folder);
     const fs::path log = log_of(folder, control);
     const std::string words = log.empty() ? "" : tail_of(log, 1 << 14);
-    end.converged = words.find("solution converged") != std::string::npos;
+    end.settled = fs::exists(folder / settled_file, ignored);
+    end.converged = end.settled || words.find("solution converged") != std::string::npos;
     const auto wanted = core::parse_number(entry_in(control, "endTime"));
     const std::string time = core::format_number(end.time);
     if (!end.converged && !(wanted && end.time >= *wanted * (1 - 1e-9))) {
@@ -380,7 +388,8 @@ bool set_results_aside(const fs::path& folder) {
     }
     for (const auto& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
-        if (name.starts_with("log.") || name.starts_with("incomplete-") || name == "postProcessing") {
+        if (name.starts_with("log.") || name.starts_with("incomplete-") || name == "postProcessing" ||
+            name == settled_file) {
             results.push_back(entry.path());
         }
     }
@@ -392,7 +401,7 @@ bool set_results_aside(const fs::path& folder) {
     for (const auto& path : results) {
         fs::rename(path, aside / path.filename());
     }
-    if (solves_anew(folder) && fs::is_directory(folder / "constant" / "polyMesh", ignored)) {
+    if (makes_its_mesh(text_of(folder / "Allrun")) && fs::is_directory(folder / "constant" / "polyMesh", ignored)) {
         fs::create_directory(aside / "constant");
         fs::rename(folder / "constant" / "polyMesh", aside / "constant" / "polyMesh");
     }

@@ -26,18 +26,22 @@ std::vector<TimeFolder> times_of(const std::filesystem::path& case_folder);
 /// every field is whole. Fields that the case has at time 0 have to be there for cases that Underbody wrote.
 std::string missing_in(const TimeFolder& time);
 
+/// In a case with a function object that waits for it: ends the run and has its last iteration written.
+inline constexpr const char* settled_file = "settled";
+
 /// How a solve ended.
 struct SolveEnd {
     bool solved = false;
     std::string why;         ///< not solved: what is missing, in words
     double time = 0;         ///< the last one; 0: none
-    bool converged = false;  ///< the solver called it converged before endTime
+    bool converged = false;  ///< the solver called it converged before endTime, or its loads had settled
+    bool settled = false;    ///< its loads had settled (see settled_loads), which ended it
     bool diverged = false;   ///< its forces are not finite
 };
 
 /// Solved means: the solver said that it ended (where it left a log), its last time is the one that controlDict wants
-/// or that it called converged, every field of that time is whole, and the forces, where it wrote some, reach it and
-/// are finite.
+/// or that it called converged (or its loads had settled), every field of that time is whole, and the forces, where it
+/// wrote some, reach it and are finite.
 SolveEnd solve_end(const std::filesystem::path& folder);
 
 /// Sets aside what a cut solve left half-written (times into incomplete-TIME) and says from which time it can go on;
@@ -45,12 +49,11 @@ SolveEnd solve_end(const std::filesystem::path& folder);
 /// script that does not know `solve`.
 std::optional<double> ready_to_go_on(const std::filesystem::path& folder);
 
-/// A case whose script makes the mesh and solves from the beginning only where there are no results: one that Underbody
-/// wrote.
+/// A case whose script solves from the beginning only where there are no results: one that Underbody wrote.
 bool solves_anew(const std::filesystem::path& folder);
 
-/// Moves times, forces, logs and the mesh that was made into previous, previous-2, ... within the case, so that it
-/// begins anew. True when there was anything.
+/// Moves times, forces, logs and the mesh, if the script makes it, into previous, previous-2, ... within the case, so
+/// that it begins anew. True when there was anything.
 bool set_results_aside(const std::filesystem::path& folder);
 
 }  // namespace underbody::cases

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "postproc/importers/reports/openfoam_forces.h"
 
 namespace underbody::cases {
 
@@ -18,6 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* script_log = "log.Allrun";
+
+std::string text_of_control(const fs::path& folder) { return core::read_file(folder / "system" / "controlDict"); }
 
 /// The log of the step that was written last.
 fs::path newest_log(const fs::path& folder) {
@@ -91,6 +94,43 @@ RunState run_state(const fs::path& folder) {
     return state;
 }
 
+SettledLoads settled_loads(const fs::path& folder) {
+    constexpr std::size_t window = 100;
+    constexpr double first_iteration = 220, allowed = 0.003;
+    SettledLoads loads;
+    const auto histories = postproc::read_openfoam_forces(folder);
+    const auto found = std::find_if(histories.begin(), histories.end(),
+                                    [](const postproc::ForceHistory& history) { return history.name == "forces"; });
+    if (found == histories.end() || found->time.size() < window || found->time.back() < first_iteration) {
+        return loads;
+    }
+    const auto& f = *found;
+    const auto over = [&](const auto& value) {
+        double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
+        for (std::size_t i = f.time.size() - window; i < f.time.size(); ++i) {
+            const double v = value(i);
+            low = std::min(low, v), high = std::max(high, v), sum += v;
+        }
+        return std::pair{sum / window, high - low};
+    };
+    const auto drag = over([&](std::size_t i) { return f.pressure_force[i][0] + f.viscous_force[i][0]; });
+    const auto lift = over([&](std::size_t i) { return f.pressure_force[i][2] + f.viscous_force[i][2]; });
+    loads.iterations = static_cast<int>(window);
+    loads.resultant = std::hypot(drag.first, lift.first);
+    loads.force_range = std::max(drag.second, lift.second);
+    const double arm = 0.1 * dictionary_number(folder / "system" / "controlDict", "lRef").value_or(0);
+    if (arm > 0 && f.pressure_moment.size() == f.time.size()) {
+        loads.moment_range =
+            over([&](std::size_t i) { return f.pressure_moment[i][1] + f.viscous_moment[i][1]; }).second;
+    }
+    const double share = std::max(loads.force_range, arm > 0 ? loads.moment_range / arm : 0) / loads.resultant;
+    loads.settled = share <= allowed;
+    loads.text =
+        (loads.settled ? "lift, drag and pitch moment stay within " : "lift, drag or pitch moment change by ") +
+        core::format_number(100 * share, 2) + " % of the resultant over " + std::to_string(window) + " iterations";
+    return loads;
+}
+
 void need_openfoam() {
     for (const char* program : {"blockMesh", "simpleFoam"}) {
         if (!find_program(program)) {
@@ -134,12 +174,18 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock)
     if (from_) {
         words.emplace_back("solve");
     }
+    watched_ = text_of_control(folder_).find(std::string("/") + settled_file + "\"") != std::string::npos;
+    std::error_code ignored;
+    if (watched_) {
+        fs::remove(folder_ / settled_file, ignored);  // of a run that was cut as it ended
+    }
     child_.emplace("/bin/sh", words, at, at / script_log, environment, std::array<int, 2>{lock_->descriptor(), lock});
 }
 
 bool OpenFoamRun::finished() {
     const auto code = child_->ended();
     if (!code) {
+        look_at_loads();
         return false;
     }
     if (*code == 0) {
@@ -159,6 +205,23 @@ bool OpenFoamRun::finished() {
     }
     throw core::InputError("solver", "the solver ended with code " + std::to_string(*code) + ": " + last_words(log),
                            {log.string(), {}, {}, {}});
+}
+
+void OpenFoamRun::look_at_loads() {
+    const auto now = std::chrono::steady_clock::now();
+    if (!watched_ || now - looked_ < std::chrono::seconds(1) || !fs::is_directory(folder_ / "postProcessing")) {
+        return;
+    }
+    looked_ = now;
+    try {
+        const SettledLoads loads = settled_loads(folder_);
+        if (loads.settled) {
+            core::write_file(folder_ / settled_file, loads.text + "\n");
+            watched_ = false;
+        }
+    } catch (const core::InputError&) {
+        // A row is being written, or the solution diverges: the end of the run tells.
+    }
 }
 
 double OpenFoamRun::seconds() const {

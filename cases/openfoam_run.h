@@ -23,6 +23,21 @@ struct RunState {
 };
 RunState run_state(const std::filesystem::path& folder);
 
+/// What the loads of a case did over its last iterations; forces of the mesh (a half's are half the body's).
+struct SettledLoads {
+    bool settled = false;
+    int iterations = 0;       ///< that were looked at: 0 when there are too few
+    double resultant = 0;     ///< N, size of the mean force
+    double force_range = 0;   ///< N, largest less smallest of lift and of drag, the larger of both
+    double moment_range = 0;  ///< N m, of the pitch moment
+    std::string text;         ///< "lift, drag and pitch moment stay within 0.12 % of the resultant over 100 iterations"
+};
+/// Over the last 100 iterations neither lift nor drag changes by more than 0.3 % of the resultant, nor the pitch moment
+/// by more than 0.3 % of the resultant times a tenth of the body's length (`lRef` of controlDict; without it the moment
+/// does not count); not before iteration 220. Chosen with the cases of cases/evie, whose mean over 100 iterations then
+/// stays. Throws core::InputError for forces that cannot be read.
+SettledLoads settled_loads(const std::filesystem::path& folder);
+
 /// A case on its way: `Allrun` of the folder, as `underbody body domain` writes it. A solve of such a case that was cut
 /// goes on from its last whole time; what is there of another mesh, or diverged, is set aside first (see
 /// openfoam_result.h).
@@ -33,8 +48,9 @@ public:
     /// `lock`: the descriptor of a lock of the caller's that is to last as long as the solver runs; -1: none.
     explicit OpenFoamRun(std::filesystem::path folder, int lock = -1);
 
-    /// True when its script has ended well. Throws core::InputError with the solver's own last words when it failed
-    /// (kind "solver"), or was ended by a signal (kind "killed").
+    /// True when its script has ended well. Ends a run whose loads have settled, where the case waits for that. Throws
+    /// core::InputError with the solver's own last words when it failed (kind "solver"), or was ended by a signal (kind
+    /// "killed").
     bool finished();
     /// Ends it; what it wrote stays.
     void stop() { child_->stop(); }
@@ -49,6 +65,9 @@ private:
     std::optional<CaseLock> lock_;
     std::optional<double> from_;
     std::optional<ChildProcess> child_;
+    bool watched_ = false;  // the case waits for settled_file
+    std::chrono::steady_clock::time_point looked_;
+    void look_at_loads();
 };
 
 }  // namespace underbody::cases

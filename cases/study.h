@@ -137,17 +137,20 @@ struct SlurmSpec {
 
 /// [sweep]: cases to be made by CFD, every body at every gap, pitch and speed.
 struct SweepSpec {
-    std::string folder;            ///< of the cases, relative to the study
-    std::vector<BodySpec> bodies;  ///< those of [[body]] that are named, or all
-    std::vector<double> gaps;      ///< m
-    std::vector<double> pitches;   ///< rad
-    std::vector<double> speeds;    ///< m/s
-    Conditions conditions;         ///< further conditions of these cases (mesh = "coarse")
+    std::string folder;             ///< of the cases, relative to the study
+    std::vector<BodySpec> bodies;   ///< those of [[body]] that are named, or all
+    std::vector<double> gaps;       ///< m
+    std::vector<double> pitches;    ///< rad
+    std::vector<double> speeds;     ///< m/s
+    std::vector<double> jet_flows;  ///< m^3/s through the nozzle; empty: no jet
+    Conditions conditions;          ///< further conditions of these cases (mesh = "coarse")
     double kinematic_viscosity = 1e-6;
-    double cell = 0.125;    ///< of the background mesh, in body lengths
-    int surface_level = 3;  ///< halvings of the cell at the body
+    std::string mesher = "blocks";   ///< or "snappy"
+    std::string density = "medium";  ///< of the blocks: coarse, medium, fine
+    double cell = 0.125;             ///< of the background mesh, in body lengths
+    int surface_level = 3;           ///< halvings of the cell at the body
     int layers = 3;
-    int iterations = 400;
+    int iterations = 0;  ///< at most; 0: as the mesher needs
     SlurmSpec slurm;
 };
 

@@ -155,7 +155,7 @@ private:
         fs::remove_all(folder, ignored);  // of a sweep that was killed before it had solved anything
         const auto& mesh = bodies_.surface(job.wanted.shape, progress_);
         job.record.walls = geometry::flow_domain(mesh, flow).walls;
-        geometry::write_openfoam_case(mesh, flow, folder);
+        geometry::write_openfoam_case(bodies_.shape(job.wanted.shape), flow, folder, progress_);
         job.record.files = case_files(folder);
         write_record(folder, job.record);
     }
@@ -235,7 +235,13 @@ private:
                                    "the script ended without a whole solution: " + ended.why,
                                    {(folder / "log.Allrun").string(), {}, {}, {}});
         }
-        nlohmann::json marker = {{"walls", job.record.walls},
+        const SettledLoads loads = settled_loads(folder);
+        if (loads.iterations > 0 && !loads.settled) {
+            job.outcome.note += (job.outcome.note.empty() ? "" : "; ") + ("not settled: " + loads.text);
+        }
+        nlohmann::json marker = {{"settled", loads.iterations > 0 ? nlohmann::json(loads.settled) : nlohmann::json()},
+                                 {"settled_text", loads.text},
+                                 {"walls", job.record.walls},
                                  {"seconds", job.outcome.seconds},
                                  {"iterations", run_state(folder).iteration},
                                  {"converged", ended.converged},

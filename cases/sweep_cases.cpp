@@ -63,6 +63,12 @@ geometry::FlowOptions flow_of(const Study& study, const Conditions& conditions) 
     flow.density = study.reference.number("density").value_or(flow.density);
     flow.kinematic_viscosity = spec.kinematic_viscosity;
     flow.half = !study.symmetry.empty();
+    const auto index_in = [](const std::vector<std::string>& names, const std::string& name) {
+        return std::find(names.begin(), names.end(), name) - names.begin();
+    };
+    flow.jet_flow = conditions.number("jet_flow").value_or(0);
+    flow.mesher = static_cast<geometry::CaseMesher>(index_in(geometry::mesher_names(), spec.mesher));
+    flow.mesh_density = static_cast<geometry::MeshDensity>(index_in(geometry::density_names(), spec.density));
     flow.cell = spec.cell;
     flow.surface_level = spec.surface_level;
     flow.layers = spec.layers;
@@ -113,20 +119,27 @@ namespace {
 std::vector<SweepCase> asked_for(const Study& study) {
     const SweepSpec& spec = spec_of(study);
     std::vector<SweepCase> cases;
+    const std::vector<double> no_jet{-1};
     for (const auto& body : spec.bodies) {
-        for (const double speed : spec.speeds) {
-            for (const double pitch : spec.pitches) {
-                for (const double gap : spec.gaps) {
-                    SweepCase one;
-                    one.name = name_for(body.name, gap, pitch, speed);
-                    one.shape = body.shape;
-                    one.conditions = spec.conditions;
-                    one.conditions.texts.insert(one.conditions.texts.begin(), {"variant", body.name});
-                    for (const auto& [name, value] : {std::pair{"gap", gap}, {"pitch", pitch}, {"speed", speed}}) {
-                        one.conditions.numbers.emplace_back(name, value);
+        for (const double jet : spec.jet_flows.empty() ? no_jet : spec.jet_flows) {
+            for (const double speed : spec.speeds) {
+                for (const double pitch : spec.pitches) {
+                    for (const double gap : spec.gaps) {
+                        SweepCase one;
+                        one.name = name_for(body.name, gap, pitch, speed);
+                        one.shape = body.shape;
+                        one.conditions = spec.conditions;
+                        one.conditions.texts.insert(one.conditions.texts.begin(), {"variant", body.name});
+                        for (const auto& [name, value] : {std::pair{"gap", gap}, {"pitch", pitch}, {"speed", speed}}) {
+                            one.conditions.numbers.emplace_back(name, value);
+                        }
+                        if (jet >= 0) {
+                            one.name += "-q" + core::format_number(1e6 * jet, 6);
+                            one.conditions.numbers.emplace_back("jet_flow", jet);
+                        }
+                        one.folder = study.folder() / spec.folder / one.name;
+                        cases.push_back(std::move(one));
                     }
-                    one.folder = study.folder() / spec.folder / one.name;
-                    cases.push_back(std::move(one));
                 }
             }
         }
@@ -292,7 +305,7 @@ private:
         const core::TemporaryFolder scratch("underbody-sweep");
         const fs::path folder = scratch.path() / "case";
         CaseRecord record;
-        geometry::write_openfoam_case(bodies_.surface(one.shape, progress_), flow_of(study_, one.conditions), folder);
+        geometry::write_openfoam_case(bodies_.shape(one.shape), flow_of(study_, one.conditions), folder, progress_);
         record.files = case_files(folder);
         return record;
     }

@@ -69,10 +69,18 @@ CaseRecord record_of(const geometry::BodyShape& shape, const geometry::FlowOptio
     add("turbulence_intensity", in_unit(flow.turbulence_intensity, "1", "1"));
     add("viscosity_ratio", in_unit(flow.viscosity_ratio, "1", "1"));
     add("half model", flow.half ? "yes" : "no");
-    add("cell", in_unit(flow.cell, "1", "1"));
-    add("surface_level", std::to_string(flow.surface_level));
-    add("layers", std::to_string(flow.layers));
-    add("iterations", std::to_string(flow.iterations));
+    if (flow.mesher == geometry::CaseMesher::blocks) {
+        add("mesher", "blocks");
+        add("mesh density", geometry::name_of(flow.mesh_density));
+        if (flow.jet_flow != 0) {
+            add("jet_flow", in_unit(flow.jet_flow, "m^3/s", "mL/s"));
+        }
+    } else {
+        add("cell", in_unit(flow.cell, "1", "1"));
+        add("surface_level", std::to_string(flow.surface_level));
+        add("layers", std::to_string(flow.layers));
+    }
+    add("iterations", std::to_string(iterations_of(flow)));
     return record;
 }
 

@@ -147,7 +147,7 @@ std::string journal(const FlowDomain& d, const FlowOptions& o) {
         " 1/s in the stream\n"
         "/solve/initialize/compute-defaults/velocity-inlet inlet\n/solve/initialize/initialize-flow\n"
         "/solve/iterate " +
-        std::to_string(o.iterations) +
+        std::to_string(o.iterations > 0 ? o.iterations : 400) +
         "\n"
         "/file/write-case-data \"result.cas.h5\"\n"
         "; read back with: underbody loads result.cas.h5\n"
@@ -243,7 +243,7 @@ std::string ccl(const FlowDomain& d, const FlowOptions& o) {
         "    END\n    RESULTS:\n      File Compression Level = Default\n      Option = Standard\n    END\n  END\n  "
         "SOLVER CONTROL:\n    ADVECTION SCHEME:\n      Option = High Resolution\n    END\n"
         "    CONVERGENCE CONTROL:\n      Maximum Number of Iterations = " +
-        std::to_string(o.iterations) +
+        std::to_string(o.iterations > 0 ? o.iterations : 400) +
         "\n      Timescale Control = Auto Timescale\n    END\n    CONVERGENCE CRITERIA:\n      Residual Target = "
         "1e-5\n      Residual Type = RMS\n    END\n  END\nEND\n";
     return text;

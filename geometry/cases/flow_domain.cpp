@@ -21,6 +21,15 @@ void positive(const char* name, double value) {
 
 }  // namespace
 
+const std::vector<std::string>& mesher_names() {
+    static const std::vector<std::string> names = {"blocks", "snappy"};
+    return names;
+}
+
+int iterations_of(const FlowOptions& options) {
+    return options.iterations > 0 ? options.iterations : options.mesher == CaseMesher::blocks ? 800 : 400;
+}
+
 FlowDomain flow_domain(const SurfaceMesh& body, const FlowOptions& o) {
     for (const auto& [name, value] : {std::pair{"speed", o.speed},
                                       {"density", o.density},
@@ -83,6 +92,23 @@ void require_empty_folder(const std::filesystem::path& folder) {
                                {folder.string(), {}, {}, {}},
                                "name a new folder: a case is never written over another");
     }
+}
+
+std::string foam_header(const std::string& kind, const std::string& object) {
+    return "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class " + kind + ";\n    object " + object +
+           ";\n}\n\n";
+}
+
+/// Iterations between two writes, so that a solve that was cut can go on: about an eighth of them. OpenFOAM writes its
+/// last iteration only where the interval divides it; a number without a divisor in between gets no checkpoints.
+int checkpoint_interval(int iterations) {
+    int best = iterations;
+    for (int interval = std::max(1, iterations / 40); interval <= iterations / 3; ++interval) {
+        const bool closer =
+            std::abs(std::log(8.0 * interval / iterations)) < std::abs(std::log(8.0 * best / iterations));
+        best = iterations % interval == 0 && closer ? interval : best;
+    }
+    return best;
 }
 
 std::string digits(double value) { return core::format_number(value, 12); }

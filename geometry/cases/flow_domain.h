@@ -7,10 +7,18 @@
 
 #include "core/progress.h"
 #include "core/water.h"
+#include "geometry/blocks/block_mesh.h"
+#include "geometry/body/body_shape.h"
 #include "geometry/mesh/surface_mesh.h"
 #include "geometry/water/placement.h"
 
 namespace underbody::geometry {
+
+/// What makes the mesh of an OpenFOAM case. Blocks of hexahedra (geometry/blocks) for bodies of the family: many cells
+/// in a gap of any thinness, wall units about 1. snappyHexMesh for any surface, about four cells across the smallest
+/// gap.
+enum class CaseMesher { blocks, snappy };
+const std::vector<std::string>& mesher_names();
 
 /// Steady flow past the body, in axes fixed to it: x forward, y to port, z up, ground at z = 0. Water and ground come
 /// from ahead at `speed` (toward -x).
@@ -20,14 +28,20 @@ struct FlowOptions {
     double density = core::default_water_density;  ///< kg/m^3
     double kinematic_viscosity = 1e-6;             ///< m^2/s
     double turbulence_intensity = 0.01;
-    double viscosity_ratio = 5;                                ///< eddy over molecular viscosity at the inlet
-    bool half = true;                                          ///< only y > 0, with the plane y = 0 as symmetry
+    double viscosity_ratio = 5;                      ///< eddy over molecular viscosity at the inlet
+    bool half = true;                                ///< only y > 0, with the plane y = 0 as symmetry
+    CaseMesher mesher = CaseMesher::blocks;          ///< of a body of the family; a surface has snappy alone
+    MeshDensity mesh_density = MeshDensity::medium;  ///< of blocks
+    /// m^3/s through the nozzle of the whole body, straight out of its opening: blocks only. 0: the nozzle is a wall.
+    double jet_flow = 0;
+    // Of snappy:
     double upstream = 3, downstream = 6, side = 3, above = 3;  ///< in body lengths from the body
     double cell = 0.125;                                       ///< of the background mesh, in body lengths
     int surface_level = 3;                                     ///< halvings of the cell at the body
     int layers = 3;                                            ///< prism layers on the body
-    int iterations = 400;
+    int iterations = 0;                                        ///< at most; 0: 400, with blocks 800
 };
+int iterations_of(const FlowOptions& options);
 
 /// The box and the names of its boundaries: inlet, outlet, ground, top, side, and symmetry (half) or side_starboard;
 /// the body's patches keep their names.
@@ -50,6 +64,24 @@ FlowDomain flow_domain(const SurfaceMesh& body, const FlowOptions& options);
 /// Throws also core::InputError (kind "exists") when the folder holds something.
 std::vector<std::filesystem::path> write_openfoam_case(const SurfaceMesh& body, const FlowOptions& options,
                                                        const std::filesystem::path& folder);
+
+/// The same of a body of the family by `options.mesher`.
+std::vector<std::filesystem::path> write_openfoam_case(const BodyShape& shape, const FlowOptions& options,
+                                                       const std::filesystem::path& folder,
+                                                       core::Progress& progress = core::Progress::none());
+
+/// A case with its mesh of blocks (constant/polyMesh, its measures in constant/mesh.json); Allrun checks the mesh and
+/// runs simpleFoam: k-omega SST down to the wall, first some iterations with upwind schemes from the undisturbed stream
+/// (potentialFoam of Debian's build is broken), then SIMPLEC in second order. A file `settled` in the folder ends the
+/// run. Boundaries: those of the body, ground, symmetry (half), farfield.
+/// Throws as make_block_mesh; core::InputError (kind "missing") for a jet of a body without a nozzle, (kind
+/// "exists") when the folder holds something.
+struct BlockCase {
+    std::vector<std::filesystem::path> files;
+    BlockMesh mesh;
+};
+BlockCase write_block_case(const BodyShape& shape, const FlowOptions& options, const std::filesystem::path& folder,
+                           core::Progress& progress = core::Progress::none());
 
 /// Writes for ANSYS: each patch and each boundary of the box as STL and OBJ in metres (`surfaces/`), a Fluent journal
 /// (`fluent.jou`: reads the mesh made from them, sets materials, moving ground, inlet, SST, force and moment reports,

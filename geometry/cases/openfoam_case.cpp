@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/file.h"
+#include "geometry/body/body_surface.h"
 #include "geometry/cases/case_files.h"
 #include "geometry/cases/flow_domain.h"
 #include "geometry/mesh/mesh_file.h"
@@ -13,29 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string header(const std::string& kind, const std::string& object) {
-    return "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class " + kind + ";\n    object " + object +
-           ";\n}\n\n";
-}
-
-/// Iterations between two writes, so that a solve that was cut can go on: about an eighth of them. OpenFOAM writes its
-/// last iteration only where the interval divides it; a number without a divisor in between gets no checkpoints.
-int checkpoint_interval(int iterations) {
-    int best = iterations;
-    for (int interval = std::max(1, iterations / 40); interval <= iterations / 3; ++interval) {
-        const bool closer =
-            std::abs(std::log(8.0 * interval / iterations)) < std::abs(std::log(8.0 * best / iterations));
-        best = iterations % interval == 0 && closer ? interval : best;
-    }
-    return best;
-}
-
 std::string point(double x, double y, double z) { return "(" + digits(x) + " " + digits(y) + " " + digits(z) + ")"; }
+
+FlowOptions as_snappy(FlowOptions options) {
+    options.mesher = CaseMesher::snappy;
+    return options;
+}
 
 class Case {
 public:
     Case(const SurfaceMesh& body, const FlowOptions& options, fs::path folder)
-        : body_(body), o_(options), d_(flow_domain(body, options)), folder_(std::move(folder)) {
+        : body_(body), o_(as_snappy(options)), d_(flow_domain(body, options)), folder_(std::move(folder)) {
         const Box made = bounding_box(body);
         length_ = made.upper.x - made.lower.x;
         cell_ = o_.cell * length_;
@@ -46,23 +35,23 @@ public:
         put("constant/triSurface/body.stl", mesh_bytes(placed(body_, o_.placement), MeshFormat::stl_ascii));
         put("system/blockMeshDict", block_mesh());
         put("system/surfaceFeatureExtractDict",
-            header("dictionary", "surfaceFeatureExtractDict") +
+            foam_header("dictionary", "surfaceFeatureExtractDict") +
                 "body.stl\n{\n    extractionMethod extractFromSurface;\n    includedAngle 150;\n"
                 "    subsetFeatures { nonManifoldEdges no; openEdges yes; }\n    writeObj no;\n}\n");
         put("system/snappyHexMeshDict", snappy());
         put("system/meshQualityDict",
-            header("dictionary", "meshQualityDict") +
+            foam_header("dictionary", "meshQualityDict") +
                 "maxNonOrtho 65;\nmaxBoundarySkewness 20;\nmaxInternalSkewness 4;\nmaxConcave 80;\nminVol 1e-18;\n"
                 "minTetQuality 1e-15;\nminArea -1;\nminTwist 0.02;\nminDeterminant 0.001;\nminFaceWeight 0.05;\n"
                 "minVolRatio 0.01;\nminTriangleTwist -1;\nnSmoothScale 4;\nerrorReduction 0.75;\n");
         put("system/controlDict", control());
         put("system/fvSchemes", schemes());
         put("system/fvSolution", solution());
-        put("constant/transportProperties", header("dictionary", "transportProperties") +
+        put("constant/transportProperties", foam_header("dictionary", "transportProperties") +
                                                 "transportModel Newtonian;\nnu " + digits(o_.kinematic_viscosity) +
                                                 ";\n");
         put("constant/turbulenceProperties",
-            header("dictionary", "turbulenceProperties") +
+            foam_header("dictionary", "turbulenceProperties") +
                 "simulationType RAS;\nRAS\n{\n    RASModel kOmegaSST;\n    turbulence on;\n    printCoeffs on;\n}\n");
         fields();
         put("Allrun", run());
@@ -84,10 +73,10 @@ private:
         };
         const char* sixth = o_.half ? "symmetry { type symmetryPlane; faces ((0 1 5 4)); }"
                                     : "side_starboard { type patch; faces ((0 1 5 4)); }";
-        return header("dictionary", "blockMeshDict") + "scale 1;\nvertices\n(\n    " + point(a.x, a.y, a.z) + "\n    " +
-               point(b.x, a.y, a.z) + "\n    " + point(b.x, b.y, a.z) + "\n    " + point(a.x, b.y, a.z) + "\n    " +
-               point(a.x, a.y, b.z) + "\n    " + point(b.x, a.y, b.z) + "\n    " + point(b.x, b.y, b.z) + "\n    " +
-               point(a.x, b.y, b.z) + "\n);\nblocks ( hex (0 1 2 3 4 5 6 7) (" + count(b.x - a.x) + " " +
+        return foam_header("dictionary", "blockMeshDict") + "scale 1;\nvertices\n(\n    " + point(a.x, a.y, a.z) +
+               "\n    " + point(b.x, a.y, a.z) + "\n    " + point(b.x, b.y, a.z) + "\n    " + point(a.x, b.y, a.z) +
+               "\n    " + point(a.x, a.y, b.z) + "\n    " + point(b.x, a.y, b.z) + "\n    " + point(b.x, b.y, b.z) +
+               "\n    " + point(a.x, b.y, b.z) + "\n);\nblocks ( hex (0 1 2 3 4 5 6 7) (" + count(b.x - a.x) + " " +
                count(b.y - a.y) + " " + count(b.z - a.z) +
                ") simpleGrading (1 1 1) );\nedges ();\nboundary\n(\n    inlet { type patch; faces ((1 2 6 5)); }\n    "
                "outlet { type patch; faces ((0 4 7 3)); }\n"
@@ -110,7 +99,7 @@ private:
             layers += "        " + wall + " { nSurfaceLayers " + std::to_string(o_.layers) + "; }\n";
         }
         const double low = std::max(2 * d_.clearance.smallest, o_.placement.gap);
-        return header("dictionary", "snappyHexMeshDict") + "castellatedMesh true;\nsnap true;\naddLayers " +
+        return foam_header("dictionary", "snappyHexMeshDict") + "castellatedMesh true;\nsnap true;\naddLayers " +
                (o_.layers > 0 ? "true" : "false") +
                ";\n\ngeometry\n{\n    body.stl\n    {\n        type triSurfaceMesh;\n        name body;\n        "
                "regions\n        {\n" +
@@ -153,10 +142,10 @@ private:
     }
 
     std::string control() const {
-        return header("dictionary", "controlDict") +
+        return foam_header("dictionary", "controlDict") +
                "application simpleFoam;\nstartFrom latestTime;\nstartTime 0;\nstopAt endTime;\nendTime " +
-               std::to_string(o_.iterations) + ";\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval " +
-               std::to_string(checkpoint_interval(o_.iterations)) +
+               std::to_string(iterations_of(o_)) + ";\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval " +
+               std::to_string(checkpoint_interval(iterations_of(o_))) +
                ";\npurgeWrite 2;\nwriteFormat ascii;\nwritePrecision 9;\nwriteCompression off;\ntimeFormat "
                "general;\ntimePrecision 6;\nrunTimeModifiable true;\n\n"
                "functions\n{\n    // Forces in N on " +
@@ -172,7 +161,7 @@ private:
     }
 
     static std::string schemes() {
-        return header("dictionary", "fvSchemes") +
+        return foam_header("dictionary", "fvSchemes") +
                "ddtSchemes { default steadyState; }\ngradSchemes { default cellLimited Gauss linear 1; "
                "}\ndivSchemes\n{\n    default none;\n"
                "    div(phi,U) bounded Gauss linearUpwind grad(U);\n    div(phi,k) bounded Gauss upwind;\n    "
@@ -184,7 +173,7 @@ private:
     }
 
     static std::string solution() {
-        return header("dictionary", "fvSolution") +
+        return foam_header("dictionary", "fvSolution") +
                "solvers\n{\n    p\n    {\n        solver PCG;\n        preconditioner { preconditioner GAMG; smoother "
                "GaussSeidel; tolerance 1e-7; relTol 0.05; }\n"
                "        tolerance 1e-7;\n        relTol 0.05;\n    }\n    \"(U|k|omega)\"\n    {\n        solver "
@@ -225,7 +214,7 @@ private:
     }
 
     void field(const FieldText& f) {
-        std::string text = header(f.kind, f.name) + "dimensions " + f.dimensions + ";\ninternalField " + f.inside +
+        std::string text = foam_header(f.kind, f.name) + "dimensions " + f.dimensions + ";\ninternalField " + f.inside +
                            ";\nboundaryField\n{\n";
         const auto add = [&](const std::string& patch, const std::string& condition) {
             text += "    " + patch + " { " + condition + " }\n";
@@ -266,7 +255,7 @@ private:
     }
 
     const SurfaceMesh& body_;
-    const FlowOptions& o_;
+    FlowOptions o_;
     FlowDomain d_;
     fs::path folder_;
     double length_ = 0, cell_ = 0;
@@ -278,6 +267,13 @@ private:
 std::vector<std::filesystem::path> write_openfoam_case(const SurfaceMesh& body, const FlowOptions& options,
                                                        const std::filesystem::path& folder) {
     return Case(body, options, folder).write();
+}
+
+std::vector<std::filesystem::path> write_openfoam_case(const BodyShape& shape, const FlowOptions& options,
+                                                       const std::filesystem::path& folder, core::Progress& progress) {
+    return options.mesher == CaseMesher::blocks
+               ? write_block_case(shape, options, folder, progress).files
+               : write_openfoam_case(make_surface(shape, {}, progress), options, folder);
 }
 
 }  // namespace underbody::geometry

@@ -1,4 +1,5 @@
 // underbody body added-mass, underbody body domain: the water around a body.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -94,9 +95,34 @@ int added_mass_table(const AddedMassCommand& o, Shell& shell) {
 struct DomainCommand {
     BodyInput input;
     std::string solver = "openfoam", out, speed = "0.5 m/s", viscosity = "1e-6 m^2/s";
+    std::string mesher, density = "medium", jet = "0 m^3/s";
     geometry::FlowOptions flow;
     bool whole = false;
 };
+
+/// Index of a name in a list of names that was checked.
+template <class Enum>
+Enum named(const std::vector<std::string>& names, const std::string& name) {
+    return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+std::vector<std::string> boundaries_of(const geometry::BlockCase& made) {
+    std::vector<std::string> names;
+    for (const auto& patch : made.mesh.mesh.patches) {
+        if (std::find(made.mesh.walls.begin(), made.mesh.walls.end(), patch.name) == made.mesh.walls.end()) {
+            names.push_back(patch.name);
+        }
+    }
+    return names;
+}
+
+std::string mesh_text(const geometry::BlockMesh& mesh) {
+    const auto& q = mesh.quality;
+    return std::to_string(q.cells) + " cells, " + std::to_string(mesh.cells_in_gap) +
+           " across the gap, non-orthogonality at most " +
+           rounded(core::convert(q.largest_non_orthogonality, "rad", "deg"), 3) + " deg, skewness at most " +
+           rounded(q.largest_skewness, 3) + ", y+ about " + rounded(mesh.wall_units_mean, 2);
+}
 
 int write_domain(DomainCommand& o, Shell& shell) {
     const auto placement = o.input.placement();
@@ -111,31 +137,53 @@ int write_domain(DomainCommand& o, Shell& shell) {
     o.flow.kinematic_viscosity = core::parse_in(o.viscosity, "m^2/s");
     o.flow.density = options.density;
     o.flow.half = !o.whole;
+    o.flow.jet_flow = core::parse_in(o.jet, "m^3/s");
     const geometry::FlowDomain domain = geometry::flow_domain(body.mesh, o.flow);
-    const auto files = o.solver == "openfoam" ? geometry::write_openfoam_case(body.mesh, o.flow, o.out)
-                                              : geometry::write_ansys_case(body.mesh, o.flow, o.out);
+    const bool blocks = o.solver == "openfoam" && (o.mesher.empty() ? body.shape.has_value() : o.mesher == "blocks");
+    if (o.flow.jet_flow != 0 && !blocks) {
+        throw core::UsageError("choice", "a jet needs a mesh of blocks for OpenFOAM", {}, "--mesher blocks");
+    }
+    if (blocks && !body.shape) {
+        throw core::UsageError("choice", "blocks are for bodies of the family, which a SHAPE.toml describes", {},
+                               "--mesher snappy takes any surface");
+    }
+    o.flow.mesher = blocks ? geometry::CaseMesher::blocks : geometry::CaseMesher::snappy;
+    o.flow.mesh_density = named<geometry::MeshDensity>(geometry::density_names(), o.density);
+    std::optional<geometry::BlockCase> made;
+    std::vector<std::filesystem::path> files;
+    if (blocks) {
+        made = geometry::write_block_case(*body.shape, o.flow, o.out, shell.progress());
+        files = made->files;
+    } else {
+        files = o.solver == "openfoam" ? geometry::write_openfoam_case(body.mesh, o.flow, o.out)
+                                       : geometry::write_ansys_case(body.mesh, o.flow, o.out);
+    }
     if (const std::string doubt = o.input.doubt(body.mesh); !doubt.empty()) {
         shell.warn(doubt);
     }
-    if (domain.cells_in_gap < 3 && o.solver == "openfoam") {
+    if (domain.cells_in_gap < 3 && o.solver == "openfoam" && !blocks) {
         shell.warn("only " + rounded(domain.cells_in_gap, 2) +
                    " cells across the smallest clearance: choose a smaller --cell");
     }
     nlohmann::json document{{"solver", o.solver},
                             {"folder", o.out},
-                            {"boundaries", domain.boundaries},
+                            {"boundaries", blocks ? boundaries_of(*made) : domain.boundaries},
                             {"walls", domain.walls},
-                            {"cells_in_gap", domain.cells_in_gap},
+                            {"cells_in_gap", blocks ? made->mesh.cells_in_gap : domain.cells_in_gap},
                             {"clearance", domain.clearance},
                             {"files", nlohmann::json::array()}};
     for (const auto& file : files) {
         document["files"].push_back(file.string());
     }
+    if (o.solver == "openfoam") {
+        document["mesher"] = blocks ? "blocks" : "snappy";
+        document["mesh"] = blocks ? nlohmann::json(made->mesh) : nlohmann::json(nullptr);
+    }
     if (shell.json) {
         shell.print_json(document);
     } else {
         shell.print(
-            o.out + ": " + std::to_string(files.size()) + " files; " +
+            o.out + ": " + std::to_string(files.size()) + " files; " + (blocks ? mesh_text(made->mesh) + "; " : "") +
             (o.solver == "openfoam" ? "run " + o.out + "/Allrun" : "mesh surfaces/, then fluent.jou or cfx.ccl"));
     }
     return done;
@@ -174,16 +222,35 @@ void add_body_domain(CLI::App* body, Shell& shell, BodyActions& actions) {
     command->add_option("--speed", o->speed, "of the stream and the ground")->capture_default_str();
     command->add_option("--viscosity", o->viscosity, "kinematic")->capture_default_str();
     command->add_flag("--whole", o->whole, "both halves (default: the port half with a plane of symmetry)");
-    command->add_option("--cell", o->flow.cell, "background cell, in body lengths")->capture_default_str();
-    command->add_option("--surface-level", o->flow.surface_level, "halvings of the cell at the body")
+    command
+        ->add_option("--mesher", o->mesher,
+                     "of OpenFOAM: blocks (hexahedra, many cells in any gap; default for a SHAPE.toml) or snappy "
+                     "(snappyHexMesh; default for a surface, or with --cell, --surface-level, --layers)")
+        ->check(CLI::IsMember(geometry::mesher_names()));
+    command->add_option("--mesh-density", o->density, "blocks: coarse, medium or fine")
+        ->check(CLI::IsMember(geometry::density_names()))
         ->capture_default_str();
-    command->add_option("--layers", o->flow.layers, "prism layers")->capture_default_str();
-    command->add_option("--iterations", o->flow.iterations, "of the solver")->capture_default_str();
+    command->add_option("--jet-flow", o->jet, "blocks: through the nozzle of the whole body, 50mL/s")
+        ->capture_default_str();
+    auto* cell =
+        command->add_option("--cell", o->flow.cell, "snappy: background cell, in body lengths")->capture_default_str();
+    auto* level =
+        command->add_option("--surface-level", o->flow.surface_level, "snappy: halvings of the cell at the body")
+            ->capture_default_str();
+    auto* layers = command->add_option("--layers", o->flow.layers, "snappy: prism layers")->capture_default_str();
+    command->add_option("--iterations", o->flow.iterations,
+                        "of the solver at most (default: blocks 800, snappy and ansys 400); a run of blocks ends when "
+                        "its loads have settled");
     command->footer(
         "Examples:\n"
         "  underbody body domain shape.toml --gap 10mm --out case && case/Allrun\n"
         "  underbody body domain shape.toml --gap 5mm --pitch 2deg --solver ansys --out for-fluent");
-    on(shell, actions, command, [o, &shell] { return write_domain(*o, shell); });
+    on(shell, actions, command, [o, cell, level, layers, &shell] {
+        if (o->mesher.empty() && cell->count() + level->count() + layers->count() > 0) {
+            o->mesher = "snappy";
+        }
+        return write_domain(*o, shell);
+    });
 }
 
 }  // namespace underbody::studio

@@ -72,18 +72,27 @@ int solve(Shell& shell, const std::string& folder, bool again) {
     }
     const auto state = cases::run_state(folder);
     const auto forces = forces_of(folder);
+    const auto loads = cases::settled_loads(folder);
+    if (loads.iterations > 0 && !loads.settled) {
+        shell.warn("not settled: " + loads.text);
+    }
     if (shell.json) {
         shell.print_json({{"case", folder},
                           {"solved_before", before},
                           {"went_on_from", from ? nlohmann::json(*from) : nlohmann::json(nullptr)},
                           {"iterations", state.iteration},
                           {"seconds", needed},
+                          {"settled", loads.iterations > 0 ? nlohmann::json(loads.settled) : nlohmann::json(nullptr)},
+                          {"settled_text", loads.text},
                           {"forces", forces}});
         return done;
     }
     shell.print(folder +
                 (before ? ": solved before, nothing was run (--again runs it)"
                         : ": solved in " + seconds(needed) + ", " + std::to_string(state.iteration) + " iterations"));
+    if (loads.iterations > 0) {
+        shell.print(std::string(loads.settled ? "settled: " : "not settled: ") + loads.text);
+    }
     for (const auto& entry : forces) {
         std::string numbers;
         for (const auto& number : entry["force"]) {
@@ -291,7 +300,8 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
         "  gap = [\"2 mm\", \"5 mm\"]\n"
         "  pitch = [\"0 deg\", \"2 deg\"]\n"
         "  speed = \"0.5 m/s\"\n"
-        "  # folder, conditions, kinematic_viscosity, cell, surface_level, layers, iterations\n"
+        "  # folder, conditions, kinematic_viscosity, iterations, mesh_density = \"fine\" of the blocks, or\n"
+        "  # mesher = \"snappy\" with cell, surface_level, layers\n"
         "  [sweep.slurm]                        # all optional\n"
         "  partition = \"cfd\"\n"
         "  time = \"02:00:00\"\n"

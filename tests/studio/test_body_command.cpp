@@ -188,8 +188,9 @@ TEST(BodyCommand, ComparesTablesAndSweeps) {
 
 TEST(BodyCommand, WritesACaseForASolver) {
     const core::TemporaryFolder folder;
-    const auto run = run_underbody(
-        {"body", "domain", shape("ellipse"), "--gap", "10mm", "--triangles", "4000", "--out", "case"}, folder.path());
+    const auto run = run_underbody({"body", "domain", shape("ellipse"), "--gap", "10mm", "--triangles", "4000",
+                                    "--mesher", "snappy", "--out", "case"},
+                                   folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "case/system/snappyHexMeshDict"));
     EXPECT_EQ(

@@ -169,14 +169,14 @@ protected:
                          "title = \"a sweep\"\n[frame]\nsymmetry = \"y\"\n[reference]\ndensity = \"998 "
                          "kg/m^3\"\n[[body]]\nname = \"ellipse\"\nshape = \"ellipse.toml\"\n"
                          "[sweep]\ngap = [\"5 mm\", \"10 mm\"]\npitch = \"1 deg\"\nspeed = \"0.5 m/s\"\nconditions "
-                         "= { mesh = \"coarse\" }\niterations = 40\n");
+                         "= { mesh = \"coarse\" }\nmesher = \"snappy\"\niterations = 40\n");
     }
     core::TemporaryFolder folder_;
 };
 
 TEST_F(SolveCommands, SolveRunsACaseAndTellsItsForces) {
     ASSERT_EQ(run({"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--gap",
-                   "10mm", "--out", "case", "--iterations", "30"})
+                   "10mm", "--out", "case", "--mesher", "snappy", "--iterations", "30"})
                   .exit_code,
               0);
     const auto first = run({"solve", "case", "--json"});
@@ -191,7 +191,7 @@ TEST_F(SolveCommands, SolveRunsACaseAndTellsItsForces) {
 
 TEST_F(SolveCommands, SolveSaysWhatIsMissingAndWhatFailed) {
     ASSERT_EQ(run({"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--gap",
-                   "10mm", "--out", "case"})
+                   "10mm", "--out", "case", "--mesher", "snappy"})
                   .exit_code,
               0);
     const auto none = test::run_underbody({"solve", "case", "--json"}, folder_.path(), {{"PATH", "/nowhere"}});
@@ -496,7 +496,7 @@ TEST_F(SolveCommands, CasesOfAnotherVersionAreComparedFileByFile) {
 
 TEST_F(SolveCommands, ASolveThatWasCutIsNeverSolved) {
     ASSERT_EQ(run({"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--gap",
-                   "10mm", "--out", "case", "--iterations", "30"})
+                   "10mm", "--out", "case", "--mesher", "snappy", "--iterations", "30"})
                   .exit_code,
               0);
     struct Cut {
@@ -528,7 +528,7 @@ TEST_F(SolveCommands, ASolveThatWasCutIsNeverSolved) {
 
 TEST_F(SolveCommands, ASolveIsNotRunTwiceAtOnce) {
     ASSERT_EQ(run({"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse.toml").string(), "--gap",
-                   "10mm", "--out", "case", "--iterations", "30"})
+                   "10mm", "--out", "case", "--mesher", "snappy", "--iterations", "30"})
                   .exit_code,
               0);
     hook("if [ $i = 1 ]; then echo $$ >> " + (folder_.path() / "pids").string() + "; fi; while [ ! -e " +
@@ -542,6 +542,93 @@ TEST_F(SolveCommands, ASolveIsNotRunTwiceAtOnce) {
     int status = 0;
     ::waitpid(first, &status, 0);
     EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+/// A stand-in for the solver on a mesh of blocks: its forces swing by `swing`, its run ends when it finds the file for
+/// which the case's function object waits.
+std::string waiting_solver(const std::string& swing) {
+    return "swing=" + swing + R"sh(
+if [ "$1" = -case ]; then cd "$2" || exit 1; fi
+end=$(sed -n 's/^endTime \([0-9]*\);.*/\1/p' system/controlDict)
+from=0
+for d in [1-9]*; do if [ -e "$d/U" ]; then from=$d; fi; done
+mkdir -p postProcessing/forces/$from
+f=postProcessing/forces/$from/force.dat
+echo '# Time (total_x total_y total_z) (pressure_x pressure_y pressure_z) (viscous_x viscous_y viscous_z)' > $f
+i=$from
+while [ $i -lt $end ] && [ ! -e settled ]; do
+    i=$((i + 1))
+    echo
+    echo "Time = $i"
+    echo "$i (-1.5 0 2) (-1 0 $((i % 2 * swing + 200))e-2) (-0.5 0 0)" >> $f
+    if [ $i -gt 240 ]; then sleep 0.1; fi
+done
+mkdir -p $i
+for v in U p k omega nut; do
+    printf 'FoamFile\n{\n    class volScalarField;\n}\ninternalField uniform 1;\n// **** //\n' > $i/$v
+done
+echo
+echo End
+)sh";
+}
+
+TEST_F(SolveCommands, ARunOnBlocksEndsWhenItsLoadsHaveSettled) {
+    program("ln", "exec /bin/ln \"$@\"");
+    program("simpleFoam", waiting_solver("0"));
+    write_study();
+    replace(folder_.path() / "study" / "study.toml", "mesher = \"snappy\"\niterations = 40",
+            "mesh_density = \"coarse\"");
+    const auto sweep = run({"sweep", "study", "--json", "--only", "ellipse-h5-p1-u0.5"});
+    ASSERT_EQ(sweep.exit_code, 0) << sweep.errors << sweep.output;
+    const fs::path made = runs() / "ellipse-h5-p1-u0.5";
+    const json marker = json::parse(core::read_file(made / "case.foam"));
+    EXPECT_EQ(marker["settled"], true);
+    EXPECT_GE(marker["iterations"], 220);
+    EXPECT_LT(marker["iterations"], 800);
+    EXPECT_EQ(marker["walls"], json({"base", "hull"}));
+    EXPECT_EQ(list()["ellipse-h5-p1-u0.5"]["state"], "solved");
+    const json mesh = json::parse(core::read_file(made / "constant" / "mesh.json"));
+    EXPECT_EQ(mesh["cells"], 57280);
+    EXPECT_EQ(mesh["cells_in_gap"], 20);
+    EXPECT_EQ(mesh["negative_volumes"], 0);
+    // Another density is another case.
+    replace(folder_.path() / "study" / "study.toml", "coarse\"\n", "medium\"\n");
+    EXPECT_THAT(list()["ellipse-h5-p1-u0.5"]["reason"].get<std::string>(),
+                HasSubstr("mesh density: coarse there, medium now"));
+}
+
+TEST_F(SolveCommands, ARunThatDoesNotSettleRunsToItsEndAndSaysSo) {
+    program("ln", "exec /bin/ln \"$@\"");
+    program("simpleFoam", waiting_solver("5"));
+    ASSERT_EQ(run({"body", "domain", (test::source_folder() / "cases/evie/shapes/rectangle.toml").string(), "--gap",
+                   "10mm", "--mesh-density", "coarse", "--out", "case", "--iterations", "240"})
+                  .exit_code,
+              0);
+    const auto solved = run({"solve", "case", "--json"});
+    ASSERT_EQ(solved.exit_code, 0) << solved.errors;
+    EXPECT_EQ(json::parse(solved.output)["settled"], false);
+    EXPECT_EQ(json::parse(solved.output)["iterations"], 240);
+    EXPECT_THAT(run({"solve", "case"}).output, HasSubstr("not settled: lift, drag or pitch moment change by 2"));
+    // --again solves anew on the same mesh.
+    EXPECT_EQ(run({"solve", "case", "--again"}).exit_code, 0);
+    EXPECT_TRUE(fs::exists(folder_.path() / "case" / "previous" / "240" / "U"));
+    EXPECT_TRUE(fs::exists(folder_.path() / "case" / "constant" / "polyMesh" / "owner"));
+}
+
+TEST_F(SolveCommands, WhatBelongsToOneMesherIsRefusedWithTheOther) {
+    write_study();
+    const fs::path toml = folder_.path() / "study" / "study.toml";
+    replace(toml, "mesher = \"snappy\"", "mesher = \"blocks\"\nlayers = 2");
+    EXPECT_THAT(run({"sweep", "study", "--list"}).errors, HasSubstr("snappyHexMesh's"));
+    replace(toml, "mesher = \"blocks\"\nlayers = 2", "mesher = \"snappy\"\nmesh_density = \"fine\"");
+    EXPECT_THAT(run({"sweep", "study", "--list"}).errors, HasSubstr("mesh_density is that of the blocks"));
+    replace(toml, "mesher = \"snappy\"\nmesh_density = \"fine\"", "mesh_density = \"finer\"");
+    EXPECT_THAT(run({"sweep", "study", "--list"}).errors, HasSubstr("fine"));
+    const auto nowhere = run({"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse.toml").string(),
+                              "--gap", "5mm", "--pitch", "6deg", "--out", "case"});
+    EXPECT_EQ(nowhere.exit_code, 3);
+    EXPECT_THAT(nowhere.errors, HasSubstr("below the ground"));
+    EXPECT_FALSE(fs::exists(folder_.path() / "case"));
 }
 
 /// A real case, coarse: 20 iterations, killed on the way and gone on with.
@@ -575,6 +662,34 @@ TEST(RealOpenFoam, ACaseIsMeshedSolvedAndReadAsItsOwnForcesSay) {
         const double before = result["forces"][0]["force"][k];
         EXPECT_NEAR(rest["forces"][0]["force"][k].get<double>(), before, 1e-4 * std::abs(before) + 1e-9) << k;
     }
+}
+
+/// Blocks: the start in first order, then second order; cut on the way and gone on with.
+TEST(RealOpenFoam, ACaseOfBlocksIsSolvedAndReadAsItsOwnForcesSay) {
+    if (!fs::exists("/usr/bin/simpleFoam")) {
+        GTEST_SKIP() << "skipped: OpenFOAM is not here (Debian: openfoam)";
+    }
+    const core::TemporaryFolder folder;
+    const auto made = test::run_underbody(
+        {"body", "domain", (test::source_folder() / "cases/evie/shapes/ellipse_front_bump1.toml").string(), "--gap",
+         "5mm", "--out", "case", "--iterations", "12", "--mesh-density", "coarse", "--json"},
+        folder.path());
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_EQ(json::parse(made.output)["mesher"], "blocks");
+    EXPECT_EQ(json::parse(made.output)["cells_in_gap"], 20);
+    const auto solved = test::run_underbody({"solve", "case", "--json"}, folder.path());
+    ASSERT_EQ(solved.exit_code, 0) << solved.errors;
+    EXPECT_EQ(json::parse(solved.output)["iterations"], 12);
+    EXPECT_TRUE(json::parse(solved.output)["settled"].is_null());  // too few to say
+    const auto loads = test::run_underbody(
+        {"loads", "case", "--symmetry", "y", "--zones", "hull,base,protrusion", "--json", "--check", "1 %"},
+        folder.path());
+    EXPECT_EQ(loads.exit_code, 0) << loads.errors;
+    EXPECT_THAT(core::read_file(folder.path() / "case" / "log.checkMesh"), HasSubstr("Mesh OK."));
+    fs::remove_all(folder.path() / "case" / "12");
+    const auto again = test::run_underbody({"solve", "case", "--json"}, folder.path());
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_GE(json::parse(again.output)["went_on_from"].get<double>(), 4);
 }
 
 }  // namespace
