@@ -168,10 +168,8 @@ void ForcePanel::choose_table() {
     }
     const auto spec = session_->study.tables[index];
     jobs_.start("force table", "fitting " + qt(spec.name), [this, spec, session = session_](core::Progress&) {
-        tables::FitOptions options;
-        options.axes = spec.axes;
-        auto table = std::make_shared<tables::ForceTable>(
-            tables::ForceTable::fit(cases::table_points(spec, session->results), spec.quantity, options));
+        auto table = std::make_shared<tables::ForceTable>(tables::ForceTable::fit(
+            cases::table_points(spec, session->results), spec.quantity, cases::fit_options(spec)));
         return [this, spec, table] {
             spec_ = spec;
             table_ = std::make_unique<tables::ForceTable>(*table);

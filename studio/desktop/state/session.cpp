@@ -1,0 +1,60 @@
+#include "studio/desktop/state/session.h"
+
+namespace underbody::studio {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void add_shape(Session& session, const std::string& name, const fs::path& file) {
+    try {
+        session.shapes[name] = geometry::read_shape(file);
+        session.shape_files[name] = file;
+    } catch (const core::Error& error) {
+        session.problems.push_back({core::Problem::Severity::error,
+                                    error.message() + (error.hint().empty() ? "" : "; " + error.hint()),
+                                    error.place()});
+    }
+}
+
+/// Outside files are kept as "KIND:PATH".
+void add_files(Session& session, const std::vector<std::string>& files) {
+    for (const auto& file : files) {
+        if (file.starts_with("shape:")) {
+            const fs::path path = file.substr(6);
+            add_shape(session, path.stem().string(), path);
+        }
+    }
+}
+
+void add_bodies(Session& session) {
+    for (const auto& body : session.study.bodies) {
+        add_shape(session, body.name, body.shape);
+    }
+}
+
+}  // namespace
+
+SessionPointer open_session(const fs::path& folder, const std::vector<std::string>& files) {
+    auto session = std::make_shared<Session>();
+    if (!folder.empty()) {
+        session->study = cases::Study::open(folder);
+        session->folder = (fs::absolute(session->study.folder()) / "x").lexically_normal().parent_path();
+        session->results = cases::stored_results(session->study, {});
+    }
+    add_bodies(*session);
+    add_files(*session, files);
+    return session;
+}
+
+SessionPointer with_files(const Session& session, const std::vector<std::string>& files) {
+    auto newer = std::make_shared<Session>(session);
+    newer->shapes.clear();
+    newer->shape_files.clear();
+    newer->problems.clear();
+    add_bodies(*newer);
+    add_files(*newer, files);
+    return newer;
+}
+
+}  // namespace underbody::studio

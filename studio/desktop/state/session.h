@@ -1,0 +1,35 @@
+// What is open: a study with what its store holds, and files from outside it. Immutable; a reload makes a new one.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cases/study.h"
+#include "core/error.h"
+#include "geometry/body/body_shape.h"
+
+namespace underbody::studio {
+
+struct Session {
+    std::filesystem::path folder;  ///< of the study, absolute; empty: none is open
+    cases::Study study;
+    cases::StudyResults results;
+    /// By name: the [[body]]s of the study, and shapes from outside by the name of their file.
+    std::map<std::string, geometry::BodyShape> shapes;
+    std::map<std::string, std::filesystem::path> shape_files;
+    core::Problems problems;  ///< shapes that cannot be read
+};
+
+using SessionPointer = std::shared_ptr<const Session>;
+
+/// Reads the study and what its store holds; computes nothing. Throws as cases::Study::open. A shape that cannot be
+/// read is a problem of the session. An empty `folder`: no study, only the shapes of `files`.
+SessionPointer open_session(const std::filesystem::path& folder, const std::vector<std::string>& files = {});
+
+/// The same study and results with the shapes of other outside files.
+SessionPointer with_files(const Session& session, const std::vector<std::string>& files);
+
+}  // namespace underbody::studio

@@ -1,0 +1,245 @@
+#include "studio/desktop/state/state.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/hash.h"
+#include "geometry/body/variants.h"
+
+namespace underbody::studio {
+
+using nlohmann::json;
+
+std::vector<std::string> State::selected(const std::string& kind) const {
+    std::vector<std::string> names;
+    for (const auto& id : selection) {
+        if (id.starts_with(kind + "/")) {
+            names.push_back(id.substr(kind.size() + 1));
+        }
+    }
+    return names;
+}
+
+std::string State::current(const std::string& kind, const std::vector<std::string>& known) const {
+    if (const auto at = last.find(kind); at != last.end()) {
+        for (const auto& name : at->second) {
+            if (std::find(known.begin(), known.end(), name) != known.end()) {
+                return name;
+            }
+        }
+    }
+    return known.empty() ? std::string() : known.front();
+}
+
+std::string shown_shape(const State& state, const Session& session) {
+    const auto known = shape_names(state, session);
+    const bool chosen = std::find(known.begin(), known.end(), state.design.shape) != known.end();
+    return chosen ? state.design.shape : known.empty() ? std::string() : known.front();
+}
+
+const std::vector<std::string>& workspace_names() {
+    static const std::vector<std::string> names = {"design", "explore", "compare", "tables", "stability", "loop"};
+    return names;
+}
+
+geometry::BodyShape shape_with(const State& state, const Session& session, const std::string& name,
+                               const ShapeChanges& changes) {
+    geometry::BodyShape shape;
+    if (const auto kept = state.design.variants.find(name); kept != state.design.variants.end()) {
+        shape = shape_with(state, session, kept->second.of, kept->second.set);
+    } else if (const auto known = session.shapes.find(name); known != session.shapes.end()) {
+        shape = known->second;
+    } else {
+        throw core::InputError("missing", "there is no shape '" + name + "'", {},
+                               core::did_you_mean(name, shape_names(state, session)));
+    }
+    for (const auto& [parameter, text] : changes) {
+        geometry::set_parameter(shape, parameter, text);
+    }
+    geometry::check(shape);
+    return shape;
+}
+
+geometry::BodyShape shape_of(const State& state, const Session& session, const std::string& name) {
+    const auto changed = state.design.changes.find(name);
+    return shape_with(state, session, name, changed == state.design.changes.end() ? ShapeChanges{} : changed->second);
+}
+
+std::vector<std::string> shape_names(const State& state, const Session& session) {
+    std::vector<std::string> names;
+    for (const auto& body : session.study.bodies) {
+        if (session.shapes.contains(body.name)) {
+            names.push_back(body.name);
+        }
+    }
+    for (const auto& [name, shape] : session.shapes) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            names.push_back(name);
+        }
+    }
+    for (const auto& [name, variant] : state.design.variants) {
+        names.push_back(name);
+    }
+    return names;
+}
+
+std::string state_hash(const State& state) { return core::content_hash(json(state).dump()); }
+
+namespace {
+
+template <class T>
+json optional_json(const std::optional<T>& value) {
+    return value ? json(*value) : json();
+}
+
+template <class T>
+void take(const json& object, const char* key, T& value) {
+    if (const auto at = object.find(key); at != object.end()) {
+        at->get_to(value);
+    }
+}
+
+template <class T>
+void take(const json& object, const char* key, std::optional<T>& value) {
+    if (const auto at = object.find(key); at != object.end()) {
+        value = at->is_null() ? std::optional<T>() : std::optional<T>(at->get<T>());
+    }
+}
+
+json json_of(const DesignView& v) {
+    json variants = json::object();
+    for (const auto& [name, one] : v.variants) {
+        variants[name] = {{"of", one.of}, {"set", one.set}};
+    }
+    return {{"shape", v.shape},     {"gap", v.gap},         {"pitch", v.pitch},   {"speed", v.speed},
+            {"changes", v.changes}, {"variants", variants}, {"before", v.before}, {"before_shape", v.before_shape}};
+}
+
+DesignView design_from(const json& object) {
+    DesignView v;
+    take(object, "shape", v.shape);
+    take(object, "gap", v.gap);
+    take(object, "pitch", v.pitch);
+    take(object, "speed", v.speed);
+    take(object, "changes", v.changes);
+    take(object, "before", v.before);
+    take(object, "before_shape", v.before_shape);
+    const json variants = object.value("variants", json::object());
+    for (const auto& [name, one] : variants.items()) {
+        v.variants[name] = {one.at("of").get<std::string>(), one.at("set").get<ShapeChanges>()};
+    }
+    return v;
+}
+
+json json_of(const FieldView& v) {
+    return {{"array", v.array},
+            {"whole_range", v.whole_range},
+            {"edges", v.edges},
+            {"mirror", optional_json(v.mirror)},
+            {"range", optional_json(v.range)},
+            {"difference", v.difference},
+            {"camera", v.camera},
+            {"zones", v.zones}};
+}
+
+FieldView fields_from(const json& object) {
+    FieldView v;
+    take(object, "array", v.array);
+    take(object, "whole_range", v.whole_range);
+    take(object, "edges", v.edges);
+    take(object, "mirror", v.mirror);
+    take(object, "range", v.range);
+    take(object, "difference", v.difference);
+    take(object, "camera", v.camera);
+    take(object, "zones", v.zones);
+    return v;
+}
+
+json json_of(const TableView& v) {
+    return {{"net_weight", optional_json(v.net_weight)},
+            {"virtual_mass", optional_json(v.virtual_mass)},
+            {"shown", v.shown},
+            {"held", v.held},
+            {"logarithmic", optional_json(v.logarithmic)}};
+}
+
+TableView table_from(const json& object) {
+    TableView v;
+    take(object, "net_weight", v.net_weight);
+    take(object, "virtual_mass", v.virtual_mass);
+    take(object, "shown", v.shown);
+    take(object, "held", v.held);
+    take(object, "logarithmic", v.logarithmic);
+    return v;
+}
+
+json json_of(const RegionView& v) {
+    return {
+        {"set", v.set}, {"cells", v.cells}, {"duration", optional_json(v.duration)}, {"start", optional_json(v.start)}};
+}
+
+RegionView region_from(const json& object) {
+    RegionView v;
+    take(object, "set", v.set);
+    take(object, "cells", v.cells);
+    take(object, "duration", v.duration);
+    take(object, "start", v.start);
+    return v;
+}
+
+State read_state(const json& object) {
+    State state;
+    take(object, "study", state.study);
+    take(object, "files", state.files);
+    take(object, "workspace", state.workspace);
+    take(object, "selection", state.selection);
+    take(object, "last", state.last);
+    take(object, "stars", state.stars);
+    state.design = design_from(object.value("design", json::object()));
+    state.fields = fields_from(object.value("fields", json::object()));
+    const json explore = object.value("explore", json::object());
+    take(explore, "x", state.explore.x);
+    take(explore, "y", state.explore.y);
+    take(explore, "brush", state.explore.brush);
+    const json tables = object.value("tables", json::object());
+    for (const auto& [name, one] : tables.items()) {
+        state.tables[name] = table_from(one);
+    }
+    const json regions = object.value("regions", json::object());
+    for (const auto& [name, one] : regions.items()) {
+        state.regions[name] = region_from(one);
+    }
+    return state;
+}
+
+}  // namespace
+
+void to_json(json& object, const State& state) {
+    object = {{"study", state.study},
+              {"files", state.files},
+              {"workspace", state.workspace},
+              {"selection", state.selection},
+              {"last", state.last},
+              {"stars", state.stars},
+              {"design", json_of(state.design)},
+              {"fields", json_of(state.fields)},
+              {"explore", {{"x", state.explore.x}, {"y", state.explore.y}, {"brush", state.explore.brush}}},
+              {"tables", json::object()},
+              {"regions", json::object()}};
+    for (const auto& [name, one] : state.tables) {
+        object["tables"][name] = json_of(one);
+    }
+    for (const auto& [name, one] : state.regions) {
+        object["regions"][name] = json_of(one);
+    }
+}
+
+State state_from_json(const json& object) {
+    try {
+        return read_state(object);
+    } catch (const json::exception& error) {
+        throw core::InputError("parse", std::string("the state of the window cannot be read: ") + error.what());
+    }
+}
+
+}  // namespace underbody::studio

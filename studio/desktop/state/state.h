@@ -1,0 +1,124 @@
+// What the window shows, as one immutable value: only actions make a new one (actions.h), everything on screen is drawn
+// from it. Numbers are SI. No Qt here: the same state is replayed without a window.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "geometry/body/body_shape.h"
+#include "studio/desktop/state/session.h"
+
+namespace underbody::studio {
+
+/// A shape with some of its parameters changed: parameter -> value as written ("2 mm").
+using ShapeChanges = std::map<std::string, std::string>;
+
+/// A shape that was made in the window: another one with changes.
+struct KeptVariant {
+    std::string of;
+    ShapeChanges set;
+    bool operator==(const KeptVariant&) const = default;
+};
+
+/// How a force table is looked at.
+struct TableView {
+    std::optional<double> net_weight;    ///< N; none: as the study says
+    std::optional<double> virtual_mass;  ///< kg
+    std::string shown;                   ///< "curve gap", "family gap pitch", "map gap pitch"; empty: the first
+    std::map<std::string, double> held;  ///< axes that are not drawn
+    std::optional<bool> logarithmic;     ///< none: where the axis spans decades
+    bool operator==(const TableView&) const = default;
+};
+
+/// A stability map with numbers of its model changed.
+struct RegionView {
+    std::map<std::string, double> set;           ///< declared parameters, SI
+    int cells = 200;                             ///< starts a side
+    std::optional<double> duration;              ///< s; none: as the study says
+    std::optional<std::array<double, 2>> start;  ///< gap (m) and heave velocity (m/s) of the motion that is shown
+    bool operator==(const RegionView&) const = default;
+};
+
+/// How fields are looked at: one array, range, camera and set of zones for all cells.
+struct FieldView {
+    std::string array = "pressure";
+    bool whole_range = false;
+    bool edges = false;
+    std::optional<bool> mirror;                  ///< none: half models are mirrored
+    std::optional<std::array<double, 2>> range;  ///< of the colours; none: of what is seen
+    bool difference = false;                     ///< to the first case
+    std::string camera = "iso";                  ///< "bottom", "top", "side", "front", "iso"
+    std::map<std::string, bool> zones;           ///< ticked by hand
+    bool operator==(const FieldView&) const = default;
+};
+
+struct ExploreView {
+    std::string x = "gap";
+    std::string y = "lift_force";
+    std::map<std::string, std::array<double, 2>> brush;  ///< column -> kept range, SI
+    bool operator==(const ExploreView&) const = default;
+};
+
+struct DesignView {
+    std::string shape;
+    double gap = 0.005;                           ///< m
+    double pitch = 0;                             ///< rad, nose up
+    double speed = 0.5;                           ///< m/s
+    std::map<std::string, ShapeChanges> changes;  ///< of each shape that was changed
+    std::map<std::string, KeptVariant> variants;
+    ShapeChanges before;  ///< what the results are compared with, of `before_shape`
+    std::string before_shape;
+    bool operator==(const DesignView&) const = default;
+};
+
+struct State {
+    std::string study;               ///< folder, absolute; empty: none
+    std::vector<std::string> files;  ///< from outside the study: "field:PATH", "shape:PATH"
+    std::string workspace = "design";
+    std::vector<std::string> selection;  ///< "case/NAME", "shape/NAME", "table/NAME", ...
+    /// What was last selected of each kind, which a workspace shows while something of another kind is selected.
+    std::map<std::string, std::vector<std::string>> last;
+    std::set<std::string> stars;
+    DesignView design;
+    FieldView fields;
+    ExploreView explore;
+    std::map<std::string, TableView> tables;
+    std::map<std::string, RegionView> regions;
+    bool operator==(const State&) const = default;
+
+    /// Names of the selected things of a kind ("case"), in the order in which they were chosen.
+    [[nodiscard]] std::vector<std::string> selected(const std::string& kind) const;
+    /// The first of those last selected of a kind ("table", "region", ...) when it is among `known`, else the first of
+    /// `known`; empty when there is none.
+    [[nodiscard]] std::string current(const std::string& kind, const std::vector<std::string>& known) const;
+};
+using StatePointer = std::shared_ptr<const State>;
+
+/// The six workspaces, in the order of their keys.
+const std::vector<std::string>& workspace_names();
+
+/// Equal for equal states.
+std::string state_hash(const State& state);
+
+/// The shape of that name with its changes, or a kept variant; checked. Throws core::InputError: no such shape, a
+/// parameter that cannot be (geometry::check).
+geometry::BodyShape shape_of(const State& state, const Session& session, const std::string& name);
+/// The same with other changes than those of the state.
+geometry::BodyShape shape_with(const State& state, const Session& session, const std::string& name,
+                               const ShapeChanges& changes);
+/// The shape that Design shows: the chosen one, else the first; empty when there is none.
+std::string shown_shape(const State& state, const Session& session);
+/// Names of all shapes: of the study, from outside, kept.
+std::vector<std::string> shape_names(const State& state, const Session& session);
+
+void to_json(nlohmann::json& json, const State& state);
+/// Keys that are missing keep their defaults. Throws core::InputError for one of the wrong kind.
+State state_from_json(const nlohmann::json& json);
+
+}  // namespace underbody::studio

@@ -1,0 +1,326 @@
+// State, actions, history, session files, log and replay of the desktop, without a window.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "core/file.h"
+#include "studio/desktop/state/action_log.h"
+#include "studio/desktop/state/session_file.h"
+#include "tests/support/support.h"
+
+namespace underbody::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path evie() { return test::source_folder() / "cases" / "evie"; }
+
+SessionPointer evie_session() {
+    static const SessionPointer session = open_session(evie());
+    return session;
+}
+
+/// A line of every verb and every key, fit for the shipped study.
+std::vector<std::string> every_action() {
+    return {"workspace tables",
+            "select case/ellipse-h5-p0 case/ellipse-h2-p0 table/drag region/glide",
+            "star case/ellipse-h5-p0",
+            "unstar case/ellipse-h5-p0",
+            "shape rectangle",
+            "set 'body.base_cut=0.7'",
+            "pin",
+            "set 'protrusion.height=1.5 mm' 'protrusion.length=8 mm'",
+            "reset protrusion.length",
+            "keep rectangle-2",
+            "set body.base_cut=0.72",
+            "reset",
+            "forget rectangle-2",
+            "operation gap=3mm pitch=1deg speed=0.7m/s",
+            "fields array=wall_shear whole_range=on edges=on mirror=off difference=on range=-100:100 camera=bottom "
+            "zone.hull=off",
+            "table lift net_weight=0.28N virtual_mass=4kg logarithmic=on 'shown=curve gap'",
+            "table 'lift over gap and pitch' held.pitch=1deg",
+            "region glide cells=60 duration=20s set.vehicle.net_weight=0.2 start=5mm,10mm/s",
+            "region glide as_declared=",
+            "axes pitch drag_force",
+            "brush gap=2mm:5mm lift_force=0:0.4",
+            "add shape " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
+            "remove " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
+            "locate " + evie().string() + " /elsewhere/evie",
+            "open " + evie().string()};
+}
+
+State opened() {
+    State state;
+    return applied(state, {"open", evie().string()}, *evie_session());
+}
+
+TEST(StudioWords, ReadBackWhatTheyWrote) {
+    std::mt19937 random(3);
+    const std::string letters = "ab='\" \\#$;x\t*";
+    for (int round = 0; round < 2000; ++round) {
+        Words words(1 + random() % 4);
+        for (auto& word : words) {
+            const auto size = random() % 6;
+            for (std::size_t i = 0; i < size; ++i) {
+                word += letters[random() % letters.size()];
+            }
+        }
+        EXPECT_EQ(words_of(line_of(words)), words) << line_of(words);
+    }
+    EXPECT_EQ(words_of("set a=1 # a comment"), (Words{"set", "a=1"}));
+    EXPECT_THROW(words_of("set 'a=1"), core::InputError);
+}
+
+// The quoting is that of a shell, not only our own.
+TEST(StudioWords, AShellReadsTheSameWords) {
+    const Words words = {"printf", "%s|", "a b", "it's", "$HOME", "", "x=\"1\"", "*"};
+    FILE* pipe = ::popen(line_of(words).c_str(), "r");
+    ASSERT_NE(pipe, nullptr);
+    char text[200] = {};
+    const auto count = std::fread(text, 1, sizeof text - 1, pipe);
+    ::pclose(pipe);
+    EXPECT_EQ(std::string(text, count), "a b|it's|$HOME||x=\"1\"|*|");
+}
+
+TEST(StudioActions, EachIsDoneUndoneAndRedone) {
+    std::set<std::string> verbs;
+    History history(opened());
+    for (const auto& line : every_action()) {
+        const std::string before = state_hash(*history.state());
+        const auto words = words_of(line);
+        verbs.insert(words.front());
+        ASSERT_NO_THROW(history.act(words, *evie_session())) << line;
+        const std::string after = state_hash(*history.state());
+        EXPECT_NE(before, after) << line;
+        ASSERT_TRUE(history.undo()) << line;
+        EXPECT_EQ(state_hash(*history.state()), before) << line;
+        ASSERT_TRUE(history.redo()) << line;
+        EXPECT_EQ(state_hash(*history.state()), after) << line;
+        EXPECT_FALSE(history.steps().back().name.empty()) << line;
+    }
+    for (const auto& kind : action_kinds()) {
+        EXPECT_TRUE(verbs.contains(kind.verb)) << "no test of '" << kind.verb << "'";
+    }
+    const auto most = history.position();
+    const std::string last = state_hash(*history.state());
+    history.go_to(0);
+    EXPECT_EQ(*history.state(), opened());
+    history.go_to(most);
+    EXPECT_EQ(state_hash(*history.state()), last);
+}
+
+TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
+    History history(opened());
+    const std::vector<std::pair<std::string, std::string>> wrong = {
+        {"worspace tables", "workspace"},        {"workspace tabels", "tables"},
+        {"set protrusion.heigth=2mm", "height"}, {"set body.base_cut=7", "base_cut"},
+        {"table lft net_weight=1N", "lift"},     {"table lift net_wait=1N", "net_weight"},
+        {"region glid cells=30", "glide"},       {"region glide cells=3", "20"},
+        {"fields camera=botom", "bottom"},       {"operation gap=-3mm", "gap"},
+        {"brush gap=5mm:2mm", "smaller"},        {"keep ellipse", "another name"},
+        {"forget nothing", "nothing"},           {"shape elipse", "ellipse"},
+        {"select nonsense", "KIND/NAME"},        {"", "action"}};
+    const StatePointer before = history.state();
+    for (const auto& [line, told] : wrong) {
+        try {
+            history.act(words_of(line), *evie_session());
+            ADD_FAILURE() << line;
+        } catch (const core::Error& error) {
+            EXPECT_NE(std::string(error.what()).find(told), std::string::npos) << line << ": " << error.what();
+        }
+        EXPECT_EQ(history.state(), before) << line;
+        EXPECT_EQ(history.position(), 0U) << line;
+    }
+}
+
+TEST(StudioActions, ADragIsOneStepAndOneLine) {
+    History history(opened());
+    std::vector<std::string> lines;
+    history.on_line = [&](const std::string& line) { lines.push_back(line); };
+    for (int i = 1; i <= 50; ++i) {
+        history.act({"set", "protrusion.height=" + std::to_string(50 + i) + "e-2 mm"}, *evie_session(), "drag 1");
+    }
+    history.end_gesture();
+    EXPECT_EQ(history.position(), 1U);
+    EXPECT_EQ(lines, (std::vector<std::string>{"set 'protrusion.height=100e-2 mm'"}));
+    history.act({"set", "protrusion.height=1 mm"}, *evie_session(), "drag 2");
+    history.end_gesture();
+    EXPECT_EQ(history.position(), 2U);
+    history.undo();
+    EXPECT_EQ(history.state()->design.changes.at("ellipse").at("protrusion.height"), "100e-2 mm");
+    history.act({"set", "protrusion.height=2 mm"}, *evie_session(), "drag 3");
+    history.act({"set", "protrusion.height=100e-2 mm"}, *evie_session(), "drag 3");  // and back
+    history.end_gesture();
+    EXPECT_EQ(history.position(), 1U);
+}
+
+TEST(StudioActions, ShapesAreTheLibrarys) {
+    State state = opened();
+    state = applied(state, words_of("set 'protrusion.height=2 mm' body.base_cut=0.7"), *evie_session());
+    const auto shape = shape_of(state, *evie_session(), "ellipse");
+    EXPECT_DOUBLE_EQ(shape.protrusion->height, 0.002);
+    EXPECT_DOUBLE_EQ(shape.base_cut, 0.7);
+    state = applied(state, words_of("keep bumped"), *evie_session());
+    EXPECT_EQ(shape_hash(shape_of(state, *evie_session(), "bumped")), shape_hash(shape));
+    EXPECT_EQ(shape_hash(shape_of(state, *evie_session(), "ellipse")),
+              shape_hash(evie_session()->shapes.at("ellipse")));
+    const std::string command = command_of(state, words_of("keep bumped"), *evie_session());
+    EXPECT_NE(command.find("--set body.base_cut=0.7 --set 'protrusion.height=2 mm' --as bumped.toml"),
+              std::string::npos)
+        << command;
+}
+
+/// `count` lines of actions, of which most fit the shipped study.
+std::vector<std::string> random_lines(unsigned seed, int count) {
+    std::mt19937 random(seed);
+    const auto actions = every_action();
+    const auto share = [&] { return std::uniform_real_distribution<>(0, 1)(random); };
+    std::vector<std::string> lines;
+    for (int i = 0; i < count; ++i) {
+        switch (random() % 6) {
+            case 0:
+                lines.push_back("undo");
+                break;
+            case 1:
+                lines.push_back("redo");
+                break;
+            case 2:
+                lines.push_back("set body.base_cut=" + std::to_string(0.5 + 0.4 * share()));
+                break;
+            case 3:
+                lines.push_back("table lift net_weight=" + std::to_string(share()) + "N");
+                break;
+            case 4:
+                lines.push_back("keep v" + std::to_string(random() % 8));
+                break;
+            default:
+                lines.push_back(actions[random() % (actions.size() - 2)]);
+                break;
+        }
+    }
+    return lines;
+}
+
+TEST(StudioReplay, TheLogGivesTheSameStateAndHistory) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        History live(opened());
+        std::string log;
+        live.on_line = [&](const std::string& line) { log += line + "\n"; };
+        int gesture = 0;
+        for (const auto& line : random_lines(seed, 200)) {
+            try {
+                if (line == "undo" || line == "redo") {
+                    line == "undo" ? live.undo() : live.redo();
+                } else {
+                    live.act(words_of(line), *evie_session(),
+                             line.starts_with("set") ? std::to_string(gesture++ / 5) : "");
+                }
+            } catch (const core::Error&) {  // what cannot be done is not logged
+            }
+        }
+        live.end_gesture();
+        History again(opened());
+        SessionPointer session = evie_session();
+        replay("# a comment\n\n" + log, "test", again, session, [](const State&) { return evie_session(); });
+        EXPECT_EQ(state_hash(*again.state()), state_hash(*live.state())) << "seed " << seed;
+        EXPECT_EQ(again.position(), live.position()) << "seed " << seed;
+        again.go_to(0);
+        EXPECT_EQ(*again.state(), opened());
+    }
+}
+
+TEST(StudioReplay, AWrongLineIsNamed) {
+    History history;
+    SessionPointer session = open_session({});
+    try {
+        replay("workspace tables\nworkspace nowhere\n", "a.log", history, session,
+               [](const State& state) { return load_session(state, {}); });
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(error.place().text(), "a.log:2");
+    }
+    EXPECT_EQ(history.state()->workspace, "tables") << "what came before is done";
+}
+
+TEST(StudioSessionFile, ReadsBackFromAnywhere) {
+    const core::TemporaryFolder folder;
+    const fs::path first = folder.path() / "a";
+    fs::create_directories(first / "study");
+    fs::copy(evie() / "study.toml", first / "study" / "study.toml");
+    fs::copy(evie() / "shapes" / "ellipse.toml", first / "hull.toml");
+    State state = opened();
+    state.study = (first / "study").string();
+    state.files = {"shape:" + (first / "hull.toml").string()};
+    for (const char* line : {"star case/x", "set body.base_cut=0.7", "table lift net_weight=0.1N", "keep one",
+                             "region glide start=5mm,1mm/s", "fields range=-1:1"}) {
+        state = applied(state, words_of(line), *evie_session());
+    }
+    write_session(state, first / "s.ubs");
+    EXPECT_EQ(read_session(first / "s.ubs").state, state);
+    EXPECT_EQ(core::read_file(first / "s.ubs").find(folder.path().string()), std::string::npos) << "paths are relative";
+
+    fs::rename(first, folder.path() / "b");
+    const auto moved = read_session(folder.path() / "b" / "s.ubs");
+    EXPECT_EQ(moved.state.study, (folder.path() / "b" / "study").string());
+    EXPECT_TRUE(moved.problems.empty());
+
+    fs::rename(folder.path() / "b" / "study", folder.path() / "b" / "moved");
+    const auto lost = read_session(folder.path() / "b" / "s.ubs");
+    ASSERT_EQ(lost.missing, std::vector<std::string>{(folder.path() / "b" / "study").string()});
+    const State found =
+        applied(lost.state, {"locate", lost.missing[0], (folder.path() / "b" / "moved").string()}, *evie_session());
+    EXPECT_EQ(found.study, (folder.path() / "b" / "moved").string());
+}
+
+TEST(StudioSessionFile, KeepsForeignKeysAndRefusesOtherFiles) {
+    const core::TemporaryFolder folder;
+    const fs::path file = folder.path() / "s.ubs";
+    write_session({}, file);
+    auto document = nlohmann::json::parse(core::read_file(file));
+    document["of_another_program"] = 7;
+    core::write_file(file, document.dump());
+    write_session({}, file);
+    EXPECT_EQ(nlohmann::json::parse(core::read_file(file))["of_another_program"], 7);
+    for (const char* text : {"", "{}", "[1]", "{\"schema\": \"underbody-session\", \"version\": 99}",
+                             "{\"schema\": \"underbody-session\", \"state\": {\"study\": 7}}"}) {
+        core::write_file(file, text);
+        EXPECT_THROW(read_session(file), core::InputError) << text;
+    }
+}
+
+TEST(StudioRecovery, TheLogOfAProgramThatDiedIsFoundAndThatOfALivingOneIsNot) {
+    const core::TemporaryFolder folder;
+    int ready[2];
+    ASSERT_EQ(::pipe(ready), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ActionLog log(folder.path());
+        log.append("workspace tables");
+        log.append("star case/x");
+        static_cast<void>(!::write(ready[1], "x", 1));
+        ::_exit(9);  // no destructors: as a crash
+    }
+    char byte = 0;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+    ::waitpid(child, nullptr, 0);
+    {
+        ActionLog mine(folder.path());
+        mine.append("workspace loop");
+        const auto logs = left_over_logs(folder.path());
+        ASSERT_EQ(logs.size(), 1U);
+        History history;
+        SessionPointer session = open_session({});
+        replay(core::read_file(logs[0]), logs[0].string(), history, session,
+               [](const State& state) { return load_session(state, {}); });
+        EXPECT_EQ(history.state()->workspace, "tables");
+        EXPECT_TRUE(history.state()->stars.contains("case/x"));
+    }
+    EXPECT_EQ(left_over_logs(folder.path()).size(), 1U) << "a program that ended in order leaves none";
+}
+
+}  // namespace
+}  // namespace underbody::studio
