@@ -5,6 +5,8 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/lines.h"
+#include "core/mistyped.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -69,37 +71,14 @@ std::string unit_of(const std::string& unit) {
     return found == other.end() ? unit : found->second;
 }
 
-std::string plain(const std::string& name) {
-    std::string text = core::lower_case(name);
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == '-' || c == ' ' || c == '.'; }, '_');
-    return text;
-}
-
 /// The quantity that a name stands for among those who set up such cases; empty: none.
 std::string usual_quantity(const std::string& name) {
-    static const std::map<std::string, std::string> words = {{"ride_height", "gap"},
-                                                             {"clearance", "gap"},
-                                                             {"ground_clearance", "gap"},
-                                                             {"gap_height", "gap"},
-                                                             {"pitch_angle", "pitch"},
-                                                             {"angle_of_attack", "pitch"},
-                                                             {"aoa", "pitch"},
-                                                             {"velocity", "speed"},
-                                                             {"inlet_velocity", "speed"},
-                                                             {"inlet_speed", "speed"},
-                                                             {"free_stream_velocity", "speed"},
-                                                             {"freestream_velocity", "speed"},
-                                                             {"vehicle_speed", "speed"},
-                                                             {"voltage", "jet_voltage"},
-                                                             {"water_temperature", "temperature"}};
-    const std::string key = plain(name);
-    const auto found = words.find(key);
-    return found != words.end() ? found->second : core::find_quantity(key) != nullptr ? key : "";
+    const std::string key = core::plain_name(name);
+    return core::find_quantity(key) != nullptr ? key : core::other_name_of(key, core::Likeness::certain);
 }
 
 bool is_result(const std::string& name) {
-    const std::string key = plain(name);
+    const std::string key = core::plain_name(name);
     return key.ends_with("_op") || key.ends_with("_force") || key.ends_with("_moment") || key == "lift" ||
            key == "drag" || key.starts_with("report_");
 }
@@ -112,13 +91,7 @@ public:
     DesignPoints read() {
         std::string text = core::read_file(file_);
         text.erase(0, text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
-        std::int64_t number = 0;
-        for (const auto raw : core::split(text, '\n')) {
-            ++number;
-            const auto line = core::trimmed(raw);
-            if (line.empty()) {
-                continue;
-            }
+        core::for_each_line(text, [this](std::int64_t number, std::string_view line) {
             if (line.front() == '#') {
                 remember_names(line.substr(1));
             } else if (header_.empty()) {
@@ -126,7 +99,7 @@ public:
             } else {
                 read_row(line, number);
             }
-        }
+        });
         if (header_.empty() || rows_.empty()) {
             throw core::InputError("format", "there is no table of design points in this file",
                                    {file_.string(), {}, {}, {}},

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cases/claim.h"
 #include "cases/code_version.h"
+#include "cases/lock.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
@@ -61,7 +61,7 @@ std::string Key::digest() const {
     return hasher.digest();
 }
 
-std::string Key::about() const {
+std::string Key::about(const IdOf& id_of) const {
     nlohmann::json about = {
         {"code", nlohmann::json::object()}, {"options", nlohmann::json::object()}, {"from", nlohmann::json::array()}};
     for (const auto& [room, version] : code_) {
@@ -71,7 +71,7 @@ std::string Key::about() const {
         about["options"][label] = value;
     }
     for (const auto& [kind, name] : from_) {
-        about["from"].push_back({{"kind", kind}, {"name", name}});
+        about["from"].push_back({{"kind", kind}, {"name", name}, {"id", id_of(kind, name)}});
     }
     return about.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -154,8 +154,16 @@ StoredResult Engine::make_now(const std::string& kind, const std::string& name, 
     for (auto& [input, state] : read.entries()) {
         result.inputs.push_back({input.kind, states_.stored_path(input.path), input.pattern, state});
     }
-    result.id = store_->put(result, key.about(), value->bytes);
+    const auto ids = [this](const std::string& of, const std::string& called) { return id_of(of, called); };
+    result.id = store_->put(result, key.about(ids), value->bytes);
     return result;
+}
+
+/// The first digits of the identity of a result that this run got; empty when it got none.
+std::string Engine::id_of(const std::string& kind, const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const auto found = ids_.find(place_in_index(kind, name));
+    return found == ids_.end() ? std::string() : found->second;
 }
 
 std::optional<Made> Engine::make(const std::string& kind, const std::string& name, const Key& key,
@@ -165,12 +173,16 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
     std::optional<StoredResult> result = known(kind, name, digest);
     StepResult step{kind, shown.empty() ? name : shown, StepState::unchanged, {}};
     if (!result && mode == Mode::look) {
-        step.state = index_.contains(place_in_index(kind, name)) ? StepState::changed : StepState::missing;
+        const auto earlier = index_.find(place_in_index(kind, name));
+        step.state = earlier != index_.end() ? StepState::changed : StepState::missing;
+        if (options.as_stored && earlier != index_.end()) {
+            result = earlier->second.front();
+        }
     } else if (!result) {
         try {
-            std::optional<Claim> claim;
+            std::optional<Lock> lock;
             if (store_->writable()) {
-                claim.emplace(store_->file(), kind, name, progress);
+                lock = lock_of_result(store_->file(), kind, name, progress);
             }
             for (auto& candidate : store_->results(kind, name, digest)) {  // another run may have made it meanwhile
                 if (!result && is_true(candidate)) {
@@ -200,11 +212,14 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
     if (!result) {
         return std::nullopt;
     }
+    Made made{kind, name, result->id, result->identity(), result->summary};
+    const std::string& called = shown.empty() ? name : shown;
+    const std::lock_guard lock(mutex_);
+    ids_[place_in_index(kind, called)] = made.id_for_files();
     if (watcher_) {
-        const std::lock_guard lock(mutex_);
-        watcher_(shown.empty() ? name : shown, *result);
+        watcher_(called, *result);
     }
-    return Made{kind, name, result->id, result->identity(), std::move(result->summary)};
+    return made;
 }
 
 std::string Engine::value(const Made& made) {

@@ -26,6 +26,9 @@ struct Made {
     std::int64_t id = 0;   ///< in the store
     std::string identity;  ///< StoredResult::identity
     std::string summary;
+
+    /// Enough of the identity to find the result again: what exported files say in their heads.
+    [[nodiscard]] std::string id_for_files() const { return identity.substr(0, 16); }
 };
 
 /// What a result is made with besides files: options, conditions, code, other results. Files are noted when they are
@@ -42,8 +45,9 @@ public:
     /// It is made out of that result, whose numbers stand among the options: where they are the same, the key is.
     Key& through(const std::string& kind, const std::string& name);
     [[nodiscard]] std::string digest() const;
-    /// The same for people, as JSON: `code`, `options`, `from`.
-    [[nodiscard]] std::string about() const;
+    /// The same for people, as JSON: `code`, `options`, `from` (kind, name and the id that `id_of` knows).
+    using IdOf = std::function<std::string(const std::string& kind, const std::string& name)>;
+    [[nodiscard]] std::string about(const IdOf& id_of) const;
 
 private:
     std::vector<std::pair<std::string, std::string>> code_;
@@ -123,6 +127,7 @@ private:
     std::optional<StoredResult> known(const std::string& kind, const std::string& name, const std::string& digest);
     StoredResult make_now(const std::string& kind, const std::string& name, const std::string& digest, const Key& key,
                           const std::function<Value()>& work);
+    [[nodiscard]] std::string id_of(const std::string& kind, const std::string& name);
     void record(StepResult step);
     void unpack(const std::string& name, const std::string& value);
     void tell_version();
@@ -132,6 +137,7 @@ private:
     Watcher watcher_;
     std::mutex mutex_;
     std::unordered_map<std::string, std::vector<StoredResult>> index_;  ///< by kind and name, newest first
+    std::unordered_map<std::string, std::string> ids_;                  ///< of this run's results, likewise
 };
 
 /// A thing that several results are made of, made when the first of them needs it: what it read, they all read.

@@ -153,11 +153,11 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock)
         throw core::InputError("missing", "the case has no system/controlDict", {folder_.string(), {}, {}, {}});
     }
     need_openfoam();
-    lock_ = CaseLock::take(folder_ / ".underbody.lock", "solve");
+    lock_ = Lock::take(folder_ / ".underbody.lock", "solve");
     if (!lock_) {
         throw core::InputError(
             "busy",
-            "the case is being solved by " + CaseLock::holder(folder_ / ".underbody.lock").value_or("another process"),
+            "the case is being solved by " + Lock::holder(folder_ / ".underbody.lock").value_or("another process"),
             {folder_.string(), {}, {}, {}}, "wait for it, or end it first");
     }
     from_ = ready_to_go_on(folder_);

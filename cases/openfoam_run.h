@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "cases/case_lock.h"
 #include "cases/child_process.h"
+#include "cases/lock.h"
 
 namespace underbody::cases {
 
@@ -63,7 +63,7 @@ public:
 private:
     std::filesystem::path folder_;
     std::chrono::steady_clock::time_point start_;
-    std::optional<CaseLock> lock_;
+    std::optional<Lock> lock_;
     std::optional<double> from_;
     std::optional<ChildProcess> child_;
     bool watched_ = false;  // the case waits for settled_file

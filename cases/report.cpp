@@ -7,6 +7,7 @@
 
 #include "cases/code_version.h"
 #include "cases/engine.h"
+#include "cases/percent.h"
 #include "cases/report_tables.h"
 #include "core/html.h"
 #include "core/text.h"
@@ -32,8 +33,6 @@ std::string text_in(const json& object, const char* key) {
     const auto found = object.find(key);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
-
-std::string percent(double fraction, int digits = 3) { return core::format_number(100 * fraction, digits) + " %"; }
 
 class Report {
 public:
@@ -81,26 +80,30 @@ private:
         }
     }
 
+    /// The command that walks from the numbers of a result back to all that made them.
+    void way_back(const std::string& result) {
+        page_.paragraph("Where these numbers come from: underbody study why STUDY \"" + result + "\"");
+    }
+
     void key_figures() {
         std::vector<HtmlPage::Fact> facts;
         if (!engine_.study.cases.empty()) {
             facts.push_back({std::to_string(engine_.results.loads.rows()), "CFD cases"});
         }
         for (const auto& spec : engine_.study.verifications) {
-            if (const auto check = document("verify/" + spec.name)) {
-                facts.push_back(
-                    {percent(number_in(*check, "worst"), 2), "largest difference from the solver's own " + spec.name});
+            if (const auto* check = find_result(engine_.results.verifications, spec.name)) {
+                facts.push_back({percent(check->worst, 2), "largest difference from the solver's own " + spec.name});
             }
         }
         for (const auto& spec : engine_.study.tables) {
-            const auto table = document("table/" + spec.name);
-            if (!table || !spec.net_weight) {
+            const auto* table = find_result(engine_.results.tables, spec.name);
+            if (table == nullptr || !spec.net_weight) {
                 continue;
             }
             std::string gaps;
-            for (const auto& point : table->value("equilibria", json::array())) {
-                if (point.value("stable", false)) {
-                    gaps += (gaps.empty() ? "" : ", ") + shown(number_in(point, "gap"), "m", "mm", 2) + " mm";
+            for (const auto& point : table->equilibria) {
+                if (point.stable) {
+                    gaps += (gaps.empty() ? "" : ", ") + shown(point.gap, "m", "mm", 2) + " mm";
                 }
             }
             facts.push_back({gaps.empty() ? "none" : gaps, "stable gaps by '" + spec.name + "' at a net weight of " +
@@ -203,16 +206,13 @@ private:
         }
     }
 
-    void equilibria(const json& table, double net_weight) {
+    void equilibria(const TableResult& table, double net_weight) {
         std::vector<std::vector<std::string>> rows;
-        for (const auto& point : table.value("equilibria", json::array())) {
-            const double sigma = number_in(point, "sigma");
-            const bool stable = point.value("stable", false);
-            rows.push_back({shown(number_in(point, "gap"), "m", "mm"),
-                            std::isfinite(sigma) && sigma > 0 ? shown(sigma, "m", "mm", 2) : "-",
-                            stable ? "stable" : "unstable", shown(number_in(point, "stiffness"), "N/m", "N/m"),
-                            stable ? shown(number_in(point, "frequency"), "Hz", "Hz") : "-",
-                            stable ? shown(number_in(point, "kick_velocity"), "m/s", "mm/s") : "-"});
+        for (const auto& point : table.equilibria) {
+            rows.push_back({shown(point.gap, "m", "mm"), point.sigma > 0 ? shown(point.sigma, "m", "mm", 2) : "-",
+                            point.stable ? "stable" : "unstable", shown(point.stiffness, "N/m", "N/m"),
+                            point.stable ? shown(point.frequency, "Hz", "Hz") : "-",
+                            point.stable ? shown(point.kick_velocity, "m/s", "mm/s") : "-"});
         }
         if (rows.empty()) {
             page_.paragraph("No equilibrium in the table at a net weight of " + shown(net_weight, "N", "N") + " N.");
@@ -230,8 +230,8 @@ private:
         }
         page_.section("Force tables and equilibria");
         for (const auto& spec : engine_.study.tables) {
-            const auto table = document("table/" + spec.name);
-            if (!table) {
+            const auto* table = find_result(engine_.results.tables, spec.name);
+            if (table == nullptr) {
                 continue;
             }
             page_.subsection(spec.name);
@@ -243,17 +243,13 @@ private:
                     page_.table(films.header, films.rows, films.caption);
                 }
             }
-            std::vector<std::string> remarks;
-            for (const auto& remark : table->value("remarks", json::array())) {
-                remarks.push_back(remark.get<std::string>());
+            if (!table->remarks.empty()) {
+                page_.list(table->remarks);
             }
-            if (!remarks.empty()) {
-                page_.list(remarks);
+            for (const auto& file : table->exports) {
+                page_.link(file.file, "Controller table (" + file.format + "): " + file.file);
             }
-            for (const auto& file : table->value("exports", json::array())) {
-                page_.link(file.at("file").get<std::string>(),
-                           "Controller table (" + text_in(file, "format") + "): " + text_in(file, "file"));
-            }
+            way_back("table/" + spec.name);
         }
     }
 
@@ -284,17 +280,17 @@ private:
         page_.section("Where it comes back from");
         for (const auto& spec : engine_.study.regions) {
             show_figure("region/" + spec.name);
-            if (const auto region = document("region/" + spec.name)) {
+            if (const auto* region = find_result(engine_.results.regions, spec.name)) {
                 std::vector<std::vector<std::string>> rows;
-                for (const auto& entry : region->value("classes", json::array())) {
-                    rows.push_back(
-                        {text_in(entry, "name"), text_in(entry, "kind"), percent(number_in(entry, "fraction"))});
+                for (const auto& end : region->ends) {
+                    rows.push_back({end.name, end.kind, percent(end.fraction)});
                 }
                 page_.table({"end of the motion", "kind", "share of the starts"}, rows,
                             std::to_string(spec.columns) + " x " + std::to_string(spec.rows) + " starts, " +
                                 core::format_number(spec.duration, 3) + " s of motion each.");
                 page_.link("models/" + spec.name + "/model.toml",
                            "The model as a file for underbody simulate and region");
+                way_back("region/" + spec.name);
             }
         }
     }
@@ -397,30 +393,29 @@ private:
             page_.list(remarks);
         }
         for (const auto& spec : engine_.study.verifications) {
-            if (const auto check = document("verify/" + spec.name)) {
+            if (const auto* check = find_result(engine_.results.verifications, spec.name)) {
                 page_.paragraph("Our loads against the solver's own " + spec.name + " (" +
-                                spec.table.filename().string() + "): " + std::to_string(check->at("rows").size()) +
+                                spec.table.filename().string() + "): " + std::to_string(check->values) +
                                 " values compared; beyond twice what the run itself swings by, the worst differs by " +
-                                percent(number_in(*check, "worst")) + " of the force's size (" +
-                                text_in(*check, "worst_case") + "); allowed " +
-                                percent(number_in(*check, "tolerance")) + ", beyond it " +
-                                std::to_string(check->value("failed", 0)) +
+                                percent_of(check->worst, "the force's size") + " (" + check->worst_case +
+                                "); allowed " + percent(check->tolerance) + ", beyond it " +
+                                std::to_string(check->failed) +
                                 ". The files hold node values; face values would agree to rounding.");
             }
         }
         std::vector<std::vector<std::string>> rows;
         for (const auto& spec : engine_.study.mesh_uncertainties) {
-            const auto mesh = document("mesh/" + spec.name);
-            if (!mesh) {
+            const auto* mesh = find_result(engine_.results.meshes, spec.name);
+            if (mesh == nullptr) {
                 continue;
             }
-            for (const auto& [quantity, found] : mesh->at("quantities").items()) {
+            for (const auto& found : mesh->quantities) {
                 std::string values;
-                for (const auto& value : found.at("values")) {
-                    values += (values.empty() ? "" : ", ") + core::format_number(value.get<double>(), 3);
+                for (const double value : found.values) {
+                    values += (values.empty() ? "" : ", ") + core::format_number(value, 3);
                 }
-                rows.push_back({spec.name, quantity, values, text_in(found, "verdict"),
-                                core::format_number(number_in(found, "standard_uncertainty"), 2)});
+                rows.push_back(
+                    {spec.name, found.name, values, found.verdict, core::format_number(found.standard_uncertainty, 2)});
             }
         }
         if (!rows.empty()) {
@@ -454,6 +449,10 @@ private:
 
     void provenance() {
         page_.section("How this was made");
+        page_.paragraph(
+            "Any number of this page: underbody study why STUDY \"3.5 mm\" (as it is printed), \"lift_force of CASE\", "
+            "\"table/NAME\", exports/FILE: back to loads, faces, files with their hashes, mesh, settings of the solver "
+            "and code.");
         std::vector<std::vector<std::string>> rows;
         for (const auto& [room, version] : code_versions()) {
             rows.push_back({room, version.substr(0, 12)});

@@ -31,26 +31,6 @@ std::optional<json> document(const StudyResults& results, const std::string& key
     return text != nullptr ? std::optional<json>(json::parse(*text)) : std::nullopt;
 }
 
-/// For each case the error that some force table of the study takes for the quantity.
-std::map<std::string, double> errors_of(const Study& study, const StudyResults& results, const std::string& quantity) {
-    std::map<std::string, double> errors;
-    for (const auto& spec : study.tables) {
-        const auto found = spec.quantity == quantity ? document(results, "table/" + spec.name) : std::nullopt;
-        if (!found || !found->contains("points")) {
-            continue;
-        }
-        const core::Table points = core::read_csv(found->at("points").get<std::string>(), spec.name);
-        const core::Column* sigma = points.find(quantity + "_sigma");
-        const core::Column* names = points.find("case");
-        for (std::size_t row = 0; sigma != nullptr && names != nullptr && row < points.rows(); ++row) {
-            if (std::isfinite(sigma->numbers[row])) {
-                errors[names->text[row]] = sigma->numbers[row];
-            }
-        }
-    }
-    return errors;
-}
-
 std::vector<Shown> condition_columns(const core::Table& loads) {
     std::vector<Shown> columns;
     for (const auto& column : loads.columns()) {
@@ -85,6 +65,25 @@ std::vector<std::size_t> ordered_rows(const core::Table& loads, const std::vecto
 
 }  // namespace
 
+std::map<std::string, double> load_errors(const Study& study, const StudyResults& results,
+                                          const std::string& quantity) {
+    std::map<std::string, double> errors;
+    for (const auto& spec : study.tables) {
+        const TableResult* table = spec.quantity == quantity ? find_result(results.tables, spec.name) : nullptr;
+        if (table == nullptr) {
+            continue;
+        }
+        const core::Column* sigma = table->points.find(quantity + "_sigma");
+        for (std::size_t row = 0; sigma != nullptr && row < table->points.rows(); ++row) {
+            if (std::isfinite(sigma->numbers[row])) {
+                double& known = errors[table->points.text("case")[row]];
+                known = std::max(known, sigma->numbers[row]);
+            }
+        }
+    }
+    return errors;
+}
+
 ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) {
     const core::Table& loads = results.loads;
     const std::vector<Shown> conditions = condition_columns(loads);
@@ -98,7 +97,7 @@ ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) 
         table.header.push_back(column.title);
     }
     for (const auto& force : forces) {
-        errors.push_back(errors_of(study, results, force.name));
+        errors.push_back(load_errors(study, results, force.name));
         table.header.push_back(force.title);
         if (!errors.back().empty()) {
             table.header.push_back("± (" + force.to + ")");
@@ -169,26 +168,25 @@ ReportTable films_at_equilibria(const Study& study, const StudyResults& results,
             body = spec.name;
         }
     }
-    const auto found = document(results, "table/" + table.name);
-    if (!base || !found) {
+    const TableResult* found = find_result(results.tables, table.name);
+    if (!base || found == nullptr) {
         return films;
     }
     const std::vector<core::ClosedForm> forms = dynamics::film_forms();
     const core::ClosedForm& squeeze = core::find_closed_form(forms, "squeeze");
-    for (const auto& point : found->value("equilibria", json::array())) {
+    for (const auto& point : found->equilibria) {
         const auto text = [](double value) { return core::format_number(value, 17); };
         std::vector<std::string> inputs = {"half_length=" + text(base->at("half_length")),
-                                           "half_width=" + text(base->at("half_width")),
-                                           "gap=" + text(point.at("gap"))};
+                                           "half_width=" + text(base->at("half_width")), "gap=" + text(point.gap)};
         if (const auto density = study.reference.number("density")) {
             inputs.push_back("density=" + text(*density));
         }
         const auto values = core::closed_form_values(squeeze, inputs);
         const auto result = squeeze.evaluate(values);
         if (result.valid()) {
-            films.rows.push_back({number(1e3 * point.at("gap").get<double>(), 3),
-                                  point.value("stable", false) ? "stable" : "unstable", number(result["damping"], 3),
-                                  number(result["added_mass"], 3), number(point.at("stiffness").get<double>(), 3)});
+            films.rows.push_back({number(1e3 * point.gap, 3), point.stable ? "stable" : "unstable",
+                                  number(result["damping"], 3), number(result["added_mass"], 3),
+                                  number(point.stiffness, 3)});
         }
     }
     films.header = {"gap (mm)", "", "squeeze damping (N s/m)", "added mass of the film (kg)",

@@ -1,6 +1,7 @@
 // Tables of the report that are made of several results.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct ReportTable {
     std::vector<std::vector<std::string>> rows;
     std::string caption;
 };
+
+/// For each case, by name, the error that the force tables of the study take for the quantity, SI: the largest of them.
+std::map<std::string, double> load_errors(const Study& study, const StudyResults& results, const std::string& quantity);
 
 /// One row a case: its conditions (words first), lift, drag and pitch moment with the errors that force tables take for
 /// them, closure. By words, then by numbers.

@@ -5,6 +5,7 @@
 
 #include "cases/engine.h"
 #include "cases/names_in_study.h"
+#include "cases/time_means.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -183,7 +184,9 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
     for (const auto& name : numbers) {
         std::vector<double> values;
         for (const auto* one : done) {
-            values.push_back(study.cases[one->entry].conditions.number(name).value_or(std::nan("")));
+            const Case& entry = study.cases[one->entry];
+            const bool in_mean = entry.mean && name == "time";
+            values.push_back(in_mean ? std::nan("") : entry.conditions.number(name).value_or(std::nan("")));
         }
         const auto* quantity = core::find_quantity(name);
         const std::string unit = quantity != nullptr ? quantity->unit : "1";
@@ -249,7 +252,8 @@ void run_loads(Engine& engine) {
     auto& steps = engine.results.steps;
     std::stable_sort(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(),
                      [](const StepResult& a, const StepResult& b) { return a.name < b.name; });
-    engine.results.loads = loads_table(engine.study, all);
+    const bool in_time = std::any_of(cases.begin(), cases.end(), [](const Case& entry) { return entry.mean; });
+    engine.results.loads = loads_table(engine.study, in_time ? with_means_in_time(engine.study, all) : all);
 }
 
 }  // namespace underbody::cases

@@ -116,7 +116,9 @@ void run_meshes(Engine& engine) {
             }
         }
         if (const auto made = engine.make("mesh", spec.name, key, [&] { return compute_mesh(engine, spec, rows); })) {
-            engine.add_document("mesh/" + spec.name, engine.value(*made));
+            const std::string text = engine.value(*made);
+            engine.results.meshes.push_back(mesh_result(spec.name, nlohmann::json::parse(text)));
+            engine.add_document("mesh/" + spec.name, text);
         }
     }
 }

@@ -79,7 +79,9 @@ void run_one_region(Engine& engine, const RegionSpec& spec) {
     if (!made) {
         return;
     }
-    engine.add_document("region/" + spec.name, engine.value(*made));
+    const std::string text = engine.value(*made);
+    engine.results.regions.push_back(region_result(spec.name, nlohmann::json::parse(text)));
+    engine.add_document("region/" + spec.name, text);
     key.from(*made);
     engine.figure("region/" + spec.name, key, [&] { return dynamics::region_figure(region.get()); });
     if (engine.options.write_report) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
+#include "cases/export_files.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -16,6 +17,8 @@
 namespace underbody::cases {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 Key table_key(const std::string& kind, const TableSpec& spec, const core::Table& points) {
     Key key(kind, {"surrogates/tables"});
@@ -76,44 +79,64 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     return document.dump();
 }
 
-std::string ending_of(const std::string& format) {
-    std::vector<std::string> known;
-    for (const auto& candidate : tables::export_formats()) {
-        if (candidate.name == format) {
-            return candidate.ending;
-        }
-        known.push_back(candidate.name);
-    }
-    throw core::InputError("name", "unknown export format '" + format + "'", {}, core::did_you_mean(format, known));
-}
-
 using SharedTable = Shared<tables::ForceTable>;
 
-/// Writes the exports beside the report and names them in the document.
-void write_exports(Engine& engine, const TableSpec& spec, SharedTable& table, const Key& key,
+/// The files of an export as one value: a line of JSON ([{"file", "size"}]), then their bytes.
+std::string packed(const std::vector<fs::path>& files) {
+    nlohmann::json head = nlohmann::json::array();
+    std::string bytes;
+    for (const auto& file : files) {
+        const std::string content = core::read_file(file);
+        head.push_back({{"file", file.filename().string()}, {"size", content.size()}});
+        bytes += content;
+    }
+    return head.dump() + "\n" + bytes;
+}
+
+/// Their names; with `folder`, each is written there.
+std::vector<std::string> unpacked(const std::string& value, const std::optional<fs::path>& folder) {
+    const std::size_t line = value.find('\n');
+    std::size_t at = line + 1;
+    std::vector<std::string> names;
+    for (const auto& one : nlohmann::json::parse(value.substr(0, line))) {
+        names.push_back(one.at("file").get<std::string>());
+        const auto size = one.at("size").get<std::size_t>();
+        if (folder) {
+            Engine::write_if_changed(*folder / names.back(), value.substr(at, size));
+        }
+        at += size;
+    }
+    return names;
+}
+
+std::string compute_export(const TableSpec& spec, const std::string& format, const tables::ForceTable& table,
+                           const Made& made, core::Progress& progress) {
+    const Scratch folder;
+    tables::ExportOptions options;
+    options.name = export_name(spec.name);
+    options.provenance = {"Result: table/" + spec.name + " " + made.id_for_files() +
+                          " (underbody study why STUDY FILE says what it is made of)"};
+    const auto path = folder.path() / export_file(spec.name, format);
+    return packed(tables::export_table(table, format, path, options, progress).files);
+}
+
+/// Writes the exports beside the report and names them in the document. `table`: the result that they hold.
+void write_exports(Engine& engine, const TableSpec& spec, SharedTable& fit, const Made& table,
                    nlohmann::json& document) {
     document["exports"] = nlohmann::json::array();
     for (const auto& format : spec.exports) {
-        std::string file = spec.name;
-        std::replace_if(
-            file.begin(), file.end(), [](char c) { return c == ' ' || c == ','; }, '_');
-        const std::string ending = ending_of(format);
-        Key export_key = key;
-        export_key.add("format", format).add("name", file).through("table", spec.name);
-        const auto made = engine.make("export", spec.name + " as " + format, export_key, [&] {
-            const Scratch folder;
-            const auto path = folder.path() / (file + ending);
-            tables::ExportOptions options;
-            options.name = file;
-            tables::export_table(table.get(), format, path, options, engine.progress);
-            return core::read_file(path);
-        });
-        if (made) {
-            const std::string relative = "exports/" + file + ending;
-            if (engine.options.write_report && engine.mode == Engine::Mode::compute) {
-                Engine::write_if_changed(engine.report_folder() / relative, engine.value(*made));
-            }
-            document["exports"].push_back({{"format", format}, {"file", relative}});
+        Key key("export", {"surrogates/tables"});
+        key.from(table).add("format", format).add("name", export_file(spec.name, format));
+        const auto made = engine.make("export", spec.name + " as " + format, key,
+                                      [&] { return compute_export(spec, format, fit.get(), table, engine.progress); });
+        if (!made) {
+            continue;
+        }
+        const bool written = engine.options.write_report && engine.mode == Engine::Mode::compute;
+        const auto names =
+            unpacked(engine.value(*made), written ? std::optional(engine.report_folder() / "exports") : std::nullopt);
+        for (const auto& name : names) {
+            document["exports"].push_back({{"format", format}, {"file", "exports/" + name}});
         }
     }
 }
@@ -134,10 +157,11 @@ void run_table(Engine& engine, const TableSpec& spec) {
     }
     nlohmann::json document = nlohmann::json::parse(engine.value(*made));
     try {
-        write_exports(engine, spec, table, table_key("export", spec, points), document);
+        write_exports(engine, spec, table, *made, document);
     } catch (const core::InputError& error) {
         engine.fail("export", spec.name, error.what());
     }
+    engine.results.tables.push_back(table_result(spec.name, document));
     engine.add_document("table/" + spec.name, document.dump());
     key.from(*made).add("where", spec.where.label());
     engine.figure("table/" + spec.name, key, [&] {

@@ -187,7 +187,9 @@ void run_verifications(Engine& engine) {
             return document.dump();
         });
         if (made) {
-            engine.add_document("verify/" + spec.name, engine.value(*made));
+            const std::string text = engine.value(*made);
+            engine.results.verifications.push_back(verify_result(spec.name, nlohmann::json::parse(text)));
+            engine.add_document("verify/" + spec.name, text);
         }
     }
 }

@@ -73,6 +73,34 @@ std::string Conditions::label() const {
     return result;
 }
 
+Conditions conditions_from(const std::string& text) {
+    Conditions conditions;
+    for (const auto part : core::split(text, ',')) {
+        const std::size_t equals = part.find('=');
+        const std::string name(core::trimmed(part.substr(0, equals)));
+        const std::string value(equals == std::string_view::npos ? "" : core::trimmed(part.substr(equals + 1)));
+        if (name.empty() || value.empty()) {
+            throw core::UsageError("parse", "'" + std::string(core::trimmed(part)) + "' is not of the form name=value",
+                                   {}, "such as \"variant=A, pitch=0\"");
+        }
+        if (conditions.number(name) || conditions.text(name)) {
+            throw core::UsageError("duplicate", "'" + name + "' is given twice");
+        }
+        if (const auto* quantity = core::find_quantity(name)) {
+            try {
+                conditions.numbers.emplace_back(name, core::parse_in(value, quantity->unit));
+            } catch (const core::Error& error) {
+                throw core::UsageError("parse", error.message(), {}, error.hint());
+            }
+        } else if (const auto number = core::parse_number(value)) {
+            conditions.numbers.emplace_back(name, *number);
+        } else {
+            conditions.texts.emplace_back(name, value);
+        }
+    }
+    return conditions;
+}
+
 namespace {
 
 /// A number, or a text that is a number with or without a unit.
@@ -113,36 +141,12 @@ Conditions read_where(const TomlTable& table, const char* key) {
     if (!table.is_string(key)) {
         return read_conditions(table.table_or_empty(key));
     }
-    Conditions conditions;
-    const std::string text = table.string(key);
-    for (const auto part : core::split(text, ',')) {
-        const std::size_t equals = part.find('=');
-        const std::string name(core::trimmed(part.substr(0, equals)));
-        const std::string value(equals == std::string_view::npos ? "" : core::trimmed(part.substr(equals + 1)));
-        if (name.empty() || value.empty()) {
-            throw core::InputError(
-                "parse",
-                table.path_of(key) + ": '" + std::string(core::trimmed(part)) + "' is not of the form name=value",
-                table.place(key), "such as " + std::string(key) + " = \"variant=A, pitch=0\"");
-        }
-        if (conditions.number(name) || conditions.text(name)) {
-            throw core::InputError("duplicate", table.path_of(key) + ": '" + name + "' is given twice",
-                                   table.place(key));
-        }
-        if (const auto* quantity = core::find_quantity(name)) {
-            try {
-                conditions.numbers.emplace_back(name, core::parse_in(value, quantity->unit));
-            } catch (const core::Error& error) {
-                throw core::InputError("parse", table.path_of(key) + ": " + error.message(), table.place(key),
-                                       error.hint());
-            }
-        } else if (const auto number = core::parse_number(value)) {
-            conditions.numbers.emplace_back(name, *number);
-        } else {
-            conditions.texts.emplace_back(name, value);
-        }
+    try {
+        return conditions_from(table.string(key));
+    } catch (const core::UsageError& error) {
+        throw core::InputError(error.kind(), table.path_of(key) + ": " + error.message(), table.place(key),
+                               error.hint());
     }
-    return conditions;
 }
 
 std::string stem_of(const fs::path& file) {
@@ -221,6 +225,7 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
     const std::string pattern = table.string("files");
     const Conditions held = read_where(table, "conditions");
     const std::vector<std::string> zones = table.strings("zones");
+    const bool mean = table.boolean_or("mean", false);
     DesignPointCases design(table);
     for (auto& item : find_cases(pattern, study.folder(), table)) {
         Case entry;
@@ -239,6 +244,14 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
         }
         if (!design.take(entry)) {
             continue;
+        }
+        entry.mean = mean;
+        if (mean && !entry.conditions.number("time")) {
+            throw core::InputError("missing",
+                                   table.path_of("mean") + ": the time of '" + entry.name +
+                                       "' is not known, so that it has no place among the others",
+                                   table.place("mean"),
+                                   "let the names of the files carry it: files = \"run-{time:s}.csv\"");
         }
         const auto [same, fresh] = files.emplace(entry.file.string(), pattern);
         if (!fresh) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cases/design_spec.h"
+#include "cases/step_results.h"
 #include "core/error.h"
 #include "core/figure.h"
 #include "core/progress.h"
@@ -37,6 +38,10 @@ struct Conditions {
     [[nodiscard]] std::string label() const;
 };
 
+/// "variant=ellipse, gap=5mm", as on the command line: known quantities with units (SI without), other words as they
+/// are. Throws core::UsageError: a part that is not name=value, a unit of another dimension, a name given twice.
+Conditions conditions_from(const std::string& text);
+
 /// One CFD case of the study.
 struct Case {
     /// File name without folder and ending, of an OpenFOAM case its folder's; where several would be called so, with as
@@ -45,6 +50,7 @@ struct Case {
     std::filesystem::path file;  ///< or the folder of an OpenFOAM case
     Conditions conditions;
     std::vector<std::string> zones;  ///< patterns of the zones that are the body; empty: all walls
+    bool mean = false;  ///< one instant of a run in time: the files that differ in their time alone count as their mean
 };
 
 /// [[body]]
@@ -203,6 +209,7 @@ struct RunOptions {
     FigureRenderer renderer;       ///< without one the report has no plots
     bool pictures = true;          ///< 3D pictures (need Xvfb)
     bool write_report = true;      ///< also exports and models, beside it
+    bool as_stored = false;  ///< stored_results: also what files, options or code have made stale (StepState::changed)
 };
 
 enum class StepState {
@@ -255,6 +262,10 @@ struct StudyResults {
     std::vector<StepResult> steps;
     std::vector<CaseLoads> case_loads;  ///< one a case, in the order of the study
     core::Table loads;                  ///< one row a case that has loads: conditions, forces, moments, closure
+    std::vector<TableResult> tables;    ///< one a step that gave one; likewise the others
+    std::vector<MeshResult> meshes;
+    std::vector<RegionResult> regions;
+    std::vector<VerifyResult> verifications;
     std::vector<std::pair<std::string, std::string>> documents;  ///< "table/NAME" -> JSON text, "region/NAME" -> ...
     std::vector<std::pair<std::string, std::string>> pictures;   ///< "picture/NAME" -> PNG bytes
     std::filesystem::path report;
@@ -287,10 +298,12 @@ StudyResults stored_loads(const Study& study, const RunOptions& options);
 /// How a [[table]] is fitted, wherever it is.
 tables::FitOptions fit_options(const TableSpec& spec);
 
-/// The points of a [[table]]: its axes and its quantity with `QUANTITY_sigma`, one row a case that fits, from
-/// `results.loads`. The sigma is the standard uncertainty of the mesh study the table names and the relative error
-/// it states, and what the case scatters by from iteration to iteration (postproc::Settled), added in squares. Throws
-/// core::InputError when no loads are there.
+/// The points of a [[table]], one row a case of `results.loads` that fits `where`: its axes, its quantity, `case` and
+/// `settled`; and `QUANTITY_sigma` where an error is known of any point: the standard uncertainty of the mesh study
+/// that the table names, the relative error that it states and the case's own scatter from iteration to iteration
+/// (postproc::Settled), added in squares; empty (NaN) for a point of which none is known. Throws core::InputError
+/// (missing): there are no loads, no case fits, a case lacks an axis or the quantity, the mesh study failed or does not
+/// cover the quantity.
 core::Table table_points(const TableSpec& spec, const StudyResults& results);
 
 /// Names of the rows whose text column `settled` says "not settled": cases of StudyResults::loads, or points of a

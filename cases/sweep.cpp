@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cases/case_lock.h"
+#include "cases/lock.h"
 #include "cases/openfoam_result.h"
 #include "cases/openfoam_run.h"
 #include "cases/sweep_parts.h"
@@ -23,7 +23,7 @@ namespace {
 /// One case in the making.
 struct Job {
     SweepCase wanted;
-    std::optional<CaseLock> lock;
+    std::optional<Lock> lock;
     CaseRecord record;
     std::unique_ptr<OpenFoamRun> run;
     SweepOutcome outcome;
@@ -108,10 +108,9 @@ private:
 
     void start(Job& job) {
         job.started = true;
-        job.lock = CaseLock::take(beside(job.wanted.folder, ".lock"), "sweep");
+        job.lock = Lock::take(beside(job.wanted.folder, ".lock"), "sweep");
         if (!job.lock) {
-            skip(job,
-                 "being made by " + CaseLock::holder(beside(job.wanted.folder, ".lock")).value_or("another process"));
+            skip(job, "being made by " + Lock::holder(beside(job.wanted.folder, ".lock")).value_or("another process"));
             return;
         }
         examine_again(study_, job.wanted, options_.submission, progress_);  // somebody else may have made it meanwhile

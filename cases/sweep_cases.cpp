@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cases/case_lock.h"
+#include "cases/lock.h"
 #include "cases/openfoam_result.h"
 #include "cases/openfoam_run.h"
 #include "cases/sweep.h"
@@ -313,7 +313,7 @@ private:
     void find_out_who_makes_it(SweepCase& one) {
         const fs::path unfinished = beside(one.folder, ".unfinished");
         std::error_code ignored;
-        if (const auto holder = holds_locks_ ? std::nullopt : CaseLock::holder(beside(one.folder, ".lock"))) {
+        if (const auto holder = holds_locks_ ? std::nullopt : Lock::holder(beside(one.folder, ".lock"))) {
             one.state = SweepState::running;
             one.reason = how_far(unfinished) + ", by " + *holder;
             return;

@@ -7,13 +7,12 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
-#include "cases/case_lock.h"
 #include "cases/child_process.h"
+#include "cases/lock.h"
 #include "cases/sweep_parts.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -67,15 +66,6 @@ std::string new_submission() {
     for (int i = 0; i < 12; ++i) {
         text += digits[device() % 16];
     }
-    return text;
-}
-
-std::string now_text() {
-    const std::time_t now = std::time(nullptr);
-    std::tm parts = {};
-    ::gmtime_r(&now, &parts);
-    char text[64];
-    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts);
     return text;
 }
 
@@ -229,10 +219,10 @@ std::vector<SlurmArray> submit_sweep(const Study& study, const SlurmSubmission& 
     SweepOptions options;
     options.stale = what.keep_stale ? StaleCases::keep : what.replace_stale ? StaleCases::replace : StaleCases::redo;
     const fs::path submit_lock = study.folder() / study.sweep->folder / ".submit.lock";
-    const auto lock = CaseLock::take(submit_lock, "sweep --engine slurm");
+    const auto lock = Lock::take(submit_lock, "sweep --engine slurm");
     if (!lock) {
         throw core::InputError(
-            "busy", "the sweep is being submitted by " + CaseLock::holder(submit_lock).value_or("another process"),
+            "busy", "the sweep is being submitted by " + Lock::holder(submit_lock).value_or("another process"),
             {study.folder().string(), {}, {}, {}});
     }
     auto wanted = wanted_cases(study, options, progress);

@@ -1,7 +1,6 @@
 // The points of a force table out of the loads of the cases.
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cases/study.h"
 #include "core/units.h"
@@ -15,21 +14,20 @@ double mesh_sigma(const TableSpec& spec, const StudyResults& results) {
     if (spec.mesh_uncertainty.empty()) {
         return 0;
     }
-    const std::string* document = results.document("mesh/" + spec.mesh_uncertainty);
-    if (document == nullptr) {
+    const MeshResult* mesh = find_result(results.meshes, spec.mesh_uncertainty);
+    if (mesh == nullptr) {
         throw core::InputError("missing",
                                "the mesh uncertainty '" + spec.mesh_uncertainty + "' that the table '" + spec.name +
                                    "' names was not found",
                                {}, "see why its step failed");
     }
-    const auto json = nlohmann::json::parse(*document);
-    const auto& quantities = json.at("quantities");
-    if (!quantities.contains(spec.quantity)) {
+    const auto* found = mesh->find(spec.quantity);
+    if (found == nullptr) {
         throw core::InputError("missing",
                                "the mesh uncertainty '" + spec.mesh_uncertainty + "' does not cover " + spec.quantity,
                                {}, "add it to its list of quantities");
     }
-    return quantities.at(spec.quantity).at("standard_uncertainty").get<double>();
+    return found->standard_uncertainty;
 }
 
 /// What each case's quantity scatters by from iteration to iteration; 0 where its solver left no history.

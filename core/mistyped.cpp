@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <vector>
 
 #include "core/text.h"
@@ -64,61 +63,78 @@ bool same_words(const std::vector<std::string>& given, std::vector<std::string> 
     return true;
 }
 
-/// What loggers and post-processors call them.
-const std::map<std::string, std::string>& other_names() {
-    static const std::map<std::string, std::string> names = {
-        {"t", "time"},
-        {"seconds", "time"},
-        {"timestamp", "time"},
-        {"h", "gap"},
-        {"clearance", "gap"},
-        {"ride_height", "gap"},
-        {"ground_clearance", "gap"},
-        {"theta", "pitch"},
-        {"trim", "pitch"},
-        {"trim_angle", "pitch"},
-        {"pitch_angle", "pitch"},
-        {"alpha", "pitch"},
-        {"aoa", "pitch"},
-        {"velocity", "speed"},
-        {"flow_speed", "speed"},
-        {"u_inf", "speed"},
-        {"v_inf", "speed"},
-        {"vz", "heave_velocity"},
-        {"w", "heave_velocity"},
-        {"dhdt", "heave_velocity"},
-        {"gap_rate", "heave_velocity"},
-        {"heave_rate", "heave_velocity"},
-        {"vertical_velocity", "heave_velocity"},
-        {"velocity_z", "heave_velocity"},
-        {"q", "pitch_rate"},
-        {"theta_dot", "pitch_rate"},
-        {"voltage", "jet_voltage"},
-        {"volts", "jet_voltage"},
-        {"u", "input_force"},
-        {"control_force", "input_force"},
-        {"force_command", "input_force"},
-        {"actuator_force", "input_force"},
-        {"lift", "lift_force"},
-        {"fz", "lift_force"},
-        {"drag", "drag_force"},
-        {"fx", "drag_force"},
-        {"my", "pitch_moment"},
-        {"temp", "temperature"},
-        {"water_temperature", "temperature"},
-    };
-    return names;
-}
+/// What people call them who draw, log and post-process; the surest first.
+struct OtherName {
+    const char* word;
+    const char* quantity;
+    Likeness likeness;
+};
+constexpr OtherName other_names[] = {
+    {"ride_height", "gap", Likeness::certain},
+    {"clearance", "gap", Likeness::certain},
+    {"ground_clearance", "gap", Likeness::certain},
+    {"gap_height", "gap", Likeness::certain},
+    {"pitch_angle", "pitch", Likeness::certain},
+    {"angle_of_attack", "pitch", Likeness::certain},
+    {"aoa", "pitch", Likeness::certain},
+    {"velocity", "speed", Likeness::certain},
+    {"inlet_velocity", "speed", Likeness::certain},
+    {"inlet_speed", "speed", Likeness::certain},
+    {"free_stream_velocity", "speed", Likeness::certain},
+    {"freestream_velocity", "speed", Likeness::certain},
+    {"vehicle_speed", "speed", Likeness::certain},
+    {"voltage", "jet_voltage", Likeness::certain},
+    {"water_temperature", "temperature", Likeness::certain},
+    {"t", "time", Likeness::usual},
+    {"seconds", "time", Likeness::usual},
+    {"timestamp", "time", Likeness::usual},
+    {"h", "gap", Likeness::usual},
+    {"theta", "pitch", Likeness::usual},
+    {"trim", "pitch", Likeness::usual},
+    {"trim_angle", "pitch", Likeness::usual},
+    {"alpha", "pitch", Likeness::usual},
+    {"flow_speed", "speed", Likeness::usual},
+    {"u_inf", "speed", Likeness::usual},
+    {"v_inf", "speed", Likeness::usual},
+    {"vz", "heave_velocity", Likeness::usual},
+    {"w", "heave_velocity", Likeness::usual},
+    {"dhdt", "heave_velocity", Likeness::usual},
+    {"gap_rate", "heave_velocity", Likeness::usual},
+    {"heave_rate", "heave_velocity", Likeness::usual},
+    {"vertical_velocity", "heave_velocity", Likeness::usual},
+    {"velocity_z", "heave_velocity", Likeness::usual},
+    {"q", "pitch_rate", Likeness::usual},
+    {"theta_dot", "pitch_rate", Likeness::usual},
+    {"volts", "jet_voltage", Likeness::usual},
+    {"u", "input_force", Likeness::usual},
+    {"control_force", "input_force", Likeness::usual},
+    {"force_command", "input_force", Likeness::usual},
+    {"actuator_force", "input_force", Likeness::usual},
+    {"lift", "lift_force", Likeness::usual},
+    {"fz", "lift_force", Likeness::usual},
+    {"drag", "drag_force", Likeness::usual},
+    {"fx", "drag_force", Likeness::usual},
+    {"my", "pitch_moment", Likeness::usual},
+    {"temp", "temperature", Likeness::usual},
+    {"height", "gap", Likeness::possible},
+    {"distance", "gap", Likeness::possible},
+    {"angle", "pitch", Likeness::possible},
+    {"u", "speed", Likeness::possible},
+    {"v", "speed", Likeness::possible},
+    {"flow", "jet_flow", Likeness::possible},
+    {"flow_rate", "jet_flow", Likeness::possible},
+    {"sink_rate", "heave_velocity", Likeness::possible},
+};
 
 /// By the name alone.
-std::string named_like(const std::string& name) {
+std::string named_like(const std::string& name, Likeness likeness, const std::string& unit) {
     const auto words = words_of(name);
     const std::string plain = joined(words);
     if (find_quantity(plain) != nullptr) {
         return plain;
     }
-    if (const auto other = other_names().find(plain); other != other_names().end()) {
-        return other->second;
+    if (std::string other = other_name_of(plain, likeness, unit); !other.empty()) {
+        return other;
     }
     for (const auto& quantity : quantity_names()) {
         if (same_words(words, words_of(quantity.name))) {
@@ -130,7 +146,19 @@ std::string named_like(const std::string& name) {
 
 }  // namespace
 
-std::string meant_quantity(const Column& column) {
+std::string plain_name(const std::string& name) { return joined(words_of(name)); }
+
+std::string other_name_of(const std::string& word, Likeness likeness, const std::string& unit) {
+    for (const auto& other : other_names) {
+        if (word == other.word && other.likeness <= likeness &&
+            (unit.empty() || same_dimension(unit, find_quantity(other.quantity)->unit))) {
+            return other.quantity;
+        }
+    }
+    return {};
+}
+
+std::string meant_quantity(const Column& column, Likeness likeness) {
     if (find_quantity(column.name) != nullptr || column.name.ends_with("_sigma")) {
         return {};
     }
@@ -138,7 +166,8 @@ std::string meant_quantity(const Column& column) {
         !column.is_text() || std::all_of(column.text.begin(), column.text.end(), [](const std::string& field) {
             return trimmed(field).empty() || parse_number(field).has_value();
         });
-    const std::string meant = numbers ? named_like(column.name) : std::string();
+    const std::string meant =
+        numbers ? named_like(column.name, likeness, column.is_text() ? "" : column.unit) : std::string();
     return meant.empty() || (!column.is_text() && !same_dimension(column.unit, find_quantity(meant)->unit))
                ? std::string()
                : meant;

@@ -11,10 +11,24 @@ namespace underbody::core {
 /// when the name is one of them, or is like none of them and may be a name of the user's own.
 std::string mistyped_quantity(const std::string& name);
 
+/// How sure it is that a word which is no quantity's name stands for one.
+enum class Likeness {
+    certain,   ///< "ride_height", "inlet_velocity": taken as said
+    usual,     ///< "h", "theta", "fz": what loggers and post-processors call it; told as a mistake
+    possible,  ///< "height", "angle", "flow": worth a remark
+};
+
+/// Lower case, words joined by '_', without what stands in round brackets: "Ride height (mm)" -> "ride_height".
+std::string plain_name(const std::string& name);
+
+/// The quantity that a word of people, loggers or solvers stands for, at least so sure; of several the first whose unit
+/// has the dimension of `unit` (empty: any). Empty when it is a quantity's own name, or nobody's word.
+std::string other_name_of(const std::string& word, Likeness likeness, const std::string& unit = {});
+
 /// The quantity that a column of a table was probably meant for, though its name is another: "Gap (mm)", "force_in
 /// [N]", "vz [m/s]", "trim angle [deg]". Empty for a quantity under its own name, for one that has another dimension,
 /// and for a name that is like none of them. A column without a unit counts when all its fields are numbers.
-std::string meant_quantity(const Column& column);
+std::string meant_quantity(const Column& column, Likeness likeness = Likeness::usual);
 
 /// "name it 'gap [mm]'": the heading that the column of that quantity needs.
 std::string heading_for(const Column& column, const std::string& quantity);

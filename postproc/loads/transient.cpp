@@ -66,7 +66,7 @@ void mean_named(NamedLoads& target, const Run& run, NamedLoads LoadsResult::*whi
 }
 
 /// Throws core::InputError where times are missing or come twice; warns of unequal steps.
-void check_times(Run& run, core::Problems& notes) {
+void sort_by_time(Run& run, core::Problems& notes) {
     for (const LoadsCase* one : run) {
         if (!time_of(*one)) {
             throw core::InputError("missing",
@@ -76,30 +76,17 @@ void check_times(Run& run, core::Problems& notes) {
     }
     std::stable_sort(run.begin(), run.end(),
                      [](const LoadsCase* a, const LoadsCase* b) { return *time_of(*a) < *time_of(*b); });
-    double shortest = HUGE_VAL;
-    double longest = 0;
-    for (std::size_t i = 1; i < run.size(); ++i) {
-        const double step = *time_of(*run[i]) - *time_of(*run[i - 1]);
-        if (!(step > 0)) {
-            throw core::InputError("duplicate",
-                                   "'" + run[i - 1]->file + "' and '" + run[i]->file + "' are of one time, " +
-                                       core::format_number(*time_of(*run[i])),
-                                   {run[i]->file, {}, {}, {}}, "conditions have to tell runs apart");
-        }
-        shortest = std::min(shortest, step);
-        longest = std::max(longest, step);
+    std::vector<double> times;
+    std::vector<std::string> files;
+    for (const LoadsCase* one : run) {
+        times.push_back(*time_of(*one));
+        files.push_back(one->file);
     }
-    if (longest > 1.5 * shortest) {
-        notes.push_back({core::Problem::Severity::warning,
-                         "the times are " + core::format_number(shortest, 3) + " to " +
-                             core::format_number(longest, 3) +
-                             " apart: each counts alike in the mean, and the correlation is taken by number",
-                         {run.front()->file, {}, {}, {}}});
-    }
+    check_times(times, files, notes);
 }
 
 LoadsCase mean_of(Run run, core::Problems& notes) {
-    check_times(run, notes);
+    sort_by_time(run, notes);
     LoadsCase result = *run.back();
     mean_named(result.loads.named, run, &LoadsResult::named);
     mean_named(result.loads.named_pressure, run, &LoadsResult::named_pressure);
@@ -123,57 +110,90 @@ LoadsCase mean_of(Run run, core::Problems& notes) {
     result.loads.time.reset();
     result.comparisons.clear();
     result.scatters.clear();
-    result.sigmas.clear();
-    result.settled = {};
-    result.settled.transient = true;
-    const double force =
-        std::hypot(result.loads.named.lift_force, result.loads.named.drag_force, result.loads.named.side_force);
-    double correlation = 1;
-    std::string drift;
+    std::vector<TimeHistory> histories;
     for (const auto& column : table_row(result.loads)) {
         if (column.unit != "N" && column.unit != "N m") {
             continue;
         }
-        std::vector<double> values;
+        histories.push_back({column.name, column.unit, {}});
         for (const LoadsCase* one : run) {
             const auto row = table_row(one->loads);
-            values.push_back(std::find_if(row.begin(), row.end(), [&](const LoadsColumn& c) {
-                                 return c.name == column.name;
-                             })->value);
-        }
-        const MeanInTime mean = mean_in_time(values);
-        correlation = column.name == "lift_force" ? mean.correlation_time : correlation;
-        if (mean.error > 0) {
-            result.sigmas.emplace_back(column.name, mean.error);
-        }
-        if (values.size() >= shortest_history) {
-            const IterationScatter scatter = iteration_scatter(values);
-            const double scale = force * (column.unit == "N m" ? result.loads.length : 1);
-            const std::string fault = fault_of(scatter, scale, true);
-            drift += fault.empty() ? "" : (drift.empty() ? "" : "; ") + column.name + " " + fault;
-            result.settled.loads.push_back({column.name, result.file, scatter, mean.error});
+            histories.back().values.push_back(std::find_if(row.begin(), row.end(), [&](const LoadsColumn& c) {
+                                                  return c.name == column.name;
+                                              })->value);
         }
     }
-    const std::string over = "mean over " + std::to_string(run.size()) + " times, " +
-                             core::format_number(static_cast<double>(run.size()) / correlation, 3) +
-                             " of them independent";
-    result.settled.verdict = run.size() < shortest_history ? SettledVerdict::unknown
-                             : drift.empty()               ? SettledVerdict::settled
-                                                           : SettledVerdict::not_settled;
-    result.settled.why = over + (run.size() < shortest_history ? ": too few to see a drift"
-                                 : drift.empty()               ? ", no drift"
-                                                               : ": " + drift);
+    const double force =
+        std::hypot(result.loads.named.lift_force, result.loads.named.drag_force, result.loads.named.side_force);
+    TimeMeans means = time_means(histories, force, result.loads.length, result.file);
+    result.sigmas = std::move(means.sigmas);
+    result.settled = std::move(means.settled);
     std::erase_if(result.numbers, [](const auto& entry) { return entry.first == "time"; });
     for (const auto& [name, value] : {std::pair{"samples", static_cast<double>(run.size())},
                                       {"first_time", *time_of(*run.front())},
                                       {"last_time", *time_of(*run.back())},
-                                      {"correlation_time", correlation}}) {
+                                      {"correlation_time", means.correlation_time}}) {
         result.numbers.emplace_back(name, value);
     }
     return result;
 }
 
 }  // namespace
+
+void check_times(const std::vector<double>& times, const std::vector<std::string>& files, core::Problems& notes) {
+    double shortest = HUGE_VAL;
+    double longest = 0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        const double step = times[i] - times[i - 1];
+        if (!(step > 0)) {
+            throw core::InputError(
+                "duplicate",
+                "'" + files[i - 1] + "' and '" + files[i] + "' are of one time, " + core::format_number(times[i]),
+                {files[i], {}, {}, {}}, "conditions have to tell runs apart");
+        }
+        shortest = std::min(shortest, step);
+        longest = std::max(longest, step);
+    }
+    if (longest > 1.5 * shortest) {
+        notes.push_back({core::Problem::Severity::warning,
+                         "the times are " + core::format_number(shortest, 3) + " to " +
+                             core::format_number(longest, 3) +
+                             " apart: each counts alike in the mean, and the correlation is taken by number",
+                         {files.front(), {}, {}, {}}});
+    }
+}
+
+TimeMeans time_means(const std::vector<TimeHistory>& loads, double force, double length, const std::string& file) {
+    TimeMeans means;
+    means.settled.transient = true;
+    std::size_t samples = 0;
+    std::string drift;
+    for (const auto& load : loads) {
+        samples = load.values.size();
+        const MeanInTime mean = mean_in_time(load.values);
+        means.correlation_time = load.quantity == "lift_force" ? mean.correlation_time : means.correlation_time;
+        if (mean.error > 0) {
+            means.sigmas.emplace_back(load.quantity, mean.error);
+        }
+        if (samples >= shortest_history) {
+            const IterationScatter scatter = iteration_scatter(load.values);
+            const std::string fault = fault_of(scatter, force * (load.unit == "N m" ? length : 1), true);
+            drift += fault.empty() ? "" : (drift.empty() ? "" : "; ") + load.quantity + " " + fault;
+            means.settled.loads.push_back({load.quantity, file, scatter, mean.error});
+        }
+    }
+    const bool few = samples < shortest_history;
+    means.settled.verdict = few             ? SettledVerdict::unknown
+                            : drift.empty() ? SettledVerdict::settled
+                                            : SettledVerdict::not_settled;
+    means.settled.why = "mean over " + std::to_string(samples) + " times, " +
+                        core::format_number(static_cast<double>(samples) / means.correlation_time, 3) +
+                        " of them independent" +
+                        (few             ? ": too few to see a drift"
+                         : drift.empty() ? ", no drift"
+                                         : ": " + drift);
+    return means;
+}
 
 std::vector<LoadsCase> means_in_time(const std::vector<LoadsCase>& cases, core::Problems& notes) {
     std::map<std::string, std::size_t> places;

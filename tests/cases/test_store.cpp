@@ -6,8 +6,8 @@
 
 #include <thread>
 
-#include "cases/claim.h"
 #include "cases/file_states.h"
+#include "cases/lock.h"
 #include "cases/store.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -203,27 +203,33 @@ TEST(FileStates, PathsAreThoseOfTheStudy) {
     EXPECT_EQ(here.stored_path(fs::absolute("fields/a.csv")), "fields/a.csv");
 }
 
-TEST(Claim, IsHeldByOneAtATimeAndForEachResultByItself) {
+TEST(Lock, OfAResultIsHeldByOneAtATimeAndForEachResultByItselfAndLeavesNoFile) {
     const core::TemporaryFolder folder;
     const fs::path store = folder.path() / "s.sqlite";
     core::Progress progress;
-    auto first = std::make_unique<Claim>(store, "loads", "a", progress);
-    EXPECT_FALSE(first->waited());
-    EXPECT_FALSE(Claim(store, "loads", "b", progress).waited());
+    auto first = lock_of_result(store, "loads", "a", progress);
+    ASSERT_TRUE(first);
+    EXPECT_TRUE(lock_of_result(store, "loads", "b", progress));
     std::atomic<bool> got{false};
+    std::string said;
+    core::Progress told([&](double, const std::string& what) { said = what; });
     std::thread other([&] {
-        const Claim second(store, "loads", "a", progress);
-        got = second.waited();
+        const auto second = lock_of_result(store, "loads", "a", told);
+        got = second.has_value();
     });
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
     EXPECT_FALSE(got);
     first.reset();
     other.join();
     EXPECT_TRUE(got);
+    EXPECT_THAT(said, testing::AllOf(testing::HasSubstr("waiting for process"), testing::HasSubstr("loads 'a'")));
+    EXPECT_TRUE(fs::is_empty(folder.path()));
     core::Progress cancelled;
-    const Claim held(store, "loads", "a", progress);
+    const auto held = lock_of_result(store, "loads", "a", progress);
     cancelled.cancel();
-    EXPECT_THROW(Claim(store, "loads", "a", cancelled), core::Cancelled);
+    EXPECT_THROW((void)lock_of_result(store, "loads", "a", cancelled), core::Cancelled);
+    // Where no file can be made, everybody may make it.
+    EXPECT_FALSE(lock_of_result(folder.path() / std::string(300, 'x'), "k", "n", progress));
 }
 
 }  // namespace

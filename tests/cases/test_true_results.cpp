@@ -351,9 +351,7 @@ TEST_F(TrueResults, TwoRunsAtOnceShareTheWork) {
 }
 
 #ifdef UNDERBODY_WATCHES_SYSTEM_CALLS
-// Disabled until it was run again: it crashed (SIGSEGV in parse_numbers) where a loop within a loop ended early, which
-// tests/core/test_parallel.cpp now holds. Run it with --gtest_also_run_disabled_tests.
-TEST_F(TrueResults, DISABLED_AWriteThatFailsAnywhereLeavesTheStoreWhole) {
+TEST_F(TrueResults, AWriteThatFailsAnywhereLeavesTheStoreWhole) {
     test::write_small_study(folder);
     const std::string truth = everything(run());
     const auto report = bytes_below(folder / "report");

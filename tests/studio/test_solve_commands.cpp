@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core/file.h"
+#include "core/random.h"
 #include "core/text.h"
 #include "tests/support/support.h"
 
@@ -377,6 +380,53 @@ TEST_F(SolveCommands, AKilledSweepTakesMesherAndSolverWithIt) {
     }
     fs::remove(folder_.path() / "hook");
     EXPECT_EQ(run({"sweep", "study"}).exit_code, 0);
+}
+
+TEST_F(SolveCommands, KilledSweepsLoseNothingThatWasSolvedAndTheNextOneFinishes) {
+    write_study();
+    replace(folder_.path() / "study" / "study.toml", "gap = [\"5 mm\", \"10 mm\"]",
+            "gap = [\"5 mm\", \"7 mm\", \"10 mm\"]");
+    hook("sleep 0.002");
+    // Some kills in every run of the tests, many on demand (tests/kills).
+    const char* asked = std::getenv("UNDERBODY_KILLS");
+    const int kills = asked != nullptr ? std::stoi(asked) : 6;
+    core::Random random(20261122);
+    std::map<std::string, std::string> solved;  // what was whole stays as it is
+    for (int i = 0; i < kills; ++i) {
+        if (i % 6 == 0) {
+            fs::remove_all(runs());
+            solved.clear();
+        }
+        const pid_t child = begin({"sweep", "study", "--jobs", std::to_string(1 + i % 3)});
+        std::this_thread::sleep_for(
+            std::chrono::microseconds(static_cast<int>(std::exp(random.uniform(std::log(5e3), std::log(1.5e6))))));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        const json now = list();
+        for (const auto& [name, one] : now.items()) {
+            const fs::path velocity = runs() / name / "40" / "U";
+            if (one["state"] == "solved") {
+                const std::string bytes = core::read_file(velocity);
+                EXPECT_TRUE(!solved.contains(name) || solved[name] == bytes) << name << " after kill " << i;
+                solved[name] = bytes;
+            } else {
+                EXPECT_FALSE(solved.contains(name)) << name << " was lost by kill " << i << ": " << one;
+                EXPECT_FALSE(fs::exists(runs() / name)) << name << " has half a result after kill " << i;
+            }
+        }
+        if (i % 6 == 5 || i + 1 == kills) {
+            const auto rest = run({"sweep", "study", "--jobs", "3"});
+            ASSERT_EQ(rest.exit_code, 0) << "after kill " << i << ": " << rest.errors;
+            for (const char* gap : {"5", "7", "10"}) {
+                const fs::path folder = runs() / ("ellipse-h" + std::string(gap) + "-p1-u0.5");
+                EXPECT_EQ(list()[folder.filename().string()]["state"], "solved") << "after kill " << i;
+                EXPECT_EQ(core::read_file(folder / "meshed"), "meshed\n") << "the mesh is made once";
+            }
+            for (const auto& entry : fs::directory_iterator(runs())) {
+                EXPECT_NE(entry.path().extension(), ".unfinished");
+            }
+        }
+    }
 }
 
 TEST_F(SolveCommands, TwoSweepsAtOnceMakeEachCaseOnce) {

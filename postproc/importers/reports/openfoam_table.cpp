@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/lines.h"
 #include "core/text.h"
 #include "postproc/importers/reports/report_words.h"
 
@@ -136,13 +137,7 @@ Monitor read_openfoam_table(const std::string& file, std::string_view text) {
     std::vector<std::string> heads;
     std::vector<bool> numeric;
     MonitorRows rows;
-    std::int64_t number = 0;
-    for (const auto raw : core::split(text, '\n')) {
-        ++number;
-        const auto line = core::trimmed(raw);
-        if (line.empty()) {
-            continue;
-        }
+    core::for_each_line(text, [&](std::int64_t number, std::string_view line) {
         if (line.front() == '#') {
             const auto comment = core::trimmed(line.substr(1));
             if (is_head(comment)) {
@@ -152,7 +147,7 @@ Monitor read_openfoam_table(const std::string& file, std::string_view text) {
                 monitor.title = comment;
             }
             take_setting(comment, settings);
-            continue;
+            return;
         }
         const auto words = words_of(line);
         if (numeric.empty()) {
@@ -174,7 +169,7 @@ Monitor read_openfoam_table(const std::string& file, std::string_view text) {
             }
         }
         rows.add(std::move(row));
-    }
+    });
     if (rows.empty()) {
         throw core::InputError("format", "there is no row of numbers below the heading", {file, {}, {}, {}},
                                "the run has written none yet");

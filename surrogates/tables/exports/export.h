@@ -32,6 +32,7 @@ struct ExportOptions {
     bool overwrite = false;                                   ///< also files that this program did not write
     bool self_test = false;  ///< C: beside the header NAME_test.c, a program that compares it with what this program
                              ///< says at many points
+    std::vector<std::string> provenance;  ///< further lines on where the table comes from, for the head of the file
     /// Where the forces act: from the centre of gravity to the centre of the base, x forward, y starboard, z down, m.
     /// For formats that apply them to a body.
     std::optional<std::array<double, 3>> lever;

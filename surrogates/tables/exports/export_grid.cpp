@@ -150,6 +150,7 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
             lines.push_back(line);
         }
     }
+    lines.insert(lines.end(), options.provenance.begin(), options.provenance.end());
     for (const auto& axis : grid.axes) {
         lines.push_back("Axis " + axis.name + " [" + axis.unit + "]: " + core::format_number(axis.lower, 9) + " to " +
                         core::format_number(axis.upper, 9) + ", " + std::to_string(axis.points.size()) + " points" +

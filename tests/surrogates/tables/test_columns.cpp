@@ -31,8 +31,8 @@ TEST(Columns, AMisnamedAxisIsNamedWhereThePointsThenRepeat) {
     const std::string text = refusal(
         "Gap (mm), trim angle [deg], speed [m/s], lift_force [N]\n1,0,0.4,1\n2,0,0.4,2\n1,1,0.6,1.5\n2,1,0.6,2.5\n",
         {"speed"});
-    EXPECT_THAT(text, HasSubstr("the column 'Gap (mm)' is not understood and not used: write gap [mm]"));
-    EXPECT_THAT(text, HasSubstr("the column 'trim angle' is not understood and not used: write pitch [deg]"));
+    EXPECT_THAT(text, HasSubstr("the column 'Gap (mm)' is not understood and not used: write 'gap [mm]'"));
+    EXPECT_THAT(text, HasSubstr("the column 'trim angle' is not understood and not used: write 'pitch [deg]'"));
 }
 
 TEST(Columns, AMisnamedAxisIsNamedWhereNothingVaries) {

@@ -1,4 +1,4 @@
-#include "cases/case_lock.h"
+#include "cases/lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 
 #include "core/error.h"
+#include "core/hash.h"
 
 namespace underbody::cases {
 
@@ -60,13 +63,14 @@ bool held_elsewhere(int descriptor) {
         ::fstat(descriptor, &state) != 0) {
         return false;
     }
-    return std::time(nullptr) - state.st_mtime < CaseLock::stale_after;
+    return std::time(nullptr) - state.st_mtime < Lock::stale_after;
 }
 
-/// Several times: somebody who only asks who holds it has it for a moment.
+/// Several times: somebody who only asks who holds it has it for a moment. Where the kernel knows no locks here, only
+/// what the file says counts.
 bool locked(int descriptor) {
     for (int i = 0; i < 5; ++i) {
-        if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+        if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || (errno != EWOULDBLOCK && errno != EINTR)) {
             return true;
         }
         const timespec moment = {0, 5000000};
@@ -74,6 +78,8 @@ bool locked(int descriptor) {
     }
     return false;
 }
+
+}  // namespace
 
 std::string now_text() {
     const std::time_t now = std::time(nullptr);
@@ -84,9 +90,7 @@ std::string now_text() {
     return text;
 }
 
-}  // namespace
-
-std::optional<CaseLock> CaseLock::take(const fs::path& file, const std::string& what) {
+std::optional<Lock> Lock::take(const fs::path& file, const std::string& what, Among among) {
     std::error_code ignored;
     fs::create_directories(file.parent_path(), ignored);
     while (true) {
@@ -95,7 +99,7 @@ std::optional<CaseLock> CaseLock::take(const fs::path& file, const std::string& 
             throw core::SystemError("write", std::string("the lock cannot be made: ") + std::strerror(errno),
                                     {file.string(), {}, {}, {}});
         }
-        if (!locked(descriptor) || held_elsewhere(descriptor)) {
+        if (!locked(descriptor) || (among == Among::machines && held_elsewhere(descriptor))) {
             ::close(descriptor);
             return {};
         }
@@ -117,27 +121,40 @@ std::optional<CaseLock> CaseLock::take(const fs::path& file, const std::string& 
             throw core::SystemError("write", std::string("the lock cannot be written: ") + std::strerror(error),
                                     {file.string(), {}, {}, {}});
         }
-        return CaseLock(file, descriptor);
+        return Lock(file, descriptor);
     }
 }
 
-std::optional<std::string> CaseLock::holder(const fs::path& file) {
+Lock Lock::wait_for(const fs::path& file, const std::string& what, Among among, core::Progress& progress) {
+    for (bool said = false;; said = true) {
+        if (auto lock = take(file, what, among)) {
+            return std::move(*lock);
+        }
+        if (!said) {
+            progress.report(0, "waiting for " + holder(file).value_or("another process"));
+        }
+        progress.check();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
+std::optional<std::string> Lock::holder(const fs::path& file) {
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) {
         return {};
     }
     std::optional<std::string> who;
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 || held_elsewhere(descriptor)) {
+    const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (!free || held_elsewhere(descriptor)) {
         who = described(content_of(descriptor));
     }
     ::close(descriptor);
     return who;
 }
 
-CaseLock::CaseLock(CaseLock&& other) noexcept
-    : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+Lock::Lock(Lock&& other) noexcept : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
 
-CaseLock& CaseLock::operator=(CaseLock&& other) noexcept {
+Lock& Lock::operator=(Lock&& other) noexcept {
     if (this != &other) {
         release();
         file_ = std::move(other.file_);
@@ -146,11 +163,11 @@ CaseLock& CaseLock::operator=(CaseLock&& other) noexcept {
     return *this;
 }
 
-CaseLock::~CaseLock() { release(); }
+Lock::~Lock() { release(); }
 
-void CaseLock::touch() const { ::futimens(descriptor_, nullptr); }
+void Lock::touch() const { ::futimens(descriptor_, nullptr); }
 
-void CaseLock::release() {
+void Lock::release() {
     if (descriptor_ < 0) {
         return;
     }
@@ -159,6 +176,16 @@ void CaseLock::release() {
     }
     ::flock(descriptor_, LOCK_UN);
     ::close(std::exchange(descriptor_, -1));
+}
+
+std::optional<Lock> lock_of_result(const fs::path& store, const std::string& kind, const std::string& name,
+                                   core::Progress& progress) {
+    const std::string file = store.string() + "." + core::content_hash(kind + '\n' + name).substr(0, 16) + ".lock";
+    try {
+        return Lock::wait_for(file, kind + " '" + name + "'", Lock::Among::processes, progress);
+    } catch (const core::SystemError&) {
+        return {};
+    }
 }
 
 }  // namespace underbody::cases

@@ -1,0 +1,99 @@
+#include "cases/step_results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace underbody::cases {
+
+using nlohmann::json;
+
+namespace {
+
+/// JSON knows no infinity and no NaN: null.
+double number(const json& value) { return value.is_null() ? std::nan("") : value.get<double>(); }
+
+EquilibriumResult equilibrium(const json& point) {
+    return {number(point.at("gap")), point.at("stable").get<bool>(), number(point.at("stiffness"))};
+}
+
+std::vector<std::string> texts(const json& list) { return list.get<std::vector<std::string>>(); }
+
+}  // namespace
+
+const MeshResult::Quantity* MeshResult::find(const std::string& quantity) const {
+    return find_result(quantities, quantity);
+}
+
+TableResult table_result(const std::string& name, const json& document) {
+    TableResult table;
+    table.name = name;
+    table.quantity = document.at("quantity").get<std::string>();
+    table.fit = document.at("kind").get<std::string>();
+    table.points = core::read_csv(document.at("points").get<std::string>(), name);
+    table.remarks = texts(document.at("remarks"));
+    if (document.contains("equilibria")) {  // only with a net weight
+        for (const auto& point : document.at("equilibria")) {
+            EquilibriumResult one = equilibrium(point);
+            one.sigma = number(point.at("sigma"));
+            one.frequency = number(point.at("frequency"));
+            one.kick_velocity = number(point.at("kick_velocity"));
+            table.equilibria.push_back(one);
+        }
+    }
+    for (const auto& file : document.at("exports")) {
+        table.exports.push_back({file.at("format").get<std::string>(), file.at("file").get<std::string>()});
+    }
+    return table;
+}
+
+MeshResult mesh_result(const std::string& name, const json& document) {
+    MeshResult mesh;
+    mesh.name = name;
+    mesh.cells = document.at("cells").get<std::vector<double>>();
+    for (const auto& [quantity, found] : document.at("quantities").items()) {
+        MeshResult::Quantity one;
+        one.name = quantity;
+        for (const auto& value : found.at("values")) {
+            one.values.push_back(number(value));
+        }
+        one.verdict = found.at("verdict").get<std::string>();
+        one.standard_uncertainty = number(found.at("standard_uncertainty"));
+        mesh.quantities.push_back(std::move(one));
+    }
+    return mesh;
+}
+
+RegionResult region_result(const std::string& name, const json& document) {
+    RegionResult region;
+    region.name = name;
+    region.columns = document.at("columns").get<std::size_t>();
+    region.rows = document.at("rows").get<std::size_t>();
+    for (const auto& entry : document.at("classes")) {
+        RegionResult::End end;
+        end.name = entry.at("name").get<std::string>();
+        end.kind = entry.at("kind").get<std::string>();
+        end.fraction = number(entry.at("fraction"));
+        if (entry.contains("gap")) {  // of attractors in heave
+            end.gap = number(entry.at("gap"));
+        }
+        region.ends.push_back(std::move(end));
+    }
+    for (const auto& point : document.at("equilibria")) {
+        region.equilibria.push_back(equilibrium(point));
+        region.equilibria.back().frequency = number(point.at("frequency"));
+    }
+    region.remarks = texts(document.at("remarks"));
+    return region;
+}
+
+VerifyResult verify_result(const std::string& name, const json& document) {
+    return {name,
+            document.at("rows").size(),
+            number(document.at("worst")),
+            document.at("worst_case").get<std::string>(),
+            document.at("failed").get<std::size_t>(),
+            number(document.at("tolerance"))};
+}
+
+}  // namespace underbody::cases

@@ -1,0 +1,191 @@
+// From a number back to the files, options and code that made it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cases/code_version.h"
+#include "cases/why.h"
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/text.h"
+#include "tests/support/small_study.h"
+
+namespace underbody::cases {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Why : public testing::Test {
+protected:
+    void SetUp() override {
+        test::write_small_study(folder);
+        run();
+    }
+    void run() {
+        const auto results = run_study(Study::open(folder), options());
+        ASSERT_EQ(results.failed, 0U);
+    }
+    static RunOptions options() {
+        RunOptions all;
+        all.pictures = false;
+        return all;
+    }
+    Way why(const std::string& what) { return way_back(Study::open(folder), options(), what); }
+    /// The message of the refusal.
+    std::string refusal(const std::string& what) {
+        try {
+            (void)why(what);
+        } catch (const core::InputError& error) {
+            return error.message() + " | " + error.hint();
+        }
+        return "none";
+    }
+    static const Origin* find(const Way& way, const std::string& kind, const std::string& name) {
+        for (const auto& origin : way.origins) {
+            if (origin.kind == kind && origin.name == name) {
+                return &origin;
+            }
+        }
+        return nullptr;
+    }
+    [[nodiscard]] std::string hash_of(const fs::path& file) const { return core::content_hash_of_file(folder / file); }
+
+    core::TemporaryFolder scratch;
+    fs::path folder = scratch.path() / "study";
+};
+
+TEST_F(Why, WalksFromATableToTheFacesAndFilesOfItsLoads) {
+    const Way way = why("table/lift");
+    ASSERT_EQ(way.origins.size(), 7U);
+    const Origin& table = way.origins.front();
+    ASSERT_NE(table.fact("stable gap"), nullptr);
+    EXPECT_NEAR(table.fact("stable gap")->number.value(), 0.0035, 1e-9);
+    EXPECT_EQ(table.fact("stable gap")->unit, "m");
+    EXPECT_EQ(table.from.size(), 6U);
+    for (int gap = 1; gap <= 6; ++gap) {
+        const Origin* loads = find(way, "loads", "cube-h" + std::to_string(gap));
+        ASSERT_NE(loads, nullptr) << gap;
+        EXPECT_NEAR(loads->fact("lift_force")->number.value(), (7 - gap) / 10.0, 1e-9);
+        EXPECT_THAT(loads->fact("zone 'hull'")->value, HasSubstr("5 faces"));
+        EXPECT_THAT(loads->fact("solution")->value, HasSubstr("unknown"));
+        const std::string file = "fields/cube-h" + std::to_string(gap) + ".csv";
+        const StoredInput read{core::Input::Kind::content, file, "", hash_of(file)};
+        EXPECT_THAT(loads->files, testing::Contains(read));
+        EXPECT_THAT(loads->code, testing::Contains(std::pair<const std::string, std::string>(
+                                     "postproc", code_versions().at("postproc"))));
+        EXPECT_EQ(loads->state, StepState::unchanged);
+        EXPECT_FALSE(loads->made.empty());
+    }
+}
+
+TEST_F(Why, EveryResultOfAReportHasItsWayBackToFiles) {
+    const Way region = why("region/map");
+    EXPECT_NE(find(region, "table", "lift"), nullptr);
+    EXPECT_NE(find(region, "loads", "cube-h3"), nullptr);
+    std::set<std::string> read;
+    for (const auto& file : region.origins.front().files) {
+        read.insert(file.path);
+    }
+    EXPECT_THAT(read, testing::Contains("glide.toml"));
+    EXPECT_NE(find(why("verify/solver"), "loads", "cube-h6"), nullptr);
+    EXPECT_NE(find(why("map"), "loads", "cube-h6"), nullptr) << "the map, or its model as a file";
+    // As a person names a number, and as the report prints it.
+    const Way lift = why("lift_force of cube-h2");
+    ASSERT_TRUE(lift.asked);
+    EXPECT_NEAR(lift.asked->number.value(), 0.5, 1e-9);
+    EXPECT_EQ(lift.asked->unit, "N");
+    const Way gap = why("stable gap of table/lift");
+    EXPECT_NEAR(gap.asked->number.value(), 0.0035, 1e-9);
+    const Way printed = why("0.5 N");
+    ASSERT_TRUE(printed.asked);
+    EXPECT_EQ(printed.asked->name, "lift_force");
+    EXPECT_EQ(printed.origins.front().name, "cube-h2");
+    EXPECT_EQ(why("100.0 N/m").asked->name, "stiffness at the stable gap");
+}
+
+TEST_F(Why, SaysWhatIsNotThereAndWhatIsNear) {
+    EXPECT_THAT(refusal("table/lfit"), HasSubstr("did you mean 'table/lift'"));
+    EXPECT_THAT(refusal("lift_fore of cube-h2"), HasSubstr("did you mean 'lift_force'"));
+    const std::string several = refusal("3.5 mm");  // of the table and of the map
+    EXPECT_THAT(several, testing::AllOf(HasSubstr("stable gap of table/lift"), HasSubstr("of region/map")));
+    EXPECT_THAT(refusal("77.7 N"), HasSubstr("no result"));
+    const core::TemporaryFolder other;
+    test::write_small_study(other.path());
+    EXPECT_THROW((void)way_back(Study::open(other.path()), options(), "table/lift"), core::InputError);
+    // What is no longer true is no answer.
+    core::write_file(folder / "fields" / "cube-h2.csv", test::cube_field(0.002, 510));
+    EXPECT_THAT(refusal("loads/cube-h2"), HasSubstr("no result"));
+}
+
+TEST_F(Why, AnExportedFileKnowsItsResultAlsoWhenItHasBeenMadeAnewSince) {
+    for (const char* file : {"lift.h", "lift.csv"}) {
+        const Way way = why("exports/" + std::string(file));
+        EXPECT_EQ(way.origins.front().kind, "table") << file;
+        EXPECT_TRUE(way.notes.empty());
+        EXPECT_THAT(core::read_file(folder / "report" / "exports" / file),
+                    HasSubstr("Result: table/lift " + way.origins.front().id));
+    }
+    const fs::path kept = scratch.path() / "controller" / "old.h";
+    fs::create_directories(kept.parent_path());
+    fs::copy_file(folder / "report" / "exports" / "lift.h", kept);
+    const std::string old_hash = hash_of("fields/cube-h4.csv");
+    core::write_file(folder / "fields" / "cube-h4.csv", test::cube_field(0.004, 310));
+    run();
+    EXPECT_NE(core::read_file(folder / "report" / "exports" / "lift.h"), core::read_file(kept));
+    const Way way = why(kept.string());
+    ASSERT_EQ(way.notes.size(), 1U);
+    EXPECT_THAT(way.notes.front(), HasSubstr("has been made anew since"));
+    EXPECT_NEAR(way.origins.front().fact("stable gap")->number.value(), 0.0035, 1e-9) << "of then, not of now";
+    const Origin* loads = find(way, "loads", "cube-h4");
+    ASSERT_NE(loads, nullptr);
+    EXPECT_NEAR(loads->fact("lift_force")->number.value(), 0.3, 1e-9);
+    EXPECT_EQ(loads->state, StepState::changed);
+    const StoredInput then{core::Input::Kind::content, "fields/cube-h4.csv", "", old_hash};
+    EXPECT_THAT(loads->files, testing::Contains(then));
+    EXPECT_EQ(find(way, "loads", "cube-h3")->state, StepState::unchanged);
+    // Of another study.
+    const core::TemporaryFolder other;
+    test::write_small_study(other.path());
+    core::write_file(other.path() / "fields" / "cube-h1.csv", test::cube_field(0.001, 650));
+    (void)run_study(Study::open(other.path()), options());
+    try {
+        (void)way_back(Study::open(other.path()), options(), kept.string());
+        ADD_FAILURE() << "it is of another study";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.message(), HasSubstr("which the store of this study does not have"));
+    }
+}
+
+TEST_F(Why, TheJsonHoldsTheWholeWay) {
+    const nlohmann::json json = why("table/lift").origins;
+    ASSERT_EQ(json.size(), 7U);
+    for (const auto& origin : json) {
+        for (const char* key : {"kind", "name", "id", "state", "made", "facts", "options", "code", "files", "from"}) {
+            EXPECT_TRUE(origin.contains(key)) << key;
+        }
+    }
+    EXPECT_EQ(json[0]["options"]["fit"], "automatic");
+}
+
+TEST_F(Why, AMatExportHasItsFunctionBesideIt) {
+    std::string text = core::read_file(folder / "study.toml");
+    const std::string formats = "exports = [\"c\", \"csv\"]";
+    text.replace(text.find(formats), formats.size(), "exports = [\"mat\", \"c\", \"json\", \"jsbsim\", \"fmu\"]");
+    core::write_file(folder / "study.toml", text);
+    run();
+    const fs::path exports = folder / "report" / "exports";
+    EXPECT_THAT(core::read_file(exports / "lift_at.m"), HasSubstr("'lift.mat'"));
+    for (const char* file : {"lift.mat", "lift_at.m", "lift.json", "lift.xml", "lift.fmu"}) {
+        ASSERT_TRUE(fs::exists(exports / file)) << file;
+        EXPECT_EQ(why("exports/" + std::string(file)).origins.front().name, "lift") << file;
+    }
+    fs::remove(exports / "lift_at.m");
+    run();
+    EXPECT_TRUE(fs::exists(exports / "lift_at.m")) << "out of the store";
+}
+
+}  // namespace
+}  // namespace underbody::cases
