@@ -66,17 +66,23 @@ struct Head {
     std::string content;  ///< hash of the file that it was made from
 };
 
+/// The text behind the first `word`, as much as a line of a head may hold.
+std::string behind(const std::string& bytes, const std::string& word) {
+    const auto at = bytes.find(word);
+    return at == std::string::npos ? "" : bytes.substr(at + word.size(), 300);
+}
+
 Head head_of(const fs::path& file) {
     Head head;
-    const std::string bytes = core::read_file(file).substr(0, 1 << 20);
+    const std::string bytes = core::read_file(file);
     std::smatch found;
-    static const std::regex result("Result: ([a-z]+)/([^\n]{1,200}?) ([0-9a-f]{16})");
-    if (std::regex_search(bytes, found, result)) {
+    static const std::regex result("^([a-z]+)/([^\n]{1,200}?) ([0-9a-f]{16})");
+    if (const std::string line = behind(bytes, "Result: "); std::regex_search(line, found, result)) {
         head.result = {found[1], found[2]};
         head.id = found[3];
     }
-    static const std::regex content("\\(content ([0-9a-f]{16,})\\)");
-    if (std::regex_search(bytes, found, content)) {
+    static const std::regex content("^([0-9a-f]{16,})\\)");
+    if (const std::string line = behind(bytes, "(content "); std::regex_search(line, found, content)) {
         head.content = found[1];
     }
     return head;
@@ -99,8 +105,8 @@ public:
                 return std::move(way_);
             }
         }
-        if (!what.empty() && (std::isdigit(static_cast<unsigned char>(what.front())) != 0 || what.front() == '-') &&
-            from_number(what)) {
+        if (!what.empty() && !find_true(bare(what)) &&
+            (std::isdigit(static_cast<unsigned char>(what.front())) != 0 || what.front() == '-') && from_number(what)) {
             return std::move(way_);
         }
         std::string quantity;
@@ -243,6 +249,7 @@ private:
                 if (fact.number && std::isfinite(*fact.number) && core::same_dimension(unit, fact.unit) &&
                     std::abs(core::convert(*fact.number, fact.unit, unit) - asked.value) <= half * (1 + 1e-9)) {
                     found.emplace_back(one, fact);
+                    break;  // one of its numbers is enough to name the result
                 }
             }
         }

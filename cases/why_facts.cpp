@@ -158,10 +158,8 @@ void of_verification(const json& document, Facts& facts) {
     facts.text("worst case", document.value("worst_case", ""));
     facts.member(document, "tolerance", "tolerance", "1");
     for (const auto& row : document.value("rows", json::array())) {
-        const auto* quantity = core::find_quantity(row.value("quantity", ""));
-        const std::string name = row.value("quantity", "") + " of " + row.value("case", "");
-        facts.member(row, "ours", name, quantity != nullptr ? quantity->unit : "1");
-        facts.member(row, "solver", name + " by the solver", quantity != nullptr ? quantity->unit : "1");
+        facts.text(row.value("quantity", "") + " of " + row.value("case", ""),
+                   in_words(row.value("ours", json())) + ", by the solver " + in_words(row.value("solver", json())));
     }
 }
 

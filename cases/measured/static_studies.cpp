@@ -78,54 +78,52 @@ std::vector<double> powers(const std::vector<double>& values, double power) {
     return result;
 }
 
+/// Torque of a turning shaft over its speed, with a declared power law by least squares.
+StaticSet turning_set(const std::filesystem::path& source, const std::string& title, const std::string& rpm,
+                      const std::string& torque, int exponent) {
+    constexpr double rad_per_second = 0.10471975511965977;  // of a turn per minute
+    const ForeignTable tare = read_foreign(source);
+    StaticSet set;
+    set.title = title + " (speed: of a point one metre from the shaft)";
+    set.quantity = "yaw_moment";
+    set.unit = "N m";
+    std::vector<double> speed = tare.numbers(rpm);
+    for (double& value : speed) {
+        value *= rad_per_second;
+    }
+    set.values = tare.numbers(torque);
+    const std::string factor = text(factor_of(exponent == 1 ? speed : powers(speed, exponent), set.values));
+    set.table = "gap [m], yaw_moment [N m]\n0, " + factor + "\n1, " + factor + "\n";
+    set.scale = "scale.speed = { reference = 1, exponent = " + std::to_string(exponent) + " }\n";
+    set.channels = {{"gap", std::vector<double>(speed.size(), 0.5)}, {"speed", speed}};
+    return set;
+}
+
 }  // namespace
 
 MeasuredStudy bearing_study(const std::filesystem::path& folder, core::Progress& progress) {
     const std::filesystem::path source = folder / "rm2_tow_tank" / "Tare-torque.csv";
-    const ForeignTable tare = read_foreign(source);
-    StaticSet set;
-    set.title = "bearing of a tow-tank turbine (speed: of a point one metre from the shaft)";
-    set.quantity = "yaw_moment";
-    set.unit = "N m";
-    std::vector<double> speed = tare.numbers("rpm");
-    for (double& value : speed) {
-        value *= 0.10471975511965977;  // rad/s
-    }
-    set.values = tare.numbers("tare_torque");
-    const std::string slope = text(factor_of(speed, set.values));
-    set.table = "gap [m], yaw_moment [N m]\n0, " + slope + "\n1, " + slope + "\n";
-    set.scale = "scale.speed = { reference = 1, exponent = 1 }\n";
-    set.channels = {{"gap", std::vector<double>(speed.size(), 0.5)}, {"speed", speed}};
     MeasuredStudy study;
     study.name = "bearing";
     study.data = "Tare-torque.csv, UNH-CORE RM2 tow tank, CC BY 4.0, doi:10.6084/m9.figshare.1373899";
     study.declared = "torque proportional to the shaft's speed, slope by least squares";
     study.known = "Coulomb friction, with a slope that falls: 0.413 N m of error becomes 0.032 and 0.0117";
-    return close_the_loop(std::move(study), set, source, progress);
+    return close_the_loop(std::move(study),
+                          turning_set(source, "bearing of a tow-tank turbine", "rpm", "tare_torque", 1), source,
+                          progress);
 }
 
 MeasuredStudy strut_study(const std::filesystem::path& folder, core::Progress& progress) {
     const std::filesystem::path source = folder / "rm2_tow_tank" / "Strut-torque.csv";
-    const ForeignTable tare = read_foreign(source);
-    StaticSet set;
-    set.title = "struts of a tow-tank turbine turning without blades (speed: of a point one metre from the shaft)";
-    set.quantity = "yaw_moment";
-    set.unit = "N m";
-    std::vector<double> speed = tare.numbers("mean_rpm");
-    for (double& value : speed) {
-        value *= 0.10471975511965977;  // rad/s
-    }
-    set.values = tare.numbers("mean_torque");
-    const std::string factor = text(factor_of(powers(speed, 2), set.values));
-    set.table = "gap [m], yaw_moment [N m]\n0, " + factor + "\n1, " + factor + "\n";
-    set.scale = "scale.speed = { reference = 1, exponent = 2 }\n";
-    set.channels = {{"gap", std::vector<double>(speed.size(), 0.5)}, {"speed", speed}};
     MeasuredStudy study;
     study.name = "struts";
     study.data = "Strut-torque.csv, UNH-CORE RM2 tow tank, CC BY 4.0, doi:10.6084/m9.figshare.1373899";
     study.declared = "torque as the square of the shaft's speed, factor by least squares";
     study.known = "a part linear in the speed is missing: the power is below two";
-    return close_the_loop(std::move(study), set, source, progress);
+    return close_the_loop(
+        std::move(study),
+        turning_set(source, "struts of a tow-tank turbine turning without blades", "mean_rpm", "mean_torque", 2),
+        source, progress);
 }
 
 std::vector<MeasuredStudy> bank_studies(const std::filesystem::path& folder, core::Progress& progress) {

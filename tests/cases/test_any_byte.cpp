@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cases/store.h"
 #include "cases/study.h"
 #include "core/file.h"
 #include "core/random.h"
@@ -148,14 +147,10 @@ protected:
             return Names{"loads cfx"};
         }
         static const std::map<std::string, Names> others = {
-            {"forces.csv", {"verify solver"}},
-            {"glide.toml", {"region map", "model map"}},
-            {"added.csv", {"region map", "model map"}},
-            {"tables/more.csv", {"region map", "model map", "residual rig"}},
-            {"static.toml", {"residual rig"}},
-            {"rig/dataset.toml", {"residual rig"}},
-            {"rig/a.csv", {"residual rig"}},
-            {"shapes/body.toml", {"body hull"}},
+            {"forces.csv", {"verify solver"}}, {"glide.toml", {"region map"}},  // a map that fails has no model
+            {"added.csv", {"region map"}},     {"tables/more.csv", {"region map", "residual rig"}},
+            {"static.toml", {"residual rig"}}, {"rig/dataset.toml", {"residual rig"}},
+            {"rig/a.csv", {"residual rig"}},   {"shapes/body.toml", {"body hull"}},
             {"notes/readme.txt", {}},
         };
         const auto found = others.find(file);
@@ -169,6 +164,9 @@ protected:
                                [&](const char* kind) { return step.starts_with(std::string(kind) + " "); });
         };
         if (const auto first = direct(file); first && first->contains(step)) {
+            return true;
+        }
+        if (step == "model map" && (file == "glide.toml" || file == "added.csv" || file == "tables/more.csv")) {
             return true;
         }
         if (file.starts_with("fields/")) {
@@ -192,16 +190,6 @@ TEST_F(AnyByte, OfAnyFileMakesExactlyWhatRestsOnItNewAndGivesWhatARunFromNothing
     const Names failed = in_state(first, {StepState::failed});
     EXPECT_TRUE(failed.empty()) << testing::PrintToString(failed);
     ASSERT_TRUE(in_state(run(), {StepState::computed}).empty());
-    std::map<std::string, std::string> origins;  // of the loads, by file
-    std::map<std::string, Names> readers;        // as the store has noted them
-    {
-        Store store(folder / ".underbody" / "store.sqlite", Store::Access::read);
-        for (const auto& result : store.results()) {
-            for (const auto& input : result.inputs) {
-                readers[input.path].insert(result.kind);
-            }
-        }
-    }
     std::vector<std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         const std::string name = entry.path().lexically_relative(folder).generic_string();
@@ -216,6 +204,7 @@ TEST_F(AnyByte, OfAnyFileMakesExactlyWhatRestsOnItNewAndGivesWhatARunFromNothing
     core::Random random(20261122);
     const std::size_t rounds = all ? 4 * files.size() : 40;
     std::size_t with_effect = 0;
+    std::map<std::string, int> others_since;  // results of a step since its true one was made
     for (std::size_t round = 0; round < rounds; ++round) {
         const std::string file =
             files[all ? round % files.size()
@@ -238,6 +227,9 @@ TEST_F(AnyByte, OfAnyFileMakesExactlyWhatRestsOnItNewAndGivesWhatARunFromNothing
                 }
             }
             with_effect += made.empty() ? 0 : 1;
+            for (const auto& step : made) {
+                ++others_since[step];
+            }
             if (round % 4 == 0) {
                 const core::TemporaryFolder fresh;
                 EXPECT_EQ(everything(now), everything(run(fresh.path() / "store.sqlite"))) << where;
@@ -246,8 +238,10 @@ TEST_F(AnyByte, OfAnyFileMakesExactlyWhatRestsOnItNewAndGivesWhatARunFromNothing
             EXPECT_EQ(file, "study.toml") << where;
         }
         put(file, whole);
-        const Names again = in_state(run(), {StepState::computed, StepState::failed});
-        EXPECT_TRUE(again.empty()) << where << ", put back: " << testing::PrintToString(again);
+        for (const auto& step : in_state(run(), {StepState::computed, StepState::failed})) {
+            EXPECT_GE(others_since[step], 8) << step << " was made again: " << where << ", put back";
+            others_since[step] = 0;  // eight of a name are kept
+        }
     }
     EXPECT_GT(with_effect, rounds / 3);
 }
