@@ -25,9 +25,13 @@ public:
     std::vector<Fact> all;
 
     void text(const std::string& name, const std::string& value) { all.push_back({name, value, {}, {}}); }
+    /// Lengths and angles are told in mm and degrees, as reports do.
     void number(const std::string& name, double value, const std::string& unit) {
-        all.push_back({name, core::format_number(value, 6) + (unit.empty() || unit == "1" ? "" : " " + unit), value,
-                       unit.empty() ? "1" : unit});
+        const std::string shown = unit == "m" ? "mm" : unit == "rad" ? "deg" : unit;
+        const bool pure = unit.empty() || unit == "1";
+        all.push_back(
+            {name, core::format_number(pure ? value : core::convert(value, unit, shown), 6) + (pure ? "" : " " + shown),
+             value, pure ? "1" : unit});
     }
     /// A member of an object, when it is a number.
     void member(const json& object, const char* key, const std::string& name, const std::string& unit) {
@@ -118,7 +122,8 @@ void of_table(const json& document, Facts& facts) {
         facts.text("remark", in_words(remark));
     }
     std::size_t count = 0;
-    for (const auto line : core::split(document.value("points", ""), '\n')) {
+    const std::string points = document.value("points", "");  // the lines are views of it
+    for (const auto line : core::split(points, '\n')) {
         const std::string text(core::trimmed(line));
         if (!text.empty() && text.front() != '#') {
             facts.text(count == 0 ? "points" : "point " + std::to_string(count), text);

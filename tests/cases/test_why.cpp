@@ -64,6 +64,9 @@ TEST_F(Why, WalksFromATableToTheFacesAndFilesOfItsLoads) {
     ASSERT_NE(table.fact("stable gap"), nullptr);
     EXPECT_NEAR(table.fact("stable gap")->number.value(), 0.0035, 1e-9);
     EXPECT_EQ(table.fact("stable gap")->unit, "m");
+    EXPECT_EQ(table.fact("stable gap")->value, "3.5 mm");
+    EXPECT_EQ(table.fact("points")->value, "gap [mm], lift_force [N], case, settled");
+    ASSERT_NE(table.fact("point 6"), nullptr);
     EXPECT_EQ(table.from.size(), 6U);
     for (int gap = 1; gap <= 6; ++gap) {
         const Origin* loads = find(way, "loads", "cube-h" + std::to_string(gap));
