@@ -12,8 +12,8 @@ namespace underbody::tables {
 /// have, other numbers as notes. Columns of words are labels and not told.
 core::Problems unused_columns(const core::Table& table, const std::string& quantity);
 
-/// The warnings in one line for the hint of an error: "the column 'Gap (mm)' is not understood: write 'gap [mm]'"; empty
-/// without any.
+/// The warnings in one line for the hint of an error: "the column 'Gap (mm)' is not understood: write 'gap [mm]'";
+/// empty without any.
 std::string misnamed_columns(const core::Table& table, const std::string& quantity);
 
 }  // namespace underbody::tables
