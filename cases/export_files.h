@@ -16,12 +16,16 @@ inline std::string export_name(std::string table) {
     return table;
 }
 
-/// "lift.h": the file of an export of a [[table]]. Throws core::InputError for an unknown format.
+/// "lift.h": the file of an export of a [[table]]; "lift_simulink.mat" where another format ends alike. Throws
+/// core::InputError for an unknown format.
 inline std::string export_file(const std::string& table, const std::string& format) {
     std::vector<std::string> known;
-    for (const auto& candidate : tables::export_formats()) {
+    const auto& formats = tables::export_formats();
+    for (const auto& candidate : formats) {
         if (candidate.name == format) {
-            return export_name(table) + candidate.ending;
+            const auto first = std::find_if(formats.begin(), formats.end(),
+                                            [&](const auto& other) { return other.ending == candidate.ending; });
+            return export_name(table) + (first->name == format ? "" : "_" + format) + candidate.ending;
         }
         known.push_back(candidate.name);
     }
