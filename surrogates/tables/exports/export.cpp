@@ -21,7 +21,8 @@ struct Exporter {
 
 const std::vector<Exporter>& exporters() {
     static const std::vector<Exporter> all = {
-        {{"c", table_ending("c"), "C99 header: no heap, no library, constant time; double or float"}, export_c},
+        {{"c", table_ending("c"), "C99 header: no heap, no library, constant time; double, float or whole numbers"},
+         export_c},
         {{"csv", table_ending("csv"), "table with slopes and error that this program reads back exactly"}, export_csv},
         {{"json", table_ending("json"), "grid, Hermite data and error"}, export_json},
         {{"mat", table_ending("mat"), "MATLAB and Octave: .mat and a .m that looks it up"},

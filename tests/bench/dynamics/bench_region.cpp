@@ -61,7 +61,7 @@ void HeaveRegion400OfAnInterpolatedTable(benchmark::State& state) {
     Model model = vehicle();
     model.forces[0].table =
         tables::ForceTable::fit(dynamics::test::ref_a_table(), "lift_force",
-                                {tables::FitOptions::Kind::interpolation, tables::RangePolicy::clamp, {}});
+                                {{tables::RangePolicy::clamp, {}}, tables::FitOptions::Kind::interpolation});
     for (auto _ : state) {
         benchmark::DoNotOptimize(stability_region(model, map(400)).index.data());
     }
@@ -203,7 +203,7 @@ Model plate() {
              "plate.csv",
              "plate.csv",
              tables::ForceTable::fit(table, quantity,
-                                     {tables::FitOptions::Kind::interpolation, tables::RangePolicy::clamp, {}}),
+                                     {{tables::RangePolicy::clamp, {}}, tables::FitOptions::Kind::interpolation}),
              {Channel::gap, Channel::pitch},
              {},
              1.0});
@@ -234,7 +234,7 @@ void ProbabilityOf100Draws200(benchmark::State& state) {
     table.add_numbers("lift_force_sigma", "N", std::vector<double>(table.rows(), 5e-4));
     Model model = vehicle();
     model.forces[0].table = tables::ForceTable::fit(
-        table, "lift_force", {tables::FitOptions::Kind::interpolation, tables::RangePolicy::clamp, {}});
+        table, "lift_force", {{tables::RangePolicy::clamp, {}}, tables::FitOptions::Kind::interpolation});
     for (auto _ : state) {
         const ProbabilityMap chances = probability_map(model, map(200), 100, 1);
         state.counters["safe"] = chances.area_mean;

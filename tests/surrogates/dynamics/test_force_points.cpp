@@ -21,8 +21,8 @@ std::string all_remarks(const ForcePoints& found) {
 /// REF-A through its points without overshoot, as models take tables by default.
 Model monotone_model() {
     Model model = test::ref_a_model();
-    model.forces[0].table = tables::ForceTable::fit(
-        test::ref_a_table(), "lift_force", {.kind = tables::FitOptions::Kind::interpolation, .range = {}, .axes = {}});
+    model.forces[0].table =
+        tables::ForceTable::fit(test::ref_a_table(), "lift_force", {{}, tables::FitOptions::Kind::interpolation});
     return model;
 }
 

@@ -69,9 +69,9 @@ TEST_F(ModelFile, TakesAnExportedTableAsItWasButHoldsItsEnds) {
         text += core::format_number(i) + ", " + core::format_number(std::sin(0.1 * i) + 3.0 / i) + "\n";
     }
     core::write_file(folder_.path() / "many.csv", text);
-    const auto many = tables::ForceTable::read(
-        folder_.path() / "many.csv", "lift_force",
-        {.kind = tables::FitOptions::Kind::interpolation, .range = tables::RangePolicy::refuse, .axes = {}});
+    const auto many =
+        tables::ForceTable::read(folder_.path() / "many.csv", "lift_force",
+                                 {{tables::RangePolicy::refuse, {}}, tables::FitOptions::Kind::interpolation});
     tables::ExportOptions thin;
     thin.max_error = 0.01;
     const auto result = export_table(many, "csv", folder_.path() / "thin.csv", thin);

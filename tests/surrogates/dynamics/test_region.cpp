@@ -126,7 +126,7 @@ TEST(Region, TheChanceToBeSafeSpreadsAboutTheBoundary) {
     table.add_numbers("lift_force_sigma", "N", std::vector<double>(table.rows(), 1e-3));
     Model model = test::ref_a_model(0.3, 15);
     model.forces[0].table = tables::ForceTable::fit(
-        table, "lift_force", {tables::FitOptions::Kind::interpolation, tables::RangePolicy::clamp, {}});
+        table, "lift_force", {{tables::RangePolicy::clamp, {}}, tables::FitOptions::Kind::interpolation});
     RegionOptions options = map_of(-0.04, 0.5, 0.06, 24);
     const ProbabilityMap chances = probability_map(model, options, 8, 1);
     const ProbabilityMap again = probability_map(model, options, 8, 1);
