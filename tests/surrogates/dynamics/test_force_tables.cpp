@@ -4,16 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 
-#include "core/file.h"
 #include "core/random.h"
 #include "surrogates/dynamics/model/force_error.h"
 #include "surrogates/dynamics/model/force_tables.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
-#include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/fit/table_batch.h"
 #include "tests/surrogates/dynamics/models.h"
 
@@ -239,76 +235,6 @@ TEST(ForceTablesOfAModel, AreWhatTheMotionSees) {
         }
     }
 }
-
-/// Lift, drag and pitch moment over gap, pitch, speed and jet voltage in one header and one call, compiled and asked at
-/// 2000 places between the nodes: what the model itself says there.
-class ModelAsOneHeader : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(ModelAsOneHeader, GivesEveryForceOfTheModelInOneCall) {
-    const std::string compiler = GetParam();
-    if (std::system(("command -v " + compiler + " > /dev/null 2>&1").c_str()) != 0) {
-        GTEST_SKIP() << "skipped: " << compiler << " is not installed; the header was not compiled";
-    }
-    Model model = jet_model(0.02);
-    model.forces.push_back({"drag_force",
-                            "drag.csv",
-                            "drag.csv",
-                            grid("drag_force", {{"gap", gaps}, {"pitch", pitches}}, turning, 0.001),
-                            {Channel::gap, Channel::pitch},
-                            {{Channel::speed, 0.5, 2, 0}},
-                            1});
-    ForceTablesOptions options;
-    options.axes = {{"gap", {}, {}}, {"pitch", {}, {}}, {"speed", 0.1, 0.8}, {"jet_voltage", 2, 12}};
-    options.quantities = {"lift_force", "drag_force", "pitch_moment"};
-    for (const Model& own : {model, model.with_effect(make_use("speed_exponent", {{"exponent", 1.8}}))}) {
-        const ForceTables found = force_tables(own, options);
-        core::TemporaryFolder folder;
-        const auto result = tables::export_tables(found.tables, "c", folder.path() / "body.h");
-        core::write_file(
-            folder.path() / "main.c",
-            "#include <stdio.h>\n#include \"body.h\"\nint main(void) {\n    double p[4];\n    while (fread(p, "
-            "sizeof(double), 4, stdin) == 4) {\n        body_result r;\n        double out[8];\n        body_at(p, "
-            "&r);\n        out[0] = r.lift_force.value;\n        out[1] = r.drag_force.value;\n        out[2] = "
-            "r.pitch_moment.value;\n        out[3] = r.lift_force.sigma;\n        out[4] = r.drag_force.sigma;\n      "
-            "  out[5] = r.pitch_moment.sigma;\n        out[6] = r.outside;\n        out[7] = r.no_data;\n        "
-            "fwrite(out, sizeof(double), 8, stdout);\n    }\n    return 0;\n}\n");
-        core::Random random(77);
-        std::vector<double> points;
-        for (int i = 0; i < 2000; ++i) {
-            points.insert(points.end(), {random.uniform(0.002, 0.03), random.uniform(-0.08, 0.09),
-                                         random.uniform(0.1, 0.8), random.uniform(2, 12)});
-        }
-        core::write_file(folder.path() / "points.bin",
-                         {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(double)});
-        ASSERT_EQ(std::system(("cd '" + folder.path().string() + "' && " + compiler +
-                               " -std=c99 -O1 -Wall -Wextra -Werror -Wno-unused-function main.c -o main 2> errors.txt "
-                               "&& ./main < points.bin > out.bin")
-                                  .c_str()),
-                  0)
-            << core::read_file(folder.path() / "errors.txt");
-        const std::string bytes = core::read_file(folder.path() / "out.bin");
-        ASSERT_EQ(bytes.size(), 2000 * 8 * sizeof(double));
-        std::vector<double> out(2000 * 8);
-        std::memcpy(out.data(), bytes.data(), bytes.size());
-        for (std::size_t q = 0; q < 3; ++q) {
-            const StaticModel force(own, options.quantities[q]);
-            const ForceError error(own, options.quantities[q]);
-            for (std::size_t i = 0; i < 2000; ++i) {
-                Conditions at;
-                const Channel channels[4] = {Channel::gap, Channel::pitch, Channel::speed, Channel::jet_voltage};
-                for (std::size_t k = 0; k < 4; ++k) {
-                    at[channels[k]] = points[4 * i + k];
-                }
-                ASSERT_NEAR(out[8 * i + q], force(at), result.errors[q].second + 1e-12) << "point " << i;
-                ASSERT_GE(out[8 * i + 3 + q], 0.97 * error(at)) << "point " << i;
-                ASSERT_EQ(out[8 * i + 6], 0);
-                ASSERT_EQ(out[8 * i + 7], 0);
-            }
-            EXPECT_LT(result.errors[q].second, 1e-4);
-        }
-    }
-}
-INSTANTIATE_TEST_SUITE_P(Compilers, ModelAsOneHeader, ::testing::Values("gcc", "clang"));
 
 TEST(ForceTablesOfAModel, HaveTheErrorsOfTablesAndEffects) {
     const Model model = jet_model(0.02);
