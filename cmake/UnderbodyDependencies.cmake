@@ -27,3 +27,7 @@ find_library(CGNS_LIBRARY cgns REQUIRED)
 find_library(MATIO_LIBRARY matio REQUIRED)
 find_library(NLOPT_LIBRARY nlopt REQUIRED)
 find_package(LAPACK REQUIRED)
+# Logs of vehicles: CDR of ROS 2, compressed chunks of MCAP.
+find_package(fastcdr CONFIG REQUIRED)
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)

@@ -304,6 +304,7 @@ const std::vector<QuantityName>& quantity_names() {
         {"pitch", "rad", "pitch angle, positive nose up", "pitch"},
         {"speed", "m/s", "forward speed through the water", "U"},
         {"heave_velocity", "m/s", "dh/dt, positive up", "dh/dt"},
+        {"heave_acceleration", "m/s^2", "d2h/dt2, positive up", "d2h/dt2"},
         {"pitch_rate", "rad/s", "rate of pitch, positive nose up", "q"},
         {"lift_force", "N", "vertical force, positive up (repulsion)", "lift"},
         {"drag_force", "N", "force against the motion, positive when it slows", "drag"},

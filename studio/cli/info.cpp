@@ -1,4 +1,4 @@
-// underbody info FILE: what a CFD file, or a report of its solver, holds.
+// underbody info FILE: what a CFD file, a report of its solver, or a vehicle's log holds.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,7 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
 #include "studio/cli/shell.h"
+#include "surrogates/dynamics/logs/log_summary.h"
 
 namespace underbody::studio {
 
@@ -156,12 +157,54 @@ bool show_report(Shell& shell, const std::string& file) {
     return true;
 }
 
+void print(Shell& shell, const dynamics::LogSummary& summary) {
+    shell.print(summary.file + ": " + summary.end.format + ", " + core::format_number(summary.duration, 6) +
+                " s; times are s since its start, by its clock: " + summary.end.clock);
+    Rows messages = {{"message", "type", "rows", "1/s", "from [s]", "to [s]", "gaps in time"}};
+    Rows fields = {{"field", "unit", "min", "max"}};
+    for (const auto& one : summary.series) {
+        std::string gaps = one.silence_count == 0 ? "" : std::to_string(one.silence_count) + ", longest ";
+        gaps += one.silence_count == 0 ? ""
+                                       : short_number(one.silences[0].to - one.silences[0].from) + " s at " +
+                                             short_number(one.silences[0].from);
+        messages.push_back({core::as_utf8(one.name), core::as_utf8(one.type), std::to_string(one.count),
+                            short_number(one.rate), short_number(one.first), short_number(one.last), gaps});
+        for (const auto& field : one.fields) {
+            fields.push_back({core::as_utf8(one.name + "." + field.name), field.unit.empty() ? "?" : field.unit,
+                              short_number(field.min), short_number(field.max)});
+        }
+    }
+    print_columns(shell, messages);
+    print_columns(shell, fields);
+    for (const auto& unread : summary.end.unread) {
+        shell.print("not read: " + std::to_string(unread.count) + " messages " + core::as_utf8(unread.name) +
+                    (unread.type.empty() ? "" : " (" + core::as_utf8(unread.type) + ")") + ": " +
+                    core::as_utf8(unread.reason));
+    }
+}
+
+/// A vehicle's log: true when the file is one.
+bool show_log(Shell& shell, const std::string& file) {
+    if (dynamics::log_format(std::filesystem::path(file)).empty()) {
+        return false;
+    }
+    const dynamics::LogSummary summary = dynamics::summarise_log(file, shell.progress());
+    if (shell.json) {
+        shell.print_json(summary);
+    } else {
+        print(shell, summary);
+    }
+    shell.remark(summary.end.problems);
+    return true;
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& app, Shell& shell) {
-    auto* command = app.add_subcommand("info",
-                                       "what a CFD file or a report of its solver holds: format, zones, arrays with "
-                                       "units and ranges, histories, forces");
+    auto* command =
+        app.add_subcommand("info",
+                           "what a CFD file, a report of its solver or a vehicle's log holds: format, zones, "
+                           "arrays with units and ranges, histories, forces, messages");
     struct Options {
         std::string file;
         FieldOptions field;
@@ -170,7 +213,8 @@ void add_info_command(CLI::App& app, Shell& shell) {
     command
         ->add_option("file", options->file,
                      "a CFD-Post CSV, Fluent, EnSight, CGNS, OpenFOAM or VTK file; or a monitor (.out, OpenFOAM's "
-                     ".dat), transcript, .xy plot or force report")
+                     ".dat), transcript, .xy plot or force report; or a vehicle's log (PX4 ULog, ArduPilot DataFlash, "
+                     "ROS 2 bag)")
         ->required();
     options->field.add_to(*command);
     command->footer(
@@ -179,9 +223,10 @@ void add_info_command(CLI::App& app, Shell& shell) {
         "  underbody info case.cas.h5 --json\n"
         "  underbody info mesh.msh --length-unit mm\n"
         "  underbody info lift-rfile.out                histories and how settled they are\n"
-        "  underbody info pressure.xy --json            the curves of a plot, point by point");
+        "  underbody info pressure.xy --json            the curves of a plot, point by point\n"
+        "  underbody info log.ulg                       a vehicle's log: messages, fields, rates, gaps in time");
     shell.on(command, [&shell, options] {
-        if (show_report(shell, options->file)) {
+        if (show_log(shell, options->file) || show_report(shell, options->file)) {
             return static_cast<int>(done);
         }
         postproc::ReadOptions read = options->field.read_options();

@@ -82,7 +82,7 @@ fs::path examples_in(const core::TemporaryFolder& scratch) {
                      "[body]\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\nheight = \"145 mm\"\nbase_cut = 0.75\n");
     core::write_file(folder / "lift.csv", "gap [mm], lift_force [N]\n1, 0.6\n5, 0.3\n20, 0.1\n");
     core::write_file(folder / "points.csv", "Name,P1 - gap [mm]\nDP 5,5\n");
-    core::write_file(folder / "run-01.csv", "time [s], gap [mm]\n0, 10\n0.1, 11\n0.2, 12\n");
+    core::write_file(folder / "run-01.csv", "time [s], gap [mm]\n0, 10\n15, 11\n20, 12\n25, 11\n30, 10\n");
     return folder;
 }
 
@@ -113,10 +113,11 @@ std::string document(const FileFormat& format, const FileTable& of, const FileKe
                 continue;
             }
         }
-        const std::string place =
-            table.path.ends_with(".*")
-                ? table.path.substr(0, table.path.size() - 1) + (table.path.starts_with("effect") ? "force" : "speed")
-                : table.path;
+        const std::string place = table.path.ends_with(".*") ? table.path.substr(0, table.path.size() - 1) +
+                                                                   (table.path.starts_with("effect") ? "force"
+                                                                    : table.path.starts_with("log")  ? "gap"
+                                                                                                     : "speed")
+                                                             : table.path;
         text += core::heading_of(place) + "\n";
         for (const FileKey& entry : table.keys) {
             const bool wanted = here && key != nullptr &&
@@ -128,6 +129,9 @@ std::string document(const FileFormat& format, const FileTable& of, const FileKe
         // What the reader wants beside.
         if (table.path == "case[]" && of.path == "case[].parameters") {
             text += "design_points = \"points.csv\"\n";
+        }
+        if (table.path == "log.channel.*" && !(here && key != nullptr && key->name == "message")) {
+            text += "message = \"RFND\"\n";
         }
         if (table.path == "sweep" && !(here && key != nullptr && key->name == "speed")) {
             text += "speed = \"0.5 m/s\"\n";

@@ -30,8 +30,10 @@ WindowSquares window_errors(const HeaveExperiment& experiment, const std::vector
         transform_input(record, explanation, input);
         const std::size_t n = record.time.size();
         std::size_t first = 0;
-        while (first < n && record.time[first] - record.time.front() < 1) {
-            ++first;  // a second for the filter to find the state
+        // a second for the filter to find the state, less in runs of less than five
+        const double lasted = record.time.back() - record.time.front();
+        while (first < n && record.time[first] - record.time.front() < std::min(1.0, 0.2 * lasted)) {
+            ++first;
         }
         while (first + 2 < n) {
             std::size_t last = first;
@@ -115,7 +117,8 @@ double estimator_error(const HeaveExperiment& experiment, const std::vector<dyna
         const SmoothedRun reference = smooth_with_force(record, experiment.explanation(r, better), better_noise,
                                                         0.001 * record.plant->terms.mass);
         for (std::size_t k = 0; k < record.time.size(); ++k) {
-            if (record.time[k] - record.time.front() > 2) {
+            if (record.time[k] - record.time.front() >
+                std::min(2.0, 0.4 * (record.time.back() - record.time.front()))) {
                 const double difference = states[2 * k + 1] - reference.velocity[k];
                 sum += difference * difference;
                 count += 1;

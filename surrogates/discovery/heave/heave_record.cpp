@@ -53,8 +53,12 @@ dynamics::Conditions held_conditions(const dynamics::MeasuredRun& run) {
 
 /// Readings far from the middle of their neighbours become missing.
 std::size_t drop_outliers(std::vector<double>& values, double sigma) {
-    constexpr std::size_t half = 3,
-                          reach = 15;  // readings on either side, and how far to look for them across missing ones
+    // readings on either side, and how far to look for them across missing ones; rows of other sensors between the
+    // readings do not count
+    constexpr std::size_t half = 3;
+    const auto finite = static_cast<std::size_t>(
+        std::count_if(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
+    const std::size_t reach = 15 * std::max<std::size_t>(1, values.size() / std::max<std::size_t>(1, finite));
     std::vector<std::size_t> bad;
     std::vector<double> window;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -89,11 +93,17 @@ std::size_t drop_outliers(std::vector<double>& values, double sigma) {
 bool stuck(const std::vector<double>& values) {
     std::size_t same = 0;
     std::size_t longest = 0;
-    for (std::size_t i = 1; i < values.size(); ++i) {
-        same = values[i] == values[i - 1] ? same + 1 : 0;
-        longest = std::max(longest, same);
+    std::size_t readings = 0;
+    double last = std::nan("");
+    for (const double value : values) {
+        if (std::isfinite(value)) {  // rows of other sensors stand between the readings
+            same = value == last ? same + 1 : 0;
+            longest = std::max(longest, same);
+            last = value;
+            ++readings;
+        }
     }
-    return values.size() > 20 && longest > values.size() / 5;
+    return readings > 20 && longest > readings / 5;
 }
 
 void average(const std::vector<double>& time, const std::vector<double>& values,
@@ -115,16 +125,16 @@ void average(const std::vector<double>& time, const std::vector<double>& values,
 }
 
 /// Groups readings into steps; a gap in time gets empty steps. Fills times and returns each reading's step.
-std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector<double>& step_time) {
+std::vector<std::size_t> make_steps(const std::vector<double>& time, double step, std::vector<double>& step_time) {
     std::vector<std::size_t> step_of(time.size());
     std::vector<double> sum;
     std::vector<double> count;
     double begin = -1e300;
     for (std::size_t i = 0; i < time.size(); ++i) {
-        if (time[i] - begin >= record_step * (1 - 1e-6)) {
-            if (i > 0 && time[i] - time[i - 1] > 2 * record_step) {
+        if (time[i] - begin >= step * (1 - 1e-6)) {
+            if (i > 0 && time[i] - time[i - 1] > 2 * step) {
                 const double gap = time[i] - time[i - 1];
-                const auto empty = static_cast<std::size_t>(gap / record_step) - 1;
+                const auto empty = static_cast<std::size_t>(gap / step) - 1;
                 for (std::size_t k = 1; k <= empty; ++k) {
                     sum.push_back(time[i - 1] + gap * static_cast<double>(k) / static_cast<double>(empty + 1));
                     count.push_back(1);
@@ -143,6 +153,17 @@ std::vector<std::size_t> make_steps(const std::vector<double>& time, std::vector
         step_time[k] = sum[k] / count[k];
     }
     return step_of;
+}
+
+/// Short and fast runs (half a second at 1.5 kHz) are not averaged away: a hundred steps each, where they have as many
+/// readings.
+double step_for(const dynamics::Measurements& data) {
+    std::vector<double> lasted;
+    for (const dynamics::MeasuredRun& run : data.runs) {
+        const std::vector<double>& time = run.table.numbers("time");
+        lasted.push_back(time.back() - time.front());
+    }
+    return lasted.empty() ? record_step : std::min(record_step, median(lasted) / 100);
 }
 
 /// Readings at the ends of a sensor's range: many at exactly one value, several in one piece, and hardly any beyond
@@ -404,6 +425,7 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
 
 HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics::Measurements& data) {
     HeaveRecords result;
+    result.step = step_for(data);
     std::vector<double> gap_noises;
     std::vector<double> velocity_noises;
     std::vector<double> steps;
@@ -480,7 +502,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         for (std::size_t i = 1; i < time.size(); ++i) {
             steps.push_back(time[i] - time[i - 1]);
         }
-        const std::vector<std::size_t> step_of = make_steps(time, record.time);
+        const std::vector<std::size_t> step_of = make_steps(time, result.step, record.time);
         average(time, gap, step_of, record.time.size(), record.gap, record.gap_share);
         std::string held_at_mean;
         record.lift_scale = lift_over_steps(model, run, held, step_of, record.time.size(), held_at_mean);

@@ -12,8 +12,8 @@
 
 namespace underbody::discovery {
 
-/// One run. Readings within a step of `record_step` are averaged (anti-aliasing), so that 50 and 500 Hz tell the same
-/// story.
+/// One run. Readings within a step (HeaveRecords::step) are averaged (anti-aliasing), so that 50 and 500 Hz tell the
+/// same story.
 struct HeaveRecord {
     std::string name;
     std::size_t run = 0;                                ///< index into the data set's runs
@@ -32,7 +32,7 @@ struct HeaveRecord {
         lift_scale;  ///< likewise over each step, where a condition changed within the run; empty: it did not
 };
 
-/// Steps of the filter, s.
+/// Steps of the filter, s. Runs of less than a hundred of them get shorter ones: HeaveRecords::step.
 inline constexpr double record_step = 0.04;
 
 /// What was found while preparing.
@@ -41,6 +41,7 @@ struct HeaveRecords {
     bool velocity_measured = false;
     bool velocity_turned = false;  ///< its sign was found turned round and is mended here
     bool input_recorded = false;
+    double step = record_step;  ///< s: readings within it are averaged
     double raw_step = 0;        ///< median step of the files, s
     double gap_noise = 0;       ///< estimated white noise of a single reading, m
     double velocity_noise = 0;  ///< m/s; 0: not measured

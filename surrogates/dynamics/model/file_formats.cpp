@@ -229,6 +229,33 @@ const core::FileFormat& model_format() {
     return format;
 }
 
+namespace {
+
+/// How channels come out of logs.
+std::vector<core::FileTable> log_tables() {
+    std::vector<core::FileTable> made;
+    made.push_back({"log",
+                    "how runs that are vehicles' logs are read, or CSV files with headings of their own",
+                    {{"clock", "text", "\"header.stamp\"", "the log's own times (CSV: the column time)",
+                      "field of each channel's message that says when it was measured"},
+                     {"clock_unit", "text", "\"us\"", "s", "unit of a clock that does not state its own"}}});
+    made.push_back({"log.channel.*",
+                    "one channel, by the name of its quantity: offset + scale * sign * number",
+                    {{"message", "text", "\"RFND\"", "none: a column of a CSV file",
+                      "message or topic as `underbody info` lists it; \"RFND[1]\" is the second sensor"},
+                     {"field", "text", "\"Dist\"", "", "field of the message, or heading of the column"},
+                     {"unit", "text", "\"cm\"", "what the log states, or SI", "unit of the number"},
+                     {"scale", "1", "0.5", "1", "multiplies the number"},
+                     {"sign", "1 | -1", "-1", "1", "-1 turns the number round: a log whose z points down"},
+                     {"offset", "the unit of the quantity", "\"12 mm\"", "0", "added last"},
+                     {"clock", "text", "\"timestamp_sample\"", "the one of [log]",
+                      "field of the message that says when it was measured"}}});
+    made.back().one_line = "channel.gap = { message = \"RFND\", field = \"Dist\" }";
+    return made;
+}
+
+}  // namespace
+
 const core::FileFormat& dataset_format() {
     static const core::FileFormat format = [] {
         core::FileFormat made{"dataset", "dataset.toml", "measurements: a folder of runs", {}};
@@ -245,14 +272,22 @@ const core::FileFormat& dataset_format() {
         made.tables.push_back(file_keys::held_conditions("conditions", "conditions of all runs"));
         made.tables.push_back({"run[]",
                                "one file of measurements",
-                               {{"file", "file", "\"run-01.csv\"", "", "CSV table, relative to this file"},
+                               {{"file", "file", "\"run-01.csv\"", "",
+                                 "CSV table, or a vehicle's log (PX4 ULog, ArduPilot DataFlash, ROS 2 bag: also the "
+                                 "bag's folder), relative to this file"},
                                 {"use", "train | test", "\"test\"", "the program splits by whole runs and says how",
-                                 "what the run is for"}},
+                                 "what the run is for"},
+                                {"begin", "s", "\"12 s\"", "the file's beginning",
+                                 "the run begins there, by the file's clock; several runs may come from one file"},
+                                {"end", "s", "\"40 s\"", "the file's end", "the run ends there"}},
                                true});
         core::FileTable own =
             file_keys::held_conditions("run[].conditions", "conditions of this run, over those of all");
         own.one_line = "conditions = { jet_voltage = \"10 V\" }";
         made.tables.push_back(std::move(own));
+        for (auto& table : log_tables()) {
+            made.tables.push_back(std::move(table));
+        }
         return made;
     }();
     return format;

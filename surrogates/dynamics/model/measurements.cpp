@@ -8,40 +8,92 @@
 #include "core/text.h"
 #include "core/toml.h"
 #include "core/units.h"
+#include "surrogates/dynamics/logs/log_channels.h"
 #include "surrogates/dynamics/model/file_formats.h"
+#include "surrogates/dynamics/model/measurement_setup.h"
 
 namespace underbody::dynamics {
 
 namespace {
 
+const core::QuantityName& known_quantity(const std::string& name, const char* what, const core::Place& place) {
+    const core::QuantityName* quantity = core::find_quantity(name);
+    if (quantity == nullptr) {
+        std::vector<std::string> known;
+        for (const core::QuantityName& one : core::quantity_names()) {
+            known.push_back(one.name);
+        }
+        throw core::InputError("name", std::string(what) + " of an unknown quantity '" + name + "'", place,
+                               core::did_you_mean(name, known));
+    }
+    return *quantity;
+}
+
 std::map<std::string, double> read_quantities(const core::TomlTable& table, const char* what) {
     std::map<std::string, double> values;
     for (const std::string& key : table.keys()) {
-        const core::QuantityName* quantity = core::find_quantity(key);
-        if (quantity == nullptr) {
-            std::vector<std::string> known;
-            for (const core::QuantityName& name : core::quantity_names()) {
-                known.push_back(name.name);
-            }
-            throw core::InputError("name", std::string(what) + " of an unknown quantity '" + key + "'",
-                                   table.place(key), core::did_you_mean(key, known));
-        }
-        values[key] = table.quantity(key, quantity->unit);
+        values[key] = table.quantity(key, known_quantity(key, what, table.place(key)).unit);
     }
     return values;
 }
 
-/// A standard deviation is a difference: "0.1 degC" is 0.1 K, not 273.25 K.
+/// A difference of temperature is no temperature: "0.1 degC" is 0.1 K, not 273.25 K.
+double difference(const core::TomlTable& table, const std::string& key, const core::QuantityName& quantity) {
+    if (table.is_string(key)) {
+        const core::Quantity written = core::parse_quantity(table.string(key), table.place(key));
+        if (!written.unit.empty()) {
+            return written.value * core::conversion(written.unit, quantity.unit, table.place(key)).scale;
+        }
+    }
+    return table.quantity(key, quantity.unit);
+}
+
+LogChannel read_channel(const core::TomlTable& table, const std::string& name, const std::string& clock) {
+    LogChannel channel;
+    channel.place = table.place();
+    channel.quantity = name;
+    const core::QuantityName& quantity = known_quantity(name, "a channel", table.place());
+    channel.message = table.string_or("message", {});
+    channel.field = table.string("field");
+    channel.unit = table.string_or("unit", {});
+    if (!channel.unit.empty() && !core::is_unit(channel.unit)) {
+        throw core::InputError("unit", "'" + channel.unit + "' is no unit", table.place("unit"),
+                               "as UDUNITS-2 has them: cm, mm, deg, m/s, mV; a pure number is 1");
+    }
+    channel.scale = table.quantity_or("scale", "1", 1);
+    const auto sign = table.integer_or("sign", 1);
+    if (!(channel.scale != 0) || (sign != 1 && sign != -1)) {
+        const char* key = sign != 1 && sign != -1 ? "sign" : "scale";
+        throw core::InputError(
+            "range",
+            std::string(key) + " of " + name + " must be " + (key == std::string("sign") ? "1 or -1" : "other than 0"),
+            table.place(key), "size in scale, direction in sign, unit in unit");
+    }
+    channel.scale *= static_cast<double>(sign);
+    channel.offset = table.has("offset") ? difference(table, "offset", quantity) : 0;
+    channel.clock = table.string_or("clock", clock);
+    return channel;
+}
+
+LogChannels read_channels(const core::TomlTable& log) {
+    LogChannels all;
+    const std::string clock = log.string_or("clock", {});
+    all.clock_unit = log.string_or("clock_unit", "s");
+    if (!core::same_dimension(all.clock_unit, "s")) {
+        throw core::InputError("unit", "'" + all.clock_unit + "' is no unit of time", log.place("clock_unit"),
+                               "s, ms, us, ns, min");
+    }
+    const core::TomlTable channels = log.table_or_empty("channel");
+    for (const std::string& name : channels.keys()) {
+        all.channels.push_back(read_channel(channels.table(name), name, clock));
+    }
+    return all;
+}
+
 std::map<std::string, double> read_noise(const core::TomlTable& table) {
     std::map<std::string, double> noise = read_quantities(table, "noise");
     for (auto& [name, sigma] : noise) {
-        if (table.is_string(name)) {
-            const core::Quantity written = core::parse_quantity(table.string(name), table.place(name));
-            if (!written.unit.empty()) {
-                const core::QuantityName* quantity = core::find_quantity(name);
-                sigma = written.value * core::conversion(written.unit, quantity->unit, table.place(name)).scale;
-            }
-        }
+        sigma = difference(table, name, *core::find_quantity(name));
         if (!(sigma > 0)) {
             throw core::InputError("range",
                                    "the noise of " + name + " is " + core::format_number(sigma, 6) + ", not positive",
@@ -78,6 +130,51 @@ void check_time_series(const MeasuredRun& run) {
                 "if the logger started anew here, make two runs of the file; the other runs can be used as they are");
         }
     }
+}
+
+/// The rows between begin and end.
+core::Table cut_out(const core::Table& table, const LogWindow& window) {
+    std::vector<std::size_t> rows;
+    const std::vector<double>& time = table.numbers("time");
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        if (!(time[i] < window.begin) && !(time[i] > window.end)) {
+            rows.push_back(i);
+        }
+    }
+    return table.selected(rows);
+}
+
+/// One run's file, whatever it is: a table, one with headings of its own, a vehicle's log.
+core::Table read_run(const std::filesystem::path& file, const LogChannels& channels, const LogWindow& window,
+                     const core::TomlTable& entry, core::Problems& problems) {
+    if (!log_format(file).empty()) {
+        const LogChannels own = channels.of(true);
+        if (own.channels.empty()) {
+            throw core::InputError("missing", "this run is a vehicle's log, and nothing says which message is the gap",
+                                   entry.place("file"),
+                                   "add [log.channel.gap] message = ..., field = ...; `underbody info " +
+                                       file.string() + "` lists messages and fields");
+        }
+        return read_log_channels(file, own, window, problems);
+    }
+    const LogChannels own = channels.of(false);
+    if (!own.channels.empty()) {
+        return read_csv_channels(file, own, window, problems);
+    }
+    core::Table table = core::read_csv(file);
+    const bool whole = std::isinf(window.begin) && std::isinf(window.end);
+    return whole || table.find("time") == nullptr ? std::move(table) : cut_out(table, window);
+}
+
+LogWindow read_window(const core::TomlTable& entry) {
+    LogWindow window;
+    window.begin = entry.quantity_or("begin", "s", window.begin);
+    window.end = entry.quantity_or("end", "s", window.end);
+    if (!(window.begin < window.end)) {
+        throw core::InputError("range", "the run ends before it begins", entry.place("end"),
+                               "begin and end are times by the file's clock");
+    }
+    return window;
 }
 
 void check_static(const MeasuredRun& run) {
@@ -176,16 +273,33 @@ const std::vector<std::string>& force_channels() {
     return names;
 }
 
-Measurements read_measurements(const std::filesystem::path& folder) {
-    std::filesystem::path file = folder;
-    if (std::filesystem::is_directory(folder)) {
-        file = folder / "dataset.toml";
-        if (!std::filesystem::exists(file)) {
-            throw core::InputError("missing", "no dataset.toml in this folder",
-                                   core::Place{folder.string(), {}, {}, {}},
-                                   "a data set is a folder with dataset.toml, which names its runs");
-        }
+namespace {
+
+/// The file itself, or the one in a folder.
+std::filesystem::path dataset_file(const std::filesystem::path& folder) {
+    if (!std::filesystem::is_directory(folder)) {
+        return folder;
     }
+    if (!std::filesystem::exists(folder / "dataset.toml")) {
+        throw core::InputError("missing", "no dataset.toml in this folder", core::Place{folder.string(), {}, {}, {}},
+                               "a data set is a folder with dataset.toml, which names its runs");
+    }
+    return folder / "dataset.toml";
+}
+
+}  // namespace
+
+MeasurementSetup read_measurement_setup(const std::filesystem::path& path) {
+    const core::TomlTable root = core::read_toml(dataset_file(path), dataset_format());
+    MeasurementSetup setup;
+    setup.noise = read_noise(root.table_or_empty("noise"));
+    setup.conditions = read_quantities(root.table_or_empty("conditions"), "condition");
+    setup.channels = read_channels(root.table_or_empty("log"));
+    return setup;
+}
+
+Measurements read_measurements(const std::filesystem::path& folder) {
+    const std::filesystem::path file = dataset_file(folder);
     const core::TomlTable root = core::read_toml(file, dataset_format());
     Measurements data;
     data.folder = file.parent_path();
@@ -194,6 +308,8 @@ Measurements read_measurements(const std::filesystem::path& folder) {
     data.title = root.string_or("title", {});
     data.noise = read_noise(root.table_or_empty("noise"));
     const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
+    const LogChannels channels = read_channels(root.table_or_empty("log"));
+    std::vector<LogWindow> windows;
     std::set<std::string> names;
     for (const core::TomlTable& entry : root.tables("run")) {
         MeasuredRun run;
@@ -202,8 +318,11 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         for (int copy = 2; !names.insert(run.name).second; ++copy) {
             run.name = run.file.stem().string() + "-" + std::to_string(copy);
         }
-        for (const MeasuredRun& other : data.runs) {
-            if (std::filesystem::weakly_canonical(other.file) == std::filesystem::weakly_canonical(run.file)) {
+        const LogWindow window = read_window(entry);
+        for (std::size_t i = 0; i < data.runs.size(); ++i) {
+            const bool apart = window.end <= windows[i].begin || window.begin >= windows[i].end;
+            if (!apart &&
+                std::filesystem::weakly_canonical(data.runs[i].file) == std::filesystem::weakly_canonical(run.file)) {
                 throw core::InputError("duplicate", "the run " + run.file.string() + " is named twice",
                                        entry.place("file"),
                                        "a run counted twice makes everything look twice as certain");
@@ -215,7 +334,8 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         }
         const std::string use = entry.choice("use", {"train", "test"}, "automatic");
         run.use = use == "train" ? RunUse::train : use == "test" ? RunUse::test : RunUse::automatic;
-        run.table = core::read_csv(run.file);
+        windows.push_back(window);
+        run.table = read_run(run.file, channels, window, entry, data.problems);
         data.kind == MeasurementKind::steady ? check_static(run) : check_time_series(run);
         check_names(run, data.kind == MeasurementKind::time_series, data.problems);
         data.runs.push_back(std::move(run));

@@ -361,6 +361,15 @@ void check_bounds(const SeriesPrediction& all, const Model& model, const Measure
     }
 }
 
+double longest_run(const Measurements& data) {
+    double longest = 0;
+    for (const MeasuredRun& run : data.runs) {
+        const std::vector<double>& time = run.table.numbers("time");
+        longest = std::max(longest, time.back() - time.front());
+    }
+    return longest;
+}
+
 Prediction predict_series(const Model& model, const Measurements& data, const PredictOptions& options,
                           core::Progress& progress) {
     Prediction out;
@@ -399,6 +408,18 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
                  "run " + data.runs[r].name + " is shorter than the time a prediction needs and was left out",
                  {}});
         }
+    }
+    const double shorter = 0.25 * longest_run(data);
+    if (names.empty() && shorter > 0 && shorter < options.horizon) {
+        PredictOptions short_runs = options;
+        short_runs.horizon = shorter;
+        out = predict_series(model, data, short_runs, progress);
+        out.remarks.push_back({core::Problem::Severity::warning,
+                               "no run is long enough for a prediction over " +
+                                   core::format_number(options.horizon, 4) + " s: predicted over " +
+                                   core::format_number(shorter, 4) + " s",
+                               {}});
+        return out;
     }
     if (names.empty()) {
         throw core::InputError(
