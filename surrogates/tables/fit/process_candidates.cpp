@@ -36,21 +36,6 @@ double score_of(const GaussianProcess& process, const SetPoints& points, const s
     return score;
 }
 
-/// A gap over a decade and more whose millimetres count alike: a force near the ground then varies with the gap's
-/// logarithm, or the process needs lengths as short as its smallest gaps everywhere.
-bool spans_decades_evenly(const SetPoints& points, const Form& form) {
-    for (std::size_t k = 0; k < points.axes.size(); ++k) {
-        const TableAxis& axis = points.axes[k];
-        if (axis.name == "gap" && axis.lower > 0 && axis.upper >= 10 * axis.lower && !form.logarithmic[k]) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/// In units of log likelihood; set with seeds 0 to 999 of tests/surrogates/tables/calibration.h (November 2026).
-constexpr double even_handicap = 3;
-
 }  // namespace
 
 std::vector<ProcessCandidate> ranked_candidates(const SetPoints& points) {
@@ -64,8 +49,7 @@ std::vector<ProcessCandidate> ranked_candidates(const SetPoints& points) {
         options.starts = std::move(starts);
         const auto process = GaussianProcess::fit(data_of(points, rows, form), options);
         // A law must earn its place: a little handicap for each one.
-        const double score = score_of(process, points, rows, form) - (form.film ? 1.0 : 0.0) -
-                             (form.decay ? 0.5 : 0.0) - (spans_decades_evenly(points, form) ? even_handicap : 0.0);
+        const double score = score_of(process, points, rows, form) - (form.film ? 1.0 : 0.0) - (form.decay ? 0.5 : 0.0);
         options.starts = {process.parameters()};
         all.push_back({std::move(form), std::move(options), score});
     };
