@@ -18,11 +18,11 @@ using std::numbers::pi;
 using Index = std::int32_t;
 
 enum PatchIndex : Index {
-    base_patch = 0,
-    hull_patch,
-    protrusion_patch,
-    nozzle_patch,
-    bore_patch,
+    base_boundary = 0,
+    hull_boundary,
+    protrusion_boundary,
+    nozzle_boundary,
+    bore_boundary,
     ground_patch,
     symmetry_patch,
     far_patch
@@ -212,7 +212,7 @@ private:
             const bool opening = base_.in_nozzle[q] != 0;
             if (!opening || body_.shape().nozzle->depth <= 0) {
                 name(id(c[0], 0, 0), id(c[1], 0, 0), id(c[2], 0, 0), id(c[3], 0, 0),
-                     opening ? nozzle_patch : patch_under(c));
+                     opening ? nozzle_boundary : patch_under(c));
             }
         }
         rim_columns_.assign(static_cast<std::size_t>(last_azimuth()) + 1, {});
@@ -232,7 +232,7 @@ private:
             middle = middle + 0.25 * base_.points[static_cast<std::size_t>(p)];
         }
         const Vec3 at = space(middle, 0);
-        return body_.protrusion_depth(at.x, at.y) > 0 ? protrusion_patch : base_patch;
+        return body_.protrusion_depth(at.x, at.y) > 0 ? protrusion_boundary : base_boundary;
     }
 
     /// The nozzle's bore: columns up into the body.
@@ -267,12 +267,12 @@ private:
         add_columns(disc, id, levels);
         for (const auto& q : disc.quads) {
             name(id(q[0], levels - 1, 0), id(q[1], levels - 1, 0), id(q[2], levels - 1, 0), id(q[3], levels - 1, 0),
-                 nozzle_patch);
+                 nozzle_boundary);
         }
         for (std::size_t m = 1; m < base_.nozzle_rim.size(); ++m) {
             const Index a = base_.nozzle_rim[m - 1], b = base_.nozzle_rim[m];
             for (int k = 0; k + 1 < levels; ++k) {
-                name(id(a, k, 0), id(b, k, 0), id(b, k + 1, 0), id(a, k + 1, 0), bore_patch);
+                name(id(a, k, 0), id(b, k, 0), id(b, k + 1, 0), id(a, k + 1, 0), bore_boundary);
             }
         }
     }
@@ -298,7 +298,7 @@ private:
         add_block(id, na, nl, nk);
         for (int m = 0; m + 1 < na; ++m) {
             for (int l = 0; l + 1 < nl; ++l) {
-                name(id(m, l, 0), id(m + 1, l, 0), id(m + 1, l + 1, 0), id(m, l + 1, 0), hull_patch);
+                name(id(m, l, 0), id(m + 1, l, 0), id(m + 1, l + 1, 0), id(m, l + 1, 0), hull_boundary);
                 name(id(m, l, nk - 1), id(m + 1, l, nk - 1), id(m + 1, l + 1, nk - 1), id(m, l + 1, nk - 1),
                      ground_patch);
             }
@@ -330,7 +330,7 @@ private:
         add_block(id, na, nt, nr);
         for (int m = 0; m + 1 < na; ++m) {
             for (int t = 0; t + 1 < nt; ++t) {
-                name(id(m, t, 0), id(m + 1, t, 0), id(m + 1, t + 1, 0), id(m, t + 1, 0), hull_patch);
+                name(id(m, t, 0), id(m + 1, t, 0), id(m + 1, t + 1, 0), id(m, t + 1, 0), hull_boundary);
                 name(id(m, t, nr - 1), id(m + 1, t, nr - 1), id(m + 1, t + 1, nr - 1), id(m, t + 1, nr - 1), far_patch);
             }
         }
@@ -392,7 +392,7 @@ private:
         }
         add_columns(disc, id, levels);
         for (const auto& q : disc.quads) {
-            name(id(q[0], 0, 0), id(q[1], 0, 0), id(q[2], 0, 0), id(q[3], 0, 0), hull_patch);
+            name(id(q[0], 0, 0), id(q[1], 0, 0), id(q[2], 0, 0), id(q[3], 0, 0), hull_boundary);
             name(id(q[0], levels - 1, 0), id(q[1], levels - 1, 0), id(q[2], levels - 1, 0), id(q[3], levels - 1, 0),
                  far_patch);
         }
