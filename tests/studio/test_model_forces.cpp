@@ -173,6 +173,40 @@ TEST_F(ModelForces, ADelayedActuatorChangesTheMapOfALoop) {
     EXPECT_LT(held("slow.toml"), held("model.toml") - 0.1);
 }
 
+TEST_F(ModelForces, WhatDiscoverFindsWrongWithTheLogsPredictReadsToo) {
+    UNDERBODY_NEEDS_SHARED("examples/loop/example-00/model.toml");
+    const std::filesystem::path rig = folder_.path() / "rig";
+    std::filesystem::copy(shared_folder() / "examples/loop/example-00", rig, std::filesystem::copy_options::recursive);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(rig)) {
+        if (entry.path().filename().string().starts_with("run-")) {  // a log whose input has the other sign
+            const core::Table table = core::read_csv(entry.path());
+            core::Table turned;
+            for (const core::Column& column : table.columns()) {
+                std::vector<double> values = column.numbers;
+                for (double& v : values) {
+                    v *= column.name == "input_force" ? -1 : 1;
+                }
+                turned.add_numbers(column.name, column.unit, values);
+            }
+            std::filesystem::remove(entry.path());
+            core::write_csv(entry.path(), turned);
+        }
+    }
+    const nlohmann::json found =
+        json({"discover", "rig/model.toml", "--data", "rig", "--out", "found", "--placebo", "0"});
+    EXPECT_EQ(found["effects"][0]["name"], "coulomb_friction");
+    EXPECT_TRUE(found["consequence"].contains("separation"));
+    EXPECT_LT(found["consequence"]["separation"]["after"]["departure_rms"].get<double>(),
+              0.5 * found["consequence"]["separation"]["before"]["departure_rms"].get<double>());
+    EXPECT_FALSE(found["consequence"]["map"]["after"]["classes"].empty());
+    const nlohmann::json predicted = json({"predict", "found/model.toml", "--data", "rig/held-out"});
+    EXPECT_THAT(predicted["logs_read_as"].get<std::string>(), HasSubstr("input_force times -1"));
+    const double stated = found["error"]["after"]["rmse"];
+    EXPECT_NEAR(predicted["channels"]["gap"]["rmse"].get<double>(), stated, 0.03 * stated);
+    EXPECT_GT(json({"predict", "rig/model.toml", "--data", "rig/held-out"})["channels"]["gap"]["rmse"].get<double>(),
+              10 * stated);
+}
+
 }  // namespace
 
 }  // namespace underbody::test
