@@ -132,6 +132,7 @@ Design Design::open(const Study& study) {
     }
     Design design;
     design.spec_ = *study.design;
+    check_responses(design.spec_);
     design.base_ = geometry::read_shape(design.spec_.shape);
     const fs::path plan = design.spec_.folder / "plan.csv", results = design.spec_.folder / "results.csv";
     if (fs::exists(plan)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "core/error.h"
@@ -17,15 +18,10 @@ using core::FileTable;
 using core::TomlTable;
 using tables::Objective;
 
-const std::vector<std::string>& geometry_measures() {
-    static const std::vector<std::string> names = {"volume"};
-    return names;
-}
-
 namespace {
 
 const std::vector<std::string> plans = {"sobol", "latin_hypercube"};
-const std::vector<std::string> senses = {"minimise", "maximise", "target"};
+const std::vector<std::string> senses = {"minimise", "maximise"};
 
 std::string shape_unit(const std::string& key, const core::Place& place) {
     std::vector<std::string> known;
@@ -98,68 +94,73 @@ tables::Response response_from(const TomlTable& table, const DesignSpec& spec) {
     r.slope_along = table.string_or("slope_along", "");
     r.name = r.quantity;
     const TomlTable at = table.table_or_empty("at");
-    std::set<std::string> known;
-    for (const auto& v : spec.all_variables()) {
-        if (!v.of_shape) {
-            known.insert(v.name);
-            if (!at.has(v.name)) {
-                throw core::InputError("missing", table.path_of("at") + " does not say at which " + v.name,
-                                       table.place(), "at = { " + v.name + " = ... }");
-            }
-            r.conditions.push_back({v.name, at.quantity(v.name, v.unit)});
-            r.name += "_" + v.name +
-                      core::format_number(core::convert(r.conditions.back().value, v.unit,
-                                                        v.unit == "m"     ? "mm"
-                                                        : v.unit == "rad" ? "deg"
-                                                                          : v.unit),
-                                          6);
+    for (const std::string& name : at.keys()) {
+        const auto* known = core::find_quantity(name);
+        if (known == nullptr) {
+            throw core::InputError("condition", at.path_of(name) + " is no condition", at.place(name),
+                                   core::did_you_mean(name, {"gap", "pitch", "speed"}));
         }
+        const double value = at.quantity(name, known->unit);
+        const std::string shown = known->unit == "m" ? "mm" : known->unit == "rad" ? "deg" : known->unit;
+        r.conditions.push_back({name, value});
+        r.name += "_" + name + core::format_number(core::convert(value, known->unit, shown), 6);
     }
     if (!r.slope_along.empty()) {
-        if (!known.contains(r.slope_along)) {
-            throw core::InputError(
-                "condition",
-                table.path_of("slope_along") + ": " + r.slope_along + " does not vary; it needs two values in [design]",
-                table.place("slope_along"), core::did_you_mean(r.slope_along, {known.begin(), known.end()}));
-        }
-        const std::string unit = core::find_quantity(r.slope_along)->unit;
-        r.half_width = table.quantity_or("half_width", unit, unit == "rad" ? 0.0174532925199433 : 1e-3);
+        const auto* along = core::find_quantity(r.slope_along);
+        const std::string unit = along == nullptr ? "1" : along->unit;
+        r.half_width = table.quantity_or("half_width", unit, unit == "rad" ? std::numbers::pi / 180 : 1e-3);
         r.name += "_slope";
+    } else if (table.has("half_width")) {
+        table.accept("half_width");
     }
     r.name = table.string_or("name", r.name);
     return r;
 }
 
+void check_response(const tables::Response& r, const std::vector<std::string>& conditions, const core::Place& place) {
+    for (const std::string& name : conditions) {
+        if (std::none_of(r.conditions.begin(), r.conditions.end(), [&](const auto& c) { return c.name == name; })) {
+            throw core::InputError("missing", "\"" + r.name + "\" does not say at which " + name, place,
+                                   "at = { " + name + " = ... }");
+        }
+    }
+    for (const auto& condition : r.conditions) {
+        if (std::find(conditions.begin(), conditions.end(), condition.name) == conditions.end()) {
+            throw core::InputError("condition",
+                                   "\"" + r.name + "\" states " + condition.name + ", which has one value in [design]",
+                                   place, "leave it out, or give [design] several values of it");
+        }
+    }
+    if (!r.slope_along.empty() && std::find(conditions.begin(), conditions.end(), r.slope_along) == conditions.end()) {
+        throw core::InputError(
+            "condition",
+            "\"" + r.name + "\" is a slope along " + r.slope_along + ", of which [design] has no two values", place,
+            core::did_you_mean(r.slope_along, conditions));
+    }
+}
+
 Objective objective_from(const TomlTable& table, const DesignSpec& spec) {
     Objective objective;
     objective.response = response_from(table, spec);
-    const std::string sense = table.choice("sense", senses);
-    objective.sense = sense == "minimise"   ? Objective::Sense::minimise
-                      : sense == "maximise" ? Objective::Sense::maximise
-                                            : Objective::Sense::target;
-    if (objective.sense == Objective::Sense::target) {
+    if (table.has("target")) {
+        objective.sense = Objective::Sense::target;
         objective.target = table.quantity("target", core::find_quantity(objective.response.quantity)->unit);
+    } else {
+        objective.sense =
+            table.choice("sense", senses) == "minimise" ? Objective::Sense::minimise : Objective::Sense::maximise;
     }
     return objective;
 }
 
 void limit_from(const TomlTable& table, DesignSpec& spec) {
-    const bool geometry = table.has("measure");
-    const std::string measure = geometry ? table.choice("measure", geometry_measures()) : "";
-    if (!geometry && core::find_quantity(table.string("quantity")) == nullptr) {
-        (void)response_from(table, spec);  // says what is wrong with it
-    }
-    const std::string unit = geometry ? "m^3" : core::find_quantity(table.string("quantity"))->unit;
+    const tables::Response response = response_from(table, spec);
+    const std::string unit = core::find_quantity(response.quantity)->unit;
     const auto lower = table.find_quantity("at_least", unit), upper = table.find_quantity("at_most", unit);
     if (!lower && !upper) {
-        throw core::InputError("missing", table.path_of("at_least") + " and at_most are missing", table.place(),
-                               "a limit needs one of them");
+        (void)table.quantity("at_least", unit);  // says how it is written
     }
-    if (geometry) {
-        spec.geometry_limits.push_back({measure, lower.value_or(-1e300), upper.value_or(1e300)});
-    } else {
-        spec.limits.push_back({response_from(table, spec), lower.value_or(-1e300), upper.value_or(1e300)});
-    }
+    spec.limits.push_back({response, lower.value_or(-1e300), upper.value_or(1e300)});
+    spec.limit_places.push_back(table.place());
 }
 
 }  // namespace
@@ -230,11 +231,30 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
     }
     for (const TomlTable& table : design.tables("objective")) {
         spec.objectives.push_back(objective_from(table, spec));
+        spec.objective_places.push_back(table.place());
     }
     for (const TomlTable& table : design.tables("limit")) {
         limit_from(table, spec);
     }
+    const TomlTable volume = design.table_or_empty("volume");
+    spec.least_volume = volume.quantity_or("at_least", "m^3", spec.least_volume);
+    spec.most_volume = volume.quantity_or("at_most", "m^3", spec.most_volume);
     return spec;
+}
+
+void check_responses(const DesignSpec& spec) {
+    std::vector<std::string> conditions;
+    for (const auto& v : spec.all_variables()) {
+        if (!v.of_shape) {
+            conditions.push_back(v.name);
+        }
+    }
+    for (std::size_t i = 0; i < spec.objectives.size(); ++i) {
+        check_response(spec.objectives[i].response, conditions, spec.objective_places[i]);
+    }
+    for (std::size_t i = 0; i < spec.limits.size(); ++i) {
+        check_response(spec.limits[i].response, conditions, spec.limit_places[i]);
+    }
 }
 
 std::vector<FileTable> design_tables() {
@@ -249,51 +269,50 @@ std::vector<FileTable> design_tables() {
         keys.insert(keys.end(), more.begin(), more.end());
         return keys;
     };
-    return {{"design",
-             "shapes to be tried: a plan, surrogates of what was computed, what to compute next, the best",
-             {{"shape", "file", "\"shapes/evie.toml\"", "", "SHAPE.toml that is varied"},
-              {"folder", "text", "\"design\"", "design", "of plan, shapes, runs and results, relative to this file"},
-              {"plan", "sobol | latin_hypercube", "\"sobol\"", "sobol", "how the first designs fill the ranges"},
-              {"points", "whole number", "24", "24", "designs of the first plan"},
-              {"seed", "whole number", "1", "1", "of the plan and the searches"},
-              {"gap", "m or list of m", "[\"3 mm\", \"5 mm\", \"10 mm\"]", "5 mm", "every design is computed at these"},
-              {"pitch", "rad or list of rad", "[\"-1 deg\", \"1 deg\"]", "0", "and at these, positive nose up"},
-              {"speed", "m/s or list of m/s", "\"0.5 m/s\"", "0.5 m/s", "and at these"},
-              {"quantities", "list of texts", "[\"lift_force\", \"pitch_moment\"]",
-               "lift_force, drag_force, pitch_moment", "loads that are learned"}}},
-            {"design.vary[]",
-             "a number of the shape and its range",
-             {{"key", "text", "\"protrusion.height\"", "", "as in SHAPE.toml"},
-              {"from", "unit of the key", "\"1 mm\"", "", "lower end"},
-              {"to", "unit of the key", "\"3 mm\"", "", "upper end"},
-              {"logarithmic", "true or false", "false", "false", "ratios count, not differences"}}},
-            {"design.tie[]",
-             "a number of the shape that follows another one",
-             {{"key", "text", "\"protrusion.length\"", "", "the one that follows"},
-              {"of", "text", "\"protrusion.height\"", "", "the one it follows"},
-              {"factor", "1", "5", "1", "times this"},
-              {"offset", "unit of the key", "\"0 mm\"", "0", "plus this"}}},
-            {"design.fidelity[]",
-             "a mesh; the cheapest first, the last is what counts",
-             {{"name", "text", "\"coarse\"", "", "its folder below runs"},
-              {"cell", "1", "0.125", "0.125", "as in [sweep]"},
-              {"surface_level", "whole number", "3", "3", "as in [sweep]"},
-              {"layers", "whole number", "3", "3", "as in [sweep]"},
-              {"iterations", "whole number", "400", "400", "as in [sweep]"},
-              {"cost", "s", "\"120 s\"", "1 s", "core-seconds of a case, to weigh what pays"}}},
-            {"design.objective[]", "what is wanted; several make a front",
-             response({{"sense", "minimise | maximise | target", "\"maximise\"", "", "which way"},
-                       {"target", "unit of the quantity", "\"0 N m\"", "with sense = target", "the value wanted"}})},
-            {"design.objective[].at", "the conditions it is taken at", {at}, false, "at = { gap = \"5 mm\" }"},
-            {"design.limit[]", "what must hold: of a quantity, or of the body (measure)",
-             [&] {
-                 auto keys = response({{"measure", "volume", "\"volume\"", "a quantity instead",
-                                        "of the body, known without a run", "quantity"},
-                                       {"at_least", "its unit", "\"2 L\"", "none", "lower limit"},
-                                       {"at_most", "its unit", "\"4 L\"", "none", "upper limit"}});
-                 return keys;
-             }()},
-            {"design.limit[].at", "the conditions it is taken at", {at}, false, "at = { gap = \"5 mm\" }"}};
+    return {
+        {"design",
+         "shapes to be tried: a plan, surrogates of what was computed, what to compute next, the best",
+         {{"shape", "file", "\"shapes/evie.toml\"", "", "SHAPE.toml that is varied"},
+          {"folder", "text", "\"design\"", "design", "of plan, shapes, runs and results, relative to this file"},
+          {"plan", "sobol | latin_hypercube", "\"sobol\"", "sobol", "how the first designs fill the ranges"},
+          {"points", "whole number", "24", "24", "designs of the first plan"},
+          {"seed", "whole number", "1", "1", "of the plan and the searches"},
+          {"gap", "m or list of m", "[\"3 mm\", \"5 mm\", \"10 mm\"]", "5 mm", "every design is computed at these"},
+          {"pitch", "rad or list of rad", "[\"-1 deg\", \"1 deg\"]", "0", "and at these, positive nose up"},
+          {"speed", "m/s or list of m/s", "\"0.5 m/s\"", "0.5 m/s", "and at these"},
+          {"quantities", "list of texts", "[\"lift_force\", \"pitch_moment\"]", "lift_force, drag_force, pitch_moment",
+           "loads that are learned"}}},
+        {"design.vary[]",
+         "a number of the shape and its range",
+         {{"key", "text", "\"protrusion.height\"", "", "as in SHAPE.toml"},
+          {"from", "unit of the key", "\"1 mm\"", "", "lower end"},
+          {"to", "unit of the key", "\"3 mm\"", "", "upper end"},
+          {"logarithmic", "true or false", "false", "false", "ratios count, not differences"}}},
+        {"design.tie[]",
+         "a number of the shape that follows another one",
+         {{"key", "text", "\"protrusion.length\"", "", "the one that follows"},
+          {"of", "text", "\"protrusion.height\"", "", "the one it follows"},
+          {"factor", "1", "5", "1", "times this"},
+          {"offset", "unit of the key", "\"0 mm\"", "0", "plus this"}}},
+        {"design.fidelity[]",
+         "a mesh; the cheapest first, the last is what counts",
+         {{"name", "text", "\"coarse\"", "", "its folder below runs"},
+          {"cell", "1", "0.125", "0.125", "as in [sweep]"},
+          {"surface_level", "whole number", "3", "3", "as in [sweep]"},
+          {"layers", "whole number", "3", "3", "as in [sweep]"},
+          {"iterations", "whole number", "400", "400", "as in [sweep]"},
+          {"cost", "s", "\"120 s\"", "1 s", "core-seconds of a case, to weigh what pays"}}},
+        {"design.objective[]", "what is wanted; several make a front",
+         response({{"sense", "minimise | maximise", "\"maximise\"", "", "which way"},
+                   {"target", "unit of the quantity", "\"0.3 N\"", "none", "the value that is wanted", "sense"}})},
+        {"design.objective[].at", "the conditions it is taken at", {at}, false, "at = { gap = \"5 mm\" }"},
+        {"design.limit[]", "what must hold of a quantity",
+         response({{"at_least", "unit of the quantity", "\"0.1 N\"", "", "lower limit"},
+                   {"at_most", "unit of the quantity", "\"0.5 N\"", "none", "upper limit", "at_least"}})},
+        {"design.limit[].at", "the conditions it is taken at", {at}, false, "at = { gap = \"5 mm\" }"},
+        {"design.volume",
+         "what must hold of the body's volume: known without a run",
+         {{"at_least", "m^3", "\"1 L\"", "0", "lower limit"}, {"at_most", "m^3", "\"4 L\"", "none", "upper limit"}}}};
 }
 
 geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at) {
@@ -312,19 +331,13 @@ geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& 
 double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at) {
     try {
         const geometry::BodyShape shape = shape_at(spec, base, at);
-        if (spec.geometry_limits.empty()) {
+        if (spec.least_volume <= 0 && spec.most_volume >= 1e299) {
             return -1;
         }
-        const geometry::ExactBody body(shape);
-        double worst = -1;
-        for (const GeometryLimit& limit : spec.geometry_limits) {
-            const double value = body.volume();
-            if (limit.upper < 1e299) {
-                worst = std::max(worst, value / limit.upper - 1);
-            }
-            if (limit.lower > -1e299) {
-                worst = std::max(worst, 1 - value / limit.lower);
-            }
+        const double volume = geometry::ExactBody(shape).volume();
+        double worst = spec.most_volume < 1e299 ? volume / spec.most_volume - 1 : -1;
+        if (spec.least_volume > 0) {
+            worst = std::max(worst, 1 - volume / spec.least_volume);
         }
         return worst;
     } catch (const core::InputError&) {

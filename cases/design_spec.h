@@ -30,13 +30,6 @@ struct TieSpec {
     double factor = 1, offset = 0;  ///< SI
 };
 
-/// [[design.limit]] on what needs no run: the volume (and with it the buoyancy) of the body.
-struct GeometryLimit {
-    std::string measure;                   ///< one of geometry_measures()
-    double lower = -1e300, upper = 1e300;  ///< SI
-};
-const std::vector<std::string>& geometry_measures();
-
 struct DesignSpec {
     std::filesystem::path shape;   ///< the file that is varied
     std::filesystem::path folder;  ///< of plan, shapes, runs and results
@@ -50,7 +43,8 @@ struct DesignSpec {
     std::vector<FidelitySpec> fidelities;  ///< at least one
     std::vector<tables::Objective> objectives;
     std::vector<tables::Limit> limits;
-    std::vector<GeometryLimit> geometry_limits;
+    double least_volume = 0, most_volume = 1e300;  ///< [design.volume], m^3: of the body, known without a run
+    std::vector<core::Place> objective_places, limit_places;  ///< in study.toml
 
     /// Variables of the surrogates: those of the shape, then the conditions that take several values.
     [[nodiscard]] std::vector<tables::SearchVariable> all_variables() const;
@@ -59,6 +53,9 @@ struct DesignSpec {
 /// Throws core::InputError with file and line: an unknown number of the shape, an empty range, an objective without a
 /// quantity that is computed, a fidelity twice.
 DesignSpec read_design(const core::TomlTable& design, const std::filesystem::path& study_folder);
+/// What reading does not see: conditions that a response does not state, or states in vain. Throws core::InputError
+/// with the place in study.toml.
+void check_responses(const DesignSpec& spec);
 /// The tables of [design], for the format of study.toml.
 std::vector<core::FileTable> design_tables();
 

@@ -87,7 +87,7 @@ std::vector<FileTable> inputs() {
          {{"files", "text", "\"fields/{variant}-h{gap:mm}-p{pitch:deg}.csv\"", "",
            "pattern of the file names: {word} takes a word, {quantity:unit} a number with its unit, * anything"},
           {"zones", "list of texts", "[\"hull*\", \"base\"]", "all walls", "patterns of the zones that are the body"},
-          {"mean", "true or false", "true", "false",
+          {"mean", "true or false", "false", "false",
            "the files are instants of runs in time ({time:s} in their names): those that differ in their time alone "
            "count as their mean, with an error that knows their correlation"},
           {"design_points", "file", "\"points.csv\"", "none",

@@ -57,8 +57,7 @@ quantity = "pitch_moment"
 slope_along = "pitch"
 sense = "minimise"
 at = { gap = "5 mm", pitch = 0 }
-[[design.limit]]
-measure = "volume"
+[design.volume]
 at_least = "0.1 L"
 )";
 

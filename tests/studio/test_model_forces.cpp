@@ -163,9 +163,9 @@ TEST_F(ModelForces, ADelayedActuatorChangesTheMapOfALoop) {
           "[conditions]\nspeed = \"0.5 m/s\"\n[[effect]]\nname = \"input_delay\"\ndelay = { value = \"1.5 s\" }\n");
     const auto held = [&](const std::string& file) {
         double sum = 0;
-        for (const auto& end :
-             json({"region", file, "--axes", "gap=2mm:40mm,heave_velocity=-0.05:0.05", "--grid", "20x20", "--feedback",
-                   "gap_gain=20,velocity_gain=15,reference=20mm"})["classes"]) {
+        const nlohmann::json map = json({"region", file, "--axes", "gap=2mm:40mm,heave_velocity=-0.05:0.05", "--grid",
+                                         "20x20", "--feedback", "gap_gain=20,velocity_gain=15,reference=20mm"});
+        for (const auto& end : map["classes"]) {
             sum += end["kind"] == "attractor" ? end["fraction"].get<double>() : 0;
         }
         return sum;
