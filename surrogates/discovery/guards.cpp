@@ -1,10 +1,13 @@
 #include "surrogates/discovery/guards.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/model/effect.h"
 
 namespace underbody::discovery {
@@ -13,6 +16,39 @@ double BlockSquares::rmse() const {
     const double readings = std::accumulate(count.begin(), count.end(), 0.0);
     return readings > 0 ? std::sqrt(std::accumulate(square.begin(), square.end(), 0.0) / readings) : 0;
 }
+
+namespace {
+
+constexpr std::size_t few_blocks = 6;  ///< below, the readings decide as well: t of three is 4.3
+
+/// Lower end of the fall of the root mean square over all readings, their errors taken for one: no two of them are
+/// independent.
+double least_fall_of_readings(const BlockSquares& before, const BlockSquares& after, double tail) {
+    double fall = 0, chance = 0, first = 0, left = 0;
+    for (std::size_t i = 0; i < before.errors.size(); ++i) {
+        const double e = after.errors[i];
+        const double d = before.errors[i] - e;
+        fall += d * (d + 2 * e);
+        chance += std::abs(2 * d * e);
+        first += before.errors[i] * before.errors[i];
+        left += e * e;
+    }
+    const double times = boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
+    // of squares to roots
+    const double scale = std::sqrt(static_cast<double>(before.errors.size())) * (std::sqrt(first) + std::sqrt(left));
+    return scale > 0 ? (fall - times * chance) / scale : 0;
+}
+
+/// What the readings say goes into the interval of few blocks.
+PairedFall with_readings(PairedFall blocks, const BlockSquares& before, const BlockSquares& after, double tail) {
+    if (blocks.blocks < few_blocks && before.errors.size() > 1 && before.errors.size() == after.errors.size()) {
+        blocks.low = std::max(blocks.low, least_fall_of_readings(before, after, tail));
+        blocks.high = std::min(blocks.high, -least_fall_of_readings(after, before, tail));
+    }
+    return blocks;
+}
+
+}  // namespace
 
 PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, double tail) {
     PairedFall result;
@@ -33,7 +69,7 @@ PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, do
     if (fall.size() < 3) {
         result.low = -1e300;
         result.high = 1e300;
-        return result;
+        return with_readings(result, before, after, tail);
     }
     double square = 0;
     for (const double one : fall) {
@@ -46,8 +82,45 @@ PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, do
     if (after.rmse() > before.rmse()) {
         result.low = std::min(result.low, 0.0);  // what most blocks win a few lose again
     }
-    return result;
+    return with_readings(result, before, after, tail);
 }
+
+namespace {
+
+/// Each number of an effect of static sets acts without the others. Where they can stand in for each other (dead zone
+/// and exponent of a pump curve) none is sure alone and all are sure together: so their common error decides.
+bool differ_together(const FittedHypothesis& fitted, const std::string& name, double sigmas) {
+    const Hypothesis& h = fitted.hypothesis;
+    const std::size_t count = fitted.fit.parameters.size();
+    if (dynamics::effect(name).info().seen_in != dynamics::SeenIn::static_set ||
+        fitted.fit.covariance.size() != count * count) {
+        return false;
+    }
+    std::vector<std::size_t> own;
+    for (std::size_t j = 0; j < h.slots.size(); ++j) {
+        if (h.uses[h.slots[j].use].name == name && std::isfinite(fitted.fit.sigma[j]) && fitted.fit.sigma[j] > 0) {
+            own.push_back(j);
+        }
+    }
+    if (own.size() < 2) {
+        return false;
+    }
+    const auto n = static_cast<Eigen::Index>(own.size());
+    Eigen::MatrixXd together(n, n);  // in their own errors
+    Eigen::VectorXd away(n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+        const std::size_t i = own[static_cast<std::size_t>(a)];
+        away(a) = (fitted.fit.parameters[i] - h.uses[h.slots[i].use].values[h.slots[i].value]) / fitted.fit.sigma[i];
+        for (Eigen::Index b = 0; b < n; ++b) {
+            const std::size_t j = own[static_cast<std::size_t>(b)];
+            together(a, b) = fitted.fit.covariance[i * count + j] / (fitted.fit.sigma[i] * fitted.fit.sigma[j]);
+        }
+    }
+    const double square = away.dot(together.ldlt().solve(away));
+    return chi_squared_tail(std::max(square, 0.0), static_cast<double>(n)) < std::erfc(sigmas / std::sqrt(2.0));
+}
+
+}  // namespace
 
 bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas) {
     const Hypothesis& h = fitted.hypothesis;
@@ -65,7 +138,7 @@ bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas) {
                 return true;
             }
         }
-        return unit.empty();
+        return unit.empty() || differ_together(fitted, name, sigmas);
     });
 }
 

@@ -11,8 +11,9 @@ namespace underbody::discovery {
 
 /// Squared errors of one model, block by block of neighbouring held-out readings.
 struct BlockSquares {
-    std::vector<double> square;  ///< sum of squares of each block
-    std::vector<double> count;   ///< readings of each block
+    std::vector<double> square;    ///< sum of squares of each block
+    std::vector<double> count;     ///< readings of each block
+    std::vector<double> errors{};  ///< reading by reading, in order; empty: not kept
     [[nodiscard]] double rmse() const;
 };
 
@@ -27,11 +28,15 @@ struct PairedFall {
     [[nodiscard]] bool rises() const { return high < 0; }
 };
 
-/// `tail` is the chance beyond each end of the interval. Fewer than three blocks: no interval, nothing falls.
+/// `tail` is the chance beyond each end of the interval. Few blocks (short runs) have next to no interval of Student:
+/// there the readings decide as well, as if all their errors were one. With d the difference of the two models and e
+/// what the second leaves, the square error falls by the sum of d^2 + 2 d e; d^2 is no chance, and 2 d e is all taken
+/// to go one way. Errors that fall to about a third do so beyond that interval, lesser falls do not. Without errors
+/// fewer than three blocks have no interval, and nothing falls.
 PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, double tail);
 
 /// True where each name of the hypothesis has a strength that lies more than `sigmas` of its own errors from where it
-/// does nothing.
+/// does nothing, or (static sets) numbers that lie as unlikely far from there together.
 bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas);
 
 /// Lowers all probabilities of names (and of `unknown`) so that none is above `most`; what they lose goes to "none".

@@ -56,6 +56,7 @@ WindowSquares window_errors(const HeaveExperiment& experiment, const std::vector
                     const double difference = record.gap[k] - predicted[k - first];
                     windows.square.back() += difference * difference + (1 - share) * reading_noise * reading_noise;
                     windows.count.back() += 1;
+                    windows.errors.push_back(difference);
                 }
             }
             first = last;
@@ -92,6 +93,7 @@ BlockSquares WindowSquares::blocks(std::size_t records, std::size_t wanted) cons
         }
         begin = end;
     }
+    sums.errors = errors;
     return sums;
 }
 

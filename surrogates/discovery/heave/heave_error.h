@@ -15,6 +15,7 @@ namespace underbody::discovery {
 struct WindowSquares {
     std::vector<std::size_t> record;  ///< index into the experiment's chosen records
     std::vector<double> square, count;
+    std::vector<double> errors;  ///< m, reading by reading
     /// Summed by record.
     [[nodiscard]] BlockSquares by_record(std::size_t records) const;
     /// Summed over neighbouring windows of one record: about `wanted` blocks in all, none across two records.

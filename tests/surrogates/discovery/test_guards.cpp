@@ -76,6 +76,48 @@ TEST(Guards, APairedFallOfNothingIsBeyondItsIntervalAsOftenAsItSays) {
     EXPECT_NEAR(static_cast<double>(falls) / draws, 0.025, 0.012);
 }
 
+TEST(Guards, OfTwoShortRunsTheReadingsDecideAndOnlyAGreatFallIsOne) {
+    const auto runs = [](double effect, double slope, std::uint64_t draw) {
+        core::Random random(7, draw);
+        std::pair<BlockSquares, BlockSquares> both{{{0, 0}, {74, 74}}, {{0, 0}, {74, 74}}};
+        double drift = 0;
+        for (std::size_t i = 0; i < 148; ++i) {
+            drift = i % 74 == 0 ? slope * random.normal() : drift;
+            const double left = random.normal() + drift;  // of a run that starts from a wrong state, and noise
+            const double before = left + effect * std::sin(0.3 * static_cast<double>(i));
+            both.first.square[i / 74] += before * before;
+            both.second.square[i / 74] += left * left;
+            both.first.errors.push_back(before);
+            both.second.errors.push_back(left);
+        }
+        return both;
+    };
+    const auto [before, after] = runs(13, 0, 0);  // nine noises
+    EXPECT_TRUE(paired_fall(before, after, 0.025).falls());
+    EXPECT_FALSE(paired_fall(after, before, 0.025).falls());
+    EXPECT_TRUE(paired_fall(after, before, 0.025).rises());
+    for (std::uint64_t draw = 0; draw < 500; ++draw) {
+        // an effect that is not there, of half a noise, and one of two noises in either sense
+        for (const double effect : {0.5, 2.0}) {
+            const auto [with, without] = runs(effect, 1, draw);
+            EXPECT_FALSE(paired_fall(with, without, 0.025).falls()) << effect;
+            EXPECT_FALSE(paired_fall(without, with, 0.025).falls()) << effect;
+        }
+    }
+    const PairedFall same = paired_fall(before, before, 0.025);
+    EXPECT_FALSE(same.falls() || same.rises());
+}
+
+TEST(Guards, NumbersThatStandInForEachOtherAreJudgedTogether) {
+    FittedHypothesis pump = fitted("pump_curve", {1.3, 0.03, 0.0}, {0.93, 0.19, 0.5}, 137);
+    EXPECT_FALSE(differs_from_neutral(pump, 2)) << "each within its error, nothing known of them together";
+    const double all = 0.98 * 0.93 * 0.5;  // dead zone and exponent nearly one number
+    pump.fit.covariance = {0.93 * 0.93, 0, all, 0, 0.19 * 0.19, 0, all, 0, 0.25};
+    EXPECT_TRUE(differs_from_neutral(pump, 2));
+    pump.fit.covariance = {0.93 * 0.93, 0, 0, 0, 0.19 * 0.19, 0, 0, 0, 0.25};
+    EXPECT_FALSE(differs_from_neutral(pump, 2));
+}
+
 TEST(Guards, ANumberWithinTwoSigmaOfNeutralIsNoFinding) {
     EXPECT_FALSE(differs_from_neutral(fitted("constant_force", {0.003}, {0.002}, 50), 2));
     EXPECT_TRUE(differs_from_neutral(fitted("constant_force", {0.005}, {0.002}, 50), 2));

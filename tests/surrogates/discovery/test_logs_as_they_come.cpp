@@ -134,8 +134,11 @@ TEST(VehicleLogs, GiveTheVerdictOfTheCsv) {
     core::write_file(folder.path() / "log/dataset.toml", log_set);
     const Discovery by_csv = discover(FastRig::model(), dynamics::read_measurements(folder.path() / "csv"), quick());
     const Discovery by_log = discover(FastRig::model(), dynamics::read_measurements(folder.path() / "log"), quick());
-    EXPECT_EQ(by_csv.verdict, "effect");
+    ASSERT_EQ(by_csv.verdict, "effect") << by_csv.sentence;
+    ASSERT_FALSE(by_csv.effects.empty());
     ASSERT_EQ(by_csv.effects.size(), by_log.effects.size());
+    ASSERT_FALSE(by_csv.error.empty());
+    ASSERT_FALSE(by_log.error.empty());
     EXPECT_EQ(by_csv.effects[0].name, by_log.effects[0].name);
     EXPECT_NEAR(by_csv.effects[0].parameters[0].value, by_log.effects[0].parameters[0].value, 1e-6);
     EXPECT_NEAR(by_csv.effects[0].probability, by_log.effects[0].probability, 1e-6);
