@@ -47,10 +47,11 @@ function(underbody_optimise_hard)
 endfunction()
 
 # underbody_units(TARGET SOURCE...): compiles several sources as one unit where CMAKE_UNITY_BUILD is on (preset release):
-# most of the time of a small source goes into headers and templates that its neighbours share.
+# most of the time of a small source goes into headers and templates that its neighbours share. UNDERBODY_UNIT_HEADERS:
+# the headers of sources that lie in another folder.
 function(underbody_units target)
   if(CMAKE_UNITY_BUILD)
-    file(GLOB_RECURSE headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.h)
+    file(GLOB_RECURSE headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.h ${UNDERBODY_UNIT_HEADERS})
     execute_process(COMMAND awk -v most=${CMAKE_UNITY_BUILD_BATCH_SIZE} -f ${CMAKE_SOURCE_DIR}/cmake/unity_groups.awk ${headers} ${ARGN}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE groups COMMAND_ERROR_IS_FATAL ANY)
     string(REGEX MATCHALL "[0-9]+" groups "${groups}")

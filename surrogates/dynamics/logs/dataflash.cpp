@@ -146,7 +146,7 @@ public:
     [[nodiscard]] double last() const { return last_; }
     void finish(LogEnd& end, std::size_t messages) const {
         end.clock = "microseconds since the autopilot started";
-        end.start = static_cast<std::int64_t>(1e9 * start_.value_or(0));
+        end.start = whole_part(1e9 * start_.value_or(0));
         if (messages == 0) {
             throw core::InputError("damaged", "a DataFlash log without any message that can be read",
                                    {name_, {}, {}, {}}, "download it from the vehicle anew");
@@ -322,9 +322,9 @@ private:
                                                 : numbers_[static_cast<std::size_t>(found - format.labels.begin())];
         };
         if (format.name == "UNIT" && texts.size() == 1 && std::isfinite(number("Id"))) {
-            rows_.add_unit(static_cast<long>(number("Id")), texts[0]);
+            rows_.add_unit(whole_part(number("Id")), texts[0]);
         } else if (format.name == "MULT" && std::isfinite(number("Id"))) {
-            rows_.add_multiplier(static_cast<long>(number("Id")), number("Mult"));
+            rows_.add_multiplier(whole_part(number("Id")), number("Mult"));
         } else if (format.name == "FMTU" && texts.size() == 2 && number("FmtType") >= 0 && number("FmtType") < 256) {
             Format& described = formats_[static_cast<std::size_t>(number("FmtType"))];
             described.unit_ids = texts[0];

@@ -1,6 +1,7 @@
 // Bytes of a log with a look ahead, and little-endian numbers out of them. Only the readers of logs include this.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -18,6 +19,11 @@ Number number_at(std::string_view bytes, std::size_t at) {
     Number value{};
     std::memcpy(&value, bytes.data() + at, sizeof value);
     return value;
+}
+
+/// The whole part of a number that may be anything in a damaged log; 0 for what no 64-bit integer holds.
+inline std::int64_t whole_part(double value) {
+    return std::abs(value) < 9.2e18 ? static_cast<std::int64_t>(value) : 0;
 }
 
 /// A stream with a window ahead.
