@@ -22,9 +22,7 @@ Number number_at(std::string_view bytes, std::size_t at) {
 }
 
 /// The whole part of a number that may be anything in a damaged log; 0 for what no 64-bit integer holds.
-inline std::int64_t whole_part(double value) {
-    return std::abs(value) < 9.2e18 ? static_cast<std::int64_t>(value) : 0;
-}
+inline std::int64_t whole_part(double value) { return std::abs(value) < 9.2e18 ? static_cast<std::int64_t>(value) : 0; }
 
 /// A stream with a window ahead.
 class LogBytes {
