@@ -23,8 +23,6 @@ using tables::SearchVariable;
 
 namespace {
 
-std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
-
 std::string numbered(std::size_t index) {
     const std::string digits = std::to_string(index + 1);
     return "design-" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits;
@@ -228,7 +226,7 @@ core::Table Design::plan_table() const {
             values.push_back(d.at[v]);
         }
         table.add_numbers(spec_.variables[v].name, spec_.variables[v].unit, values,
-                          shown_unit(spec_.variables[v].unit));
+                          geometry::shown_unit(spec_.variables[v].unit));
     }
     table.add_text("fidelity", fidelities);
     table.add_text("why", whys);
@@ -251,7 +249,7 @@ core::Table Design::results_table() const {
         for (const DesignRun& run : runs_) {
             values.push_back(run.at[v]);
         }
-        table.add_numbers(all[v].name, all[v].unit, values, shown_unit(all[v].unit));
+        table.add_numbers(all[v].name, all[v].unit, values, geometry::shown_unit(all[v].unit));
     }
     table.add_text("fidelity", fidelities);
     for (const std::string& q : spec_.quantities) {

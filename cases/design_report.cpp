@@ -11,23 +11,20 @@
 namespace underbody::cases {
 
 using core::Figure;
+using geometry::shown_unit;
 using tables::Candidate;
 using tables::SearchVariable;
 using tables::Surrogate;
 
 namespace {
 
-std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
 double shown(double value, const std::string& unit) { return core::convert(value, unit, shown_unit(unit)); }
 std::string label(const std::string& name) {
     std::string text = name;
     std::replace(text.begin(), text.end(), '_', ' ');
     return text;
 }
-std::string with_unit(double value, const std::string& unit) {
-    const std::string u = shown_unit(unit);
-    return core::format_number(shown(value, unit), 5) + (u == "1" ? "" : " " + u);
-}
+std::string with_unit(double value, const std::string& unit) { return geometry::shown_value(value, unit, 5); }
 
 }  // namespace
 

@@ -23,19 +23,6 @@ namespace {
 const std::vector<std::string> plans = {"sobol", "latin_hypercube"};
 const std::vector<std::string> senses = {"minimise", "maximise"};
 
-std::string shape_unit(const std::string& key, const core::Place& place) {
-    std::vector<std::string> known;
-    for (const auto& p : geometry::parameter_names()) {
-        if (p.name == key && !p.unit.empty()) {
-            return p.unit;
-        }
-        if (!p.unit.empty()) {
-            known.push_back(p.name);
-        }
-    }
-    throw core::InputError("name", "a shape has no number '" + key + "'", place, core::did_you_mean(key, known));
-}
-
 std::vector<double> one_or_more(const TomlTable& table, const char* key, const char* unit, double fallback) {
     if (!table.has(key)) {
         return {fallback};
@@ -53,7 +40,10 @@ std::vector<double> one_or_more(const TomlTable& table, const char* key, const c
 tables::SearchVariable variable_from(const TomlTable& table) {
     tables::SearchVariable v;
     v.name = table.string("key");
-    v.unit = shape_unit(v.name, table.place("key"));
+    v.unit = geometry::parameter_unit(v.name, table.place("key"));
+    if (v.unit.empty()) {
+        throw core::InputError("name", "a shape has no number '" + v.name + "'", table.place("key"));
+    }
     v.lower = table.quantity("from", v.unit);
     v.upper = table.quantity("to", v.unit);
     v.logarithmic = table.boolean_or("logarithmic", false);
@@ -66,20 +56,6 @@ tables::SearchVariable variable_from(const TomlTable& table) {
                                table.place("from"));
     }
     return v;
-}
-
-TieSpec tie_from(const TomlTable& table) {
-    TieSpec tie;
-    tie.key = table.string("key");
-    tie.of = table.string("of");
-    const std::string unit = shape_unit(tie.key, table.place("key"));
-    if (shape_unit(tie.of, table.place("of")) != unit) {
-        throw core::InputError("unit", tie.key + " cannot be tied to " + tie.of + ": they are not of one kind",
-                               table.place("of"));
-    }
-    tie.factor = table.quantity_or("factor", "1", 1);
-    tie.offset = table.quantity_or("offset", unit, 0);
-    return tie;
 }
 
 /// A response with the conditions of `at`; conditions that have one value need not be said.
@@ -101,9 +77,9 @@ tables::Response response_from(const TomlTable& table, const DesignSpec& spec) {
                                    core::did_you_mean(name, {"gap", "pitch", "speed"}));
         }
         const double value = at.quantity(name, known->unit);
-        const std::string shown = known->unit == "m" ? "mm" : known->unit == "rad" ? "deg" : known->unit;
         r.conditions.push_back({name, value});
-        r.name += "_" + name + core::format_number(core::convert(value, known->unit, shown), 6);
+        r.name +=
+            "_" + name + core::format_number(core::convert(value, known->unit, geometry::shown_unit(known->unit)), 6);
     }
     if (!r.slope_along.empty()) {
         const auto* along = core::find_quantity(r.slope_along);
@@ -209,7 +185,7 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
                                "[[design.vary]] key = \"protrusion.height\", from = \"1 mm\", to = \"3 mm\"");
     }
     for (const TomlTable& table : design.tables("tie")) {
-        spec.ties.push_back(tie_from(table));
+        spec.ties.push_back(geometry::tie_from(table));
     }
     std::set<std::string> names;
     for (const TomlTable& table : design.tables("fidelity")) {
@@ -320,9 +296,8 @@ geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& 
     for (std::size_t v = 0; v < spec.variables.size(); ++v) {
         geometry::set_parameter(shape, spec.variables[v].name, core::format_number(at[v]));
     }
-    for (const TieSpec& tie : spec.ties) {
-        geometry::set_parameter(shape, tie.key,
-                                core::format_number(tie.factor * geometry::parameter(shape, tie.of) + tie.offset));
+    for (const geometry::Tie& tie : spec.ties) {
+        geometry::apply(tie, shape);
     }
     geometry::check(shape);
     return shape;

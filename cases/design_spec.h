@@ -9,7 +9,7 @@
 
 #include "core/file_format.h"
 #include "core/toml.h"
-#include "geometry/body/body_shape.h"
+#include "geometry/body/variants.h"
 #include "surrogates/tables/search/design_search.h"
 
 namespace underbody::cases {
@@ -24,12 +24,6 @@ struct FidelitySpec {
     double cost = 1;  ///< core-seconds of a case
 };
 
-/// [[design.tie]]: a number of the shape that follows another one.
-struct TieSpec {
-    std::string key, of;
-    double factor = 1, offset = 0;  ///< SI
-};
-
 struct DesignSpec {
     std::filesystem::path shape;   ///< the file that is varied
     std::filesystem::path folder;  ///< of plan, shapes, runs and results
@@ -39,8 +33,8 @@ struct DesignSpec {
     std::vector<double> gaps, pitches, speeds;  ///< every design is computed at all of them; m, rad, m/s
     std::vector<std::string> quantities;
     std::vector<tables::SearchVariable> variables;  ///< of the shape
-    std::vector<TieSpec> ties;
-    std::vector<FidelitySpec> fidelities;  ///< at least one
+    std::vector<geometry::Tie> ties;                ///< [[design.tie]]
+    std::vector<FidelitySpec> fidelities;           ///< at least one
     std::vector<tables::Objective> objectives;
     std::vector<tables::Limit> limits;
     double least_volume = 0, most_volume = 1e300;  ///< [design.volume], m^3: of the body, known without a run

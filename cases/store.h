@@ -88,7 +88,6 @@ private:
     void open_for_writing();
     void open_for_reading();
     void check_version();
-    void read_copy();
     void make_tables();
 
     std::mutex mutex_;

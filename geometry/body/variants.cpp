@@ -14,19 +14,7 @@
 
 namespace underbody::geometry {
 
-namespace {
-
-struct Vary {
-    std::string key;
-    std::vector<std::string> values;
-};
-
-struct Tie {
-    std::string key, of;
-    double factor = 1, offset = 0;
-};
-
-std::string unit_of(const std::string& key, const core::Place& place) {
+std::string parameter_unit(const std::string& key, const core::Place& place) {
     std::vector<std::string> known;
     for (const ParameterName& p : parameter_names()) {
         if (p.name == key) {
@@ -37,23 +25,48 @@ std::string unit_of(const std::string& key, const core::Place& place) {
     throw core::InputError("name", "a shape has no parameter '" + key + "'", place, core::did_you_mean(key, known));
 }
 
-// Units that designers read: mm and degrees.
 std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
 
-std::string written(double value, const std::string& unit) {
+std::string shown_value(double value, const std::string& unit, int digits) {
     const std::string shown = shown_unit(unit);
-    return core::format_number(core::convert(value, unit, shown), 12) + (shown == "1" ? "" : " " + shown);
+    return core::format_number(core::convert(value, unit, shown), digits) + (shown == "1" ? "" : " " + shown);
 }
+
+Tie tie_from(const core::TomlTable& table) {
+    Tie tie;
+    tie.key = table.string("key");
+    tie.of = table.string("of");
+    const std::string unit = parameter_unit(tie.key, table.place("key")),
+                      of_unit = parameter_unit(tie.of, table.place("of"));
+    if (unit.empty() || of_unit != unit) {
+        throw core::InputError("unit", tie.key + " cannot be tied to " + tie.of + ": they are not of one kind",
+                               table.place("of"));
+    }
+    tie.factor = table.quantity_or("factor", "1", 1);
+    tie.offset = table.quantity_or("offset", unit, 0);
+    return tie;
+}
+
+void apply(const Tie& tie, BodyShape& shape) {
+    set_parameter(shape, tie.key, core::format_number(tie.factor * parameter(shape, tie.of) + tie.offset));
+}
+
+namespace {
+
+struct Vary {
+    std::string key;
+    std::vector<std::string> values;
+};
 
 Vary vary_from(const core::TomlTable& table) {
     Vary vary;
     vary.key = table.string("key");
-    const std::string unit = unit_of(vary.key, table.place("key"));
+    const std::string unit = parameter_unit(vary.key, table.place("key"));
     if (unit.empty()) {
         vary.values = table.strings("values");
     } else if (table.has("values") || !table.has("from")) {  // without both the values are what is missing
         for (const double v : table.quantities("values", unit)) {
-            vary.values.push_back(written(v, unit));
+            vary.values.push_back(shown_value(v, unit, 12));
         }
     } else {
         const double from = table.quantity("from", unit), to = table.quantity("to", unit);
@@ -64,27 +77,13 @@ Vary vary_from(const core::TomlTable& table) {
         }
         for (std::int64_t i = 0; i < count; ++i) {
             vary.values.push_back(
-                written(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1), unit));
+                shown_value(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1), unit, 12));
         }
     }
     if (vary.values.empty()) {
         throw core::InputError("empty", table.path_of("values") + " is empty", table.place("values"));
     }
     return vary;
-}
-
-Tie tie_from(const core::TomlTable& table) {
-    Tie tie;
-    tie.key = table.string("key");
-    tie.of = table.string("of");
-    const std::string unit = unit_of(tie.key, table.place("key")), of_unit = unit_of(tie.of, table.place("of"));
-    if (unit.empty() || of_unit != unit) {
-        throw core::InputError("unit", tie.key + " cannot be tied to " + tie.of + ": they are not of one kind",
-                               table.place("of"));
-    }
-    tie.factor = table.quantity_or("factor", "1", 1);
-    tie.offset = table.quantity_or("offset", unit, 0);
-    return tie;
 }
 
 std::string numbered(const std::string& name, std::size_t index, std::size_t count) {
@@ -146,8 +145,7 @@ VariantSet read_variants(const std::filesystem::path& path) {
                 set_parameter(variant.shape, varies[k].key, variant.values[k]);
             }
             for (const Tie& tie : ties) {
-                const double value = tie.factor * parameter(variant.shape, tie.of) + tie.offset;
-                set_parameter(variant.shape, tie.key, core::format_number(value));
+                apply(tie, variant.shape);
             }
             check(variant.shape);
             const auto [found, fresh] = seen.emplace(shape_hash(variant.shape), variant.name);
@@ -200,7 +198,7 @@ core::Table table(const VariantSet& set, const std::vector<MadeVariant>& made) {
     }
     result.add_text("name", names);
     for (std::size_t k = 0; k < set.keys.size(); ++k) {
-        const std::string unit = unit_of(set.keys[k], {});
+        const std::string unit = parameter_unit(set.keys[k], {});
         std::vector<std::string> words;
         std::vector<double> numbers;
         for (const Variant& v : set.variants) {

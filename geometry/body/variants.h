@@ -14,6 +14,10 @@
 #include "geometry/body/mass_properties.h"
 #include "geometry/mesh/surface_mesh.h"
 
+namespace underbody::core {
+class TomlTable;
+}
+
 namespace underbody::geometry {
 
 /// Sets one parameter by its name in the file ("body.base_cut", "protrusion.height"; text with a unit, or a word).
@@ -28,6 +32,22 @@ struct ParameterName {
     std::string unit;
 };
 const std::vector<ParameterName>& parameter_names();
+/// SI unit of a parameter, "" for words. Throws core::InputError for an unknown name (with the nearest).
+std::string parameter_unit(const std::string& key, const core::Place& place);
+
+/// The unit in which designers read values of an SI unit: mm for m, deg for rad, others as they are.
+std::string shown_unit(const std::string& unit);
+/// "1.5 mm": an SI value in that unit.
+std::string shown_value(double value, const std::string& unit, int digits);
+
+/// [[tie]]: a number of the shape that follows another one, key = factor * of + offset (SI).
+struct Tie {
+    std::string key, of;
+    double factor = 1, offset = 0;
+};
+/// Throws core::InputError: unknown names, numbers of different kinds.
+Tie tie_from(const core::TomlTable& table);
+void apply(const Tie& tie, BodyShape& shape);
 
 struct Variant {
     std::string name;  ///< of the file, and a number: "evie-007"

@@ -269,9 +269,4 @@ std::size_t make_consistent(vtkPolyData& polydata, core::Progress& progress) {
     return count;
 }
 
-void turn_over(vtkPolyData& polydata) {
-    const SurfaceArrays surface(polydata);
-    replace_polygons(polydata, surface, std::vector<std::uint8_t>(surface.faces(), 1));
-}
-
 }  // namespace underbody::postproc

@@ -30,7 +30,4 @@ SurfaceCheck check_surface(vtkPolyData& surface, core::Progress& progress = core
 /// faces that were turned; the values on faces stay where they are. The surface's polygons are replaced.
 std::size_t make_consistent(vtkPolyData& surface, core::Progress& progress = core::Progress::none());
 
-/// Turns every polygon of a surface over.
-void turn_over(vtkPolyData& surface);
-
 }  // namespace underbody::postproc

@@ -31,12 +31,7 @@ struct Arguments {
     std::string out;
 };
 
-std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
-
-std::string shown(double value, const std::string& unit) {
-    const std::string u = shown_unit(unit);
-    return core::format_number(core::convert(value, unit, u), 6) + (u == "1" ? "" : " " + u);
-}
+std::string shown(double value, const std::string& unit) { return geometry::shown_value(value, unit, 6); }
 
 cases::Design open(Shell& shell, const Arguments& a) {
     cases::Design design = cases::Design::open(cases::Study::open(a.study));

@@ -5,11 +5,26 @@
 
 #include "postproc/loads/loads_table.h"
 #include "postproc/loads/mesh_study.h"
+#include "tests/postproc/made_zones.h"
 
 namespace underbody::postproc {
 namespace {
 
 using testing::HasSubstr;
+
+TEST(LoadsTable, HasOneRowACaseWithItsConditions) {
+    const auto result = loads(box(false, false));
+    const core::Table table = loads_table({{"a.csv", {{"gap", 0.005}}, {{"variant", "ellipse"}}, result, {}, {}},
+                                           {"b.csv", {{"gap", 0.01}, {"lift_force", 1.0}}, {}, result, {}, {}}},
+                                          {{"gap", "mm"}});
+    EXPECT_EQ(table.rows(), 2U);
+    EXPECT_EQ(table.find("gap")->written_unit, "mm");
+    EXPECT_EQ(table.numbers("gap")[1], 0.01);
+    EXPECT_EQ(table.text("variant")[0], "ellipse");
+    EXPECT_NEAR(table.numbers("lift_force")[0], -1, 1e-12);
+    EXPECT_EQ(table.numbers("lift_force_stated")[1], 1.0);
+    EXPECT_TRUE(std::isnan(table.numbers("lift_force_stated")[0]));
+}
 
 TEST(LoadsTable, MakesOneCaseOfItsMeshes) {
     const auto with_lift = [](double cells, double lift, double gap) {

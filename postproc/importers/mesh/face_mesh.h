@@ -90,7 +90,6 @@ struct FaceMesh {
     std::vector<IdRange> hidden_faces;
     /// Faces of mesh interfaces (id ranges) that stand in for the parents they were cut from.
     std::vector<IdRange> interface_children;
-    std::vector<std::uint32_t> interface_parents;
     CellFaces cell_faces;  ///< made by `gather_cell_faces`
 
     [[nodiscard]] const ZoneLabel* label(int zone) const;

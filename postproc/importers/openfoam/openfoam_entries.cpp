@@ -76,7 +76,6 @@ bool FoamInput::include() {
     }
     in_->move_to(in_->here() + close + 1);
     push(core::read_file(*file), file->parent_path());
-    included_.push_back(*file);
     return true;
 }
 

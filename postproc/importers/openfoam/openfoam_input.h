@@ -31,8 +31,6 @@ public:
     /// kind `kind_unread` where a number is wanted, and a word elsewhere.
     void expand_macros(const std::filesystem::path& case_folder);
     static constexpr const char* kind_unread = "unread";
-    /// The files that were brought in so far.
-    [[nodiscard]] const std::vector<std::filesystem::path>& included() const { return included_; }
     /// Names of entries are of this dictionary until `leave`.
     void enter(const std::string& dictionary) { entries_.enter(dictionary); }
     void leave() { entries_.leave(); }
@@ -115,7 +113,6 @@ private:
     ByteStream* in_ = nullptr;  ///< the file, or the last of what is pushed
     std::vector<std::unique_ptr<Pushed>> pushed_;
     std::size_t pushed_bytes_ = 0;
-    std::vector<std::filesystem::path> included_;
     FoamEntries entries_;
     std::filesystem::path case_folder_;
     bool expanding_ = false;

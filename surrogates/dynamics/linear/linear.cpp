@@ -214,19 +214,6 @@ YawTransfer yaw_transfer(const SurfaceCoefficients& c, double speed, double fric
     return transfer;
 }
 
-SurfaceTrim surface_trim(const SurfaceCoefficients& c, double speed, double friction, double net_weight, double lift,
-                         const EvieJets& jets) {
-    // 2 F0 cg cb = D U^2 + mu N, N = W + 2 F0 sb - F_g
-    const double forward = std::cos(jets.gamma) * std::cos(jets.beta), down = std::sin(jets.beta);
-    SurfaceTrim trim;
-    trim.thrust = (c.drag_x * speed * speed + friction * (net_weight - lift)) / (2 * (forward - friction * down));
-    trim.normal_force = net_weight + 2 * trim.thrust * down - lift;
-    if (trim.normal_force < 0) {
-        throw core::InputError("range", "the ground effect lifts the vehicle off: no run on the ground at this speed");
-    }
-    return trim;
-}
-
 HeadingBounds heading_bounds(const SurfaceCoefficients& c, double speed, double friction_force) {
     HeadingBounds bounds;
     bounds.a = friction_force / (speed * c.mass_y);

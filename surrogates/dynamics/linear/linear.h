@@ -75,14 +75,6 @@ struct YawTransfer {
 };
 YawTransfer yaw_transfer(const SurfaceCoefficients& c, double speed, double friction_force, const EvieJets& jets);
 
-/// Straight run over the ground: F1 = F2 = F0 against drag and friction, N = W + 2 F0 sin(beta) - F_g.
-struct SurfaceTrim {
-    double thrust = 0;        ///< F0 of each of J1, J2, N
-    double normal_force = 0;  ///< N
-};
-SurfaceTrim surface_trim(const SurfaceCoefficients& c, double speed, double friction, double net_weight, double lift,
-                         const EvieJets& jets);
-
 /// Heading by M_z = K2 (psi_d - psi) + K1 d/dt(psi_d - psi): bounds of the gains with sway included.
 struct HeadingBounds {
     double a = 0;              ///< mu N/(U S_y), 1/s

@@ -183,28 +183,6 @@ double rim_reynolds(double flow, double perimeter, double kinematic_viscosity) {
     return flow / (kinematic_viscosity * perimeter);
 }
 
-double pump_flow(double shutoff_pressure, double free_flow, double exponent, double nozzle_diameter, double half_length,
-                 double half_width, double gap, double viscosity, double density) {
-    const double area = pi / 4 * nozzle_diameter * nozzle_diameter;
-    const double plate = std::sqrt(2.0) * half_length * half_width / std::hypot(half_length, half_width);
-    const auto surplus = [&](double flow) {
-        const double pump = shutoff_pressure * (1 - std::pow(flow / free_flow, exponent));
-        return pump - density / 2 * flow * flow / (area * area) -
-               radial_film_pressure(flow, gap, nozzle_diameter / 2, plate, viscosity);
-    };
-    double lo = 0, hi = free_flow;
-    for (int i = 0; i < 200; ++i) {
-        const double middle = (lo + hi) / 2;
-        (surplus(middle) > 0 ? lo : hi) = middle;
-    }
-    return (lo + hi) / 2;
-}
-
-double VoltageLaw::factor(double voltage) const {
-    const double above = std::max(0.0, voltage - dead_band) / (reference - dead_band);
-    return above > 0 ? std::pow(above, exponent) : 0.0;
-}
-
 double thrust_exponent(double low_thrust, double high_thrust, double low_voltage, double high_voltage) {
     return std::log(high_thrust / low_thrust) / std::log(high_voltage / low_voltage);
 }

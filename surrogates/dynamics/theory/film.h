@@ -38,27 +38,6 @@ double plane_slider_pressure(double gap, double inlet, double outlet, double len
 double best_slider_ratio();
 double slider_load_coefficient(double ratio);
 
-// ---- Two-dimensional film under an elliptic base, pressure ambient at the rim. ----
-
-struct EllipticFilmInput {
-    double half_length = 0, half_width = 0;  ///< m
-    double gap = 0;                          ///< m, at the centre
-    double pitch = 0;                        ///< rad, nose up
-    double speed = 0;                        ///< m/s, of the body forward: the ground moves aft under it
-    double heave_velocity = 0;               ///< m/s, up
-    double viscosity = 1e-3, density = core::default_water_density;
-    int rings = 48;  ///< of the mesh
-};
-struct EllipticFilm {
-    double lift = 0;                 ///< N
-    double pitch_moment = 0;         ///< N m about the centre of the base, nose up
-    double highest = 0, lowest = 0;  ///< Pa
-    double reduced_reynolds = 0;
-    bool valid = true;  ///< reduced Reynolds number below 1
-};
-/// Reynolds' equation by linear finite elements. Throws core::InputError when the base touches the ground.
-EllipticFilm elliptic_film(const EllipticFilmInput& input);
-
 // ---- Radial film of a central jet: nozzle radius r1, plate radius r2, flow Q, parallel gap h. ----
 
 /// Viscous pressure at the nozzle's lip, Pa: 6 mu Q/(pi h^3) ln(r2/r1).
@@ -109,18 +88,6 @@ double ellipse_perimeter(double half_length, double half_width);
 /// Q/(nu perimeter): Reynolds number of the flow under the rim; does not depend on the gap at given flow.
 double rim_reynolds(double flow, double perimeter, double kinematic_viscosity);
 
-/// Flow of a pump p0 (1 - (Q/Q0)^n) that feeds a nozzle (dynamic pressure of the nozzle) and the film under an elliptic
-/// base.
-double pump_flow(double shutoff_pressure, double free_flow, double exponent, double nozzle_diameter, double half_length,
-                 double half_width, double gap, double viscosity, double density);
-
-/// How thrust follows voltage. Measured tables go through the model instead.
-struct VoltageLaw {
-    double reference = 10;  ///< V
-    double exponent = 2;
-    double dead_band = 0;  ///< V
-    [[nodiscard]] double factor(double voltage) const;
-};
 /// Exponent through two measured thrusts.
 double thrust_exponent(double low_thrust, double high_thrust, double low_voltage, double high_voltage);
 /// f(h)/k_T at the equilibrium of a body whose jet balances it in free stream at `neutral` volts: (V0/V)^2 - 1.

@@ -407,54 +407,6 @@ AugmentedModel corrected(const AugmentedModel& model, Correction correction, con
     return out;
 }
 
-AugmentedModel learn_structured(const Moments& moments, const Layout& layout, const std::vector<RowStructure>& rows,
-                                const LearnOptions& options) {
-    const Normalised data = normalise(moments, layout, options);
-    AugmentedModel model = frame(moments, layout, data, options);
-    LearnOptions plain_fit = options;
-    plain_fit.fit = Fit::least_squares;
-    complete(model, data, model.rank, plain_fit);
-    model.method = "least_squares, structured";
-    const auto names = layout.names();
-    const std::size_t nu = layout.inputs.size(), nx = layout.states.size();
-    std::vector<std::size_t> e = data.u;
-    e.insert(e.end(), data.x.begin(), data.x.end());
-    for (const RowStructure& row : rows) {
-        const std::size_t i = model.state(row.state);
-        for (const auto& name : row.regressors) {
-            if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(nu + nx), name) ==
-                names.begin() + static_cast<std::ptrdiff_t>(nu + nx)) {
-                throw core::InputError("name", "'" + name + "' is no state or input of the model", {},
-                                       core::did_you_mean(name, names));
-            }
-        }
-        std::vector<std::size_t> some, d;
-        for (const std::size_t j : e) {
-            if (std::find(row.regressors.begin(), row.regressors.end(), names[data.kept[j]]) != row.regressors.end()) {
-                some.push_back(j);
-            }
-        }
-        for (const std::size_t j : data.d) {
-            if (data.kept[j] == nu + nx + i) {
-                d.push_back(j);
-            }
-        }
-        model.A.set_row(i, Vector(nx, 0.0));
-        model.B.set_row(i, Vector(nu, 0.0));
-        if (d.empty() || some.empty()) {
-            continue;
-        }
-        const Matrix law = regress(data.c, d, some);
-        for (std::size_t j = 0; j < some.size(); ++j) {
-            const std::size_t c = data.kept[some[j]];
-            const double value = law(0, j) * data.sigma[nu + nx + i] / data.sigma[c];
-            (c < nu ? model.B(i, c) : model.A(i, c - nu)) = value;
-        }
-    }
-    set_offsets(model, options.offset);
-    return model;
-}
-
 DerivativeError derivative_error(const AugmentedModel& model, const Moments& test) {
     check_moments(test, model.layout);
     const std::size_t nu = model.layout.inputs.size(), nx = model.layout.states.size();

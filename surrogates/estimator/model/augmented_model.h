@@ -112,15 +112,6 @@ enum class Correction { p1, p2, p3, p4 };
 /// Offsets follow the means in the moments the model was made from; without such (published matrices) they stay.
 AugmentedModel corrected(const AugmentedModel& model, Correction correction, const std::vector<KnownRow>& rows);
 
-/// Least squares with structural zeros from the start (instead of zeroing afterwards): `regressors` names, per state,
-/// the states and inputs its derivative may depend on. Rows without an entry use all.
-struct RowStructure {
-    std::string state;
-    std::vector<std::string> regressors;
-};
-AugmentedModel learn_structured(const Moments& moments, const Layout& layout, const std::vector<RowStructure>& rows,
-                                const LearnOptions& options = {});
-
 /// Error of the derivatives over a data set with these moments: root mean square of d - (A x + B u + c) per state, and
 /// relative to the derivative's own deviation from its mean.
 struct DerivativeError {

@@ -22,7 +22,6 @@ SeparatedPlant sine_plant();
 
 AugmentedModel published_8_47();  ///< two nonlinear forces, order 6, with 8.48/8.49's blocks
 AugmentedModel published_grid();  ///< section 7.5, "from grid data"
-AugmentedModel published_time();  ///< section 7.5, "time evolved data"
 AugmentedModel published_7_48();  ///< linear drag, order 5
 Matrix printed_covariance();      ///< 9 x 9, channels (u; w, h, F_g, F_d; their rates)
 Matrix printed_basis();           ///< 9 x 5: U, V, W stacked

@@ -128,24 +128,6 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
 
 }  // namespace internal
 
-core::Table ThesisStudy::claims_table() const {
-    std::vector<std::string> id, where, statement, computed, verdict;
-    for (const Claim& c : claims) {
-        id.push_back(c.id);
-        where.push_back(c.where);
-        statement.push_back(c.statement);
-        computed.push_back(c.computed);
-        verdict.push_back(c.verdict);
-    }
-    core::Table t;
-    t.add_text("id", id);
-    t.add_text("where", where);
-    t.add_text("statement", statement);
-    t.add_text("computed", computed);
-    t.add_text("verdict", verdict);
-    return t;
-}
-
 const core::Figure* ThesisStudy::figure(const std::string& number) const {
     for (const auto& [name, f] : figures) {
         if (name == number) {

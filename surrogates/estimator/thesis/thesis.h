@@ -8,7 +8,6 @@
 
 #include "core/figure.h"
 #include "core/progress.h"
-#include "core/table.h"
 
 namespace underbody::estimator {
 
@@ -23,8 +22,6 @@ struct Claim {
 struct ThesisStudy {
     std::vector<std::pair<std::string, core::Figure>> figures;  ///< by the thesis's number, panels by letter: "7-7a"
     std::vector<Claim> claims;
-    /// id, where, statement, computed, verdict
-    [[nodiscard]] core::Table claims_table() const;
     [[nodiscard]] const core::Figure* figure(const std::string& number) const;
 };
 

@@ -67,21 +67,6 @@ Plan latin_hypercube(std::size_t count, std::size_t axes, std::uint64_t seed) {
     return best;
 }
 
-Plan full_factorial(std::span<const std::size_t> levels) {
-    Plan plan = {{}};
-    for (const std::size_t count : levels) {
-        Plan next;
-        for (const std::vector<double>& point : plan) {
-            for (std::size_t i = 0; i < count; ++i) {
-                next.push_back(point);
-                next.back().push_back(count == 1 ? 0.5 : static_cast<double>(i) / static_cast<double>(count - 1));
-            }
-        }
-        plan = std::move(next);
-    }
-    return plan;
-}
-
 double discrepancy(const Plan& plan) {
     if (plan.empty()) {
         return 0;

@@ -20,9 +20,6 @@ Plan sobol_plan(std::size_t count, std::size_t axes, std::uint64_t seed, std::si
 /// distance (McKay, Beckman and Conover 1979; Johnson, Moore and Ylvisaker 1990).
 Plan latin_hypercube(std::size_t count, std::size_t axes, std::uint64_t seed);
 
-/// All combinations of `levels[axis]` evenly spaced values, ends included (one level: the middle).
-Plan full_factorial(std::span<const std::size_t> levels);
-
 /// Smallest distance of two points.
 double smallest_distance(const Plan& plan);
 

@@ -14,7 +14,6 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "studio/figures/colour_scale.h"
-#include "studio/figures/montage.h"
 #include "studio/figures/render.h"
 #include "tests/support/support.h"
 
@@ -370,31 +369,6 @@ TEST(Figures, WrongSizesAndEndingsAreRefused) {
     EXPECT_THROW(write_picture({}, folder.path() / "x.jpg"), core::UsageError);
     write_picture(bars_figure(), folder.path() / "x.pdf");
     EXPECT_GT(std::filesystem::file_size(folder.path() / "x.pdf"), 2000U);
-}
-
-TEST(Figures, ManyPicturesMakeOneLabelledSheet) {
-    std::vector<Tile> tiles;
-    for (const auto& [name, figure] : std::vector<std::pair<std::string, Figure>>{{"force", force_figure()},
-                                                                                  {"map", stability_figure()},
-                                                                                  {"pressure", value_figure(false)},
-                                                                                  {"bars", bars_figure()}}) {
-        tiles.push_back({render_png(figure, {600, 380, 1}), name});
-    }
-    tiles.push_back({"", "nothing yet"});
-    const std::string bytes = montage_png(tiles, {"A sheet", 0, 400, 1});
-    if (const char* folder = std::getenv("UNDERBODY_KEEP_PICTURES")) {
-        core::write_file(std::filesystem::path(folder) / "montage.png", bytes);
-    }
-    const QImage sheet = QImage::fromData(reinterpret_cast<const uchar*>(bytes.data()), static_cast<int>(bytes.size()));
-    EXPECT_GT(sheet.width(), 2 * 400);
-    EXPECT_GT(share(sheet, stability_figure().classes[0].colours[0]), 0.02);
-    EXPECT_EQ(montage_png(tiles, {"A sheet", 0, 400, 1}), bytes);
-    const std::string row = montage_png(tiles, {"", 5, 100, 1});
-    const QImage strip = QImage::fromData(reinterpret_cast<const uchar*>(row.data()), static_cast<int>(row.size()));
-    EXPECT_EQ(strip.width(), 14 + 5 * 114);
-    EXPECT_THROW(montage_png({}), core::InputError);
-    EXPECT_THROW(montage_png({{"no picture", "x"}}), core::InputError);
-    EXPECT_THROW(montage_png(tiles, {"", 5, 5000, 2}), core::InputError);
 }
 
 TEST(Figures, UnitsReadAsPeopleWriteThem) {

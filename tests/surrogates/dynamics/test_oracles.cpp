@@ -281,27 +281,6 @@ TEST(Oracles, JetFilms) {  // O36 ... O46
     EXPECT_NEAR(core::convert(50, "gf", "N"), 0.4903325, 1e-9);  // O47
 }
 
-TEST(Oracles, TheElementsOfTheEllipticFilmAgreeWithClosedForms) {
-    EllipticFilmInput in;
-    in.half_length = .0717;
-    in.half_width = .0536;
-    in.gap = 1e-3;
-    in.heave_velocity = -1e-3;
-    in.density = 1000;
-    // 12 mu G/h^3 times the sinking speed
-    EXPECT_NEAR(elliptic_film(in).lift / (squeeze_damping(.0717, .0536, 1e-3, 1e-3) * 1e-3), 1, 2e-3);
-    in.heave_velocity = 0;
-    in.speed = .5;
-    EXPECT_NEAR(elliptic_film(in).lift, 0, 1e-12);  // no lift of a gap symmetric fore and aft
-    in.pitch = 0.1 * degree;
-    const double up = elliptic_film(in).lift;
-    EXPECT_GT(up, 0);  // nose up: the gap narrows aft
-    in.pitch = -in.pitch;
-    EXPECT_NEAR(elliptic_film(in).lift, -up, 1e-9);
-    in.pitch = 5 * degree;
-    EXPECT_THROW(elliptic_film(in), core::InputError);
-}
-
 TEST(Oracles, MixedDragIsTwiceDifferentiable) {  // O48 O49 O50
     const MixedDrag d(.05, 15, .152, 1e-6);
     EXPECT_NEAR(d.w1, 6.5789474e-06, 1e-13);

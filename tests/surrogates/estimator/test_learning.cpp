@@ -263,23 +263,6 @@ TEST(Learning, HasNoOffsetFromRawMomentsAndPassesThroughAGivenEquilibrium) {
     }
 }
 
-TEST(Learning, KeepsStructuralZerosFromTheStart) {
-    const TrainingSet set = oracle_mesh(reference_plant());
-    const AugmentedModel m = learn_structured(
-        moments(set.view()), set.layout,
-        {{"ground_force", {"heave_velocity"}}, {"drag_force", {"ground_force", "drag_force", "input_force"}}});
-    EXPECT_EQ(m.A(2, 1), 0);
-    EXPECT_EQ(m.A(3, 0), 0);
-    EXPECT_EQ(m.B(2, 0), 0);
-    EXPECT_NE(m.A(3, 3), 0);
-    // The best law under the zeros beats zeroing afterwards.
-    const Moments mm = moments(set.view());
-    LearnOptions o;
-    const AugmentedModel p4 =
-        corrected(learn(mm, set.layout, o), Correction::p4, heave_rows(set.layout, thesis_virtual_mass(), 0));
-    EXPECT_LT(derivative_error(m, mm).rms[3], derivative_error(p4, mm).rms[3]);
-}
-
 TEST(Learning, SaysWhereAForwardDifferenceContradictsTheStates) {
     TrainingOptions o;
     o.samples = 20000;

@@ -250,8 +250,6 @@ TEST(Search, PlansFillTheCube) {
         }
     }
     EXPECT_LT(discrepancy(whole), 0.5 * discrepancy(scattered));
-    const std::vector<std::size_t> levels = {3, 1, 2};
-    EXPECT_EQ(full_factorial(levels).size(), 6u);
 }
 
 TEST(Search, SensitivitiesOfIshigamisFunction) {

@@ -1,0 +1,133 @@
+#!/usr/bin/env perl
+# Counts the sources of the product (core to studio): files, lines, lengths of files and functions (median, 95 %, longest),
+# the largest group of files that include each other (a .cpp and its header are one), and numbers without a name. Prints
+# only: goals stand in CONTRIBUTING.md, section Style.
+use strict;
+use warnings;
+use File::Basename;
+use File::Spec;
+
+chdir(dirname(File::Spec->rel2abs($0)) . "/../..") or die;
+my @rooms = qw(core geometry postproc surrogates/tables surrogates/dynamics surrogates/estimator surrogates/discovery
+               cases studio);
+my (%count, %uses, @all_files, @all_functions);
+
+# Code without comments, text in quotes and preprocessor lines; line ends stay.
+sub bare {
+    my ($text) = @_;
+    $text =~ s{//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'}{
+        my $lines = $& =~ tr/\n//; ($& =~ m{^/} ? "" : "_") . "\n" x $lines}gsex;
+    $text =~ s{^[ \t]*#(?:\\\n|[^\n])*}{my $lines = $& =~ tr/\n//; "\n" x $lines}gme;
+    return $text;
+}
+
+# Lengths of functions: a block in a namespace or class whose head has a parameter list.
+sub function_lengths {
+    my ($code) = @_;
+    my ($line, $head, $head_line, @blocks, @lengths) = (1, "", 1);
+    for my $c (split //, $code) {
+        $head_line = $line if $head !~ /\S/;
+        if ($c eq "{") {
+            my $outer = @blocks ? $blocks[-1][0] : "space";
+            my $kind = $head =~ /\bnamespace\b|\bextern\b/ ? "space"
+                : $head =~ /^\s*(?:template\s*<.*>\s*)?(?:class|struct|union|enum)\b/s && $head !~ /=\s*$/ ? "space"
+                : $outer eq "space" && $head =~ /\)[^=]*$/s ? "function" : "block";
+            push @blocks, [$kind, $head_line];
+            $head = "";
+        } elsif ($c eq "}") {
+            my $block = pop @blocks;
+            push @lengths, $line - $block->[1] + 1 if $block && $block->[0] eq "function";
+            $head = "";
+        } elsif ($c eq ";") {
+            $head = "";
+        } else {
+            $head .= $c;
+        }
+        $line++ if $c eq "\n";
+    }
+    return @lengths;
+}
+
+# Floating-point numbers that are no constant, default or entry of a list, and are not 0, 1, 2, 0.5, 4 or 10.
+sub bare_numbers {
+    my ($code) = @_;
+    my $found = 0;
+    for (split /\n/, $code) {
+        next if /\bconst(?:expr)?\b[^(]*=|^\s*[\w:<> ]+ \w+ = [-\w.]+;|^[\s{}\d.,eE+-]+;?$/;
+        for my $number (/(?<![\w.])(\d+\.\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)(?![\w.])/g) {
+            $found++ unless $number == 0 || $number == 1 || $number == 2 || $number == 0.5 || $number == 4 || $number == 10;
+        }
+    }
+    return $found;
+}
+
+sub quantile {
+    my ($q, @values) = @_;
+    @values = sort { $a <=> $b } @values;
+    return @values ? $values[int($q * $#values + 0.5)] : 0;
+}
+
+# Groups of nodes that reach each other (Tarjan 1972).
+my (%index, %low, %on_stack, @stack, @groups);
+my $next = 0;
+sub visit {
+    my ($node) = @_;
+    no warnings 'recursion';
+    $index{$node} = $low{$node} = $next++;
+    push @stack, $node;
+    $on_stack{$node} = 1;
+    for my $to (sort keys %{$uses{$node}}) {
+        next unless exists $uses{$to};
+        if (!defined $index{$to}) {
+            visit($to);
+            $low{$node} = $low{$to} if $low{$to} < $low{$node};
+        } elsif ($on_stack{$to} && $index{$to} < $low{$node}) {
+            $low{$node} = $index{$to};
+        }
+    }
+    return if $low{$node} != $index{$node};
+    my @group;
+    while (defined(my $member = pop @stack)) {
+        $on_stack{$member} = 0;
+        push @group, $member;
+        last if $member eq $node;
+    }
+    push @groups, \@group;
+}
+
+printf "%-22s %5s %7s  %-17s %-14s %s\n", "", "files", "lines", "file 50/95/max", "function", "numbers without a name per 1000 lines";
+my ($all_files, $all_lines) = (0, 0);
+for my $room (@rooms) {
+    my (@files, @functions);
+    my ($lines, $numbers) = (0, 0);
+    for my $file (split /\n/, `git ls-files --cached --others --exclude-standard '$room/*.h' '$room/*.cpp'`) {
+        open(my $in, "<", $file) or next;
+        local $/;
+        my $text = <$in>;
+        my $length = $text =~ tr/\n//;
+        $lines += $length;
+        push @files, $length;
+        my $code = bare($text);
+        push @functions, function_lengths($code);
+        $numbers += bare_numbers($code);
+        (my $node = $file) =~ s/\.(?:h|cpp)$//;
+        $uses{$node} ||= {};
+        while ($text =~ /^#include "([^"]+)\.h"/gm) {
+            $uses{$node}{$1} = 1 if $1 ne $node;
+        }
+    }
+    printf "%-22s %5d %7d  %-17s %-14s %.1f\n", $room, scalar @files, $lines,
+        join("/", quantile(0.5, @files), quantile(0.95, @files), quantile(1, @files)),
+        join("/", quantile(0.5, @functions), quantile(0.95, @functions), quantile(1, @functions)), 1000 * $numbers / $lines;
+    push @all_files, @files;
+    push @all_functions, @functions;
+    $all_lines += $lines;
+}
+printf "%-22s %5d %7d  %-17s %-14s\n", "all", scalar @all_files, $all_lines,
+    join("/", quantile(0.5, @all_files), quantile(0.95, @all_files), quantile(1, @all_files)),
+    join("/", quantile(0.5, @all_functions), quantile(0.95, @all_functions), quantile(1, @all_functions));
+visit($_) for grep { !defined $index{$_} } sort keys %uses;
+my ($largest, @others) = sort { @$b <=> @$a } @groups;
+printf "largest group of files that include each other: %d%s\n", scalar @$largest,
+    @$largest > 1 ? " (" . join(", ", sort @$largest) . ")" : "";
+printf "groups of more than four: %d\n", scalar grep { @$_ > 4 } @groups;
