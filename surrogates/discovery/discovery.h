@@ -30,7 +30,7 @@ struct FoundParameter {
 
 /// One effect of the verdict, or one of its rivals.
 struct FoundEffect {
-    std::string name;  ///< of the catalogue, "declared_parameter" or "unknown"
+    std::string name;  ///< of the catalogue, or "unknown"
     std::vector<FoundParameter> parameters;
     std::vector<std::string> depends_on;
     double probability = 0;

@@ -4,22 +4,42 @@
 #include <cmath>
 #include <set>
 
+#include "surrogates/dynamics/plant/heave_terms.h"
+
 namespace underbody::discovery {
 
 using dynamics::Channel;
 
 namespace {
 
-void add_use(Hypothesis& hypothesis, const dynamics::EffectInfo& info, const std::string& quantity) {
+/// What a search looks at, and how the effects answer it.
+struct Look {
+    const dynamics::Model& model;
+    const std::vector<Channel>& varying;
+    const std::vector<std::string>& quantities;  ///< measured
+    bool time_series = false;
+};
+
+/// False where the effect can change nothing there.
+bool add_use(Hypothesis& hypothesis, const dynamics::Effect& effect, const std::string& quantity, const Look& look) {
+    const dynamics::EffectInfo& info = effect.info();
+    const std::vector<std::string> own{quantity};
+    std::vector<dynamics::EffectParameter> parameters = info.parameters;
+    if (!effect.look({look.model, quantity.empty() ? look.quantities : own, look.varying, look.time_series}, parameters,
+                     hypothesis.prior)) {
+        return false;
+    }
     dynamics::EffectUse use = dynamics::neutral_use(info.name);
     use.quantity = quantity;
     const std::size_t which = hypothesis.uses.size();
-    for (std::size_t k = 0; k < info.parameters.size(); ++k) {
-        const dynamics::EffectParameter& p = info.parameters[k];
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+        const dynamics::EffectParameter& p = parameters[k];
+        use.values[k] = p.neutral;
         hypothesis.parameters.push_back({p.name, p.unit, p.lower, p.upper, p.neutral, p.typical});
         hypothesis.slots.push_back({which, k});
     }
     hypothesis.uses.push_back(std::move(use));
+    return true;
 }
 
 /// Starts on both sides of neutral and, for shapes, a factor of three either way.
@@ -55,14 +75,20 @@ void add_starts(Hypothesis& hypothesis) {
     hypothesis.starts = std::move(starts);
 }
 
-Hypothesis make(const dynamics::EffectInfo& info, const std::vector<std::string>& quantities, const std::string& form) {
+Hypothesis make(const dynamics::Effect& effect, const std::vector<std::string>& quantities, const std::string& form,
+                const Look& look) {
     Hypothesis hypothesis;
-    hypothesis.names = {info.name};
+    hypothesis.names = {effect.info().name};
     hypothesis.form = form;
-    hypothesis.depends_on = info.depends_on;
+    hypothesis.depends_on = effect.info().depends_on;
+    hypothesis.prior = effect.info().search.prior;
+    double prior = hypothesis.prior;
     for (const std::string& quantity : quantities) {
-        add_use(hypothesis, info, quantity);
+        hypothesis.prior = effect.info().search.prior;
+        add_use(hypothesis, effect, quantity, look);
+        prior = hypothesis.prior;  // of one use: the same effect on several quantities is no less likely
     }
+    hypothesis.prior = prior;
     add_starts(hypothesis);
     return hypothesis;
 }
@@ -93,117 +119,44 @@ bool varies(const std::vector<Channel>& varying, const std::string& name) {
     return dynamics::find_channel(name, channel) && std::find(varying.begin(), varying.end(), channel) != varying.end();
 }
 
-/// The channel without whose variation an effect cannot be told from others.
-std::vector<std::string> channels_needed(const std::string& effect) {
-    if (effect == "speed_exponent" || effect == "current") {
-        return {"speed"};
-    }
-    if (effect == "temperature") {
-        return {"temperature"};
-    }
-    if (effect == "drift") {
-        return {"time"};
-    }
-    if (effect == "guide_friction") {
-        return {"approach_direction"};
-    }
-    if (effect == "pump_curve") {
-        return {"jet_voltage"};
-    }
-    if (effect == "gap_offset" || effect == "surface_roughness") {
-        return {"gap"};
-    }
-    return {};
+/// Whether a static set with these channels can show an effect against this model at all.
+bool can_be_seen(const dynamics::Effect& effect, const Look& look) {
+    const dynamics::EffectSearch& search = effect.info().search;
+    const auto moves = [&](const std::string& name) { return varies(look.varying, name); };
+    std::vector<dynamics::EffectParameter> parameters = effect.info().parameters;
+    double prior = 1;
+    return std::all_of(search.needs.begin(), search.needs.end(), moves) &&
+           (search.needs_one_of.empty() ||
+            std::any_of(search.needs_one_of.begin(), search.needs_one_of.end(), moves)) &&
+           effect.look({look.model, look.quantities, look.varying, look.time_series}, parameters, prior);
 }
 
-/// Whether an effect can change what this model says of these quantities at all.
-bool model_feels(const dynamics::Model& model, const std::string& effect, const std::vector<std::string>& quantities) {
-    const auto measured = [&](const std::string& quantity) {
-        return std::find(quantities.begin(), quantities.end(), quantity) != quantities.end();
-    };
-    const auto has_axis = [](const dynamics::ForceSource& source, Channel channel) {
-        return std::find(source.axes.begin(), source.axes.end(), channel) != source.axes.end();
-    };
-    const auto any_source = [&](auto&& predicate) {
-        return std::any_of(model.forces.begin(), model.forces.end(), [&](const dynamics::ForceSource& source) {
-            return measured(source.quantity) && predicate(source);
-        });
-    };
-    const auto scaled_by = [](const dynamics::ForceSource& source, Channel channel) {
-        return std::any_of(source.scales.begin(), source.scales.end(), [&](const dynamics::ForceScale& scale) {
-            return scale.channel == channel && scale.exponent != 0;
-        });
-    };
-    if (effect == "pitch_misalignment") {
-        // without a pitch axis the balance leans: that needs lift and drag, both in the model
-        const std::vector<std::string> known = model.quantities();
-        const auto knows = [&](const char* quantity) {
-            return std::find(known.begin(), known.end(), quantity) != known.end();
-        };
-        return any_source([&](const auto& source) { return has_axis(source, Channel::pitch); }) ||
-               (knows("lift_force") && knows("drag_force") && (measured("lift_force") || measured("drag_force")));
-    }
-    if (effect == "pump_curve") {
-        return any_source([&](const auto& source) {
-            return has_axis(source, Channel::jet_voltage) || scaled_by(source, Channel::jet_voltage);
-        });
-    }
-    if (effect == "current") {
-        return any_source(
-            [&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
-    }
-    if (effect == "speed_exponent") {
-        return any_source(
-            [&](const auto& source) { return has_axis(source, Channel::speed) || scaled_by(source, Channel::speed); });
-    }
-    if (effect == "gap_offset") {
-        return any_source([&](const auto& source) { return has_axis(source, Channel::gap); });
-    }
-    return true;
-}
-
-/// The effect is neutral at the exponent that the model declares, not at two.
-void start_at_declared_exponent(Hypothesis& hypothesis, const dynamics::Model& model,
-                                const std::vector<std::string>& quantities) {
-    for (std::size_t j = 0; j < hypothesis.slots.size(); ++j) {
-        const std::string& wanted = hypothesis.uses[hypothesis.slots[j].use].quantity;
-        for (const dynamics::ForceSource& source : model.forces) {
-            const bool concerned =
-                wanted.empty() ? std::find(quantities.begin(), quantities.end(), source.quantity) != quantities.end()
-                               : source.quantity == wanted;
-            const auto scale =
-                std::find_if(source.scales.begin(), source.scales.end(),
-                             [](const dynamics::ForceScale& one) { return one.channel == Channel::speed; });
-            if (concerned && scale != source.scales.end()) {
-                const double shift = scale->exponent - hypothesis.parameters[j].start;
-                hypothesis.parameters[j].start += shift;
-                hypothesis.uses[hypothesis.slots[j].use].values[hypothesis.slots[j].value] += shift;
-                for (std::vector<double>& start : hypothesis.starts) {
-                    start[j] += shift;
-                }
-                break;
-            }
+/// The effect that puts another value in the place of a declared number.
+const dynamics::EffectInfo& declared_number() {
+    for (const dynamics::Effect* effect : dynamics::effects()) {
+        if (effect->info().takes_parameter) {
+            return effect->info();
         }
     }
+    throw core::InputError("name", "no effect of the catalogue corrects a declared number", {}, {});
 }
 
-/// Roughness with one strength: as much deeper near the ground as it is weaker far from it.
+/// The second strength of each use bound to the first, so that there is one.
 void one_strength(Hypothesis& hypothesis) {
-    for (std::size_t j = hypothesis.parameters.size(); j-- > 0;) {
-        if (hypothesis.parameters[j].name == "far") {
-            hypothesis.copies.push_back({j - 1, hypothesis.slots[j]});  // `near` stands before it
+    for (std::size_t j = hypothesis.slots.size(); j-- > 0;) {
+        if (hypothesis.slots[j].value == 1) {
+            hypothesis.copies.push_back({j - 1, hypothesis.slots[j]});  // the first stands before it
+            hypothesis.parameters[j - 1].upper =
+                std::min(hypothesis.parameters[j - 1].upper, hypothesis.parameters[j].upper);
             hypothesis.parameters.erase(hypothesis.parameters.begin() + static_cast<std::ptrdiff_t>(j));
             hypothesis.slots.erase(hypothesis.slots.begin() + static_cast<std::ptrdiff_t>(j));
         }
     }
     for (Hypothesis::Copy& copy : hypothesis.copies) {
-        const auto near = std::find_if(
+        const auto first = std::find_if(
             hypothesis.slots.begin(), hypothesis.slots.end(),
             [&](const Hypothesis::Slot& slot) { return slot.use == copy.to.use && slot.value + 1 == copy.to.value; });
-        copy.parameter = static_cast<std::size_t>(near - hypothesis.slots.begin());
-    }
-    for (FitParameter& parameter : hypothesis.parameters) {
-        parameter.upper = parameter.name == "near" ? std::min(parameter.upper, 1.0) : parameter.upper;
+        copy.parameter = static_cast<std::size_t>(first - hypothesis.slots.begin());
     }
     add_starts(hypothesis);
 }
@@ -211,8 +164,9 @@ void one_strength(Hypothesis& hypothesis) {
 Hypothesis of_declared(const std::string& parameter, double declared, double lower, double upper, double typical,
                        const std::vector<std::string>& depends_on) {
     Hypothesis hypothesis;
-    hypothesis.names = {"declared_parameter"};
-    dynamics::EffectUse use = dynamics::neutral_use("declared_parameter");
+    const std::string& name = declared_number().name;
+    hypothesis.names = {name};
+    dynamics::EffectUse use = dynamics::neutral_use(name);
     use.parameter = parameter;
     use.values[0] = declared;
     hypothesis.form = parameter;
@@ -292,51 +246,34 @@ std::string Hypothesis::label() const {
 
 std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying,
                                           const std::vector<std::string>& quantities) {
+    const Look look{model, varying, quantities, false};
     std::vector<Hypothesis> list;
     for (const dynamics::Effect* effect : dynamics::effects()) {
         const dynamics::EffectInfo& info = effect->info();
-        if (info.seen_in == dynamics::SeenIn::time_series || info.takes_table || info.takes_parameter) {
-            continue;
-        }
-        const std::vector<std::string> needed = channels_needed(info.name);
-        if (!std::all_of(needed.begin(), needed.end(),
-                         [&](const std::string& name) { return varies(varying, name); }) ||
-            !model_feels(model, info.name, quantities)) {
-            continue;
-        }
-        if ((info.name == "cable_buoyancy" || info.name == "strut_buoyancy") && !varies(varying, "gap") &&
-            !varies(varying, "depth")) {
+        if (info.seen_in == dynamics::SeenIn::time_series || info.takes_table || info.takes_parameter ||
+            !can_be_seen(*effect, look)) {
             continue;
         }
         const std::size_t first = list.size();
-        const bool lift_only =
-            info.name == "surface_roughness" || info.name == "cable_buoyancy" || info.name == "strut_buoyancy";
-        list.push_back(make(info, {""}, quantities.size() > 1 && !lift_only ? "same for all measured quantities" : ""));
+        const bool lift_only = info.search.lift_unless_named;
+        list.push_back(
+            make(*effect, {""}, quantities.size() > 1 && !lift_only ? "same for all measured quantities" : "", look));
         if (info.takes_quantity && quantities.size() > 1) {
             for (const std::string& quantity : quantities) {
                 if (!lift_only || quantity != "lift_force") {
-                    list.push_back(make(info, {quantity}, quantity + " only"));
+                    list.push_back(make(*effect, {quantity}, quantity + " only", look));
                 }
             }
-            list.push_back(make(info, quantities, "each measured quantity with its own number"));
+            list.push_back(make(*effect, quantities, "each measured quantity with its own number", look));
         }
-        if (info.name == "surface_roughness") {
-            list.push_back(make(info, {""}, "as much deeper near as weaker far"));
+        if (!info.search.one_strength_form.empty()) {
+            list.push_back(make(*effect, {""}, info.search.one_strength_form, look));
+            one_strength(list.back());
         }
-        // a cable or a strut pulls the way it hangs: both its names share one law, the rig says which is likelier
-        const bool towed = varies(varying, "speed");
         for (std::size_t k = first; k < list.size(); ++k) {
-            if (info.name == "surface_roughness" && k + 1 == list.size()) {
-                one_strength(list[k]);
-            } else if (info.name == "cable_buoyancy") {
-                list[k].prior = towed ? 0.15 : 0.85;
-            } else if (info.name == "strut_buoyancy") {
-                list[k].prior = towed ? 0.85 : 0.15;
-            } else if (info.name == "speed_exponent") {
-                start_at_declared_exponent(list[k], model, quantities);
-            }
             speak_of(list[k], quantities);
         }
+        std::erase_if(list, [](const Hypothesis& one) { return one.uses.empty(); });
     }
     for (Hypothesis& hypothesis : declared_numbers(model, varying, quantities)) {
         list.push_back(std::move(hypothesis));
@@ -344,55 +281,44 @@ std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const st
     return list;
 }
 
+namespace {
+
+/// Starts of a time series: the effect's own, or a little off neutral.
+void start_heave(Hypothesis& hypothesis, const dynamics::EffectSearch& search) {
+    hypothesis.starts = search.starts;
+    if (search.starts.empty() && !search.scanned) {
+        hypothesis.starts.emplace_back();
+        for (const FitParameter& p : hypothesis.parameters) {
+            hypothesis.starts.front().push_back(std::min(p.start + 0.3 * p.typical, p.upper));
+        }
+    }
+}
+
+}  // namespace
+
 std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying) {
+    const std::vector<std::string> lift{"lift_force"};
+    const Look look{model, varying, lift, true};
     std::vector<Hypothesis> list;
     for (const dynamics::Effect* effect : dynamics::effects()) {
         const dynamics::EffectInfo& info = effect->info();
         if (info.seen_in == dynamics::SeenIn::static_set || info.takes_table || info.takes_parameter) {
             continue;
         }
-        Hypothesis hypothesis = make(info, {""}, "");
-        hypothesis.starts.clear();
-        if (info.name == "periodic_disturbance") {
-            hypothesis.prior = 0.01;  // some hundred frequencies were looked at
-        }
-        const auto start = [&](const std::vector<std::vector<double>>& values) { hypothesis.starts = values; };
-        if (info.name == "gap_sensor_delay" || info.name == "input_delay" || info.name == "actuator_lag") {
-            // a reading later than that is no reading; the filter's expansion in the delay ends there as well
-            hypothesis.parameters.front().upper =
-                std::min(hypothesis.parameters.front().upper, info.name == "gap_sensor_delay" ? 0.5 : 5.0);
-        }
-        if (info.name == "linear_damping" && model.drag_heave.kind == dynamics::DragLaw::Kind::linear_quadratic) {
-            hypothesis.parameters.front().lower = -model.drag_heave.linear;  // water takes energy, it does not give any
-        }
-        if (info.name == "quadratic_damping" && model.drag_heave.kind == dynamics::DragLaw::Kind::linear_quadratic) {
-            hypothesis.parameters.front().lower = -model.drag_heave.quadratic;
-        }
-        if (info.name == "added_mass") {
-            hypothesis.parameters.front().lower = -0.9 * model.heave_mass();
-        }
-        if (info.name == "gap_dependent_added_mass") {
-            start({{0.5, 0.02}, {0.5, 0.06}, {0.5, 0.2}});
-            // the law with which inertia grows is not one law; with the far value free the catalogue's form bends to
-            // others
+        Hypothesis hypothesis = make(*effect, {""}, "", look);
+        start_heave(hypothesis, info.search);
+        if (!info.search.beside.empty()) {
+            // the law is not one law; with the other's numbers free its form bends to others
             Hypothesis bent = hypothesis;
-            bent.form = "far inertia free as well";
-            add_use(bent, dynamics::effect("added_mass").info(), "");
+            bent.form = info.search.beside_form;
+            const std::size_t own = bent.parameters.size();
+            add_use(bent, dynamics::effect(info.search.beside), "", look);
             for (std::vector<double>& begin : bent.starts) {
-                begin.push_back(0);
+                for (std::size_t j = own; j < bent.parameters.size(); ++j) {
+                    begin.push_back(bent.parameters[j].start);
+                }
             }
             list.push_back(std::move(bent));
-        } else if (info.name == "surface_roughness") {
-            start({{0.1, 0.1, 0.03}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.3}});
-            hypothesis.parameters[0].lower = hypothesis.parameters[1].lower =
-                0;  // deeper near, weaker far: not the other way round
-        } else if (info.name == "tether_stiffness") {
-            start({{0.03, 0.1}, {0.5, 0.03}, {0.5, 0.15}, {4, 0.02}, {4, 0.1}});
-        } else if (info.name != "periodic_disturbance") {  // its starts come from a scan over frequency
-            start({{}});
-            for (const FitParameter& p : hypothesis.parameters) {
-                hypothesis.starts.front().push_back(std::min(p.start + 0.3 * p.typical, p.upper));
-            }
         }
         list.push_back(std::move(hypothesis));
     }
@@ -439,7 +365,9 @@ void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& na
 
 Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b,
                   std::span<const double> start_b) {
-    const auto scales = [](const Hypothesis& h) { return h.names.front() == "sensor_gain"; };
+    const auto scales = [](const Hypothesis& h) {
+        return dynamics::effect(h.names.front()).info().search.scales_reading;
+    };
     if (scales(b) && !scales(a)) {
         // a gain acts on the force, then comes what is added to the reading: with both linear a fit cannot get caught
         // on its way to a small gain
@@ -469,6 +397,41 @@ Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hy
     both.prior = a.prior * b.prior;
     both.starts.clear();
     return both;
+}
+
+Touch touch_of(const Hypothesis& hypothesis, const dynamics::Model& model) {
+    dynamics::HeaveTerms terms;
+    std::vector<double> numbers;
+    for (const FitParameter& p : hypothesis.parameters) {
+        numbers.push_back(p.start + 0.1 * p.typical);
+    }
+    for (const dynamics::EffectUse& use : hypothesis.with(numbers)) {
+        dynamics::effect(use.name).add_to(terms, use, model);
+    }
+    Touch touch;
+    touch.input = !terms.actuator.ideal() || terms.thrust_loss != 0;
+    touch.gain = terms.actuator.gain != 1;
+    touch.reading_late = terms.sensor_delay != 0;
+    touch.delay = touch.reading_late || terms.actuator.delay != 0;
+    touch.time = touch.delay || terms.actuator.lag > 0;
+    return touch;
+}
+
+bool one_kin(const std::vector<std::string>& names) {
+    const auto kin_of = [](const std::string& name) -> const std::vector<std::string>& {
+        return dynamics::effect(name).info().search.kin;
+    };
+    const std::vector<std::string>& first = kin_of(names.front());
+    return std::any_of(first.begin(), first.end(), [&](const std::string& kin) {
+        return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+            const std::vector<std::string>& own = kin_of(name);
+            return std::find(own.begin(), own.end(), kin) != own.end();
+        });
+    });
+}
+
+bool is_scanned(const Hypothesis& hypothesis) {
+    return dynamics::effect(hypothesis.names.front()).info().search.scanned;
 }
 
 double occam_factor(const Hypothesis& hypothesis, std::size_t data) {

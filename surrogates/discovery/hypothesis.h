@@ -77,6 +77,22 @@ void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& na
 Hypothesis joined(const Hypothesis& a, std::span<const double> start_a, const Hypothesis& b,
                   std::span<const double> start_b);
 
+/// What a hypothesis does to input and reading when it is small; from its law, whatever its name.
+struct Touch {
+    bool input = false;         ///< the force that reaches the body is not the recorded one
+    bool gain = false;          ///< ... but so many times
+    bool reading_late = false;  ///< the gap's reading comes late
+    bool delay = false;         ///< input or reading come late, unchanged
+    bool time = false;          ///< a delay or a lag of either
+};
+Touch touch_of(const Hypothesis& hypothesis, const dynamics::Model& model);
+
+/// Effects that can stand in for parts of each other (EffectSearch::kin).
+bool one_kin(const std::vector<std::string>& names);
+
+/// Amplitude, frequency and phase: begins where a scan over frequency says.
+bool is_scanned(const Hypothesis& hypothesis);
+
 /// What free numbers cost, as -2 log (Schwarz 1978): their number times log of the number of data. Laws that say the
 /// same then cost the same whatever their units.
 double occam_factor(const Hypothesis& hypothesis, std::size_t data);

@@ -86,7 +86,7 @@ namespace {
 /// A declared value that is off is called by its own name: "another value of the declared vehicle.mass: 2.31 +- 0.02
 /// kg".
 std::string named(const FoundEffect& effect) {
-    if (effect.name == "declared_parameter" && effect.uses.size() == 1 && effect.parameters.size() == 1) {
+    if (effect.uses.size() == 1 && !effect.uses.front().parameter.empty() && effect.parameters.size() == 1) {
         const FoundParameter& value = effect.parameters.front();
         return "another value of the declared " + effect.uses.front().parameter + ": " + value_text(value);
     }

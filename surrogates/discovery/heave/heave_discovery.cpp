@@ -201,20 +201,19 @@ void HeaveLoop::list_candidates() {
         // a motion without input that is seen later is a motion without input: only a velocity beside the gap could
         // tell
         std::erase_if(candidates_, [&](const Hypothesis& h) {
-            return h.names.front().rfind("input_", 0) == 0 || h.names.front() == "actuator_lag" ||
-                   (h.names.front() == "gap_sensor_delay" && !records_.velocity_measured);
+            const Touch touch = touch_of(h, model_);
+            return touch.input || (touch.reading_late && !records_.velocity_measured);
         });
     }
     keep_shapes_inside();
     for (Hypothesis& candidate : candidates_) {
-        if (candidate.names.front() == "periodic_disturbance") {
+        if (is_scanned(candidate)) {
             candidate.starts = experiment_->periodic_starts({}, null_noise_, 3);
             std::erase_if(candidate.starts,
                           [&](const std::vector<double>& start) { return start[1] < candidate.parameters[1].lower; });
         }
     }
-    std::erase_if(candidates_,
-                  [](const Hypothesis& h) { return h.names.front() == "periodic_disturbance" && h.starts.empty(); });
+    std::erase_if(candidates_, [](const Hypothesis& h) { return is_scanned(h) && h.starts.empty(); });
     keep_only(candidates_, options_.candidates);
 }
 
@@ -229,11 +228,13 @@ void HeaveLoop::keep_shapes_inside() {
     }
     const double slowest = 2 * experiment_->lowest_frequency();  // four cycles of the longest run
     std::erase_if(candidates_, [&](Hypothesis& candidate) {
-        for (FitParameter& parameter : candidate.parameters) {
-            if (candidate.names.front() == "periodic_disturbance" && parameter.name == "frequency") {
+        for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+            FitParameter& parameter = candidate.parameters[j];
+            const dynamics::EffectUse& use = candidate.uses[candidate.slots[j].use];
+            if (is_scanned(candidate) && j == 1) {  // its frequency
                 parameter.lower = std::max(parameter.lower, slowest);
                 parameter.start = std::max(parameter.start, slowest);
-            } else if (candidate.names.front() == "gap_dependent_added_mass" && parameter.name == "length") {
+            } else if (dynamics::effect(use.name).info().parameters[candidate.slots[j].value].within_gaps) {
                 parameter.lower = std::max(parameter.lower, 0.1 * lowest);
                 parameter.start = std::max(parameter.start, parameter.lower);
             }
@@ -316,9 +317,8 @@ void HeaveLoop::colour_noise() {
 /// record is read so, and everything is judged again.
 void HeaveLoop::absorb_small_shift() {
     const FittedHypothesis& best = fitted_[best_single_];
-    const std::string& name = best.hypothesis.names.front();
     const double shift = best.fit.parameters.front();
-    const bool in_time = name == "input_delay" || name == "gap_sensor_delay" || name == "actuator_lag";
+    const bool in_time = touch_of(best.hypothesis, model_).time;
     if (!records_.input_recorded || !in_time || std::abs(shift) >= records_.raw_step || best.explained < 10) {
         return;
     }
@@ -401,7 +401,7 @@ void HeaveLoop::check_input() {
         attempt(middle - step, 1);
         attempt(middle + step, 1);
     }
-    if (early == 0 && fitted_[best_single_].hypothesis.names.front() == "input_gain") {
+    if (early == 0 && touch_of(fitted_[best_single_].hypothesis, model_).gain) {
         best += 60;  // the same said with a name; the slip is the likelier story
     }
     for (const double times : {1e-3, 1e3, -1.0}) {

@@ -87,7 +87,7 @@ HeaveExplanation HeaveExperiment::explanation(std::size_t record, const std::vec
     HeaveExplanation result;
     result.terms = bare_[record];
     for (const dynamics::EffectUse& use : uses) {
-        if (use.name == "declared_parameter") {
+        if (!use.parameter.empty()) {
             result.lift_gain *= lift_gain_of(use, record);
         } else {
             dynamics::effect(use.name).add_to(result.terms, use, model_);
@@ -300,21 +300,22 @@ HeaveExperiment::Result HeaveExperiment::fit(const Hypothesis& hypothesis, const
             result.fitted.fit.sigma[j] = std::sqrt(variances[j]) * hypothesis.parameters[j].typical;
         }
     }
-    if (std::find(hypothesis.names.begin(), hypothesis.names.end(), "coulomb_friction") != hypothesis.names.end()) {
-        widen_for_friction(result, columns, innovations);
+    for (const dynamics::EffectUse& use : hypothesis.uses) {
+        if (const auto other = dynamics::effect(use.name).info().search.other_form) {
+            widen_for_form(result, other, columns, innovations);
+        }
     }
     return result;
 }
 
-/// Nobody knows over which speed friction changes its sign: what the numbers would be for a width five times the
-/// catalogue's goes into their errors.
-void HeaveExperiment::widen_for_friction(Result& result, const DesignMatrix& columns,
-                                         const std::vector<double>& innovations) const {
+/// A law may have another form as well: what the numbers would be for it goes into their errors.
+void HeaveExperiment::widen_for_form(Result& result, void (*other_form)(dynamics::HeaveTerms&),
+                                     const DesignMatrix& columns, const std::vector<double>& innovations) const {
     const Hypothesis& hypothesis = result.fitted.hypothesis;
     std::vector<double> wider;
     for (const std::size_t r : chosen_) {
         HeaveExplanation other = explanation(r, hypothesis.with(result.fitted.fit.parameters));
-        other.terms.friction_width *= 5;
+        other_form(other.terms);
         filter_innovations(records_.records[r], other, result.noise, wider);
     }
     for (std::size_t i = 0; i < wider.size(); ++i) {
@@ -603,11 +604,16 @@ HeaveExperiment::Line HeaveExperiment::line_at(double frequency, const std::vect
     // the innovations answer a small force as a linear system: one run each for sine and cosine
     constexpr double small = 1e-4;  // N
     std::vector<double> answer[2], moved;
+    const auto& all = dynamics::effects();
+    const auto scanned = std::find_if(all.begin(), all.end(), [](const auto* e) { return e->info().search.scanned; });
+    if (scanned == all.end()) {
+        return {};
+    }
+    const dynamics::EffectUse wave = dynamics::neutral_use((*scanned)->info().name);
     for (int part = 0; part < 2; ++part) {
         std::vector<dynamics::EffectUse> with = uses;
-        with.push_back(dynamics::make_use(
-            "periodic_disturbance",
-            {{"amplitude", small, 0}, {"frequency", frequency, 0}, {"phase", part == 0 ? 0.0 : 0.25 * two_pi, 0}}));
+        with.push_back(wave);
+        with.back().values = {small, frequency, part == 0 ? 0.0 : 0.25 * two_pi};
         evaluate(with, nullptr, noise, moved);
         answer[part].resize(base.size());
         for (std::size_t i = 0; i < base.size(); ++i) {

@@ -129,7 +129,8 @@ private:
     [[nodiscard]] Line line_at(double frequency, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
                                const std::vector<double>& base) const;
     [[nodiscard]] std::vector<double> peaks_of(const std::vector<double>& innovations, std::size_t count) const;
-    void widen_for_friction(Result& result, const DesignMatrix& columns, const std::vector<double>& innovations) const;
+    void widen_for_form(Result& result, void (*other_form)(dynamics::HeaveTerms&), const DesignMatrix& columns,
+                        const std::vector<double>& innovations) const;
     /// What a corrected declared number makes of the lift of the tables in this record.
     [[nodiscard]] double lift_gain_of(const dynamics::EffectUse& use, std::size_t record) const;
     const dynamics::Model& model_;

@@ -104,16 +104,16 @@ std::vector<Trial> separated(const HeaveExperiment& experiment, const std::vecto
 
 double power_of(double d) { return d > 1e-9 ? 0.5 * std::erfc(-(0.5 * d - std::log(20.0) / d) / std::sqrt(2.0)) : 0; }
 
-bool delays_only(const FittedHypothesis& one) {
-    return one.hypothesis.names == std::vector<std::string>{"input_delay"} ||
-           one.hypothesis.names == std::vector<std::string>{"gap_sensor_delay"};
+bool delays_only(const FittedHypothesis& one, const dynamics::Model& model) {
+    return one.hypothesis.names.size() == 1 && touch_of(one.hypothesis, model).delay;
 }
 
 }  // namespace
 
 std::string heave_told_apart(const HeaveExperiment& experiment, const FittedHypothesis& chosen,
                              const FittedHypothesis& rival) {
-    if (delays_only(chosen) && delays_only(rival) && !experiment.records().velocity_measured) {
+    if (delays_only(chosen, experiment.model()) && delays_only(rival, experiment.model()) &&
+        !experiment.records().velocity_measured) {
         return "from recorded input to gap reading a delay before the body and one behind it are the same: measure "
                "heave_velocity as well "
                "(or move the body by hand at zero input), then a late gap sensor shows against the velocity";
@@ -142,7 +142,7 @@ void next_heave_experiment(const HeaveExperiment& experiment, const std::vector<
         const FittedHypothesis& rival = fitted[attribution.shares[1].hypothesis];
         b = rival.hypothesis.with(rival.fit.parameters);
         purpose = "to tell " + best.hypothesis.label() + " from " + rival.hypothesis.label();
-        if (delays_only(best) && delays_only(rival)) {
+        if (delays_only(best, experiment.model()) && delays_only(rival, experiment.model())) {
             result.next_experiment = purpose + ": " + heave_told_apart(experiment, best, rival);
             return;
         }

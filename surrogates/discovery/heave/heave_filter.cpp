@@ -272,7 +272,7 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
     double w = 0;
     double span = 0;
     first_guess(record, h, w, span);
-    h -= terms.sensor_bias;
+    h -= terms.sensor_offset(record.time.front());
     equation.start_history(w);
     double n = 0;
     const double slow = noise.slow * noise.slow;
@@ -328,7 +328,7 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
             }
         }
         if (std::isfinite(record.gap[k])) {
-            double reading = h + terms.sensor_bias + n;
+            double reading = h + terms.sensor_offset(record.time[k]) + n;
             double ch = 1;
             double cw = 0;
             if (delay > 0) {
@@ -415,12 +415,12 @@ ForceFilter filter_force(const HeaveRecord& record, const HeaveExplanation& expl
     Equation equation(record, explanation);
     std::vector<double> input;
     transform_input(record, explanation, input);
-    const double bias = explanation.terms.sensor_bias;
+    const dynamics::HeaveTerms& terms = explanation.terms;
     ForceFilter all;
     ForceBelief belief;
     double span = 0;
     first_guess(record, belief.x[0], belief.x[1], span);
-    belief.x[0] -= bias;
+    belief.x[0] -= terms.sensor_offset(record.time.front());
     equation.start_history(belief.x[1]);
     belief.p.diagonal() << std::max(1e-4, span * span), std::max(1e-4, span * span), 1e-2;
     for (std::size_t k = 0; k < record.time.size(); ++k) {
@@ -429,7 +429,8 @@ ForceFilter filter_force(const HeaveRecord& record, const HeaveExplanation& expl
         all.predicted.push_back(belief);
         if (std::isfinite(record.gap[k])) {
             const double sigma = noise.gap * record.gap_share[k];
-            belief.measure(record.gap[k] - belief.x[0] - bias, {1, 0, 0}, sigma * sigma + noise.slow * noise.slow);
+            belief.measure(record.gap[k] - belief.x[0] - terms.sensor_offset(record.time[k]), {1, 0, 0},
+                           sigma * sigma + noise.slow * noise.slow);
         }
         if (!record.velocity.empty() && std::isfinite(record.velocity[k])) {
             const double sigma = noise.velocity * record.velocity_share[k];
@@ -498,7 +499,7 @@ void free_run(const HeaveRecord& record, const HeaveExplanation& explanation, co
     double h = gap;
     double w = velocity;
     const auto reading = [&](std::size_t k) {
-        double value = h + explanation.terms.sensor_bias;
+        double value = h + explanation.terms.sensor_offset(record.time[k]);
         if (explanation.terms.sensor_delay > 0) {
             const double delay = explanation.terms.sensor_delay;
             value += -delay * w + 0.5 * delay * delay * equation.acceleration(record.time[k], h, w, input[k], 0);

@@ -62,7 +62,7 @@ Twin simulate(const HeaveRecord& record, const HeaveExplanation& model, const Sm
             twin.stayed = false;
             return twin;
         }
-        const double reading = h + model.terms.sensor_bias - model.terms.sensor_delay * w + slow +
+        const double reading = h + model.terms.sensor_offset(record.time[k]) - model.terms.sensor_delay * w + slow +
                                noise.gap * record.gap_share[k] * random.normal();
         twin.record.gap[k] = std::isfinite(record.gap[k]) ? reading : std::nan("");
         apart[k] = std::isfinite(record.gap[k]) ? reading - record.gap[k] : 0;

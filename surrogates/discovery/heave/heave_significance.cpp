@@ -65,7 +65,7 @@ std::vector<HeaveExperiment::SmoothSet> other_sets(const HeaveExperiment::Smooth
 std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
     const std::vector<double> start = h.start();
     std::vector<std::vector<double>> steps;
-    if (h.names.front() == "periodic_disturbance") {
+    if (is_scanned(h)) {
         const double frequency = h.starts.empty() ? start[1] : h.starts.front()[1];
         return {{1e-4, frequency, 0.0}, {1e-4, frequency, 1.5707963}};
     }
@@ -180,7 +180,7 @@ void HeaveLoop::open_gate() {
     double observed = 0;
     for (std::size_t i = 0; i < singles_; ++i) {
         double own = surprise(fitted_[i].explained, static_cast<double>(fitted_[i].hypothesis.parameters.size()));
-        if (fitted_[i].hypothesis.names.front() == "periodic_disturbance") {
+        if (is_scanned(fitted_[i].hypothesis)) {
             own -= std::log10(frequencies_tried);
         }
         observed = std::max(observed, own);

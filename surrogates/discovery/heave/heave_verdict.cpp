@@ -16,23 +16,6 @@ namespace {
 
 constexpr std::size_t seconds_tried = 5;
 
-/// Effects whose laws can stand in for parts of each other.
-const std::vector<std::set<std::string>>& kinds() {
-    static const std::vector<std::set<std::string>> list{
-        {"linear_damping", "quadratic_damping", "squeeze_film_damping", "coulomb_friction", "history_force",
-         "ambient_heave_current"},
-        {"added_mass", "gap_dependent_added_mass", "history_force"},
-        {"constant_force", "tether_stiffness", "surface_roughness", "gap_sensor_bias", "declared_parameter"},
-        {"input_gain", "input_dead_zone", "input_delay", "actuator_lag", "gap_sensor_delay"}};
-    return list;
-}
-
-bool one_kind(const std::vector<std::string>& names) {
-    return std::any_of(kinds().begin(), kinds().end(), [&](const std::set<std::string>& kind) {
-        return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return kind.count(name) > 0; });
-    });
-}
-
 }  // namespace
 
 /// Both of each pair at once; appended.
@@ -47,7 +30,7 @@ void HeaveLoop::fit_both(const std::vector<std::pair<std::size_t, std::size_t>>&
             const auto [a, b] = pairs[k];
             const Hypothesis& second = fitted_[b].hypothesis;
             std::vector<double> start = second.starts.empty() ? fitted_[b].fit.parameters : second.starts.front();
-            if (second.names.front() == "periodic_disturbance") {
+            if (is_scanned(second)) {
                 const auto starts =
                     experiment_->periodic_starts(fitted_[a].hypothesis.with(fitted_[a].fit.parameters), noises_[a], 1);
                 start = starts.empty() ? start : starts.front();
@@ -97,10 +80,10 @@ void HeaveLoop::fit_pairs() {
         const std::size_t before = pairs.size();
         for (std::size_t c = 0; c < singles_; ++c) {
             const std::string& name = fitted_[c].hypothesis.names.front();
-            if (one_kind({name, fitted_[b].hypothesis.names.front()})) {
+            if (one_kin({name, fitted_[b].hypothesis.names.front()})) {
                 add(a, c);
             }
-            if (one_kind({name, fitted_[a].hypothesis.names.front()})) {
+            if (one_kin({name, fitted_[a].hypothesis.names.front()})) {
                 add(b, c);
             }
         }
@@ -121,7 +104,7 @@ void HeaveLoop::fit_pairs() {
     const double gain = fitted_[best_single_].score() - found[best].score();
     // two effects of one kind may be one effect whose law has another form than the catalogue's: that needs more to be
     // believed
-    const double share = calibration_.pair_share * (one_kind(found[best].hypothesis.names) ? 3 : 1);
+    const double share = calibration_.pair_share * (one_kin(found[best].hypothesis.names) ? 3 : 1);
     if (gain < calibration_.pair_gain || gain < share * found[best].explained) {
         return;
     }
@@ -185,12 +168,10 @@ bool HeaveLoop::plausible_pair(const FittedHypothesis& pair) const {
     if (!differs_from_neutral(pair, calibration_.neutral_sigmas)) {
         return false;
     }
-    static const std::set<std::string> signed_alike{
-        "linear_damping", "quadratic_damping", "squeeze_film_damping",    "coulomb_friction",
-        "history_force",  "added_mass",        "gap_dependent_added_mass"};
     const auto& names = pair.hypothesis.names;
-    if (!one_kind(names) ||
-        !std::all_of(names.begin(), names.end(), [&](const auto& name) { return signed_alike.count(name) > 0; })) {
+    if (!one_kin(names) || !std::all_of(names.begin(), names.end(), [](const auto& name) {
+            return dynamics::effect(name).info().search.one_sign;
+        })) {
         return true;
     }
     int up = 0;

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/discovery/wording.h"
 
 namespace underbody::discovery {
 
@@ -216,19 +217,15 @@ private:
         const std::vector<Channel>& varying = experiment_.varying();
         if (experiment_.set_points() == 1) {
             warn(
-                "all readings are at one set point: only that something is missing can be seen, not what; force_bias, "
-                "sensor_gain, gap_offset and "
-                "the like all fit it equally. Measure at other gaps and speeds");
+                "all readings are at one set point: only that something is missing can be seen, not what; a bias, a "
+                "gain, "
+                "an offset of the gap and the like all fit it equally. Measure at other gaps and speeds");
         }
         std::string held;
-        for (const auto& held_one : std::initializer_list<std::pair<Channel, const char*>>{
-                 {Channel::gap, "gap_offset, surface_roughness, buoyancy of cables"},
-                 {Channel::speed, "speed_exponent, current"},
-                 {Channel::jet_voltage, "pump_curve"}}) {
-            const Channel channel = held_one.first;
+        for (const Channel channel : {Channel::gap, Channel::speed, Channel::jet_voltage}) {
             if (model_feels(channel) && std::find(varying.begin(), varying.end(), channel) == varying.end()) {
                 held += (held.empty() ? "" : "; ") + std::string(dynamics::channel_name(channel)) + " (" +
-                        held_one.second + ")";
+                        list_of(shown_by(channel)) + ")";
             }
         }
         if (!held.empty() && experiment_.set_points() > 1) {
@@ -247,6 +244,20 @@ private:
     }
 
     /// Whether the declared forces change when a channel moves by a tenth.
+    /// Effects that a static set shows only where the channel varies.
+    [[nodiscard]] static std::vector<std::string> shown_by(Channel channel) {
+        std::vector<std::string> names;
+        for (const dynamics::Effect* effect : dynamics::effects()) {
+            const dynamics::EffectInfo& info = effect->info();
+            for (const auto* needs : {&info.search.needs, &info.search.needs_one_of}) {
+                if (std::find(needs->begin(), needs->end(), dynamics::channel_name(channel)) != needs->end()) {
+                    names.push_back(info.name);
+                }
+            }
+        }
+        return names;
+    }
+
     [[nodiscard]] bool model_feels(Channel channel) const {
         Observation one = experiment_.observations().front();
         if (!one.at.has(channel)) {

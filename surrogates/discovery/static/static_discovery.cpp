@@ -108,8 +108,9 @@ void StaticLoop::keep_lengths_inside(std::vector<Hypothesis>& candidates) const 
     for (Hypothesis& candidate : candidates) {
         for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
             FitParameter& parameter = candidate.parameters[j];
-            if (candidate.names.front() == "surface_roughness" && parameter.name == "length" && low > 0 &&
-                high > 1.5 * low) {
+            const Hypothesis::Slot& slot = candidate.slots[j];
+            const dynamics::EffectInfo& info = dynamics::effect(candidate.uses[slot.use].name).info();
+            if (info.parameters[slot.value].within_gaps && low > 0 && high > 1.5 * low) {
                 parameter.lower = std::max(parameter.lower, 1.2 * low);
                 parameter.upper = std::min(parameter.upper, 0.85 * high);
                 parameter.start = std::clamp(parameter.start, parameter.lower, parameter.upper);

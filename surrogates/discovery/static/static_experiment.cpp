@@ -159,7 +159,7 @@ void StaticExperiment::find_set_points() {
 
 namespace {
 
-bool replaces_a_number(const dynamics::EffectUse& use) { return use.name == "declared_parameter"; }
+bool replaces_a_number(const dynamics::EffectUse& use) { return !use.parameter.empty(); }
 
 /// The model with those of the uses carried out that replace a declared number.
 dynamics::Model with_numbers(dynamics::Model model, const std::vector<dynamics::EffectUse>& uses) {

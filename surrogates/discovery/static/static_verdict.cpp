@@ -63,9 +63,8 @@ void StaticLoop::fit_pairs() {
     std::set<std::vector<std::string>> seen;
     for (const std::size_t i : order) {
         std::vector<std::string> law = fitted_[i].hypothesis.names;
-        if (law.front() == "cable_buoyancy") {
-            law.front() = "strut_buoyancy";  // one law under two names takes one place
-        }
+        const std::string& same = dynamics::effect(law.front()).info().search.same_law_as;
+        law.front() = same.empty() ? law.front() : std::max(law.front(), same);  // under two names it takes one place
         if (leaders.size() < 5 && seen.insert(law).second) {
             leaders.push_back(i);
         }

@@ -9,13 +9,15 @@ namespace {
 class AmbientHeaveCurrentEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"ambient_heave_current",
-                                    "water that moves in heave",
-                                    "drag acts on w - velocity",
-                                    SeenIn::time_series,
-                                    {"heave_velocity"},
-                                    {{"velocity", "m/s", -5, 5, 0.01, 0, false, "of the water, up"}},
-                                    "definition"};
+        static const EffectInfo the =
+            searched(EffectInfo{"ambient_heave_current",
+                                "water that moves in heave",
+                                "drag acts on w - velocity",
+                                SeenIn::time_series,
+                                {"heave_velocity"},
+                                {{"velocity", "m/s", -5, 5, 0.01, 0, false, "of the water, up"}},
+                                "definition"},
+                     {.kin = {"damping"}});
         return the;
     }
 

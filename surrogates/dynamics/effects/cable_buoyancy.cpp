@@ -4,7 +4,7 @@
 namespace underbody::dynamics {
 
 const Effect& cable_buoyancy_effect() {
-    static const ImmersedPart kind("cable_buoyancy", "buoyancy of a cable", "gap");
+    static const ImmersedPart kind("cable_buoyancy", "buoyancy of a cable", "gap", "strut_buoyancy", 0.15);
     return kind;
 }
 

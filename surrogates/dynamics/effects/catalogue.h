@@ -17,9 +17,11 @@
     X(input_gain)               \
     X(input_dead_zone)          \
     X(input_delay)              \
+    X(thrust_by_gap)            \
     X(actuator_lag)             \
     X(gap_sensor_bias)          \
     X(gap_sensor_delay)         \
+    X(gap_sensor_drift)         \
     X(surface_roughness)        \
     X(history_force)            \
     X(gap_offset)               \

@@ -9,13 +9,14 @@ namespace {
 class ConstantForceEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"constant_force",
-                                    "constant force (trim)",
-                                    "F = +force",
-                                    SeenIn::time_series,
-                                    {},
-                                    {{"force", "N", -100, 100, 0.01, 0, false, "up"}},
-                                    "definition"};
+        static const EffectInfo the = searched(EffectInfo{"constant_force",
+                                                          "constant force (trim)",
+                                                          "F = +force",
+                                                          SeenIn::time_series,
+                                                          {},
+                                                          {{"force", "N", -100, 100, 0.01, 0, false, "up"}},
+                                                          "definition"},
+                                               {.kin = {"place"}});
         return the;
     }
 

@@ -9,13 +9,15 @@ namespace {
 class CoulombFrictionEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"coulomb_friction",
-                                    "Coulomb friction",
-                                    "F = -force w/sqrt(w^2 + (0.1 mm/s)^2)",
-                                    SeenIn::time_series,
-                                    {"heave_velocity"},
-                                    {{"force", "N", 0, 100, 0.01, 0, false, "against the motion"}},
-                                    "Coulomb; the step smoothed over 0.1 mm/s"};
+        static const EffectInfo the = searched(
+            EffectInfo{"coulomb_friction",
+                       "Coulomb friction",
+                       "F = -force w/sqrt(w^2 + (0.1 mm/s)^2)",
+                       SeenIn::time_series,
+                       {"heave_velocity"},
+                       {{"force", "N", 0, 100, 0.01, 0, false, "against the motion"}},
+                       "Coulomb; the step smoothed over 0.1 mm/s"},
+            {.kin = {"damping"}, .one_sign = true, .other_form = [](HeaveTerms& terms) { terms.friction_width *= 5; }});
         return the;
     }
 

@@ -8,17 +8,19 @@ namespace {
 class DeclaredParameterEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"declared_parameter",
-                                    "a declared value is off",
-                                    "the declared value of `parameter` is replaced by `value`",
-                                    SeenIn::both,
-                                    {},
-                                    {{"value", "parameter", -1000000000000.0, 1000000000000.0, 1, 0, false,
-                                      "the corrected value, in the unit of the parameter"}},
-                                    "definition",
-                                    false,
-                                    false,
-                                    true};
+        static const EffectInfo the =
+            searched(EffectInfo{"declared_parameter",
+                                "a declared value is off",
+                                "the declared value of `parameter` is replaced by `value`",
+                                SeenIn::both,
+                                {},
+                                {{"value", "parameter", -1000000000000.0, 1000000000000.0, 1, 0, false,
+                                  "the corrected value, in the unit of the parameter"}},
+                                "definition",
+                                false,
+                                false,
+                                true},
+                     {.kin = {"place"}});
         return the;
     }
 };

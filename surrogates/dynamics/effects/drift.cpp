@@ -8,14 +8,16 @@ namespace {
 class DriftEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the = of_the_rig({"drift",
-                                                  "drift of the load cell",
-                                                  "reading = force + rate time",
-                                                  SeenIn::static_set,
-                                                  {"time"},
-                                                  {{"rate", "N/s", -10, 10, 1e-06, 0, false, "growth of the reading"}},
-                                                  "definition",
-                                                  true});
+        static const EffectInfo the =
+            searched(of_the_rig({"drift",
+                                 "drift of the load cell",
+                                 "reading = force + rate time",
+                                 SeenIn::static_set,
+                                 {"time"},
+                                 {{"rate", "N/s", -10, 10, 1e-06, 0, false, "growth of the reading"}},
+                                 "definition",
+                                 true}),
+                     {.needs = {"time"}});
         return the;
     }
 

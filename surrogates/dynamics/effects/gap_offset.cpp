@@ -1,5 +1,6 @@
 // h = set gap + offset
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/search.h"
 
 namespace underbody::dynamics {
 
@@ -8,15 +9,21 @@ namespace {
 class GapOffsetEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the =
+        static const EffectInfo the = searched(
             of_the_rig({"gap_offset",
                         "offset of the set gaps",
                         "h = set gap + offset",
                         SeenIn::static_set,
                         {"gap"},
                         {{"offset", "m", -0.1, 0.1, 0.0005, 0, false, "the true gap is larger than the set one"}},
-                        "definition"});
+                        "definition"}),
+            {.needs = {"gap"}});
         return the;
+    }
+
+    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
+                            double& /*prior*/) const override {
+        return source_feels(context, Channel::gap, false);
     }
 
     void before(StaticPoint& point, const EffectUse& use) const override {

@@ -9,13 +9,15 @@ namespace {
 class GapSensorBiasEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"gap_sensor_bias",
-                                    "bias of the gap sensor",
-                                    "reading = h + bias",
-                                    SeenIn::time_series,
-                                    {"gap"},
-                                    {{"bias", "m", -1, 1, 0.002, 0, false, "reading too large when positive"}},
-                                    "definition"};
+        static const EffectInfo the =
+            searched(EffectInfo{"gap_sensor_bias",
+                                "bias of the gap sensor",
+                                "reading = h + bias",
+                                SeenIn::time_series,
+                                {"gap"},
+                                {{"bias", "m", -1, 1, 0.002, 0, false, "reading too large when positive"}},
+                                "definition"},
+                     {.kin = {"place"}});
         return the;
     }
 

@@ -9,15 +9,16 @@ class GuideFrictionEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
         static const EffectInfo the =
-            of_the_rig({"guide_friction",
-                        "friction of the guide",
-                        "reading = force + friction approach_direction",
-                        SeenIn::static_set,
-                        {"approach_direction"},
-                        {{"friction", "N", -100, 100, 0.01, 0, false,
-                          "sign follows the direction of approach (hysteresis of the slide)"}},
-                        "Coulomb",
-                        true});
+            searched(of_the_rig({"guide_friction",
+                                 "friction of the guide",
+                                 "reading = force + friction approach_direction",
+                                 SeenIn::static_set,
+                                 {"approach_direction"},
+                                 {{"friction", "N", -100, 100, 0.01, 0, false,
+                                   "sign follows the direction of approach (hysteresis of the slide)"}},
+                                 "Coulomb",
+                                 true}),
+                     {.needs = {"approach_direction"}});
         return the;
     }
 

@@ -12,14 +12,16 @@ namespace {
 class HistoryForceEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"history_force",
-                                    "history force (Basset)",
-                                    "F = -area sqrt(rho mu/pi) * integral of w'(s)/sqrt(t - s) ds",
-                                    SeenIn::time_series,
-                                    {"time", "heave_acceleration"},
-                                    {{"area", "m^2", 0, 10000.0, 1, 0, false,
-                                      "wetted area of a plate that would have it; 6 pi R^2 for a sphere of radius R"}},
-                                    "Basset 1888; Stokes layer over a plate"};
+        static const EffectInfo the =
+            searched(EffectInfo{"history_force",
+                                "history force (Basset)",
+                                "F = -area sqrt(rho mu/pi) * integral of w'(s)/sqrt(t - s) ds",
+                                SeenIn::time_series,
+                                {"time", "heave_acceleration"},
+                                {{"area", "m^2", 0, 10000.0, 1, 0, false,
+                                  "wetted area of a plate that would have it; 6 pi R^2 for a sphere of radius R"}},
+                                "Basset 1888; Stokes layer over a plate"},
+                     {.kin = {"damping", "inertia"}, .one_sign = true});
         return the;
     }
 

@@ -9,13 +9,15 @@ namespace {
 class InputDeadZoneEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"input_dead_zone",
-                                    "dead zone of the actuator",
-                                    "u = sgn(u_recorded) max(0, |u_recorded| - width)",
-                                    SeenIn::time_series,
-                                    {"input_force"},
-                                    {{"width", "N", 0, 100, 0.01, 0, false, "half width of the dead zone"}},
-                                    "definition"};
+        static const EffectInfo the =
+            searched(EffectInfo{"input_dead_zone",
+                                "dead zone of the actuator",
+                                "u = sgn(u_recorded) max(0, |u_recorded| - width)",
+                                SeenIn::time_series,
+                                {"input_force"},
+                                {{"width", "N", 0, 100, 0.01, 0, false, "half width of the dead zone"}},
+                                "definition"},
+                     {.kin = {"input"}});
         return the;
     }
 

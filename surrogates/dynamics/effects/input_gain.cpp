@@ -9,11 +9,15 @@ namespace {
 class InputGainEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{
-            "input_gain",          "gain of the actuator",
-            "u = gain u_recorded", SeenIn::time_series,
-            {"input_force"},       {{"gain", "1", -5, 10, 0.2, 1, false, "one is a healthy actuator"}},
-            "definition"};
+        static const EffectInfo the =
+            searched(EffectInfo{"input_gain",
+                                "gain of the actuator",
+                                "u = gain u_recorded",
+                                SeenIn::time_series,
+                                {"input_force"},
+                                {{"gain", "1", -5, 10, 0.2, 1, false, "one is a healthy actuator"}},
+                                "definition"},
+                     {.kin = {"input"}});
         return the;
     }
 

@@ -9,15 +9,17 @@ namespace {
 class PeriodicDisturbanceEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"periodic_disturbance",
-                                    "periodic disturbance",
-                                    "F = amplitude sin(2 pi frequency t + phase)",
-                                    SeenIn::time_series,
-                                    {"time"},
-                                    {{"amplitude", "N", 0, 100, 0.01, 0, false, "of the force"},
-                                     {"frequency", "1/s", 0.001, 100, 0.5, 0.5, false, "cycles per second"},
-                                     {"phase", "rad", -6.3, 6.3, 1, 0, false, "at time zero of the record"}},
-                                    "definition"};
+        static const EffectInfo the =
+            searched(EffectInfo{"periodic_disturbance",
+                                "periodic disturbance",
+                                "F = amplitude sin(2 pi frequency t + phase)",
+                                SeenIn::time_series,
+                                {"time"},
+                                {{"amplitude", "N", 0, 100, 0.01, 0, false, "of the force"},
+                                 {"frequency", "1/s", 0.001, 100, 0.5, 0.5, false, "cycles per second"},
+                                 {"phase", "rad", -6.3, 6.3, 1, 0, false, "at time zero of the record"}},
+                                "definition"},
+                     {.prior = 0.01, .scanned = true});
         return the;
     }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/search.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::dynamics {
@@ -22,6 +23,18 @@ public:
                         {{"angle", "rad", -0.6, 0.6, 0.01, 0, false, "nose up"}},
                         "rotation of the balance axes"});
         return the;
+    }
+
+    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
+                            double& /*prior*/) const override {
+        // without a pitch axis the balance leans: that needs lift and drag, both in the model
+        const std::vector<std::string> known = context.model.quantities();
+        const auto has = [](const std::vector<std::string>& list, const char* quantity) {
+            return std::find(list.begin(), list.end(), quantity) != list.end();
+        };
+        return source_feels(context, Channel::pitch, false) ||
+               (has(known, "lift_force") && has(known, "drag_force") &&
+                (has(context.quantities, "lift_force") || has(context.quantities, "drag_force")));
     }
 
     void before(StaticPoint& point, const EffectUse& use) const override {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/search.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::dynamics {
@@ -31,18 +32,25 @@ double seen_by_the_law(double voltage, double reference, const EffectUse& use) {
 class PumpCurveEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{
-            "pump_curve",
-            "pump curve other than the declared power law",
-            "V seen by the power law = reference x^(1 + exponent/2) sqrt((1 + saturation)/(1 + saturation x^2)), x = "
-            "max(0, V - dead_zone)/(reference - dead_zone)",
-            SeenIn::static_set,
-            {"jet_voltage"},
-            {{"dead_zone", "V", 0, 1000.0, 0.5, 0, false, "voltage below which no water flows"},
-             {"saturation", "1", 0, 100, 0.2, 0, false, "flow levels off at high voltage"},
-             {"exponent", "1", -1.5, 4, 0.3, 0, true, "added to the power of two"}},
-            "dead-band and saturating laws for a small pump; equal to the declared law at the reference voltage"};
+        static const EffectInfo the = searched(
+            EffectInfo{
+                "pump_curve",
+                "pump curve other than the declared power law",
+                "V seen by the power law = reference x^(1 + exponent/2) sqrt((1 + saturation)/(1 + saturation x^2)), "
+                "x = max(0, V - dead_zone)/(reference - dead_zone)",
+                SeenIn::static_set,
+                {"jet_voltage"},
+                {{"dead_zone", "V", 0, 1000.0, 0.5, 0, false, "voltage below which no water flows"},
+                 {"saturation", "1", 0, 100, 0.2, 0, false, "flow levels off at high voltage"},
+                 {"exponent", "1", -1.5, 4, 0.3, 0, true, "added to the power of two"}},
+                "dead-band and saturating laws for a small pump; equal to the declared law at the reference voltage"},
+            {.needs = {"jet_voltage"}});
         return the;
+    }
+
+    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
+                            double& /*prior*/) const override {
+        return source_feels(context, Channel::jet_voltage, true);
     }
 
     void before(StaticPoint& point, const EffectUse& use) const override {

@@ -11,12 +11,30 @@ double Effect::after(const std::string&, double value, const StaticPoint&, const
     return value;
 }
 
-const std::vector<const Effect*>& effects() {
+bool Effect::look(const SearchContext&, std::vector<EffectParameter>&, double&) const { return true; }
+
+namespace {
+
+std::vector<const Effect*>& registered() {
 #define UNDERBODY_LIST_EFFECT(name) &name##_effect(),
-    static const std::vector<const Effect*> all{UNDERBODY_EFFECTS(UNDERBODY_LIST_EFFECT)};
+    static std::vector<const Effect*> all{UNDERBODY_EFFECTS(UNDERBODY_LIST_EFFECT)};
 #undef UNDERBODY_LIST_EFFECT
     return all;
 }
+
+}  // namespace
+
+const std::vector<const Effect*>& effects() { return registered(); }
+
+RegisteredEffect::RegisteredEffect(const Effect& effect) : effect_(effect) {
+    if (find_effect(effect.info().name) != nullptr) {
+        throw core::InputError("name", "an effect is called '" + effect.info().name + "' already", {},
+                               "give it another name");
+    }
+    registered().push_back(&effect);
+}
+
+RegisteredEffect::~RegisteredEffect() { std::erase(registered(), &effect_); }
 
 const Effect* find_effect(std::string_view name) {
     for (const Effect* kind : effects()) {

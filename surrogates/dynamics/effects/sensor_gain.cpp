@@ -8,14 +8,16 @@ namespace {
 class SensorGainEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the = of_the_rig({"sensor_gain",
-                                                  "scale of the load cell",
-                                                  "reading = gain force",
-                                                  SeenIn::static_set,
-                                                  {"lift_force"},
-                                                  {{"gain", "1", -5, 10, 0.05, 1, false, "one is a right scale"}},
-                                                  "definition",
-                                                  true});
+        static const EffectInfo the =
+            searched(of_the_rig({"sensor_gain",
+                                 "scale of the load cell",
+                                 "reading = gain force",
+                                 SeenIn::static_set,
+                                 {"lift_force"},
+                                 {{"gain", "1", -5, 10, 0.05, 1, false, "one is a right scale"}},
+                                 "definition",
+                                 true}),
+                     {.scales_reading = true});
         return the;
     }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/search.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::dynamics {
@@ -45,15 +46,34 @@ double part_without_speed(const Model& model, const std::string& quantity, const
 class SpeedExponentEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"speed_exponent",
-                                    "force grows with another power of the speed",
-                                    "force times (speed/reference)^(exponent - declared exponent)",
-                                    SeenIn::static_set,
-                                    {"speed"},
-                                    {{"exponent", "1", -2, 6, 0.2, 2, false, "true exponent"}},
-                                    "definition",
-                                    true};
+        static const EffectInfo the =
+            searched(EffectInfo{"speed_exponent",
+                                "force grows with another power of the speed",
+                                "force times (speed/reference)^(exponent - declared exponent)",
+                                SeenIn::static_set,
+                                {"speed"},
+                                {{"exponent", "1", -2, 6, 0.2, 2, false, "true exponent"}},
+                                "definition",
+                                true},
+                     {.needs = {"speed"}});
         return the;
+    }
+
+    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& parameters,
+                            double& /*prior*/) const override {
+        // it does nothing at the exponent that the model declares
+        bool declared = false;
+        for (const ForceSource& source : context.model.forces) {
+            const bool asked = std::find(context.quantities.begin(), context.quantities.end(), source.quantity) !=
+                               context.quantities.end();
+            for (const ForceScale& scale : source.scales) {
+                if (asked && !declared && scale.channel == Channel::speed) {
+                    parameters.front().neutral = scale.exponent;
+                    declared = true;
+                }
+            }
+        }
+        return source_feels(context, Channel::speed, true);
     }
 
     [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& seen,

@@ -9,14 +9,15 @@ namespace {
 class SqueezeFilmDampingEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"squeeze_film_damping",
-                                    "squeeze film between base and ground",
-                                    "F = -coefficient w/h^3",
-                                    SeenIn::time_series,
-                                    {"gap", "heave_velocity"},
-                                    {{"coefficient", "N s m^2", 0, 0.01, 1e-06, 0, false,
-                                      "12 mu pi a^3 b^3/(4 (a^2 + b^2)) for a flat ellipse"}},
-                                    "Reynolds 1886; Stefan 1874 (circle: 3 pi mu R^4/2)"};
+        static const EffectInfo the = searched(EffectInfo{"squeeze_film_damping",
+                                                          "squeeze film between base and ground",
+                                                          "F = -coefficient w/h^3",
+                                                          SeenIn::time_series,
+                                                          {"gap", "heave_velocity"},
+                                                          {{"coefficient", "N s m^2", 0, 0.01, 1e-06, 0, false,
+                                                            "12 mu pi a^3 b^3/(4 (a^2 + b^2)) for a flat ellipse"}},
+                                                          "Reynolds 1886; Stefan 1874 (circle: 3 pi mu R^4/2)"},
+                                               {.kin = {"damping"}, .one_sign = true});
         return the;
     }
 

@@ -4,7 +4,7 @@
 namespace underbody::dynamics {
 
 const Effect& strut_buoyancy_effect() {
-    static const ImmersedPart kind("strut_buoyancy", "buoyancy of an immersed strut", "depth");
+    static const ImmersedPart kind("strut_buoyancy", "buoyancy of an immersed strut", "depth", "cable_buoyancy", 0.85);
     return kind;
 }
 

@@ -1,5 +1,6 @@
 // lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/search.h"
 #include "surrogates/dynamics/plant/heave_equation.h"
 
 namespace underbody::dynamics {
@@ -9,18 +10,31 @@ namespace {
 class SurfaceRoughnessEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{
-            "surface_roughness",
-            "roughness of the surface",
-            "lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length",
-            SeenIn::both,
-            {"gap"},
-            {{"near", "1", -0.9, 5, 0.2, 0, false, "suction deeper by this fraction at small gaps"},
-             {"far", "1", -5, 1, 0.2, 0, false, "weaker by this fraction at large gaps"},
-             {"length", "m", 0.0001, 5, 0.1, 0.1, true, "gap between the two"}},
-            "shape after the load-cell tests of the thesis, chapter 5: deeper near dip, weaker far field",
-            true};
+        static const EffectInfo the = searched(
+            EffectInfo{"surface_roughness",
+                       "roughness of the surface",
+                       "lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length",
+                       SeenIn::both,
+                       {"gap"},
+                       {{"near", "1", -0.9, 5, 0.2, 0, false, "suction deeper by this fraction at small gaps"},
+                        {"far", "1", -5, 1, 0.2, 0, false, "weaker by this fraction at large gaps"},
+                        {"length", "m", 0.0001, 5, 0.1, 0.1, true, "gap between the two", true}},
+                       "shape after the load-cell tests of the thesis, chapter 5: deeper near dip, weaker far field",
+                       true},
+            {.needs = {"gap"},
+             .starts = {{0.1, 0.1, 0.03}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.3}},
+             .kin = {"place"},
+             .lift_unless_named = true,
+             .one_strength_form = "as much deeper near as weaker far"});
         return the;
+    }
+
+    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& parameters,
+                            double& /*prior*/) const override {
+        if (context.time_series) {
+            parameters[0].lower = parameters[1].lower = 0;  // deeper near, weaker far: not the other way round
+        }
+        return true;
     }
 
     void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {

@@ -14,15 +14,16 @@ double viscosity(double kelvin) { return 2.414e-5 * std::pow(10.0, 247.8 / (kelv
 class TemperatureEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{
-            "temperature",
-            "force follows the viscosity of the water",
-            "force times 1 + sensitivity (mu(T)/mu(T declared) - 1)",
-            SeenIn::static_set,
-            {"temperature"},
-            {{"sensitivity", "1", -20, 20, 0.3, 0, false, "share of the force that is viscous"}},
-            "viscosity of water: mu = 2.414e-5 Pa s 10^(247.8 K/(T - 140 K)) (Al-Shemmeri 2012)",
-            true};
+        static const EffectInfo the =
+            searched(EffectInfo{"temperature",
+                                "force follows the viscosity of the water",
+                                "force times 1 + sensitivity (mu(T)/mu(T declared) - 1)",
+                                SeenIn::static_set,
+                                {"temperature"},
+                                {{"sensitivity", "1", -20, 20, 0.3, 0, false, "share of the force that is viscous"}},
+                                "viscosity of water: mu = 2.414e-5 Pa s 10^(247.8 K/(T - 140 K)) (Al-Shemmeri 2012)",
+                                true},
+                     {.needs = {"temperature"}});
         return the;
     }
 

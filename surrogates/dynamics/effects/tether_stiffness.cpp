@@ -9,14 +9,16 @@ namespace {
 class TetherStiffnessEffect final : public Effect {
 public:
     [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the{"tether_stiffness",
-                                    "tether, cable or strut as a spring",
-                                    "F = -stiffness (h - gap)",
-                                    SeenIn::time_series,
-                                    {"gap"},
-                                    {{"stiffness", "N/m", -100, 100000.0, 0.05, 0, false, "pulls back when positive"},
-                                     {"gap", "m", -10, 10, 0.1, 0, false, "gap at which it does not pull"}},
-                                    "Hooke"};
+        static const EffectInfo the =
+            searched(EffectInfo{"tether_stiffness",
+                                "tether, cable or strut as a spring",
+                                "F = -stiffness (h - gap)",
+                                SeenIn::time_series,
+                                {"gap"},
+                                {{"stiffness", "N/m", -100, 100000.0, 0.05, 0, false, "pulls back when positive"},
+                                 {"gap", "m", -10, 10, 0.1, 0, false, "gap at which it does not pull"}},
+                                "Hooke"},
+                     {.starts = {{0.03, 0.1}, {0.5, 0.03}, {0.5, 0.15}, {4, 0.02}, {4, 0.1}}, .kin = {"place"}});
         return the;
     }
 

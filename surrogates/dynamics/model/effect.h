@@ -23,10 +23,32 @@ struct EffectParameter {
     std::string unit;  ///< SI; "parameter" for declared_parameter's value, which has the unit of what it corrects
     double lower = 0;  ///< hard bounds, SI: a model file outside them is refused
     double upper = 0;
-    double typical = 1;   ///< a plausible size on a vehicle of this kind, > 0: scale of a search, width of a prior
-    double neutral = 0;   ///< the value at which the effect vanishes (or, for a shape parameter, its default)
-    bool shape = false;   ///< true: says where or how fast, not how much; may be left out of a model file
-    std::string meaning;  ///< one line, with the sign
+    double typical = 1;        ///< a plausible size on a vehicle of this kind, > 0: scale of a search, width of a prior
+    double neutral = 0;        ///< the value at which the effect vanishes (or, for a shape parameter, its default)
+    bool shape = false;        ///< true: says where or how fast, not how much; may be left out of a model file
+    std::string meaning;       ///< one line, with the sign
+    bool within_gaps = false;  ///< a length along the gap: it shows only within the gaps that were measured
+};
+
+/// What a search in measurements has to know of an effect beside its law. The defaults suit a strength that is fitted
+/// from a little off neutral.
+struct EffectSearch {
+    std::vector<std::string> needs{};         ///< channels that must vary in a static set
+    std::vector<std::string> needs_one_of{};  ///< of these at least one
+    /// Numbers that fits of time series begin at, each of the length of the parameters; empty: 0.3 typical off neutral.
+    std::vector<std::vector<double>> starts{};
+    std::vector<std::string> kin{};   ///< groups of effects that can stand in for parts of each other
+    bool one_sign = false;            ///< of one kin and of opposite signs two of them are one law that neither has
+    double prior = 1;                 ///< before the data were seen
+    bool scanned = false;             ///< amplitude, frequency, phase: its starts come from a scan over frequency
+    bool lift_unless_named = false;   ///< changes lift_force alone where a use names no quantity
+    bool scales_reading = false;      ///< of two at once it acts on what the other leaves
+    std::string same_law_as{};        ///< another name for the law of this effect: the rig tells which it is
+    std::string beside{};             ///< time series: tried once more with this other effect's numbers free
+    std::string beside_form{};        ///< and what that form is called
+    std::string one_strength_form{};  ///< static sets: tried once more with the second strength bound to the first
+    /// Another form that the law may have as well: its difference goes into the errors of the numbers.
+    void (*other_form)(HeaveTerms&) = nullptr;
 };
 
 enum class SeenIn { time_series, static_set, both };
@@ -45,7 +67,13 @@ struct EffectInfo {
     bool takes_parameter = false;  ///< names a declared parameter of the model (declared_parameter)
     bool belongs_to_the_rig =
         false;  ///< load cell, guide, cable, set-up, water of the tank: goes with the vehicle nowhere
+    EffectSearch search{};
 };
+
+inline EffectInfo searched(EffectInfo info, EffectSearch search) {
+    info.search = std::move(search);
+    return info;
+}
 
 inline EffectInfo of_the_rig(EffectInfo info) {
     info.belongs_to_the_rig = true;
@@ -69,6 +97,14 @@ struct StaticPoint {
     const Model* model = nullptr;
 };
 
+/// What a search knows when it asks an effect whether and where to look for it.
+struct SearchContext {
+    const Model& model;
+    const std::vector<std::string>& quantities;  ///< measured (static sets), or the one that a use names
+    const std::vector<Channel>& varying;
+    bool time_series = false;
+};
+
 /// Implementations are stateless and live for ever in the registry; they may be used from many threads.
 class Effect {
 public:
@@ -85,6 +121,11 @@ public:
     [[nodiscard]] virtual double after(const std::string& quantity, double value, const StaticPoint& seen,
                                        const Conditions& set_point, const EffectUse& use) const;
 
+    /// False where the effect can change nothing that was measured of this model. Else narrows bounds, moves neutral
+    /// values and the prior to what is possible on this vehicle. Default: true, nothing narrowed.
+    [[nodiscard]] virtual bool look(const SearchContext& context, std::vector<EffectParameter>& parameters,
+                                    double& prior) const;
+
 protected:
     /// True when `use` is meant for this quantity.
     static bool concerns(const EffectUse& use, const std::string& quantity) {
@@ -94,6 +135,18 @@ protected:
 
 /// All effects in the order of the catalogue (docs/conventions.md section 6).
 const std::vector<const Effect*>& effects();
+/// As long as it lives, an effect that is not of the catalogue is known like the others. Not to be made or destroyed
+/// while another thread uses the catalogue. Throws core::InputError when the name is taken.
+class RegisteredEffect {
+public:
+    explicit RegisteredEffect(const Effect& effect);
+    ~RegisteredEffect();
+    RegisteredEffect(const RegisteredEffect&) = delete;
+    RegisteredEffect& operator=(const RegisteredEffect&) = delete;
+
+private:
+    const Effect& effect_;
+};
 /// nullptr when there is none of that name.
 const Effect* find_effect(std::string_view name);
 /// Throws core::InputError with the nearest name.

@@ -144,7 +144,9 @@ void add_extras(const HeaveTerms& terms, double t, double h, double w, HeaveLoad
 /// Weight, input, springs, corrections, extras: all but lift, drag, guide, film, waves and memory.
 inline void add_given_forces(const HeaveTerms& terms, double h, double w, const HeaveMoment& moment,
                              const Conditions& held, HeaveLoad& load) {
-    load.force += terms.constant + moment.input;
+    const double lost = moment.input * terms.thrust_lost(h);
+    load.force += terms.constant + moment.input - lost;
+    load.slope_h += lost / terms.thrust_length;
     add_springs(terms, h, load);
     if (!terms.corrections.empty()) {
         add_corrections(terms, h, w, moment, held, load);

@@ -304,7 +304,7 @@ HeaveLoad HeavePlant::closed_input(double h, double w, double given) const {
     const double asked = loop->command(h, w), command = given + asked;
     const bool held_by_limit = loop->limit > 0 && std::abs(asked) >= loop->limit;
     const bool dead = std::abs(command) <= terms.actuator.dead_zone && terms.actuator.dead_zone > 0;
-    const double follows = held_by_limit || dead ? 0 : terms.actuator.gain;
+    const double follows = held_by_limit || dead ? 0 : terms.actuator.gain * (1 - terms.thrust_lost(h));
     return {terms.actuator.felt(command), -follows * loop->gap_gain, -follows * loop->velocity_gain};
 }
 

@@ -61,6 +61,7 @@ struct HeaveSource {
 ///   M = mass + sum of growth L/(h + L)
 ///   F = -net_weight + lift(h, channels) + input - drag(w - current) - linear (w - current)
 ///       - quadratic (w - current)|w - current| + constant - friction sgn(w) - film/h^3 w
+///       - input loss exp(-h/length)
 ///       - stiffness (h - reference) + amplitude sin(2 pi f t + phase) + corrections + history
 /// All damping by the water, declared or an effect, acts on the velocity through the water; friction of a guide and the
 /// film over the ground act on the velocity itself. Evaluated in surrogates/dynamics/plant/heave_equation.h, nowhere
@@ -113,9 +114,17 @@ struct HeaveTerms {
 
     Actuator actuator;  ///< between the input, recorded or commanded, and the body
 
-    // What the sensor makes of the gap: reading(t) = gap(t - delay) + bias.
+    double thrust_loss = 0;    ///< input times 1 - loss exp(-h/length): a thruster that the ground weakens
+    double thrust_length = 1;  ///< m
+    [[nodiscard]] double thrust_lost(double h) const {
+        return thrust_loss != 0 ? thrust_loss * std::exp(-h / thrust_length) : 0;
+    }
+
+    // What the sensor makes of the gap: reading(t) = gap(t - delay) + bias + drift t, t on the record's clock.
     double sensor_bias = 0;   ///< m
+    double sensor_drift = 0;  ///< m/s
     double sensor_delay = 0;  ///< s
+    [[nodiscard]] double sensor_offset(double t) const { return sensor_bias + sensor_drift * t; }
 
     double contact_gap = 0;                   ///< the body touches the ground there
     double restitution = 0;                   ///< 0: stays until the force lifts it off

@@ -7,7 +7,7 @@ namespace underbody::dynamics {
 
 void close_loop(HeavePlant& plant, const HeaveFeedback& feedback) {
     HeaveTerms& terms = plant.terms;
-    if (feedback.limit > 0 || terms.actuator.dead_zone > 0 || terms.actuator.has_states()) {
+    if (feedback.limit > 0 || terms.actuator.dead_zone > 0 || terms.actuator.has_states() || terms.thrust_loss != 0) {
         plant.loop = feedback;
         return;
     }

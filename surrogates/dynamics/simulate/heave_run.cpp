@@ -283,10 +283,11 @@ void HeaveRun::simulate(const HeavePlant& plant, std::size_t first, std::size_t 
 
 void HeaveRun::sensor(const HeavePlant& plant, std::size_t first, std::span<const double> true_gap,
                       std::span<double> reading) const {
-    const double delay = plant.terms.sensor_delay, bias = plant.terms.sensor_bias;
+    const double delay = plant.terms.sensor_delay;
+    const auto bias = [&](std::size_t i) { return plant.terms.sensor_offset(time_[first + i]); };
     if (delay == 0) {
         for (std::size_t i = 0; i < reading.size(); ++i) {
-            reading[i] = true_gap[i] + bias;
+            reading[i] = true_gap[i] + bias(i);
         }
         return;
     }
@@ -297,12 +298,12 @@ void HeaveRun::sensor(const HeavePlant& plant, std::size_t first, std::span<cons
             ++k;
         }
         if (t <= time_[first] || true_gap.size() < 2) {
-            reading[i] = true_gap[0] + bias;
+            reading[i] = true_gap[0] + bias(i);
             continue;
         }
         const double t0 = time_[first + k], t1 = time_[first + k + 1];
         const double part = std::clamp((t - t0) / (t1 - t0), 0.0, 1.0);
-        reading[i] = true_gap[k] + part * (true_gap[k + 1] - true_gap[k]) + bias;
+        reading[i] = true_gap[k] + part * (true_gap[k + 1] - true_gap[k]) + bias(i);
     }
 }
 

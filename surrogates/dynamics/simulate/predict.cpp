@@ -185,7 +185,7 @@ private:
         if (!line.found()) {
             return {};
         }
-        std::pair<double, double> state{line.gap - plant_.terms.sensor_bias, line.velocity};
+        std::pair<double, double> state{line.gap - plant_.terms.sensor_offset(signals_.time[start]), line.velocity};
         // A film forgets a velocity within a sample: what the motion does not show is taken from the line, loosely.
         const double loose = 0.05 + 10 * gap_noise_ * std::sqrt(line.slope_factor), weight = 1 / (loose * loose);
         const std::size_t count = start - from + 1;

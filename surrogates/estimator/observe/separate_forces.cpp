@@ -80,13 +80,16 @@ SeparatedPlant separate(const dynamics::Model& model, const dynamics::Conditions
     }
     const bool several = std::any_of(terms.corrections.begin(), terms.corrections.end(),
                                      [](const auto& correction) { return correction.curve.empty(); });
-    if (!terms.waves.empty() || several || !heave->single_curve()) {
+    if (!terms.waves.empty() || several || !heave->single_curve() || terms.thrust_loss != 0) {
         plant.other_force = [heave](double t, double h, double w, double u) {
             // Tables over the velocity too: what they give beside their value at rest.
             dynamics::HeaveLoad load = heave->table_lift(h, w);
             const dynamics::HeaveLoad at_rest = heave->table_lift(h, 0);
             load.force += wave_force(heave->terms, t) - at_rest.force;
             load.slope_h -= at_rest.slope_h;
+            const double lost = u * heave->terms.thrust_lost(h);
+            load.force -= lost;
+            load.slope_h += lost / heave->terms.thrust_length;
             add_corrections(heave->terms, h, w, {t, u}, heave->held(), load);
             return load;
         };
