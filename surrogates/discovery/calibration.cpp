@@ -24,6 +24,7 @@ const std::vector<CalibratedNumber>& calibrated_numbers() {
         {"most_over_twins", &C::most_over_twins, "definition: a third more than noise", "2026-11-22", unmeasured},
         {"most_left", &C::most_left, "rigs of seed 15001; thruster by gap and backlash", "2026-11-22", unmeasured},
         {"neutral_sigmas", &C::neutral_sigmas, "definition: two standard deviations", "2026-11-22", unmeasured},
+        {"rest_chance", &C::rest_chance, "definition: one in a thousand", "2026-11-22", unmeasured},
         {"correction_reach", &C::correction_reach, "definition: all but two states in a thousand", "2026-11-22",
          unmeasured}};
     return list;

@@ -85,6 +85,52 @@ PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, do
     return with_readings(result, before, after, tail);
 }
 
+std::size_t BlockErrors::count() const {
+    std::size_t sum = 0;
+    for (const std::vector<double>& block : blocks) {
+        sum += block.size();
+    }
+    return sum;
+}
+
+double BlockErrors::sum_of_squares() const {
+    double sum = 0;
+    for (const std::vector<double>& block : blocks) {
+        sum += discovery::sum_of_squares(block);
+    }
+    return sum;
+}
+
+double BlockErrors::rmse() const {
+    return count() > 0 ? std::sqrt(sum_of_squares() / static_cast<double>(count())) : 0;
+}
+
+PairedFall paired_fall(const BlockErrors& before, const BlockErrors& after, double tail) {
+    PairedFall result;
+    double fall = 0, by_blocks = 0, by_readings = 0;
+    for (std::size_t b = 0; b < before.blocks.size(); ++b) {
+        double chance = 0;
+        for (std::size_t i = 0; i < before.blocks[b].size(); ++i) {
+            const double left = after.blocks[b][i];
+            const double difference = before.blocks[b][i] - left;
+            fall += difference * (difference + 2 * left);
+            chance += 2 * difference * left;
+            by_readings += std::pow(2 * difference * left, 2);
+        }
+        by_blocks += chance * chance;
+        result.blocks += before.blocks[b].empty() ? 0 : 1;
+    }
+    const bool few = result.blocks < 3;
+    const std::size_t independent = std::max<std::size_t>(few ? before.count() : result.blocks, 2);
+    const boost::math::students_t student(static_cast<double>(independent) - 1);
+    const double half =
+        boost::math::quantile(boost::math::complement(student, tail)) * std::sqrt(few ? by_readings : by_blocks);
+    result.mean = result.blocks > 0 ? fall / static_cast<double>(result.blocks) : 0;
+    result.low = fall - half;
+    result.high = fall + half;
+    return result;
+}
+
 namespace {
 
 /// Each number of an effect of static sets acts without the others. Where they can stand in for each other (dead zone
@@ -154,6 +200,25 @@ void cap_probabilities(Attribution& attribution, double most) {
             sum += share.probability *= factor;
         }
         attribution.none_probability = std::max(0.0, 1 - sum);
+    }
+}
+
+void give_to_unknown(Attribution& attribution, double part) {
+    for (Attribution::Share& share : attribution.shares) {
+        attribution.unknown_probability += part * share.probability;
+        share.probability *= 1 - part;
+    }
+}
+
+void rule_out_none(Attribution& attribution, double unknown) {
+    attribution.unknown_probability = std::max(attribution.unknown_probability, unknown);
+    attribution.none_probability = 0;
+    double names = 0;
+    for (const Attribution::Share& share : attribution.shares) {
+        names += share.probability;
+    }
+    for (Attribution::Share& share : attribution.shares) {
+        share.probability *= names > 0 ? std::min(1.0, (1 - attribution.unknown_probability) / names) : 1;
     }
 }
 

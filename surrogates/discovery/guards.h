@@ -17,8 +17,7 @@ struct BlockSquares {
     [[nodiscard]] double rmse() const;
 };
 
-/// Fall of the error (root mean square of a block) from one model to another on the same blocks: roots, since a few
-/// blocks in which both are far off would hide the rest.
+/// Fall of the error from one model to another on the same blocks.
 struct PairedFall {
     double mean = 0;
     double low = 0;  ///< of the interval by Student's t over the blocks' differences
@@ -28,6 +27,7 @@ struct PairedFall {
     [[nodiscard]] bool rises() const { return high < 0; }
 };
 
+/// Fall of the root mean square of a block: roots, since a few blocks in which both are far off would hide the rest.
 /// `tail` is the chance beyond each end of the interval. Few blocks (short runs) have next to no interval of Student:
 /// there the readings decide as well, as if all their errors were one. With d the difference of the two models and e
 /// what the second leaves, the square error falls by the sum of d^2 + 2 d e; d^2 is no chance, and 2 d e is all taken
@@ -35,11 +35,30 @@ struct PairedFall {
 /// fewer than three blocks have no interval, and nothing falls.
 PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, double tail);
 
+/// Errors of one model, reading by reading, in blocks of readings whose errors may hang together.
+struct BlockErrors {
+    std::vector<std::vector<double>> blocks;
+    [[nodiscard]] double sum_of_squares() const;
+    [[nodiscard]] std::size_t count() const;
+    [[nodiscard]] double rmse() const;
+};
+
+/// Fall of the summed square error. With d the difference of the two models and e what the second leaves it is the sum
+/// of d^2 + 2 d e: d^2 is no chance, so that an effect which few blocks show counts in full, and the sums of 2 d e over
+/// the blocks are. Their interval is Student's t; of fewer than three blocks the readings' errors count as independent.
+PairedFall paired_fall(const BlockErrors& before, const BlockErrors& after, double tail);
+
 /// True where each name of the hypothesis has a strength that lies more than `sigmas` of its own errors from where it
 /// does nothing, or (static sets) numbers that lie as unlikely far from there together.
 bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas);
 
 /// Lowers all probabilities of names (and of `unknown`) so that none is above `most`; what they lose goes to "none".
 void cap_probabilities(Attribution& attribution, double most);
+
+/// Gives `part` of what the names have to `unknown`.
+void give_to_unknown(Attribution& attribution, double part);
+
+/// Something is missing for certain: nothing is left to "none", `unknown` gets at least that much, names the rest.
+void rule_out_none(Attribution& attribution, double unknown);
 
 }  // namespace underbody::discovery

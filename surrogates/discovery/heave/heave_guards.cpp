@@ -130,11 +130,7 @@ void HeaveLoop::guard() {
             const bool better = smooth && falls(named, *smooth);
             if (better || share_left(declared, named) > calibration_.most_left) {
                 result_.verdict = "unknown";
-                const double names = 1 - attribution_.unknown_probability - attribution_.none_probability;
-                attribution_.unknown_probability += 0.8 * names;
-                for (Attribution::Share& share : attribution_.shares) {
-                    share.probability *= 0.2;
-                }
+                give_to_unknown(attribution_, 0.8);
                 if (better) {
                     kept = std::move(*smooth);
                 }
@@ -197,15 +193,7 @@ void HeaveLoop::call_rest_unknown(Answer& kept, Answer& declared) {
     if (kept.uses.empty() && (whole_.variables.empty() || gate_ >= calibration_.gate)) {
         whole_.variables = {variable_name(Variable::time)};  // as a random force would: no variable explains it
     }
-    attribution_.unknown_probability = std::max(attribution_.unknown_probability, kept.uses.empty() ? 0.5 : 0.8);
-    attribution_.none_probability = 0;
-    double names = 0;
-    for (const Attribution::Share& share : attribution_.shares) {
-        names += share.probability;
-    }
-    for (Attribution::Share& share : attribution_.shares) {
-        share.probability *= names > 0 ? std::min(1.0, (1 - attribution_.unknown_probability) / names) : 1;
-    }
+    rule_out_none(attribution_, kept.uses.empty() ? 0.5 : 0.8);
     result_.none_probability = 0;
 }
 

@@ -1,7 +1,6 @@
 // What a static verdict is told with: error before and after, rivals, limits, and doubts about the data.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/text.h"
 #include "core/units.h"
@@ -17,14 +16,8 @@
 namespace underbody::discovery {
 
 void StaticLoop::measure_error() {
-    const StaticExperiment& experiment = test_experiment_ ? *test_experiment_ : experiment_;
-    std::vector<std::size_t> chosen = test_;
-    if (test_experiment_) {
-        chosen.resize(experiment.observations().size());
-        std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-    } else if (chosen.empty()) {
-        chosen = train_;
-    }
+    const StaticExperiment& experiment = held_out_experiment();
+    const std::vector<std::size_t> chosen = held_out_readings();
     for (std::size_t q = 0; q < experiment.quantities().size(); ++q) {
         std::vector<double> before(experiment.set_points(), 0);
         std::vector<double> after = before;
@@ -52,6 +45,10 @@ void StaticLoop::measure_error() {
     std::stable_sort(result_.error.begin(), result_.error.end(), [](const ErrorChange& a, const ErrorChange& b) {
         return a.before.rmse / std::max(a.noise, 1e-300) > b.before.rmse / std::max(b.noise, 1e-300);
     });
+    if (!result_.error.empty()) {
+        result_.rest.twins = result_.error.front().noise;
+        result_.rest.unexplained = rest_in_noise_ * result_.error.front().noise;
+    }
 }
 
 std::string StaticLoop::evidence(const FittedHypothesis& one) const {

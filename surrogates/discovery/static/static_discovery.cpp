@@ -39,9 +39,6 @@ Discovery StaticLoop::run() {
     }
     decide();
     progress_.report(0.8, "error on held-out set points");
-    if (test_experiment_) {
-        test_experiment_->set_noise(experiment_.noise());
-    }
     measure_error();
     describe();
     if (options_.placebo_twins > 0) {

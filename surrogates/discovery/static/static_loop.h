@@ -7,6 +7,7 @@
 
 #include "surrogates/discovery/attribution.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/static/static_experiment.h"
 #include "surrogates/discovery/static/static_structure.h"
 
@@ -51,7 +52,19 @@ private:
     [[nodiscard]] bool same_verdict(const std::vector<double>& weight) const;
     [[nodiscard]] double stability() const;
 
-    // static_twins.cpp
+    // static_guards.cpp: what the verdict may say
+    [[nodiscard]] const StaticExperiment& held_out_experiment() const;
+    [[nodiscard]] std::vector<std::size_t> held_out_readings() const;
+    /// In units of the noise, by set point, all measured quantities together.
+    [[nodiscard]] BlockErrors held_out_errors(const std::vector<dynamics::EffectUse>& uses) const;
+    /// Whether the error of set points that nothing was fitted to falls with a named effect.
+    [[nodiscard]] bool falls(const BlockErrors& declared, const BlockErrors& named, const Hypothesis& hypothesis) const;
+    [[nodiscard]] bool rest_is_noise(const BlockErrors& errors);
+    /// Puts a smooth correction in the place of uses_ where the held-out error falls with it; false: leaves them.
+    bool correct(const BlockErrors& before);
+    void guard();
+
+    // static_null_simulation.cpp
     /// The data with what the declared model says at every set point, and noise.
     [[nodiscard]] dynamics::Measurements twin(std::uint64_t seed) const;
     void run_placebo();
@@ -79,6 +92,7 @@ private:
     SmoothFit whole_;  ///< structure of the residuals as declared
     SmoothFit rest_;   ///< and of what the best explanation leaves
     double gate_ = 1;
+    double rest_in_noise_ = 0;
     Attribution attribution_;
     std::vector<dynamics::EffectUse> uses_;  ///< what goes into the model
     Discovery result_;

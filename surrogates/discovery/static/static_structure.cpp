@@ -411,6 +411,15 @@ std::vector<double> grid_lines(std::vector<double> values) {
     return lines;
 }
 
+/// With one more line on either side, a tenth of the range away, at which a correction has faded to nothing.
+std::vector<double> with_fade(std::vector<double> lines) {
+    constexpr double fade = 0.1;
+    const double range = lines.back() - lines.front();
+    lines.insert(lines.begin(), lines.front() - fade * range);
+    lines.push_back(lines.back() + fade * range);
+    return lines;
+}
+
 }  // namespace
 
 dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
@@ -453,23 +462,31 @@ dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const 
     std::vector<std::vector<double>> lines;
     std::size_t count = 1;
     for (const std::vector<double>& variable : values) {
-        lines.push_back(grid_lines(variable));
+        lines.push_back(with_fade(grid_lines(variable)));
         count *= lines.back().size();
+    }
+    double largest = 0;  // no larger than the residual that it explains
+    for (const double one : y) {
+        largest = std::max(largest, std::abs(one));
     }
     std::vector<std::vector<double>> grid(variables.size(), std::vector<double>(count));
     std::vector<double> correction(count);
     out.resize(shape->columns());
     for (std::size_t i = 0; i < count; ++i) {
         std::size_t rest = i;
+        bool faded = false;
         for (std::size_t v = 0; v < variables.size(); ++v) {
-            point[v] = lines[v][rest % lines[v].size()];
-            grid[v][i] = point[v];
+            const std::size_t line = rest % lines[v].size();
+            faded = faded || line == 0 || line + 1 == lines[v].size();
+            grid[v][i] = lines[v][line];
+            point[v] = std::clamp(grid[v][i], lines[v][1], lines[v][lines[v].size() - 2]);
             rest /= lines[v].size();
         }
         shape->evaluate(point.data(), out.data());
         for (std::size_t k = 0; k < out.size(); ++k) {
             correction[i] += out[k] * fit.coefficients[k];
         }
+        correction[i] = faded ? 0 : std::clamp(correction[i], -largest, largest);
     }
     core::Table table;
     const std::string& name = experiment.quantities()[quantity];

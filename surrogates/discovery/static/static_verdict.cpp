@@ -163,11 +163,10 @@ void StaticLoop::decide() {
     for (const auto& [quantity, figure] : experiment_.noise()) {
         result_.noise[quantity] = {figure.value, figure.unit, figure.from, figure.estimated};
     }
-    if (result_.verdict == "effect") {
-        uses_ = found_effect(fitted_[attribution_.chosen], 1).uses;
-    } else if (result_.verdict == "unknown") {
-        make_correction();
+    if (test_experiment_) {
+        test_experiment_->set_noise(experiment_.noise());
     }
+    guard();
     for (const dynamics::EffectUse& use : uses_) {
         result_.model = result_.model.with_effect(use);
     }

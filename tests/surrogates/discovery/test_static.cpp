@@ -65,6 +65,30 @@ TEST(StaticDiscovery, CallsWhatTheCatalogueLacksUnknownAndSaysOnWhatItDepends) {
     EXPECT_GE(found.figures.size(), 3U);
 }
 
+TEST(StaticDiscovery, NamesNothingThatTheHeldOutSetPointsDoNotShow) {
+    // a bias of 0.45 of the noise: seen in the fitted readings of most sets, beyond chance in the held-out ones of few
+    int named = 0, refused = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const Discovery found = found_on([](double h, double v) { return declared(h, v) + 0.00045; }, seed);
+        const bool said = std::any_of(found.problems.begin(), found.problems.end(), [](const core::Problem& problem) {
+            return problem.message.find("the held-out error does not fall") != std::string::npos;
+        });
+        if (said) {
+            EXPECT_EQ(found.verdict, "none") << found.sentence;
+            EXPECT_TRUE(found.model.effects.empty());
+            for (const FoundEffect& rival : found.alternatives) {
+                EXPECT_LE(rival.probability, 0.5);
+            }
+        } else if (found.verdict == "effect") {
+            EXPECT_LT(found.error.front().after.rmse, found.error.front().before.rmse) << found.sentence;
+        }
+        named += found.verdict == "effect";
+        refused += said;
+    }
+    EXPECT_GE(refused, 2);
+    EXPECT_GE(named, 1);
+}
+
 TEST(StaticDiscovery, FindsOutThatADeclaredNoiseIsWrong) {
     core::TemporaryFolder folder("static");
     test::write_bench(folder.path(), declared, 8);

@@ -1,0 +1,131 @@
+// What a static verdict may say: judged by set points that nothing was fitted to.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "surrogates/discovery/report_findings.h"
+#include "surrogates/discovery/static/static_loop.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+using dynamics::Channel;
+
+const StaticExperiment& StaticLoop::held_out_experiment() const {
+    return test_experiment_ ? *test_experiment_ : experiment_;
+}
+
+std::vector<std::size_t> StaticLoop::held_out_readings() const {
+    if (!test_experiment_) {
+        return test_.empty() ? train_ : test_;
+    }
+    std::vector<std::size_t> all(test_experiment_->observations().size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+}
+
+BlockErrors StaticLoop::held_out_errors(const std::vector<dynamics::EffectUse>& uses) const {
+    const StaticExperiment& experiment = held_out_experiment();
+    BlockErrors errors{std::vector<std::vector<double>>(experiment.set_points())};
+    for (const std::size_t i : held_out_readings()) {
+        const Observation& one = experiment.observations()[i];
+        if (!one.accident) {
+            errors.blocks[one.set_point].push_back((one.value - experiment.predict(one, uses)) / experiment.sigma(one));
+        }
+    }
+    return errors;
+}
+
+/// Beside the held-out set points the others, each predicted with the numbers that the rest of them give: a quarter of
+/// the set points alone misses effects of the size of the noise.
+bool StaticLoop::falls(const BlockErrors& declared, const BlockErrors& named, const Hypothesis& hypothesis) const {
+    constexpr std::size_t folds = 4;
+    const PairedFall held_out = paired_fall(declared, named, calibration_.fall_tail);
+    if (held_out.falls() || held_out.mean <= 0) {
+        return held_out.falls();
+    }
+    BlockErrors before = declared;
+    BlockErrors after = named;
+    const std::size_t first = before.blocks.size();
+    before.blocks.resize(first + experiment_.set_points());
+    after.blocks.resize(first + experiment_.set_points());
+    for (std::size_t fold = 0; fold < folds; ++fold) {
+        std::vector<std::size_t> inside;
+        std::copy_if(train_.begin(), train_.end(), std::back_inserter(inside),
+                     [&](std::size_t i) { return experiment_.observations()[i].set_point % folds != fold; });
+        const FittedHypothesis fit = experiment_.fit(hypothesis, inside);
+        const std::vector<dynamics::EffectUse> uses = hypothesis.with(fit.fit.parameters);
+        for (const std::size_t i : train_) {
+            const Observation& one = experiment_.observations()[i];
+            if (one.set_point % folds == fold) {
+                const double sigma = experiment_.sigma(one);
+                before.blocks[first + one.set_point].push_back((one.value - experiment_.predict(one, {})) / sigma);
+                after.blocks[first + one.set_point].push_back((one.value - experiment_.predict(one, uses)) / sigma);
+            }
+        }
+    }
+    return paired_fall(before, after, calibration_.fall_tail).falls();
+}
+
+/// The twins of a static set have readings of one standard deviation about the model as found.
+bool StaticLoop::rest_is_noise(const BlockErrors& errors) {
+    const double error = errors.rmse();
+    rest_in_noise_ = std::sqrt(std::max(0.0, error * error - 1));
+    return error <= calibration_.most_over_twins ||
+           chi_squared_tail(errors.sum_of_squares(), static_cast<double>(errors.count())) > calibration_.rest_chance;
+}
+
+bool StaticLoop::correct(const BlockErrors& before) {
+    const bool over_time = std::find(whole_.variables.begin(), whole_.variables.end(),
+                                     dynamics::channel_name(Channel::time)) != whole_.variables.end();
+    const std::vector<dynamics::EffectUse> kept = uses_;
+    uses_.clear();
+    if (!over_time && !whole_.variables.empty()) {
+        make_correction();
+        if (!uses_.empty() && paired_fall(before, held_out_errors(uses_), calibration_.fall_tail).falls()) {
+            return true;
+        }
+    }
+    uses_ = kept;
+    return false;
+}
+
+/// A name needs a held-out error that falls, and a name and "none" a rest that is noise.
+void StaticLoop::guard() {
+    const BlockErrors declared = held_out_errors({});
+    uses_.clear();
+    if (result_.verdict == "effect") {
+        const FittedHypothesis& chosen = fitted_[attribution_.chosen];
+        uses_ = found_effect(chosen, 1).uses;
+        const BlockErrors named = held_out_errors(uses_);
+        if (!falls(declared, named, chosen.hypothesis)) {
+            uses_.clear();
+            result_.verdict = "none";
+            cap_probabilities(attribution_, 0.5);
+            result_.problems.push_back(
+                {core::Problem::Severity::warning,
+                 chosen.hypothesis.label() +
+                     " would explain the fitted readings better, but the held-out error does not fall with it beyond "
+                     "its interval: it is not named",
+                 {}});
+        } else if (!rest_is_noise(named) && correct(named)) {
+            result_.verdict = "unknown";
+            give_to_unknown(attribution_, 0.8);
+        }
+    } else if (result_.verdict == "unknown" && !correct(declared)) {
+        cap_probabilities(attribution_, 0.5);
+    }
+    result_.rest.is_noise = rest_is_noise(uses_.empty() ? declared : held_out_errors(uses_));
+    if (result_.verdict == "none" && !result_.rest.is_noise) {
+        result_.verdict = "unknown";
+        rule_out_none(attribution_, correct(declared) ? 0.8 : 0.5);
+        result_.rest.is_noise = rest_is_noise(uses_.empty() ? declared : held_out_errors(uses_));
+    }
+    result_.none_probability = attribution_.none_probability;
+    if (!result_.rest.is_noise) {
+        result_.rest.depends_on = result_.verdict == "effect" ? rest_.variables : whole_.variables;
+    }
+}
+
+}  // namespace underbody::discovery
