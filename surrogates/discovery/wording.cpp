@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "surrogates/discovery/hypothesis.h"
 
 namespace underbody::discovery {
 
@@ -51,7 +52,14 @@ std::string probability_text(double probability) {
 
 namespace {
 
-constexpr double tied = 0.2;  ///< a rival of that probability is worth a name in the verdict
+constexpr double tied = 0.2;       ///< a rival of that probability is worth a name in the verdict
+constexpr double tied_kin = 0.05;  ///< and one whose law can stand in for the other's of that
+
+bool is_tied(const Discovery& discovery, const FoundEffect& rival) {
+    const bool kin = discovery.effects.size() == 1 && dynamics::find_effect(rival.name) != nullptr &&
+                     one_kin({discovery.effects.front().name, rival.name});
+    return rival.probability > (kin ? tied_kin : tied);
+}
 
 }  // namespace
 
@@ -68,7 +76,7 @@ std::string verdict_names(const Discovery& discovery) {
     }
     std::string text = list_of(names);
     for (const FoundEffect& rival : discovery.alternatives) {
-        text += rival.probability > tied ? ", or " + rival.name : "";
+        text += is_tied(discovery, rival) ? ", or " + rival.name : "";
     }
     return text;
 }
@@ -156,7 +164,7 @@ std::string verdict_sentence(const Discovery& discovery) {
     }
     text += ", probability " + probability_text(discovery.effects.front().probability) + ".";
     for (const FoundEffect& rival : discovery.alternatives) {
-        if (rival.probability > tied) {
+        if (is_tied(discovery, rival)) {
             text += " These data cannot well tell it from " + rival.name + " (" +
                     core::format_number(rival.probability, 2) + ").";
         }

@@ -35,6 +35,12 @@ private:
     void colour_noise();
     void drop_accidents();
     void absorb_small_shift();
+    /// How the recorded input is read: so much earlier, s, and times a factor.
+    struct InputReading {
+        double early = 0, factor = 1;
+    };
+    [[nodiscard]] std::vector<std::size_t> beside_the_input() const;
+    [[nodiscard]] InputReading better_input();
     void check_input();
     void change_input(double seconds, double factor);
     [[nodiscard]] dynamics::RecordReading reading_found() const;
@@ -74,6 +80,7 @@ private:
                   std::vector<HeaveNoise>& noises) const;
     void fit_further();
     [[nodiscard]] bool plausible_pair(const FittedHypothesis& pair) const;
+    void tie_delays();
     void decide();
     [[nodiscard]] double stability() const;
 

@@ -189,6 +189,30 @@ bool HeaveLoop::plausible_pair(const FittedHypothesis& pair) const {
     return up == 0 || down == 0;
 }
 
+/// From recorded input to gap reading a delay before the body and one behind it are one law: without a measured
+/// velocity they share what either has.
+void HeaveLoop::tie_delays() {
+    if (records_.velocity_measured || attribution_.verdict != "effect") {
+        return;
+    }
+    const auto is_delay = [&](const Attribution::Share& share) {
+        const Hypothesis& one = fitted_[share.hypothesis].hypothesis;
+        return one.names.size() == 1 && touch_of(one, model_).delay;
+    };
+    std::vector<Attribution::Share>& shares = attribution_.shares;
+    if (!is_delay(shares.front())) {
+        return;
+    }
+    const auto end = std::stable_partition(shares.begin(), shares.end(), is_delay);
+    double sum = 0;
+    for (auto share = shares.begin(); share != end; ++share) {
+        sum += share->probability;
+    }
+    for (auto share = shares.begin(); share != end; ++share) {
+        share->probability = sum / static_cast<double>(end - shares.begin());
+    }
+}
+
 void HeaveLoop::decide() {
     SmoothFit rest = rest_.fit;
     const std::size_t chosen = best_hypothesis(fitted_, static_cast<std::size_t>(calibration_.most_effects));
@@ -217,6 +241,7 @@ void HeaveLoop::decide() {
         rest.p = gate_;
     }
     attribution_ = attribute(fitted_, gate_, rest, calibration_);
+    tie_delays();
     result_.verdict = attribution_.verdict;
     result_.gate = gate_;
     result_.none_probability = attribution_.none_probability;
