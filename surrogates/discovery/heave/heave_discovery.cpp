@@ -371,42 +371,85 @@ void HeaveLoop::change_input(double seconds, double factor) {
     }
 }
 
+/// The effects that explain most alone, and that no other reading of the input could make up for: beside one of them a
+/// wrong clock or sign of the input hides, since the effect explains more than it does.
+std::vector<std::size_t> HeaveLoop::beside_the_input() const {
+    constexpr std::size_t most = 3;
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < singles_; ++i) {
+        const Touch touch = touch_of(fitted_[i].hypothesis, model_);
+        if (!touch.time && !touch.gain) {
+            list.push_back(i);
+        }
+    }
+    std::sort(list.begin(), list.end(),
+              [&](std::size_t a, std::size_t b) { return fitted_[a].score() < fitted_[b].score(); });
+    list.resize(std::min(most, list.size()));
+    return list;
+}
+
 /// An input that acts before it was commanded, or that is a thousand times off or turned round, is no effect but a
 /// matter of the record.
-void HeaveLoop::check_input() {
-    if (!records_.input_recorded) {
-        return;
-    }
-    double best = fitted_[best_single_].score() - 40;
-    double early = 0;
-    double factor = 1;
-    const bool hold = experiment_->hold();
-    experiment_->set_hold(true);  // whether it is held between samples was asked of an input that may be wrong
+HeaveLoop::InputReading HeaveLoop::better_input() {
+    constexpr double none = 1e300;
+    const double unchanged = fitted_[best_single_].score() - 40;
+    InputReading best;
+    double least = unchanged;
+    const std::vector<std::size_t> beside = beside_the_input();
     const auto attempt = [&](double seconds, double times) {
+        if (seconds < 0) {
+            return;
+        }
         change_input(-seconds, times);
         HeaveNoise noise = null_noise_;
-        const double cost = experiment_->fit_process({}, noise);
+        double cost = experiment_->fit_process({}, noise);
+        std::vector<double> innovations;
+        std::size_t with = fitted_.size();
+        double least_with = none;
+        for (const std::size_t i : beside) {
+            // with the numbers of the input as it was recorded: a fit comes once the clock is nearly right
+            const FittedHypothesis& one = fitted_[i];
+            const double own =
+                experiment_->evaluate(one.hypothesis.with(one.fit.parameters), nullptr, noises_[i], innovations) +
+                one.occam;
+            if (own < least_with) {
+                least_with = own;
+                with = i;
+            }
+        }
+        if (with < fitted_.size() && least_with < cost && least_with < fitted_[with].score() - 10) {
+            cost = std::min(cost, fitted(fitted_[with].hypothesis, null_noise_).fitted.score());
+        }
         change_input(seconds, 1 / times);
-        if (cost < best && seconds >= 0) {
-            best = cost;
-            early = seconds;
-            factor = times;
+        if (cost < least) {
+            least = cost;
+            best = {seconds, times};
         }
     };
     for (const double seconds : {0.02, 0.04, 0.06, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0}) {
         attempt(seconds, 1);
     }
-    for (double step = 0.02; step > 0.004 && early > 0; step /= 2) {
-        const double middle = early;
+    for (double step = 0.02; step > 0.004 && best.early > 0; step /= 2) {
+        const double middle = best.early;
         attempt(middle - step, 1);
         attempt(middle + step, 1);
     }
-    if (early == 0 && touch_of(fitted_[best_single_].hypothesis, model_).gain) {
-        best += 60;  // the same said with a name; the slip is the likelier story
+    if (best.early == 0 && touch_of(fitted_[best_single_].hypothesis, model_).gain) {
+        least += 60;  // the same said with a name; the slip is the likelier story
     }
     for (const double times : {1e-3, 1e3, -1.0}) {
         attempt(0, times);
     }
+    return best;
+}
+
+void HeaveLoop::check_input() {
+    if (!records_.input_recorded) {
+        return;
+    }
+    const bool hold = experiment_->hold();
+    experiment_->set_hold(true);  // whether it is held between samples was asked of an input that may be wrong
+    const auto [early, factor] = better_input();
     if (early == 0 && factor == 1) {
         experiment_->set_hold(hold);
         return;

@@ -37,6 +37,7 @@ inline dynamics::Model heave_model(const std::filesystem::path& folder) {
 /// What else the simulated rig of `heave_runs` is like.
 struct HeaveRig {
     double seconds = 30;
+    double noise = 2e-4;      ///< m, of a gap reading; declared so
     bool velocity = false;    ///< measured too, with a noise of 1 mm/s
     bool continuous = false;  ///< the controller follows motion and a waving set point between the samples instead of
                               ///< holding its force from step to step
@@ -46,7 +47,7 @@ struct HeaveRig {
 inline dynamics::Measurements heave_runs(const std::function<double(double, double, double)>& extra, int runs,
                                          double rate, std::uint64_t seed, const HeaveRig& rig = {}) {
     dynamics::Measurements data;
-    data.noise["gap"] = 2e-4;
+    data.noise["gap"] = rig.noise;
     for (int r = 0; r < runs; ++r) {
         core::Random random(seed, static_cast<std::uint64_t>(r));
         double h = 0.06 + 0.1 * random.uniform(), w = 0, target = h, next = 3;
@@ -65,7 +66,7 @@ inline dynamics::Measurements heave_runs(const std::function<double(double, doub
             };
             const double u = controlled(h, w, t);
             time.push_back(t);
-            gap.push_back(h + 2e-4 * random.normal());
+            gap.push_back(h + rig.noise * random.normal());
             if (rig.velocity) {
                 velocity.push_back(w + 1e-3 * random.normal());
             }
