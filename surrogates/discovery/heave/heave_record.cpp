@@ -208,6 +208,38 @@ std::size_t drop_saturated(const std::vector<double>& time, std::vector<double>&
     return dropped;
 }
 
+/// Means of coloured noise scatter as much as single readings do, and are smoother than any noise of first order: they
+/// would pass for motion.
+bool means_keep_scatter(const HeaveRecord& record, double noise) {
+    std::vector<double> shares;
+    for (std::size_t k = 0; k < record.gap.size(); ++k) {
+        if (std::isfinite(record.gap[k])) {
+            shares.push_back(record.gap_share[k]);
+        }
+    }
+    const double share = shares.empty() ? 1 : median(shares);
+    return share < 0.8 && dynamics::sensor_noise(record.time, record.gap) > 1.5 * share * noise;
+}
+
+std::vector<double> first_of_steps(const std::vector<double>& values, const std::vector<std::size_t>& step_of,
+                                   std::size_t steps) {
+    std::vector<double> first(steps, std::nan(""));
+    for (std::size_t i = step_of.size(); i-- > 0;) {
+        first[step_of[i]] = values[i];
+    }
+    return first;
+}
+
+/// One reading a step, at its own time, in the place of the mean.
+void keep_first_of_steps(const std::vector<double>& time, const std::vector<double>& gap,
+                         const std::vector<std::size_t>& step_of, HeaveRecord& record) {
+    for (std::size_t i = step_of.size(); i-- > 0;) {
+        record.time[step_of[i]] = time[i];
+    }
+    record.gap = first_of_steps(gap, step_of, record.time.size());
+    record.gap_share.assign(record.time.size(), 1);
+}
+
 /// Why the declared model cannot run this run; empty where it can. `doubt` is filled where it can with a reserve.
 std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, std::string& doubt,
                        bool& unit) {
@@ -504,6 +536,10 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         }
         const std::vector<std::size_t> step_of = make_steps(time, result.step, record.time);
         average(time, gap, step_of, record.time.size(), record.gap, record.gap_share);
+        const bool coloured = means_keep_scatter(record, noise);
+        if (coloured) {
+            keep_first_of_steps(time, gap, step_of, record);
+        }
         std::string held_at_mean;
         record.lift_scale = lift_over_steps(model, run, held, step_of, record.time.size(), held_at_mean);
         if (!held_at_mean.empty()) {
@@ -525,6 +561,10 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
                 drop_outliers(values, std::max(own, 1e-9));
                 velocity_noises.push_back(own);
                 average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
+                if (coloured) {
+                    record.velocity = first_of_steps(values, step_of, record.time.size());
+                    record.velocity_share.assign(record.time.size(), 1);
+                }
                 result.velocity_measured = true;
             }
         }
