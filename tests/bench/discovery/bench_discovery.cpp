@@ -14,6 +14,7 @@ namespace {
 const char* const usage =
     "bench_discovery [--kind single|clean|unknown|pair|noise|rig|\"rig ...\"] [--only EFFECT] [--level X] [--seeds N] "
     "[--first-seed N] [--rate HZ]\n"
+    "                [--write FOLDER: the data sets themselves, with their truth]\n"
     "                [--recalibrate: half and twice each number that decides a verdict (--only NAME), and what moves]\n"
     "                [--coloured 0|1] [--velocity 0|1] [--threads N] [--no-peers] [--markdown] [--verbose]\n"
     "Constants of the program were set on seeds below 6000 (rigs: below 20000); figures are quoted from seeds above.\n";

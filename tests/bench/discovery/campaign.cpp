@@ -7,8 +7,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <nlohmann/json.hpp>
 
+#include "core/file.h"
 #include "core/parallel.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "surrogates/dynamics/simulate/predict.h"
 
 namespace underbody::bench {
 
@@ -32,11 +37,36 @@ void describe(const Case& wanted, const Outcome& one, const discovery::Discovery
     }
     std::printf(
         "   %-60s -> %s %.2f gate %.2g: %s; dep %s; err %.2f -> %.2f (best %.2f, twins "
-        "%.2f, noise %.3g %s) pull %.1f; %.1f s\n",
+        "%.2f, noise %.3g %s, fresh %.2f) pull %.1f; %.1f s\n",
         wanted.text().c_str(), one.verdict.c_str(), one.stated, found.gate, said.c_str(), on.c_str(), one.before,
         one.after, one.best, found.rest.twins / found.error.front().noise, found.error.front().noise,
-        found.noise.empty() ? "" : found.noise.begin()->second.from.c_str(), one.pull, one.seconds);
+        found.noise.empty() ? "" : found.noise.begin()->second.from.c_str(), one.fresh, one.pull, one.seconds);
     std::fflush(stdout);
+}
+
+/// The data set as a folder that `underbody discover` reads, with its truth beside it.
+void write_set(const std::filesystem::path& folder, std::string kind, const Case& wanted, const Sample& sample,
+               const dynamics::Model& model, const dynamics::Measurements& data) {
+    std::replace_if(
+        kind.begin(), kind.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '-');
+    const std::filesystem::path own = folder / (kind + "-" + wanted.family + "-" + std::to_string(wanted.seed));
+    std::filesystem::create_directories(own);
+    dynamics::write_model(model, own / "model.toml");
+    std::string text = "kind = \"" +
+                       std::string(data.kind == dynamics::MeasurementKind::steady ? "static" : "time_series") +
+                       "\"\n[noise]\n";
+    for (const auto& [channel, noise] : data.noise) {
+        text += channel + " = \"" + core::format_number(noise, 9) + " " + core::find_quantity(channel)->unit + "\"\n";
+    }
+    for (const dynamics::MeasuredRun& run : data.runs) {
+        core::write_csv(own / (run.name + ".csv"), run.table);
+        text += "[[run]]\nfile = \"" + run.name + ".csv\"\nuse = \"" +
+                (run.use == dynamics::RunUse::test ? "test" : "train") + "\"\n";
+    }
+    core::write_file(own / "dataset.toml", text);
+    const nlohmann::json truth{
+        {"names", sample.names}, {"also", sample.also}, {"depends_on", sample.depends_on}, {"sub", kind}};
+    core::write_file(own / "truth.json", truth.dump(1) + "\n");
 }
 
 Outcome peer_outcome(const PeerAnswer& answer, const Sample& sample, const std::string& channel, double noise) {
@@ -71,6 +101,8 @@ Options read_options(int argc, char** argv, const char* usage) {
             o.first_seed = static_cast<std::uint64_t>(std::atoll(argv[++i]));
         else if (value("--level"))
             o.level = std::atof(argv[++i]);
+        else if (value("--write"))
+            o.write = argv[++i];
         else if (value("--rate"))
             o.rate = std::atof(argv[++i]);
         else if (value("--coloured"))
@@ -117,6 +149,10 @@ void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::
     const Sample sample = make_sample(wanted);
     dynamics::Measurements data = sample.train;
     data.runs.insert(data.runs.end(), sample.test.runs.begin(), sample.test.runs.end());
+    if (!options_.write.empty()) {
+        write_set(std::filesystem::path(options_.write), kind, wanted, sample, model, data);
+        return;
+    }
     discovery::DiscoverOptions settings;
     settings.figures = settings.consequence = false;
     settings.constants = options_.constants;
@@ -129,8 +165,14 @@ void Campaign::run(const std::string& kind, const Case& wanted, const dynamics::
     const double noise = noise_of(wanted, channel);
     one.before = found.error.front().before.rmse / noise;
     one.after = found.error.front().after.rmse / noise;
+    if (!sample.fresh.runs.empty()) {
+        const auto error = [&](const dynamics::Model& with) {
+            return dynamics::predict(with, sample.fresh).channels.front().rmse;
+        };
+        one.fresh = error(found.model) / error(model);
+    }
     fill(sample, data, found, one);
-    if (options_.verbose || (!one.right() && !one.tied()) || one.after > 1.15 * one.best) {
+    if (options_.verbose || (!one.right() && !one.tied()) || one.after > 1.15 * one.best || one.fresh > 1.05) {
         describe(wanted, one, found);
     }
     const std::string own =
@@ -192,6 +234,9 @@ void Campaign::print() const {
     for (const auto& [kind, methods] : tallies_) {
         for (const auto& [method, tally] : methods) {
             std::printf("%-40s %-28s %s\n", kind.c_str(), method.c_str(), tally.line().c_str());
+            if (const std::string fresh = tally.fresh_line(); !fresh.empty()) {
+                std::printf("%-40s %-28s %s\n", "", "", fresh.c_str());
+            }
         }
         if (kind.find("   ") != std::string::npos) {  // each data set stands in one of these
             const auto& outcomes = methods.at(own_method).outcomes;

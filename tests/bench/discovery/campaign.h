@@ -20,6 +20,7 @@ struct Options {
     int coloured = -1, velocity = -1;  ///< -1: by seed
     int threads = 0;
     bool verbose = false, peers = true, markdown = false;
+    std::string write;                        ///< folder that the data sets go to instead of to discover(); empty: none
     bool recalibrate = false;                 ///< once more with half and twice each number that decides a verdict
     std::map<std::string, double> constants;  ///< of those numbers, by name
 };

@@ -154,7 +154,7 @@ Track one_run(const Plant& plant, const Rig& rig, double rate, double seconds, i
     double h = begin, w = 0, integral = 0, felt = 0, held = 0, lagged = 0;
     double estimate = h, slope = 0;
     std::vector<double> commands;
-    const double stiff = style == 0 ? 0.25 + 0.2 * random.uniform() : 0.7 + 0.4 * random.uniform();
+    const double stiff = (style == 0 ? 0.25 : style == 1 ? 0.7 : 0.45) + (style == 1 ? 0.4 : 0.2) * random.uniform();
     const double damp = 2 * 0.5 * std::sqrt(stiff * mass);
     double phases[6], rates[6];
     for (int k = 0; k < 6; ++k) {
@@ -190,7 +190,7 @@ Track one_run(const Plant& plant, const Rig& rig, double rate, double seconds, i
     for (int k = 0; k < samples; ++k) {
         const double t = k * dt;
         double reference = target;
-        if (style == 0 && t > next_step) {
+        if (style != 1 && t > next_step) {
             target = 0.03 + 0.24 * random.uniform();
             next_step = t + 4 + 7 * random.uniform();
         }
@@ -480,8 +480,8 @@ Sample make_heave(const Case& wanted) {
             return plant.force(t, h, w, u) - Plant().force(t, h, w, u);
         };
     }
-    for (const int style : {0, 1}) {
-        dynamics::Measurements& data = style == 0 ? sample.train : sample.test;
+    for (const int style : {0, 1, 2}) {
+        dynamics::Measurements& data = style == 0 ? sample.train : style == 1 ? sample.test : sample.fresh;
         data.kind = dynamics::MeasurementKind::time_series;
         data.title = wanted.text();
         if (wanted.declared_noise > 0) {
@@ -493,7 +493,7 @@ Sample make_heave(const Case& wanted) {
         for (int k = 0; k < (style == 0 ? 8 : 4); ++k) {
             core::Random own(wanted.seed * 101 + static_cast<std::uint64_t>(style) * 17, static_cast<std::uint64_t>(k));
             dynamics::MeasuredRun one;
-            one.name = (style == 0 ? "run-" : "test-") + std::to_string(k + 1);
+            one.name = (style == 0 ? "run-" : style == 1 ? "test-" : "fresh-") + std::to_string(k + 1);
             one.table = table_of(run(plant, wanted.rig, wanted.rate, 40, style, own), wanted, own);
             one.use = style == 0 ? dynamics::RunUse::train : dynamics::RunUse::test;
             data.runs.push_back(std::move(one));

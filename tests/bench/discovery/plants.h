@@ -42,6 +42,8 @@ struct Case {
 struct Sample {
     dynamics::Measurements train;
     dynamics::Measurements test;  ///< another controller and excitation (heave), other set points (static)
+    dynamics::Measurements
+        fresh;  ///< heave: the same rig once more, another controller again: discover() never sees it
     std::vector<std::string> names;
     std::vector<std::string> depends_on;         ///< of an unknown law
     std::vector<std::vector<std::string>> also;  ///< other verdicts that are right ({"none"}: nothing)

@@ -105,6 +105,20 @@ double Tally::oracle_gap() const {
     return discovery::median(ratios);
 }
 
+std::string Tally::fresh_line() const {
+    double worst = 0;
+    std::size_t all = 0, harmed = 0;
+    for (const Outcome& one : outcomes) {
+        if (std::isfinite(one.fresh)) {
+            worst = std::max(worst, one.fresh);
+            harmed += one.fresh > 1.05 ? 1 : 0;
+            ++all;
+        }
+    }
+    return all == 0 ? ""
+                    : text("fresh error over before: worst %.2f, above 1.05: %s", worst, share(harmed, all).c_str());
+}
+
 std::string Tally::line() const {
     const std::size_t right = count([](const Outcome& o) { return o.right(); });
     const std::size_t tied = count([](const Outcome& o) { return o.tied(); });

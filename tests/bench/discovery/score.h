@@ -22,7 +22,10 @@ struct Outcome {
     double stated = std::nan("");  ///< probability of the verdict
     double before = 0, after = 0;  ///< held-out RMSE of the chief quantity, in noise
     double best = std::nan("");    ///< the same with the true law refitted
-    double pull = std::nan("");    ///< (estimate - truth)/sigma of the first number of a rightly named effect
+    /// Error of predictions of fresh runs with the model as found over that with the model as declared; NaN: no such
+    /// runs.
+    double fresh = std::nan("");
+    double pull = std::nan("");  ///< (estimate - truth)/sigma of the first number of a rightly named effect
     double seconds = 0;
 
     [[nodiscard]] bool right() const;
@@ -54,6 +57,8 @@ struct Tally {
     [[nodiscard]] std::string line() const;
     /// Median over data sets of the error after over that of the true law refitted; NaN when no set has one.
     [[nodiscard]] double oracle_gap() const;
+    /// The largest `fresh`, and how many are above 1.05.
+    [[nodiscard]] std::string fresh_line() const;
     /// Root of the mean squares of the error after, in noise.
     [[nodiscard]] double after() const;
     [[nodiscard]] double before() const;
