@@ -30,8 +30,11 @@ Discovery StaticLoop::run() {
     experiment_.estimate_noise();
     progress_.report(0.1, "fitting the effects of the catalogue");
     fit_singles();
+    try_two();
     leave_accidents_out();
+    try_two();
     whiten();
+    fitted_.resize(singles_);
     progress_.report(0.4, "testing what is left");
     open_gate();
     if (gate_ < calibration_.gate) {
@@ -156,7 +159,7 @@ void StaticLoop::fit_singles() {
 }
 
 std::vector<double> StaticLoop::left_over() const {
-    const std::size_t best = best_hypothesis(fitted_, 1);
+    const std::size_t best = best_hypothesis(fitted_, 2);
     std::vector<double> left = best < fitted_.size() ? fitted_[best].fit.residuals : null_residuals_;
     const StaticStructure structure(experiment_, train_);
     for (const StaticStructure::Test& test : structure.tests()) {

@@ -69,10 +69,8 @@ bool StaticLoop::falls(const BlockErrors& declared, const BlockErrors& named, co
 }
 
 /// The twins of a static set have readings of one standard deviation about the model as found.
-bool StaticLoop::rest_is_noise(const BlockErrors& errors) {
-    const double error = errors.rmse();
-    rest_in_noise_ = std::sqrt(std::max(0.0, error * error - 1));
-    return error <= calibration_.most_over_twins ||
+bool StaticLoop::rest_is_noise(const BlockErrors& errors) const {
+    return errors.rmse() <= calibration_.most_over_twins ||
            chi_squared_tail(errors.sum_of_squares(), static_cast<double>(errors.count())) > calibration_.rest_chance;
 }
 
@@ -116,12 +114,13 @@ void StaticLoop::guard() {
     } else if (result_.verdict == "unknown" && !correct(declared)) {
         cap_probabilities(attribution_, 0.5);
     }
-    result_.rest.is_noise = rest_is_noise(uses_.empty() ? declared : held_out_errors(uses_));
+    result_.rest.is_noise = rest_is_noise(held_out_errors(uses_));
     if (result_.verdict == "none" && !result_.rest.is_noise) {
         result_.verdict = "unknown";
         rule_out_none(attribution_, correct(declared) ? 0.8 : 0.5);
-        result_.rest.is_noise = rest_is_noise(uses_.empty() ? declared : held_out_errors(uses_));
+        result_.rest.is_noise = rest_is_noise(held_out_errors(uses_));
     }
+    rest_in_noise_ = std::sqrt(std::max(0.0, std::pow(held_out_errors(uses_).rmse(), 2) - 1));
     result_.none_probability = attribution_.none_probability;
     if (!result_.rest.is_noise) {
         result_.rest.depends_on = result_.verdict == "effect" ? rest_.variables : whole_.variables;

@@ -40,6 +40,14 @@ private:
     /// What each effect does to the residuals when it is small.
     [[nodiscard]] std::vector<DesignMatrix> directions() const;
     void open_gate();
+    /// The best five singles, each with every other; without those that undo each other.
+    [[nodiscard]] std::vector<FittedHypothesis> pairs_of_leaders() const;
+    [[nodiscard]] bool earns_its_place(const FittedHypothesis& pair) const;
+    /// Whether what it leaves on held-out set points is noise.
+    [[nodiscard]] bool says_all(const FittedHypothesis& one);
+    /// What one of two effects leaves would pass for accidents and coloured noise: the best pair beside the singles,
+    /// for left_over() alone.
+    void try_two();
     /// A second effect is looked for only where the best single one leaves structure, and stays only when it earns its
     /// place.
     void fit_pairs();
@@ -59,7 +67,7 @@ private:
     [[nodiscard]] BlockErrors held_out_errors(const std::vector<dynamics::EffectUse>& uses) const;
     /// Whether the error of set points that nothing was fitted to falls with a named effect.
     [[nodiscard]] bool falls(const BlockErrors& declared, const BlockErrors& named, const Hypothesis& hypothesis) const;
-    [[nodiscard]] bool rest_is_noise(const BlockErrors& errors);
+    [[nodiscard]] bool rest_is_noise(const BlockErrors& errors) const;
     /// Puts a smooth correction in the place of uses_ where the held-out error falls with it; false: leaves them.
     bool correct(const BlockErrors& before);
     void guard();

@@ -51,10 +51,7 @@ void StaticLoop::open_gate() {
     result_.depends_on = whole_.variables;
 }
 
-void StaticLoop::fit_pairs() {
-    if (best_single_ >= fitted_.size() || rest_.p > calibration_.unknown_p) {
-        return;
-    }
+std::vector<FittedHypothesis> StaticLoop::pairs_of_leaders() const {
     std::vector<std::size_t> order(singles_);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
@@ -91,15 +88,45 @@ void StaticLoop::fit_pairs() {
     std::erase_if(found, [&](const FittedHypothesis& pair) {
         return cancels(pair) || !differs_from_neutral(pair, calibration_.neutral_sigmas);
     });
+    return found;
+}
+
+bool StaticLoop::earns_its_place(const FittedHypothesis& pair) const {
+    const double gain = fitted_[best_hypothesis(fitted_, 1)].score() - pair.score();
+    return gain > calibration_.pair_gain && gain > calibration_.pair_share * std::max(pair.explained, 1e-12);
+}
+
+bool StaticLoop::says_all(const FittedHypothesis& one) {
+    if (test_experiment_) {
+        test_experiment_->set_noise(experiment_.noise());
+    }
+    return rest_is_noise(held_out_errors(one.hypothesis.with(one.fit.parameters)));
+}
+
+void StaticLoop::try_two() {
+    const std::size_t single = best_hypothesis(fitted_, 1);
+    if (single >= fitted_.size() || fitted_.size() > singles_ || says_all(fitted_[single])) {
+        return;
+    }
+    std::vector<FittedHypothesis> found = pairs_of_leaders();
+    const std::size_t best = best_hypothesis(found, 2);
+    if (best < found.size() && earns_its_place(found[best])) {
+        fitted_.push_back(std::move(found[best]));
+    }
+}
+
+void StaticLoop::fit_pairs() {
+    if (best_single_ >= fitted_.size() || (rest_.p > calibration_.unknown_p && says_all(fitted_[best_single_]))) {
+        return;
+    }
+    const std::vector<FittedHypothesis> found = pairs_of_leaders();
     const std::size_t best = best_hypothesis(found, 2);
     if (best >= found.size()) {
         return;
     }
-    const double gain = fitted_[best_single_].score() - found[best].score();
     const SmoothFit rest = structure_->best(found[best].fit.residuals);
-    const double share = gain / std::max(found[best].explained, 1e-12);
     // two laws together bend to much: what they leave must look like noise, or nearly
-    if (gain > calibration_.pair_gain && share > calibration_.pair_share &&
+    if (earns_its_place(found[best]) &&
         (rest.p > calibration_.unknown_p ||
          structure_left(rest, found[best].explained) < 0.15 * calibration_.unknown_share)) {
         fitted_.insert(fitted_.end(), found.begin(), found.end());

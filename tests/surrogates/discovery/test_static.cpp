@@ -20,6 +20,11 @@ Discovery found_on(const std::function<double(double, double)>& truth, std::uint
                     options);
 }
 
+bool warned(const Discovery& found, const std::string& words) {
+    return std::any_of(found.problems.begin(), found.problems.end(),
+                       [&](const core::Problem& problem) { return problem.message.find(words) != std::string::npos; });
+}
+
 double declared(double gap, double voltage) { return test::lift_of(gap) * voltage * voltage / 100; }
 
 }  // namespace
@@ -66,27 +71,23 @@ TEST(StaticDiscovery, CallsWhatTheCatalogueLacksUnknownAndSaysOnWhatItDepends) {
 }
 
 TEST(StaticDiscovery, NamesNothingThatTheHeldOutSetPointsDoNotShow) {
-    // a bias of 0.45 of the noise: seen in the fitted readings of most sets, beyond chance in the held-out ones of few
+    // a bias in the fitted readings of most sets at 0.45 of the noise, beyond chance in the others at once the noise
     int named = 0, refused = 0;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         const Discovery found = found_on([](double h, double v) { return declared(h, v) + 0.00045; }, seed);
-        const bool said = std::any_of(found.problems.begin(), found.problems.end(), [](const core::Problem& problem) {
-            return problem.message.find("the held-out error does not fall") != std::string::npos;
-        });
-        if (said) {
+        if (warned(found, "the held-out error does not fall")) {
             EXPECT_EQ(found.verdict, "none") << found.sentence;
             EXPECT_TRUE(found.model.effects.empty());
             for (const FoundEffect& rival : found.alternatives) {
                 EXPECT_LE(rival.probability, 0.5);
             }
-        } else if (found.verdict == "effect") {
-            EXPECT_LT(found.error.front().after.rmse, found.error.front().before.rmse) << found.sentence;
+            ++refused;
         }
-        named += found.verdict == "effect";
-        refused += said;
+        const Discovery twice = found_on([](double h, double v) { return declared(h, v) + 0.001; }, seed);
+        named += twice.verdict == "effect" && twice.effects.front().name == "force_bias" ? 1 : 0;
     }
     EXPECT_GE(refused, 2);
-    EXPECT_GE(named, 1);
+    EXPECT_GE(named, 11);
 }
 
 TEST(StaticDiscovery, FindsOutThatADeclaredNoiseIsWrong) {
