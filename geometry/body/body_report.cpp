@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "geometry/body/body_surface.h"
 #include "geometry/body/exact_body.h"
+#include "geometry/body/variants.h"
 #include "geometry/mesh/mesh_reader.h"
 
 namespace underbody::geometry {
@@ -101,6 +102,10 @@ Body read_body(const std::filesystem::path& path, const BodyOptions& options, co
     body.density = options.density;
     if (core::lower_case(path.extension().string()) == ".toml") {
         body.shape = read_shape(path);
+        for (const auto& [name, value] : options.set) {
+            set_parameter(*body.shape, name, value);
+        }
+        check(*body.shape);
         body.name = body.shape->name;
         body.loading = read_loading(path);
         SurfaceOptions surface;
@@ -110,6 +115,10 @@ Body read_body(const std::filesystem::path& path, const BodyOptions& options, co
         progress.report(0.3, "certificate");
         body.certificate = certify(body.mesh, *body.shape, progress);
     } else {
+        if (!options.set.empty()) {
+            throw core::InputError("set", "a surface has no parameters to set, only a SHAPE.toml has",
+                                   {path.string(), {}, {}, {}});
+        }
         body.name = path.stem().string();
         MeshReadOptions reading;
         reading.unit = options.unit;

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/progress.h"
@@ -25,6 +26,8 @@ struct BallastWish {
 };
 
 struct BodyOptions {
+    /// Parameters of a SHAPE.toml that are other than in the file: name, value as written (`set_parameter`).
+    std::vector<std::pair<std::string, std::string>> set;
     std::size_t triangles = 20000;
     std::optional<std::string> unit;  ///< of a surface file
     double feature_angle = 20;        ///< degrees, of a surface file
@@ -61,8 +64,9 @@ struct Body {
 };
 
 /// SHAPE.toml, or a surface by its ending (whose origin is moved to the middle of its base when it has one).
-/// Throws core::InputError: as the readers do; a surface that does not pass its certificate (with the place); a
-/// placement that puts a point of the body below the ground (with the nearest gap and pitch).
+/// Throws core::InputError: as the readers and `check` do; parameters for a surface file, which has none; a surface
+/// that does not pass its certificate (with the place); a placement that puts a point of the body below the ground
+/// (with the nearest gap and pitch).
 Body read_body(const std::filesystem::path& path, const BodyOptions& options = {},
                core::Progress& progress = core::Progress::none());
 

@@ -12,6 +12,7 @@
 #include "postproc/views/views.h"
 #include "studio/cli/body_parts.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/option_value.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
@@ -113,8 +114,9 @@ namespace {
 
 struct MakeOptions {
     BodyInput input;
-    std::string out, out_unit = "m", picture, section, underside, gap_picture, area_curve, area_up_to, ballast,
-                     trim_pitch = "0 deg", trim_roll = "0 deg";
+    std::vector<std::string> set;
+    std::string as, out, out_unit = "m", picture, section, underside, gap_picture, area_curve, area_up_to, ballast,
+                         trim_pitch = "0 deg", trim_roll = "0 deg";
     bool ascii = false;
 };
 
@@ -227,7 +229,7 @@ int make_body(const MakeOptions& o, Shell& shell) {
     if (!o.out.empty()) {
         geometry::mesh_format_of(o.out);  // a wrong ending is told before the work
     }
-    for (const std::string& file : {o.out, o.picture, o.section, o.underside, o.gap_picture, o.area_curve}) {
+    for (const std::string& file : {o.as, o.out, o.picture, o.section, o.underside, o.gap_picture, o.area_curve}) {
         Shell::will_write(file);
     }
     geometry::BodyOptions options = o.input.options();
@@ -244,7 +246,18 @@ int make_body(const MakeOptions& o, Shell& shell) {
         options.ballast =
             geometry::BallastWish{o.ballast, core::parse_in(o.trim_pitch, "rad"), core::parse_in(o.trim_roll, "rad")};
     }
+    for (const auto& assignment : o.set) {
+        options.set.push_back(name_and_value("--set", assignment));
+    }
     geometry::Body body = geometry::read_body(o.input.shape, options, shell.progress());
+    if (!o.as.empty()) {
+        if (!body.shape) {
+            throw core::UsageError("shape", "--as writes a SHAPE.toml, and a surface is none");
+        }
+        geometry::BodyShape shape = *body.shape;
+        shape.name = std::filesystem::path(o.as).stem().string();
+        core::write_file(o.as, geometry::write_shape(shape));
+    }
     if (const std::string doubt = options.placement ? o.input.doubt(body.mesh) : std::string(); !doubt.empty()) {
         body.remarks.push_back(doubt);
     }
@@ -293,6 +306,9 @@ void add_make(CLI::App* command, Shell& shell, const std::shared_ptr<BodyActions
     auto o = std::make_shared<MakeOptions>();
     o->input.add_to(command, false);
     o->input.add_placement(command);
+    command->add_option("--set", o->set,
+                        "a parameter other than in the file, such as protrusion.height=2mm (repeatable)");
+    command->add_option("--as", o->as, "SHAPE.toml to write, of the shape with what was set (without its [mass])");
     command->add_option("--out", o->out, "surface to write: .stl, .obj, .ply or .vtp");
     command->add_option("--out-unit", o->out_unit, "unit of length in that file")->capture_default_str();
     command->add_flag("--ascii", o->ascii, "STL as text, one solid a patch");
@@ -325,6 +341,7 @@ void add_body_command(CLI::App& app, Shell& shell) {
         "Examples:\n"
         "  underbody body cases/evie/shapes/ellipse.toml --out evie.stl\n"
         "  underbody body shape.toml --out placed.vtp --gap 5mm --pitch 2deg --json\n"
+        "  underbody body shape.toml --set protrusion.height=2mm --set protrusion.length=10mm --as bumped.toml\n"
         "  underbody body hull.stl --unit mm --section hull.png\n"
         "  underbody body compare a.toml b.toml\n"
         "  underbody body added-mass shape.toml --gap 1mm:100mm --out added-mass.csv\n"

@@ -13,6 +13,7 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/model_options.h"
 #include "studio/cli/region_loop.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
@@ -24,6 +25,7 @@ namespace {
 
 struct RegionArguments {
     std::string model;
+    std::vector<std::string> set;
     std::string axes;
     std::string grid;
     std::string duration = "60 s";
@@ -269,7 +271,7 @@ int run_region(const RegionArguments& a, Shell& shell) {
     for (const std::string& file : {a.out, a.table, a.shares}) {
         Shell::will_write(file);
     }
-    const dynamics::Model model = dynamics::read_model(a.model);
+    const dynamics::Model model = model_with(a.model, a.set);
     const dynamics::RegionOptions options = options_of(a, model);
     if (a.loop.given()) {
         return run_region_with_estimator(a.loop, model, options, a.draws, a.seed, a.out, a.table, shell);
@@ -329,6 +331,7 @@ void add_region_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("region", "stability region: for each start, where the motion ends");
     auto a = std::make_shared<RegionArguments>();
     command->add_option("model", a->model, "the model (model.toml)")->required();
+    command->add_option("--set", a->set, set_help());
     command->add_option("--axes", a->axes,
                         "the two axes of starts and their ranges (default gap=0:0.5,heave_velocity=-0.1:0.1)");
     command->add_option("--grid", a->grid,

@@ -12,6 +12,7 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/model_options.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/plant/heave.h"
@@ -25,6 +26,7 @@ namespace {
 using dynamics::Channel;
 
 struct SimulateArguments {
+    std::vector<std::string> set;
     std::string model;
     std::string from;
     std::string duration = "60 s";
@@ -207,7 +209,7 @@ struct Job {
 };
 
 Job job_of(const SimulateArguments& a) {
-    Job job{dynamics::read_model(a.model), {}, {}, {}, {}, {}};
+    Job job{model_with(a.model, a.set), {}, {}, {}, {}, {}};
     job.inputs.thrust.resize(job.model.jets.size());
     if (!a.inputs.empty()) {
         read_inputs(a.inputs, job.model.jets, job.inputs);
@@ -412,6 +414,7 @@ void add_simulate_command(CLI::App& app, Shell& shell) {
             "where it starts: gap, heave_velocity, pitch, pitch_rate, speed, sway_velocity, yaw_rate, heading, "
             "north, east (default 0)")
         ->required();
+    command->add_option("--set", a->set, set_help());
     command->add_option("--for", a->duration, "how long (default 60 s)");
     command
         ->add_option("--motion", a->motion,

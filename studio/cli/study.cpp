@@ -9,7 +9,9 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/shell.h"
 #include "studio/cli/study_parts.h"
+#include "studio/cli/study_set.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
@@ -261,6 +263,7 @@ void add_study_command(CLI::App& app, Shell& shell) {
 
     add_study_why(study, arguments, shell);
     add_study_add(study, arguments, shell);
+    add_study_set(*study, shell);
 }
 
 }  // namespace underbody::studio

@@ -142,8 +142,8 @@ QString discovery_page(const std::string& text) {
     return page;
 }
 
-DiscoveryPanel::DiscoveryPanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent) {
-    setObjectName("discovery");
+DiscoveryPanel::DiscoveryPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
+    setObjectName("loop");
     auto* column = new QVBoxLayout(this);
     auto* row = new QHBoxLayout;
     column->addLayout(row);
@@ -153,46 +153,47 @@ DiscoveryPanel::DiscoveryPanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent
     row->addWidget(choice_);
     row->addStretch(1);
     auto* effects = new QPushButton("&Effects …");
-    effects->setToolTip("Every effect that a model may lack (F1)");
+    effects->setToolTip("Every effect that a model may lack");
     row->addWidget(effects);
     connect(effects, &QPushButton::clicked, this, [this] { show_catalogue(); });
     page_ = new QTextBrowser;
     column->addWidget(page_, 1);
-    connect(choice_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] { show_measurement(); });
+    choice_->setAccessibleName("Measurement");
+    connect(choice_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+        desk_.act({"select", "measurement/" + choice_->currentText().toStdString()});
+    });
     page_->setHtml("<p style='color: gray'>Open a study with measurements</p>");
 }
 
-void DiscoveryPanel::show_session(const SessionPointer& session) {
-    session_ = session;
-    const QString kept = choice_->currentText();
-    {
-        const QSignalBlocker quiet(choice_);
-        choice_->clear();
-        for (const auto& measurement : session->study.measurements) {
-            choice_->addItem(QString::fromStdString(measurement.name));
-        }
-        const int at = choice_->findText(kept);
-        choice_->setCurrentIndex(at >= 0 ? at : 0);
+void DiscoveryPanel::draw_again(bool) {
+    const QSignalBlocker quiet(choice_);
+    std::vector<std::string> names;
+    choice_->clear();
+    for (const auto& measurement : session().study.measurements) {
+        names.push_back(measurement.name);
+        choice_->addItem(QString::fromStdString(measurement.name));
     }
+    choice_->setCurrentText(QString::fromStdString(state().current("measurement", names)));
     show_measurement();
 }
 
 void DiscoveryPanel::show_measurement() {
     const std::string name = choice_->currentText().toStdString();
     if (name.empty()) {
-        page_->setHtml("<p style='color: gray'>This study has no measurements</p>");
+        page_->setHtml(desk_.has_study() ? "<p style='color: gray'>This study has no measurements</p>"
+                                         : "<p style='color: gray'>Open a study with measurements</p>");
         return;
     }
     QString page = "<h1>" + html(name) + "</h1>";
-    const auto* found = session_->results.document("discovery/" + name);
-    const auto* residual = session_->results.document("residual/" + name);
+    const auto* found = session().results.document("discovery/" + name);
+    const auto* residual = session().results.document("residual/" + name);
     if (found != nullptr) {
         page += discovery_page(*found);
     } else if (residual == nullptr) {
         page += "<p>Not computed yet: Study &gt; Compute what changed (Ctrl+R).</p>";
     }
     const int width = std::max(400, page_->viewport()->width() - 40);
-    for (const auto& [key, png] : session_->results.pictures) {
+    for (const auto& [key, png] : session().results.pictures) {
         if (key.find(name) == std::string::npos ||
             (key.find("residual") == std::string::npos && key.find("discovery") == std::string::npos)) {
             continue;
@@ -206,7 +207,7 @@ void DiscoveryPanel::show_measurement() {
     page_->setHtml(page);
 }
 
-bool DiscoveryPanel::has_picture() const { return session_ != nullptr && choice_->count() > 0; }
+bool DiscoveryPanel::has_picture() const { return choice_->count() > 0; }
 
 void DiscoveryPanel::export_picture(const std::filesystem::path& path) {
     if (path.extension() != ".png") {

@@ -11,17 +11,18 @@ namespace underbody::studio {
 class DiscoveryPanel : public Panel {
     Q_OBJECT
 public:
-    DiscoveryPanel(Jobs& jobs, QWidget* parent);
-    void show_session(const SessionPointer& session) override;
+    DiscoveryPanel(Desk& desk, QWidget* parent);
     [[nodiscard]] bool has_picture() const override;
+    [[nodiscard]] QStringList picture_endings() const override { return {".png"}; }
     void export_picture(const std::filesystem::path& path) override;
     /// The catalogue of effects, in a window of its own.
     void show_catalogue();
 
+protected:
+    void draw_again(bool session) override;
+
 private:
     void show_measurement();
-
-    SessionPointer session_;
     QComboBox* choice_ = nullptr;
     QTextBrowser* page_ = nullptr;
 };

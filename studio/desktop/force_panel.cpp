@@ -3,12 +3,10 @@
 #include <QBoxLayout>
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHeaderView>
 #include <QLabel>
 #include <QSignalBlocker>
-#include <QSlider>
 #include <QTableWidget>
 #include <algorithm>
 #include <cmath>
@@ -16,7 +14,7 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "studio/desktop/jobs.h"
+#include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
@@ -35,14 +33,10 @@ QString number(double value, int digits = 4) {
     return std::isnan(value) ? QString("–") : qt(core::format_number(value, digits)).replace('-', QChar(0x2212));
 }
 
-constexpr int slider_steps = 2000;
-
 }  // namespace
 
-double ForcePanel::Held::value() const { return lower + (upper - lower) * slider->value() / slider_steps; }
-
-ForcePanel::ForcePanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent) {
-    setObjectName("forces");
+ForcePanel::ForcePanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
+    setObjectName("tables");
     build();
 }
 
@@ -52,7 +46,7 @@ void ForcePanel::build() {
     auto* all = new QHBoxLayout(this);
     auto* left = new QVBoxLayout;
     auto* controls = new QWidget;
-    controls->setFixedWidth(270);
+    controls->setFixedWidth(340);
     controls->setLayout(left);
     all->addWidget(controls, 0);
     auto* form = new QFormLayout;
@@ -66,6 +60,9 @@ void ForcePanel::build() {
     about_->setWordWrap(true);
     about_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     left->addWidget(about_);
+    reach_ = new QLabel;
+    reach_->setWordWrap(true);
+    left->addWidget(reach_);
     left->addStretch(1);
 
     auto* right = new QVBoxLayout;
@@ -73,6 +70,7 @@ void ForcePanel::build() {
     plot_ = new PlotView(this);
     right->addWidget(plot_, 1);
     connect(plot_, &PlotView::hovered, this, &Panel::remark);
+    connect(plot_, &PlotView::clicked, this, &ForcePanel::point_clicked);
     list_ = new QTableWidget(0, 7);
     list_->setHorizontalHeaderLabels(
         {"gap (mm)", "± (mm)", "stability", "stiffness (N/m)", "frequency (Hz)", "largest kick (mm/s)", "remark"});
@@ -89,114 +87,125 @@ void ForcePanel::build() {
 void ForcePanel::build_controls(QFormLayout& form) {
     choice_ = new QComboBox;
     choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    form.addRow("Force table", choice_);
+    choice_->setAccessibleName("Force table");
+    form.addRow("Force &table", choice_);
     view_ = new QComboBox;
-    form.addRow("Shown as", view_);
-    weight_ = new QSlider(Qt::Horizontal);
-    weight_->setRange(-slider_steps, slider_steps);
-    weight_->setToolTip("Weight less buoyancy, positive sinks. Drag it and watch the equilibria move.");
-    weight_box_ = new QDoubleSpinBox;
-    weight_box_->setDecimals(4);
-    weight_box_->setSuffix(" N");
-    weight_box_->setRange(-1e6, 1e6);
-    weight_box_->setSingleStep(0.01);
-    auto* weight_row = new QHBoxLayout;
-    weight_row->addWidget(weight_, 1);
-    weight_row->addWidget(weight_box_);
-    form.addRow("Net weight", weight_row);
-    mass_ = new QDoubleSpinBox;
-    mass_->setDecimals(3);
-    mass_->setSuffix(" kg");
-    mass_->setRange(0, 1e6);
-    mass_->setSingleStep(0.1);
-    mass_->setToolTip("Mass and added mass in heave: for the frequency and the largest kick");
-    form.addRow("Virtual mass", mass_);
-    logarithmic_ = new QCheckBox("&logarithmic axis");
+    view_->setAccessibleName("Shown as");
+    form.addRow("Shown &as", view_);
+    weight_ = new ParameterRow("net weight", "weight less buoyancy, positive sinks: drag it and watch the equilibria",
+                               "N", "N");
+    mass_ =
+        new ParameterRow("virtual mass", "mass and added mass in heave: for frequency and largest kick", "kg", "kg");
+    form.addRow(weight_);
+    form.addRow(mass_);
+    logarithmic_ = new QCheckBox("l&ogarithmic axis");
     form.addRow(logarithmic_);
-    connect(logarithmic_, &QCheckBox::toggled, this, [this] { redraw(); });
-    connect(choice_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] { choose_table(); });
-    connect(view_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] {
-        if (table_) {
-            suggest_scale();
-        }
-        fill_held();
-        redraw();
+    connect(logarithmic_, &QCheckBox::clicked, this,
+            [this](bool on) { act(on ? "logarithmic=on" : "logarithmic=off"); });
+    connect(choice_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+        desk_.act({"select", "table/" + choice_->currentText().toStdString()});
     });
-    connect(mass_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this] { redraw(); });
-    connect(weight_, &QSlider::valueChanged, this, [this](int step) {
-        const QSignalBlocker quiet(weight_box_);
-        weight_box_->setValue(weight_range_ * step / slider_steps);
-        redraw();
-    });
-    connect(weight_box_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double value) {
-        const QSignalBlocker quiet(weight_);
-        weight_->setValue(static_cast<int>(std::lround(std::clamp(value / weight_range_, -1.0, 1.0) * slider_steps)));
-        redraw();
-    });
+    connect(view_, QOverload<int>::of(&QComboBox::activated), this,
+            [this] { act("shown=" + view_->currentData().toString().toStdString()); });
+    const auto row = [this](ParameterRow* one, const char* key, const char* unit) {
+        const auto text = [key, unit](double value) {
+            return std::string(key) + "=" + core::format_number(value) + " " + unit;
+        };
+        connect(one, &ParameterRow::moved, this,
+                [this, text](double value, const QString& gesture) { act(text(value), gesture); });
+        connect(one, &ParameterRow::entered, this, [this, text](double value) { act(text(value)); });
+        connect(one, &ParameterRow::released, this, [this] { desk_.end_gesture(); });
+        connect(one, &ParameterRow::reset, this, [this, key] { act(std::string(key) + "="); });
+    };
+    row(weight_, "net_weight", "N");
+    row(mass_, "virtual_mass", "kg");
 }
 
-void ForcePanel::show_session(const SessionPointer& session) {
-    session_ = session;
-    const QString kept = choice_->currentText();
-    {
-        const QSignalBlocker quiet(choice_);
-        choice_->clear();
-        for (const auto& table : session->study.tables) {
-            choice_->addItem(qt(table.name));
-        }
-        const int at = choice_->findText(kept);
-        choice_->setCurrentIndex(at >= 0 ? at : 0);
+void ForcePanel::act(const std::string& assignment, const QString& gesture) {
+    if (!spec_.name.empty()) {
+        desk_.act({"table", spec_.name, assignment}, gesture);
     }
-    choose_table();
 }
 
-void ForcePanel::choose_table() {
-    const auto index = static_cast<std::size_t>(std::max(0, choice_->currentIndex()));
-    if (!session_ || index >= session_->study.tables.size()) {
+const TableView& ForcePanel::settings() const {
+    static const TableView none;
+    const auto at = state().tables.find(spec_.name);
+    return at == state().tables.end() ? none : at->second;
+}
+
+bool ForcePanel::has_weight() const { return spec_.quantity == "lift_force"; }
+double ForcePanel::net_weight() const { return settings().net_weight.value_or(spec_.net_weight.value_or(0)); }
+double ForcePanel::virtual_mass() const { return settings().virtual_mass.value_or(spec_.virtual_mass); }
+
+void ForcePanel::draw_again(bool fresh) {
+    const QSignalBlocker quiet(choice_);
+    choice_->clear();
+    for (const auto& table : session().study.tables) {
+        choice_->addItem(qt(table.name));
+    }
+    choose_table(fresh);
+}
+
+void ForcePanel::choose_table(bool fresh) {
+    std::vector<std::string> names;
+    for (const auto& table : session().study.tables) {
+        names.push_back(table.name);
+    }
+    const std::string name = state().current("table", names);
+    const auto* spec = session().study.find_table(name);
+    QString why;
+    if (spec == nullptr) {
+        why = desk_.has_study() ? "This study has no force tables" : "Open a study with force tables";
+    } else if (session().results.loads.rows() == 0) {
+        why = "The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)";
+    }
+    if (!why.isEmpty()) {
         table_.reset();
+        spec_ = {};
         list_->setRowCount(0);
         about_->clear();
-        plot_->show_text("This study has no force tables");
+        reach_->clear();
+        plot_->show_text(why);
         return;
     }
-    if (session_->results.loads.rows() == 0) {
-        table_.reset();
-        list_->setRowCount(0);
-        about_->clear();
-        plot_->show_text("The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)");
-        return;
+    choice_->setCurrentText(qt(name));
+    if (fresh || spec_.name != name || fitted_ != desk_.session_pointer()) {
+        fit(*spec);
+    } else if (table_) {
+        show_table();
     }
-    const auto spec = session_->study.tables[index];
-    jobs_.start("force table", "fitting " + qt(spec.name), [this, spec, session = session_](core::Progress&) {
-        auto table = std::make_shared<tables::ForceTable>(tables::ForceTable::fit(
+}
+
+void ForcePanel::fit(const cases::TableSpec& spec) {
+    spec_ = spec;
+    fitted_ = desk_.session_pointer();
+    table_.reset();
+    jobs_.start("force table", "fitting " + qt(spec.name), [this, spec, session = fitted_](core::Progress&) {
+        const auto table = std::make_shared<const tables::ForceTable>(tables::ForceTable::fit(
             cases::table_points(spec, session->results), spec.quantity, cases::fit_options(spec)));
         return [this, spec, table] {
-            spec_ = spec;
-            table_ = std::make_unique<tables::ForceTable>(*table);
-            show_table();
+            if (spec_.name == spec.name) {
+                table_ = table;
+                for (const auto& remark : table_->remarks()) {
+                    Q_EMIT problem(remark);
+                }
+                show_table();
+            }
         };
     });
 }
 
 void ForcePanel::show_table() {
-    for (const auto& remark : table_->remarks()) {
-        Q_EMIT problem(remark);
-    }
     double largest = 0;
     for (const double value : table_->points().numbers(spec_.quantity)) {
         largest = std::max(largest, std::abs(value));
     }
     weight_range_ = largest > 0 ? 1.2 * largest : 1;
-    const bool has_weight = spec_.quantity == "lift_force";
-    for (auto* widget : std::initializer_list<QWidget*>{weight_, weight_box_, mass_}) {
-        widget->setEnabled(has_weight);
-    }
-    {
-        const QSignalBlocker quiet(weight_), quiet_box(weight_box_), quiet_mass(mass_);
-        weight_box_->setValue(has_weight ? spec_.net_weight.value_or(0) : 0);
-        weight_->setValue(static_cast<int>(std::lround(weight_box_->value() / weight_range_ * slider_steps)));
-        mass_->setValue(spec_.virtual_mass);
-    }
+    weight_->setEnabled(has_weight());
+    mass_->setEnabled(has_weight());
+    weight_->show_value(net_weight(), -weight_range_, weight_range_, settings().net_weight.has_value());
+    mass_->show_value(virtual_mass(), 0, std::max(1.0, 2 * std::max(spec_.virtual_mass, virtual_mass())),
+                      settings().virtual_mass.has_value());
     QString range;
     for (const auto& axis : table_->axes()) {
         const std::string unit = tables::shown_unit(*table_, axis.name);
@@ -212,129 +221,154 @@ void ForcePanel::show_table() {
                         .arg(table_->points().rows())
                         .arg(range));
     fill_axes();
-    suggest_scale();
     fill_held();
     redraw();
 }
 
-void ForcePanel::suggest_scale() {
-    const auto& axis = table_->axes()[tables::axis_index(*table_, view_axis())];
-    const QSignalBlocker quiet(logarithmic_);
-    logarithmic_->setEnabled(axis.lower > 0);
-    logarithmic_->setChecked(tables::spans_decades(axis.lower, axis.upper));
-}
-
 void ForcePanel::fill_axes() {
     const QSignalBlocker quiet(view_);
-    const QString kept = view_->currentText();
     view_->clear();
     const auto& axes = table_->axes();
     for (const auto& axis : axes) {
-        view_->addItem("curve over " + qt(axis.name), QStringList{"curve", qt(axis.name)});
+        view_->addItem("curve over " + qt(axis.name), "curve " + qt(axis.name));
     }
     for (std::size_t i = 0; i < axes.size(); ++i) {
         for (std::size_t k = 0; k < axes.size(); ++k) {
             if (i != k) {
                 view_->addItem("curves over " + qt(axes[i].name) + ", one for each " + qt(axes[k].name),
-                               QStringList{"family", qt(axes[i].name), qt(axes[k].name)});
+                               "family " + qt(axes[i].name) + " " + qt(axes[k].name));
             }
             if (i < k) {
                 view_->addItem("map over " + qt(axes[i].name) + " and " + qt(axes[k].name),
-                               QStringList{"map", qt(axes[i].name), qt(axes[k].name)});
+                               "map " + qt(axes[i].name) + " " + qt(axes[k].name));
             }
         }
     }
-    const int at = view_->findText(kept);
+    const int at = view_->findData(qt(settings().shown));
     view_->setCurrentIndex(at >= 0 ? at : 0);
 }
 
-std::string ForcePanel::view_axis() const {
-    const QStringList view = view_->currentData().toStringList();
-    return view.size() > 1 ? view[1].toStdString() : table_->axes().front().name;
+QStringList ForcePanel::view() const { return view_->currentData().toString().split(' '); }
+
+double ForcePanel::held_value(const std::string& name) const {
+    if (const auto at = settings().held.find(name); at != settings().held.end()) {
+        return at->second;
+    }
+    const auto& axis = table_->axes()[tables::axis_index(*table_, name)];
+    return axis.lower < 0 && axis.upper > 0 ? 0 : axis.lower;
 }
 
 void ForcePanel::fill_held() {
-    for (const auto& held : held_) {
-        held_form_->removeRow(held.slider->parentWidget());
-    }
-    held_.clear();
-    if (!table_) {
-        return;
-    }
-    const QStringList view = view_->currentData().toStringList();
-    for (const auto& axis : table_->axes()) {
-        if (view.mid(1).contains(qt(axis.name))) {
-            continue;
+    const QString wanted = qt(spec_.name) + view().join(' ');
+    if (held_for_ != wanted) {
+        for (const auto& held : held_) {
+            held_form_->removeRow(held.row);
         }
-        auto* row = new QWidget;
-        auto* line = new QHBoxLayout(row);
-        line->setContentsMargins(0, 0, 0, 0);
-        Held held{
-            axis.name, tables::shown_unit(*table_, axis.name), axis.lower, axis.upper, new QSlider(Qt::Horizontal),
-            new QLabel};
-        held.slider->setRange(0, slider_steps);
-        const double start = axis.lower < 0 && axis.upper > 0 ? 0 : axis.lower;
-        held.slider->setValue(
-            static_cast<int>(std::lround((start - axis.lower) / (axis.upper - axis.lower) * slider_steps)));
-        held.shown->setMinimumWidth(70);
-        line->addWidget(held.slider, 1);
-        line->addWidget(held.shown);
-        held_form_->addRow(qt(axis.name) + " held at", row);
-        connect(held.slider, &QSlider::valueChanged, this, [this] { redraw(); });
-        held_.push_back(held);
+        held_.clear();
+        held_for_ = wanted;
+        for (const auto& axis : table_->axes()) {
+            if (view().mid(1).contains(qt(axis.name))) {
+                continue;
+            }
+            auto* row = new ParameterRow(qt(axis.name), "held at this value", axis.unit,
+                                         tables::shown_unit(*table_, axis.name));
+            held_form_->addRow(row);
+            held_.push_back({axis.name, row});
+            const auto text = [name = axis.name, unit = axis.unit](double value) {
+                return "held." + name + "=" + core::format_number(value) + (unit == "1" ? "" : " " + unit);
+            };
+            connect(row, &ParameterRow::moved, this,
+                    [this, text](double value, const QString& gesture) { act(text(value), gesture); });
+            connect(row, &ParameterRow::entered, this, [this, text](double value) { act(text(value)); });
+            connect(row, &ParameterRow::released, this, [this] { desk_.end_gesture(); });
+        }
+    }
+    for (const auto& held : held_) {
+        const auto& axis = table_->axes()[tables::axis_index(*table_, held.name)];
+        held.row->show_value(held_value(held.name), axis.lower, axis.upper, false);
     }
 }
 
 void ForcePanel::redraw() {
-    if (!table_) {
-        return;
-    }
-    const QStringList view = view_->currentData().toStringList();
     tables::FigureOptions options;
-    options.axis = view_axis();
-    options.logarithmic = logarithmic_->isEnabled() && logarithmic_->isChecked();
+    options.axis = view().value(1).toStdString();
+    const auto& axis = table_->axes()[tables::axis_index(*table_, options.axis)];
+    logarithmic_->setEnabled(axis.lower > 0);
+    options.logarithmic =
+        axis.lower > 0 && settings().logarithmic.value_or(tables::spans_decades(axis.lower, axis.upper));
+    logarithmic_->setChecked(*options.logarithmic);
     for (const auto& held : held_) {
-        options.held.emplace_back(held.name, held.value());
-        const auto* quantity = core::find_quantity(held.name);
-        const double shown = core::convert(held.value(), quantity != nullptr ? quantity->unit : "1", held.unit);
-        held.shown->setText(number(shown, 3) + " " + qt(pretty_unit(held.unit)));
+        options.held.emplace_back(held.name, held_value(held.name));
     }
-    if (weight_->isEnabled() && options.axis == "gap") {
+    if (has_weight() && options.axis == "gap") {
         tables::EquilibriumOptions equilibria;
-        equilibria.net_weight = weight_box_->value();
-        equilibria.virtual_mass = mass_->value();
+        equilibria.net_weight = net_weight();
+        equilibria.virtual_mass = virtual_mass();
         equilibria.held = options.held;
         equilibria.axis = options.axis;
         options.equilibria = equilibria;
     }
+    const std::string second = view().value(2).toStdString();
+    list_->setRowCount(0);
+    reach_->clear();
     try {
-        if (view.value(0) == "map") {
-            plot_->show_figure(tables::map_figure(*table_, view[1].toStdString(), view[2].toStdString(), options),
-                               true);
-        } else if (view.value(0) == "family") {
-            plot_->show_figure(tables::family_figure(*table_, view[1].toStdString(), view[2].toStdString(), options),
-                               true);
+        if (view().value(0) == "map") {
+            plot_->show_figure(tables::map_figure(*table_, options.axis, second, options), true);
+        } else if (view().value(0) == "family") {
+            plot_->show_figure(tables::family_figure(*table_, options.axis, second, options), true);
         } else {
             plot_->show_figure(tables::curve_figure(*table_, options), true);
-        }
-        list_->setRowCount(0);
-        if (options.equilibria && view.value(0) == "curve") {
-            list_equilibria();
+            if (options.equilibria) {
+                list_equilibria(*options.equilibria);
+            }
         }
     } catch (const core::Error& error) {
         plot_->show_text(qt(error.what()));
     }
 }
 
-void ForcePanel::list_equilibria() {
-    tables::EquilibriumOptions options;
-    options.net_weight = weight_box_->value();
-    options.virtual_mass = mass_->value();
-    options.axis = "gap";
-    for (const auto& held : held_) {
-        options.held.emplace_back(held.name, held.value());
+/// A click on a point of the table selects the case that it is of.
+void ForcePanel::point_clicked(double x, double y) {
+    if (!table_ || view().value(0) == "map" || session().results.loads.rows() == 0) {
+        return;
     }
+    const std::string axis = view().value(1).toStdString();
+    const double at =
+        core::convert(x, tables::shown_unit(*table_, axis), table_->axes()[tables::axis_index(*table_, axis)].unit);
+    const double force = core::convert(y, tables::shown_unit(*table_, spec_.quantity), table_->unit());
+    const cases::Case* nearest = nullptr;
+    double distance = 0.05;  // of the ranges
+    const auto share_between = [&](const std::string& name, double a, double b) {
+        const auto& range = table_->axes()[tables::axis_index(*table_, name)];
+        return logarithmic_->isChecked() ? std::log(a / b) / std::log(range.upper / range.lower)
+                                         : (a - b) / (range.upper - range.lower);
+    };
+    for (const auto& loads : session().results.case_loads) {
+        const auto& one = session().study.cases[loads.entry];
+        if (loads.values.empty() || !one.conditions.satisfies(spec_.where) || !one.conditions.number(axis)) {
+            continue;
+        }
+        const double along = share_between(axis, at, *one.conditions.number(axis));
+        const double away = std::hypot(along, (loads.value(spec_.quantity) - force) / (2 * weight_range_));
+        if (away < distance) {
+            distance = away;
+            nearest = &one;
+        }
+    }
+    if (nearest != nullptr) {
+        desk_.act({"select", "table/" + spec_.name, "case/" + nearest->name});
+        Q_EMIT remark(qt("the point is of " + nearest->name + ": Compare (F4) shows its field"));
+    }
+}
+
+void ForcePanel::list_equilibria(const tables::EquilibriumOptions& options) {
     const auto found = tables::equilibria(*table_, options);
+    if (found.all.empty()) {
+        reach_->setText(
+            QString("No equilibrium in the table's range: the net force is %1 N at its lower and %2 N at its "
+                    "upper end.")
+                .arg(number(found.force_at_lower, 3), number(found.force_at_upper, 3)));
+    }
     list_->setRowCount(static_cast<int>(found.all.size()));
     for (int row = 0; row < list_->rowCount(); ++row) {
         const auto& one = found.all[static_cast<std::size_t>(row)];
@@ -364,11 +398,5 @@ void ForcePanel::export_picture(const std::filesystem::path& path) { plot_->writ
 bool ForcePanel::has_table() const { return table_ != nullptr; }
 
 void ForcePanel::export_table(const std::filesystem::path& path) { core::write_csv(path, table_->points()); }
-
-void ForcePanel::demonstrate() {
-    if (table_ && weight_->isEnabled()) {
-        weight_->setValue(weight_->value() * 95 / 100);
-    }
-}
 
 }  // namespace underbody::studio

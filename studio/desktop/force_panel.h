@@ -1,4 +1,4 @@
-// A force table with its error, its points and its equilibria, which move with the net weight.
+// Tables: a force table with its error, its points and its equilibria, which move with the net weight.
 #pragma once
 
 #include <memory>
@@ -8,69 +8,74 @@
 
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QFormLayout;
 class QLabel;
-class QSlider;
 class QTableWidget;
 
 namespace underbody::tables {
 class ForceTable;
-}
+struct EquilibriumOptions;
+struct FigureOptions;
+}  // namespace underbody::tables
 
 namespace underbody::studio {
 
+class ParameterRow;
 class PlotView;
 
 class ForcePanel : public Panel {
     Q_OBJECT
 public:
-    ForcePanel(Jobs& jobs, QWidget* parent);
+    ForcePanel(Desk& desk, QWidget* parent);
     ~ForcePanel() override;
 
-    void show_session(const SessionPointer& session) override;
     [[nodiscard]] bool has_picture() const override;
     void export_picture(const std::filesystem::path& path) override;
     [[nodiscard]] bool has_table() const override;
     void export_table(const std::filesystem::path& path) override;
-    void demonstrate() override;
+    /// The table that is shown; nullptr while there is none.
+    [[nodiscard]] std::shared_ptr<const tables::ForceTable> table() const { return table_; }
+
+protected:
+    void draw_again(bool session) override;
 
 private:
-    /// A slider for an axis that is not drawn.
     struct Held {
         std::string name;
-        std::string unit;
-        double lower = 0;
-        double upper = 0;
-        QSlider* slider = nullptr;
-        QLabel* shown = nullptr;
-        [[nodiscard]] double value() const;
+        ParameterRow* row = nullptr;
     };
     void build();
     void build_controls(QFormLayout& form);
-    void choose_table();
+    void act(const std::string& assignment, const QString& gesture = {});
+    void choose_table(bool fresh);
+    void fit(const cases::TableSpec& spec);
     void show_table();
     void fill_axes();
-    void suggest_scale();
     void fill_held();
     void redraw();
-    void list_equilibria();
-    [[nodiscard]] std::string view_axis() const;
+    void list_equilibria(const tables::EquilibriumOptions& options);
+    [[nodiscard]] QStringList view() const;
+    [[nodiscard]] const TableView& settings() const;
+    [[nodiscard]] bool has_weight() const;
+    [[nodiscard]] double net_weight() const;
+    [[nodiscard]] double virtual_mass() const;
+    [[nodiscard]] double held_value(const std::string& axis) const;
+    void point_clicked(double x, double y);
 
-    SessionPointer session_;
-    std::unique_ptr<tables::ForceTable> table_;
+    std::shared_ptr<const tables::ForceTable> table_;
     cases::TableSpec spec_;
+    SessionPointer fitted_;  ///< what the table was fitted to
     QComboBox* choice_ = nullptr;
     QComboBox* view_ = nullptr;
     QCheckBox* logarithmic_ = nullptr;
-    QSlider* weight_ = nullptr;
-    QDoubleSpinBox* weight_box_ = nullptr;
-    QDoubleSpinBox* mass_ = nullptr;
-    QFormLayout* form_ = nullptr;
+    ParameterRow* weight_ = nullptr;
+    ParameterRow* mass_ = nullptr;
     QLabel* about_ = nullptr;
+    QLabel* reach_ = nullptr;
     PlotView* plot_ = nullptr;
     QTableWidget* list_ = nullptr;
     std::vector<Held> held_;
+    QString held_for_;
     QFormLayout* held_form_ = nullptr;
     double weight_range_ = 1;  ///< N, of the slider: from -range to +range
 };

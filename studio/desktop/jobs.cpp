@@ -2,6 +2,7 @@
 
 #include <QCoreApplication>
 #include <QtConcurrent>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 
@@ -23,12 +24,7 @@ Jobs::~Jobs() {
     }
 }
 
-void Jobs::start(const QString& slot, const QString& what, Work work, bool quiet) {
-    cancel(slot);
-    auto job = std::make_shared<Job>();
-    job->slot = slot;
-    job->what = what;
-    job->quiet = quiet;
+void Jobs::listen(const std::shared_ptr<Job>& job) {
     const std::weak_ptr<Job> weak = job;
     // The listener is called from any thread and often: let a message through every 50 ms.
     auto last = std::make_shared<std::atomic<std::int64_t>>(0);
@@ -51,6 +47,18 @@ void Jobs::start(const QString& slot, const QString& what, Work work, bool quiet
             },
             Qt::QueuedConnection);
     });
+}
+
+void Jobs::start(const QString& slot, const QString& what, Work work, bool quiet, std::function<void()> ended) {
+    cancel(slot);
+    auto job = std::make_shared<Job>();
+    job->id = ++last_id_;
+    job->slot = slot;
+    job->what = what;
+    job->quiet = quiet;
+    job->ended = std::move(ended);
+    job->since.start();
+    listen(job);
     running_.push_back(job);
     QtConcurrent::run(&pool_, [this, job, work = std::move(work)] {
         std::function<void()> show;
@@ -72,20 +80,22 @@ void Jobs::finish(const std::shared_ptr<Job>& job, const std::function<void()>& 
     if (closing_) {
         return;
     }
-    if (error && !job->dropped) {
-        try {
+    try {
+        if (error && !job->dropped) {
             std::rethrow_exception(error);
-        } catch (const core::Cancelled&) {
-        } catch (...) {
-            Q_EMIT failed(job->what, std::current_exception());
         }
-    }
-    if (!error && !job->dropped && show) {
-        try {
+        if (!error && !job->dropped && show) {
             show();
-        } catch (...) {
-            Q_EMIT failed(job->what, std::current_exception());
+            if (!job->quiet) {
+                Q_EMIT succeeded(job->what);
+            }
         }
+    } catch (const core::Cancelled&) {
+    } catch (...) {
+        Q_EMIT failed(job->what, std::current_exception());
+    }
+    if (job->ended) {
+        job->ended();
     }
     tell();
     if (running_.empty()) {
@@ -93,30 +103,58 @@ void Jobs::finish(const std::shared_ptr<Job>& job, const std::function<void()>& 
     }
 }
 
-void Jobs::cancel() {
+template <class Which>
+void Jobs::cancel_where(Which which) {
+    bool any = false;
     for (const auto& job : running_) {
-        job->progress->cancel();
-        job->dropped = true;
+        if (!job->dropped && which(*job)) {
+            job->progress->cancel();
+            job->dropped = true;
+            any = true;
+        }
     }
+    if (any && !closing_) {
+        tell();
+    }
+}
+
+void Jobs::cancel() {
+    cancel_where([](const Job&) { return true; });
 }
 
 void Jobs::cancel(const QString& slot) {
+    cancel_where([&](const Job& job) { return job.slot == slot; });
+}
+
+void Jobs::cancel(int id) {
+    cancel_where([&](const Job& job) { return job.id == id; });
+}
+
+bool Jobs::busy(const QString& slot) const {
+    return std::any_of(running_.begin(), running_.end(),
+                       [&](const auto& job) { return job->slot == slot && !job->dropped; });
+}
+
+std::vector<Jobs::Row> Jobs::rows() const {
+    std::vector<Row> rows;
     for (const auto& job : running_) {
-        if (job->slot == slot) {
-            job->progress->cancel();
-            job->dropped = true;
+        if (!job->quiet && !job->dropped) {
+            rows.push_back(
+                {job->id, job->what, job->doing, job->fraction, static_cast<double>(job->since.elapsed()) / 1000});
         }
     }
+    return rows;
 }
 
 void Jobs::tell() {
-    for (const auto& job : running_) {
-        if (!job->quiet && !job->dropped) {
-            Q_EMIT progressed(job->fraction, job->doing.isEmpty() ? job->what : job->what + ": " + job->doing);
-            return;
-        }
+    Q_EMIT changed();
+    const auto all = rows();
+    if (all.empty()) {
+        Q_EMIT progressed(1, {});
+    } else {
+        const Row& first = all.front();
+        Q_EMIT progressed(first.fraction, first.doing.isEmpty() ? first.what : first.what + ": " + first.doing);
     }
-    Q_EMIT progressed(1, {});
 }
 
 }  // namespace underbody::studio

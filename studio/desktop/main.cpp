@@ -10,17 +10,21 @@
 #include <clocale>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/virtual_display.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/screenshots.h"
+#include "studio/desktop/state/action_log.h"
 
 namespace {
 
 struct Options {
     std::string study;
     std::string screenshots;
+    std::string log;
     int width = 1440;
     int height = 900;
 };
@@ -28,30 +32,41 @@ struct Options {
 /// -1: go on; else the exit code.
 int parse(int argc, char** argv, Options& options) {
     CLI::App app{
-        "Underbody Studio: looks into a study: its cases, the pressure on the body, force tables with their\n"
-        "equilibria, stability maps, and what measurements say the model lacks.",
+        "Underbody Studio: designs bodies, compares cases and makes force tables of a study: shapes whose numbers are\n"
+        "moved, fields side by side, force tables with their equilibria, stability maps, and what measurements say "
+        "the\n"
+        "model lacks.",
         "underbody-studio"};
     app.set_version_flag("--version", UNDERBODY_VERSION);
-    app.add_option("STUDY", options.study, "folder of a study (it holds study.toml); open one later with Ctrl+O");
+    app.add_option(
+        "STUDY", options.study,
+        "folder of a study (it holds study.toml), a session (.ubs), a SHAPE.toml or a CFD file; more with Ctrl+O");
     app.add_option("--screenshot", options.screenshots,
-                   "load the study, visit each panel, save pictures of the window into this folder, and end")
+                   "load the study, visit each workspace, save pictures of the window into this folder, and end")
         ->type_name("FOLDER");
+    app.add_option("--replay", options.log,
+                   "carry out the lines of a log (Commands > Copy all) without a window, print the state that comes of "
+                   "it as JSON, and end; with --screenshot: in a window, and save pictures of it")
+        ->type_name("FILE");
     app.add_option("--width", options.width, "of the window, px")->check(CLI::Range(600, 8000));
     app.add_option("--height", options.height, "of the window, px")->check(CLI::Range(400, 8000));
     app.footer(
         "Examples:\n"
         "  underbody-studio cases/evie                      open the shipped study\n"
         "  underbody-studio cases/evie --screenshot shots   pictures of every panel, without a display if need be\n"
-        "Keys: Ctrl+O open, Ctrl+R compute what changed, F5 reload, Ctrl+1 ... Ctrl+5 panels, U T S R O views of the\n"
-        "body, Ctrl+E export picture, Ctrl+Shift+E export table, Esc cancel, F8 problems, F9 cases, F1 effects.\n"
+        "  underbody-studio --replay done.log > state.json\n"
+        "Keys: F1 all keys, Ctrl+K find a command, F2 Design, F3 Explore, F4 Compare, F6 Tables, F7 Stability, F8 "
+        "Loop,\n"
+        "Ctrl+O open, Ctrl+R compute what changed, F5 reload, Ctrl+Z undo, Ctrl+Shift+Z redo, Ctrl+S save session,\n"
+        "Ctrl+E export for a controller, F12 export picture, U T S R O views of the body, Esc cancel.\n"
         "Exit codes: 0 done, 1 defect of the program, 2 wrong use, 3 wrong input or no display.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
     }
-    if (!options.screenshots.empty() && options.study.empty()) {
-        std::fprintf(stderr, "underbody-studio: --screenshot needs a STUDY\n");
+    if (!options.screenshots.empty() && options.study.empty() && options.log.empty()) {
+        std::fprintf(stderr, "underbody-studio: --screenshot needs a STUDY or --replay FILE\n");
         return 2;
     }
     return -1;
@@ -79,16 +94,35 @@ std::unique_ptr<underbody::core::VirtualDisplay> need_display(const Options& opt
     return display;
 }
 
+/// The state that the lines of a log lead to, on stdout.
+int replay_without_window(const Options& options) {
+    using namespace underbody::studio;
+    History history;
+    SessionPointer session = open_session({});
+    replay(underbody::core::read_file(options.log), options.log, history, session,
+           [&](const State& state) { return load_session(state, session); });
+    const nlohmann::json document = {
+        {"state", *history.state()}, {"hash", state_hash(*history.state())}, {"steps", history.position()}};
+    std::printf("%s\n", document.dump(2).c_str());
+    return 0;
+}
+
 int run(int argc, char** argv) {
     using namespace underbody::studio;
     Options options;
     if (const int code = parse(argc, argv, options); code >= 0) {
         return code;
     }
+    if (!options.log.empty() && options.screenshots.empty()) {
+        return replay_without_window(options);
+    }
     const auto display = need_display(options);
     if (!options.screenshots.empty()) {
         ::setenv("QT_QPA_PLATFORM", "xcb", 1);  // 3D needs an X server, also where tests ask for `offscreen`
     }
+    QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
+    QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
+    QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
     QApplication application(argc, argv);
     // Qt takes the user's locale over; numbers in files must not change with it.
@@ -100,11 +134,12 @@ int run(int argc, char** argv) {
     MainWindow window(options.screenshots.empty());
     window.resize(options.width, options.height);
     if (!options.screenshots.empty()) {
-        return take_screenshots(window, options.study, options.screenshots);
+        return take_screenshots(window, options.study, options.log, options.screenshots);
     }
     window.show();
+    window.offer_recovery();
     if (!options.study.empty()) {
-        window.open_study(options.study);
+        window.take_files({options.study});
     }
     return QApplication::exec();
 }

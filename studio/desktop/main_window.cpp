@@ -1,122 +1,169 @@
 #include "studio/desktop/main_window.h"
 
+#include <QActionGroup>
 #include <QApplication>
 #include <QBoxLayout>
+#include <QBuffer>
 #include <QCloseEvent>
-#include <QDesktopServices>
 #include <QDockWidget>
-#include <QFileDialog>
+#include <QFileSystemWatcher>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
-#include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QProgressBar>
+#include <QPushButton>
 #include <QSettings>
+#include <QStackedWidget>
+#include <QStandardPaths>
 #include <QStatusBar>
 #include <QTabWidget>
+#include <QTimer>
+#include <QToolBar>
 #include <QToolButton>
 #include <QUrl>
 
 #include "core/error.h"
-#include "studio/desktop/body_panel.h"
-#include "studio/desktop/cases_panel.h"
-#include "studio/desktop/catalogue.h"
+#include "core/file.h"
+#include "studio/desktop/bottom_panels.h"
+#include "studio/desktop/design_panel.h"
 #include "studio/desktop/discovery_panel.h"
+#include "studio/desktop/explore_panel.h"
+#include "studio/desktop/fields_panel.h"
+#include "studio/desktop/first_page.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/icon.h"
-#include "studio/desktop/jobs.h"
 #include "studio/desktop/pictures_panel.h"
 #include "studio/desktop/problems_panel.h"
+#include "studio/desktop/qt_text.h"
 #include "studio/desktop/region_panel.h"
-#include "studio/figures/render.h"
+#include "studio/desktop/study_tree.h"
 
 namespace underbody::studio {
 
 namespace fs = std::filesystem;
 
-MainWindow::MainWindow(bool remember) : remember_(remember), jobs_(new Jobs(this)) {
+namespace {
+
+fs::path log_folder(bool remember) {
+    return remember
+               ? fs::path(QStandardPaths::writableLocation(QStandardPaths::AppLocalDataLocation).toStdString()) / "logs"
+               : fs::path();
+}
+
+}  // namespace
+
+MainWindow::MainWindow(bool remember)
+    : remember_(remember), jobs_(new Jobs(this)), desk_(new Desk(*jobs_, log_folder(remember), this)) {
     setWindowTitle("Underbody Studio");
     setWindowIcon(program_icon());
     setAcceptDrops(true);
     resize(1440, 900);
-    build_panels();
-    build_cases();
+    ask = [this](const QString& title, const QString& text, const QString& yes) {
+        QMessageBox box(QMessageBox::Question, title, text, QMessageBox::Cancel, this);
+        auto* button = box.addButton(yes, QMessageBox::AcceptRole);
+        box.exec();
+        return box.clickedButton() == button;
+    };
+    watcher_ = new QFileSystemWatcher(this);
+    build_workspaces();
+    build_tree();
+    build_below();
     build_status();
     build_file_menu();
+    build_edit_menu();
     build_study_menu();
     build_view_menu();
     build_help_menu();
+    build_tool_bar();
     connect(jobs_, &Jobs::failed, this, &MainWindow::show_failure);
+    connect(jobs_, &Jobs::succeeded, banner_, &QWidget::hide);
+    connect(desk_, &Desk::refused, this, &MainWindow::show_failure);
+    connect(desk_, &Desk::acted, banner_, &QWidget::hide);
+    connect(desk_, &Desk::noted, this, [this](const QString& text) { problems_->note(text); });
+    connect(desk_, &Desk::found, this, [this](const core::Problem& problem) { problems_->add(problem); });
+    connect(desk_, &Desk::changed, this, &MainWindow::follow_state);
+    connect(desk_, &Desk::session_changed, this, &MainWindow::follow_session);
+    connect(desk_, &Desk::opened, this, &MainWindow::remember_study);
     if (remember_) {
         QSettings settings;
         restoreGeometry(settings.value("geometry").toByteArray());
         restoreState(settings.value("layout").toByteArray());
-        tabs_->setCurrentIndex(settings.value("panel", 0).toInt());
     }
     fill_recent();
+    follow_state();
+    follow_session();
     problems_->note("Ready. Open a study with Ctrl+O, or drop its folder on the window.");
 }
 
 // Jobs wind up before the widgets that their results would go to.
 MainWindow::~MainWindow() { delete jobs_; }
 
-void MainWindow::build_panels() {
-    auto* middle = new QWidget;
-    auto* column = new QVBoxLayout(middle);
+void MainWindow::build_workspaces() {
+    auto* centre = new QWidget;
+    auto* column = new QVBoxLayout(centre);
     column->setContentsMargins(4, 4, 4, 0);
-    banner_ = new Banner(middle);
+    banner_ = new Banner(centre);
     column->addWidget(banner_);
-    tabs_ = new QTabWidget;
-    tabs_->setDocumentMode(true);
-    column->addWidget(tabs_, 1);
-    setCentralWidget(middle);
-
-    body_ = new BodyPanel(*jobs_, this);
-    const std::vector<std::pair<Panel*, QString>> all = {{body_, "&Body"},
-                                                         {new ForcePanel(*jobs_, this), "&Forces"},
-                                                         {new RegionPanel(*jobs_, this), "St&ability"},
-                                                         {new DiscoveryPanel(*jobs_, this), "&Discovery"},
-                                                         {new PicturesPanel(*jobs_, this), "&Pictures"}};
-    for (const auto& [panel, title] : all) {
+    middle_ = new QStackedWidget;
+    column->addWidget(middle_, 1);
+    setCentralWidget(centre);
+    first_ = new FirstPage(this);
+    middle_->addWidget(first_);
+    connect(first_, &FirstPage::chosen, this, [this](const QString& folder) { open_study(folder.toStdString()); });
+    for (Panel* panel : std::initializer_list<Panel*>{new DesignPanel(*desk_, this), new ExplorePanel(*desk_, this),
+                                                      new FieldsPanel(*desk_, this), new ForcePanel(*desk_, this),
+                                                      new RegionPanel(*desk_, this), new DiscoveryPanel(*desk_, this),
+                                                      new PicturesPanel(*desk_, this)}) {
         panels_.push_back(panel);
-        tabs_->addTab(panel, title);
+        middle_->addWidget(panel);
         connect(panel, &Panel::remark, this, [this](const QString& text) { statusBar()->showMessage(text); });
         connect(panel, &Panel::problem, this, [this](const core::Problem& found) { problems_->add(found); });
     }
-    connect(tabs_, &QTabWidget::currentChanged, this, [this] { statusBar()->clearMessage(); });
 }
 
-void MainWindow::build_cases() {
+void MainWindow::build_tree() {
     auto* holder = new QWidget;
     auto* column = new QVBoxLayout(holder);
     column->setContentsMargins(4, 4, 0, 0);
     auto* filter = new QLineEdit;
-    filter->setPlaceholderText("Filter cases");
+    filter->setPlaceholderText("Filter the study");
+    filter->setAccessibleName("Filter the study");
     filter->setClearButtonEnabled(true);
     column->addWidget(filter);
-    cases_ = new CasesTree(holder);
-    column->addWidget(cases_, 1);
-    connect(filter, &QLineEdit::textChanged, cases_, &CasesTree::filter);
-    connect(cases_, &CasesTree::chosen, this, [this](const cases::Case& chosen) {
-        for (auto* panel : panels_) {
-            panel->show_case(chosen);
-        }
-    });
-    cases_dock_ = new QDockWidget("Cases", this);
-    cases_dock_->setObjectName("cases_dock");
-    cases_dock_->setWidget(holder);
-    addDockWidget(Qt::LeftDockWidgetArea, cases_dock_);
-
-    problems_ = new ProblemList(this);
-    problems_dock_ = new QDockWidget("Problems", this);
-    problems_dock_->setObjectName("problems_dock");
-    problems_dock_->setWidget(problems_);
-    addDockWidget(Qt::BottomDockWidgetArea, problems_dock_);
-    resizeDocks({cases_dock_}, {490}, Qt::Horizontal);
-    resizeDocks({problems_dock_}, {110}, Qt::Vertical);
+    tree_ = new StudyTree(*desk_, holder);
+    column->addWidget(tree_, 1);
+    auto* count = new QLabel;
+    column->addWidget(count);
+    connect(filter, &QLineEdit::textChanged, tree_, &StudyTree::filter);
+    connect(tree_, &StudyTree::counted, count, &QLabel::setText);
+    tree_dock_ = new QDockWidget("Study", this);
+    tree_dock_->setObjectName("study_dock");
+    tree_dock_->setWidget(holder);
+    addDockWidget(Qt::LeftDockWidgetArea, tree_dock_);
+    resizeDocks({tree_dock_}, {470}, Qt::Horizontal);
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
+}
+
+void MainWindow::build_below() {
+    below_ = new QTabWidget;
+    below_->setDocumentMode(true);
+    below_->setTabPosition(QTabWidget::South);
+    problems_ = new ProblemList(this);
+    below_->addTab(new CommandList(*desk_, this), "Commands");
+    below_->addTab(problems_, "Problems");
+    below_->addTab(new JobList(*jobs_, this), "Jobs");
+    below_->addTab(new HistoryList(*desk_, this), "History");
+    below_->setCurrentWidget(problems_);
+    connect(problems_, &ProblemList::counted, this, [this](int count) {
+        below_->setTabText(1, count > 0 ? QString("Problems (%1)").arg(count) : QString("Problems"));
+    });
+    below_dock_ = new QDockWidget("Commands, problems, jobs, history", this);
+    below_dock_->setObjectName("below_dock");
+    below_dock_->setWidget(below_);
+    addDockWidget(Qt::BottomDockWidgetArea, below_dock_);
+    resizeDocks({below_dock_}, {150}, Qt::Vertical);
 }
 
 void MainWindow::build_status() {
@@ -125,13 +172,16 @@ void MainWindow::build_status() {
     bar_->setMaximumWidth(220);
     bar_->setRange(0, 1000);
     bar_->setTextVisible(false);
+    bar_->setAccessibleName("Progress");
     cancel_ = new QToolButton;
     cancel_->setText("Cancel");
     cancel_->setShortcut(QKeySequence("Esc"));
-    cancel_->setToolTip("Cancel what is running (Esc)");
+    cancel_->setToolTip("Cancel what is running in front (Esc); each job has its own button under Jobs");
     connect(cancel_, &QToolButton::clicked, this, [this] {
-        jobs_->cancel();
-        statusBar()->showMessage("cancelled", 4000);
+        if (const auto rows = jobs_->rows(); !rows.empty()) {
+            jobs_->cancel(rows.front().id);
+            statusBar()->showMessage("cancelled: " + rows.front().what, 4000);
+        }
     });
     for (auto* widget : std::initializer_list<QWidget*>{doing_, bar_, cancel_}) {
         statusBar()->addPermanentWidget(widget);
@@ -141,114 +191,77 @@ void MainWindow::build_status() {
         const bool running = !what.isEmpty();
         doing_->setText(what.size() > 80 ? what.left(79) + "…" : what);
         bar_->setValue(static_cast<int>(1000 * fraction));
+        const auto count = jobs_->rows().size();
+        below_->setTabText(2, count > 0 ? QString("Jobs (%1)").arg(count) : QString("Jobs"));
         for (auto* widget : std::initializer_list<QWidget*>{doing_, bar_, cancel_}) {
             widget->setVisible(running);
         }
     });
 }
 
-void MainWindow::build_file_menu() {
-    auto* menu = menuBar()->addMenu("&File");
-    menu->addAction(
-        "&Open study …", this,
-        [this] {
-            const QString folder = QFileDialog::getExistingDirectory(this, "Folder of the study (it holds study.toml)");
-            if (!folder.isEmpty()) {
-                open_study(folder.toStdString());
-            }
-        },
-        QKeySequence::Open);
-    recent_ = menu->addMenu("Open &recent");
-    menu->addAction("Open CFD &file …", this, [this] {
-        const QString file = QFileDialog::getOpenFileName(this, "A CFD file of any format that Underbody reads");
-        if (!file.isEmpty()) {
-            show_panel(body_);
-            body_->show_file(file.toStdString(), {}, QFileInfo(file).fileName());
-        }
-    });
-    menu->addSeparator();
-    picture_ = menu->addAction("Export &picture …", this, &MainWindow::export_picture, QKeySequence("Ctrl+E"));
-    table_ = menu->addAction("Export &table …", this, &MainWindow::export_table, QKeySequence("Ctrl+Shift+E"));
-    connect(menu, &QMenu::aboutToShow, this, [this] {
-        picture_->setEnabled(current()->has_picture());
-        table_->setEnabled(current()->has_table());
-    });
-    connect(menu, &QMenu::aboutToHide, this, [this] {  // shortcuts must work whatever the menu last saw
-        picture_->setEnabled(true);
-        table_->setEnabled(true);
-    });
-    menu->addSeparator();
-    menu->addAction("&Quit", this, &QWidget::close, QKeySequence::Quit);
+Panel* MainWindow::current() const {
+    auto* panel = dynamic_cast<Panel*>(middle_->currentWidget());
+    return panel != nullptr ? panel : panels_.front();
 }
 
-void MainWindow::build_study_menu() {
-    auto* menu = menuBar()->addMenu("&Study");
-    run_ = menu->addAction("&Compute what changed", this, &MainWindow::run_study, QKeySequence("Ctrl+R"));
-    reload_ = menu->addAction("Re&load", this, &MainWindow::reload, QKeySequence::Refresh);
-    report_ = menu->addAction("Open re&port", this, &MainWindow::open_report, QKeySequence("Ctrl+P"));
-    for (auto* action : {run_, reload_, report_}) {
-        action->setEnabled(false);
+void MainWindow::follow_state() {
+    const State& state = desk_->state();
+    const auto& names = workspace_names();
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        at = names[i] == state.workspace ? i : at;
     }
-}
-
-void MainWindow::build_view_menu() {
-    auto* menu = menuBar()->addMenu("&View");
-    for (int i = 0; i < tabs_->count(); ++i) {
-        menu->addAction(
-            tabs_->tabText(i), this, [this, i] { tabs_->setCurrentIndex(i); },
-            QKeySequence(QString("Ctrl+%1").arg(i + 1)));
+    workspaces_->actions().at(static_cast<int>(at))->setChecked(true);
+    const bool empty = !desk_->has_study() && state.files.empty();
+    // A chosen picture is shown in Compare, where cases are looked at.
+    const bool picture = names[at] == "compare" && !state.selected("picture").empty() &&
+                         state.selection.size() == state.selected("picture").size();
+    QWidget* wanted = empty ? static_cast<QWidget*>(first_) : picture ? panels_.back() : panels_[at];
+    if (middle_->currentWidget() != wanted) {
+        middle_->setCurrentWidget(wanted);
+        statusBar()->clearMessage();
     }
-    menu->addSeparator();
-    auto* cases = cases_dock_->toggleViewAction();
-    cases->setShortcut(QKeySequence("F9"));
-    menu->addAction(cases);
-    auto* problems = problems_dock_->toggleViewAction();
-    problems->setShortcut(QKeySequence("F8"));
-    menu->addAction(problems);
+    const auto& history = desk_->history();
+    const bool can_undo = history.position() > 0;
+    const bool can_redo = history.position() < history.steps().size();
+    undo_->setEnabled(can_undo);
+    redo_->setEnabled(can_redo);
+    undo_->setText(can_undo ? "&Undo " + qt(history.steps()[history.position() - 1].name) : QString("&Undo"));
+    redo_->setText(can_redo ? "&Redo " + qt(history.steps()[history.position()].name) : QString("&Redo"));
 }
 
-void MainWindow::build_help_menu() {
-    auto* menu = menuBar()->addMenu("&Help");
-    menu->addAction(
-        "&Effects …", this, [this] { show_effect_catalogue(this); }, QKeySequence::HelpContents);
-    menu->addAction("&About", this, &MainWindow::show_about);
-}
-
-Panel* MainWindow::current() const { return panels_[static_cast<std::size_t>(std::max(0, tabs_->currentIndex()))]; }
-
-void MainWindow::show_panel(Panel* panel) { tabs_->setCurrentWidget(panel); }
-
-void MainWindow::open_study(const fs::path& folder) {
-    const QString name = QString::fromStdString(folder.string());
-    jobs_->start("study", "opening " + name, [this, folder, name](core::Progress&) {
-        auto session = open_session(folder);
-        return [this, session, name] {
-            banner_->hide();
-            show_session(session);
-            remember_study(QString::fromStdString(fs::absolute(session->study.folder()).string()));
-            problems_->note(QString("Opened %1: %2 cases").arg(name).arg(session->study.cases.size()));
-            if (session->results.loads.rows() == 0) {
-                problems_->note("Nothing of this study is computed yet: Study > Compute what changed (Ctrl+R).");
-            }
-        };
-    });
-}
-
-void MainWindow::show_session(const SessionPointer& session) {
-    session_ = session;
-    setWindowTitle(QString::fromStdString(session->study.title) + " · Underbody Studio");
-    for (auto* action : {run_, reload_, report_}) {
-        action->setEnabled(true);
+void MainWindow::follow_session() {
+    const bool study = desk_->has_study();
+    setWindowTitle(study ? qt(desk_->session().study.title) + " · Underbody Studio" : QString("Underbody Studio"));
+    for (auto* action : need_study_) {
+        action->setEnabled(study);
     }
-    for (const auto& step : session->results.steps) {
-        if (!step.error.empty()) {
-            problems_->add({core::Problem::Severity::error, step.kind + " '" + step.name + "': " + step.error, {}});
+    watch_files();
+    follow_state();
+}
+
+/// Says once when something that is shown has changed on disk.
+void MainWindow::watch_files() {
+    if (const auto old = watcher_->files(); !old.isEmpty()) {
+        watcher_->removePaths(old);
+    }
+    watcher_->disconnect();
+    if (!desk_->has_study()) {
+        return;
+    }
+    QStringList files{qt((desk_->session().folder / "study.toml").string())};
+    for (const auto& [name, file] : desk_->session().shape_files) {
+        files << qt(file.string());
+    }
+    for (const auto& one : desk_->session().study.cases) {
+        if (files.size() < 1000) {
+            files << qt(one.file.string());
         }
     }
-    cases_->show_session(session);
-    for (auto* panel : panels_) {
-        guarded("showing the study", [&] { panel->show_session(session); });
-    }
+    watcher_->addPaths(files);
+    connect(watcher_, &QFileSystemWatcher::fileChanged, this, [this](const QString& file) {
+        banner_->show_note(file + " has changed on disk: F5 reads the study again");
+    });
 }
 
 void MainWindow::show_failure(const QString& what, const std::exception_ptr& error) {
@@ -266,77 +279,12 @@ void MainWindow::guarded(const QString& what, const std::function<void()>& work)
     }
 }
 
-void MainWindow::run_study() {
-    if (!session_) {
-        return;
-    }
-    jobs_->start("study", "computing", [this, session = session_](core::Progress& progress) {
-        cases::RunOptions options;
-        options.renderer = [](const core::Figure& figure) { return render_png(figure); };
-        auto study = cases::Study::open(session->study.folder());
-        auto results = cases::run_study(study, options, progress);
-        auto newer = std::make_shared<const Session>(Session{std::move(study), std::move(results)});
-        return [this, newer] {
-            banner_->hide();
-            show_session(newer);
-            problems_->note(QString("Computed %1 steps, reused %2, failed %3")
-                                .arg(newer->results.computed)
-                                .arg(newer->results.reused)
-                                .arg(newer->results.failed));
-        };
-    });
-}
-
-void MainWindow::reload() {
-    if (session_) {
-        open_study(session_->study.folder());
-    }
-}
-
-void MainWindow::open_report() {
-    fs::path report = session_->results.report;
-    if (report.empty()) {
-        report = session_->study.folder() / "report" / "index.html";
-    }
-    guarded("opening the report", [&] {
-        if (!fs::exists(report)) {
-            throw core::InputError("missing", "there is no report at " + report.string(), {},
-                                   "make it: Study > Compute what changed (Ctrl+R)");
-        }
-        QDesktopServices::openUrl(QUrl::fromLocalFile(QString::fromStdString(fs::absolute(report).string())));
-    });
-}
-
-void MainWindow::export_picture() {
-    guarded("exporting a picture", [&] {
-        if (!current()->has_picture()) {
-            throw core::InputError("missing", "this panel shows no picture yet");
-        }
-        QString file = QFileDialog::getSaveFileName(this, "Export picture", {}, "Pictures (*.png *.pdf)");
-        if (!file.isEmpty()) {
-            file += QFileInfo(file).suffix().isEmpty() ? ".png" : "";
-            current()->export_picture(file.toStdString());
-            problems_->note("Wrote " + file);
-        }
-    });
-}
-
-void MainWindow::export_table() {
-    guarded("exporting a table", [&] {
-        if (!current()->has_table()) {
-            throw core::InputError("missing", "this panel shows no table yet");
-        }
-        QString file = QFileDialog::getSaveFileName(this, "Export table", {}, "Tables (*.csv)");
-        if (!file.isEmpty()) {
-            file += QFileInfo(file).suffix().isEmpty() ? ".csv" : "";
-            current()->export_table(file.toStdString());
-            problems_->note("Wrote " + file);
-        }
-    });
+QString MainWindow::pictures_folder() const {
+    return QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/pictures";
 }
 
 void MainWindow::remember_study(const QString& folder) {
-    if (!remember_) {
+    if (!remember_ || folder.isEmpty()) {
         return;
     }
     QSettings settings;
@@ -349,28 +297,57 @@ void MainWindow::remember_study(const QString& folder) {
 
 void MainWindow::fill_recent() {
     recent_->clear();
+    QStringList folders;
     if (remember_) {
-        for (const auto& folder : QSettings().value("recent").toStringList()) {
+        folders = QSettings().value("recent").toStringList();
+        for (const auto& folder : folders) {
             recent_->addAction(folder, this, [this, folder] { open_study(folder.toStdString()); });
         }
     }
     recent_->setEnabled(!recent_->isEmpty());
+    first_->show_recent(folders, pictures_folder());
 }
 
-void MainWindow::show_about() {
-    QMessageBox::about(this, "Underbody Studio",
-                       "<h3>Underbody Studio " UNDERBODY_VERSION
-                       "</h3><p>CFD post-processing and ground-effect design.</p>"
-                       "<p>Free software under the GNU General Public License, version 3 or later.</p>"
-                       "<p>What it shows, the libraries and the command <tt>underbody</tt> return too.</p>");
+void MainWindow::offer_recovery() {
+    const auto logs = left_over_logs(log_folder(remember_));
+    if (!logs.empty() && ask("Go on",
+                             "The program did not wind up the last time. Its session can be done again from its log, "
+                             "up to where it stopped.",
+                             "Go on where it stopped")) {
+        desk_->replay_log(logs.front());
+        return;  // the log stays until the next start: its lines stand in the new one by then
+    }
+    for (const auto& log : logs) {
+        std::error_code none;
+        fs::remove(log, none);
+    }
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+    if (desk_->computing() &&
+        !ask("Computing",
+             "The study is being computed. What is done already is stored and is not computed again; the rest is done "
+             "the next time.",
+             "Stop and close")) {
+        event->ignore();
+        return;
+    }
     if (remember_) {
         QSettings settings;
         settings.setValue("geometry", saveGeometry());
         settings.setValue("layout", saveState());
-        settings.setValue("panel", tabs_->currentIndex());
+        if (desk_->has_study()) {
+            core::write_file(
+                FirstPage::picture_of(pictures_folder(), qt(desk_->session().folder.string())).toStdString(), [this] {
+                    QByteArray bytes;
+                    QBuffer buffer(&bytes);
+                    buffer.open(QIODevice::WriteOnly);
+                    middle_->grab()
+                        .scaled(400, 250, Qt::KeepAspectRatio, Qt::SmoothTransformation)
+                        .save(&buffer, "PNG");
+                    return bytes.toStdString();
+                }());
+        }
     }
     jobs_->cancel();
     event->accept();
@@ -383,16 +360,34 @@ void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-    const auto urls = event->mimeData()->urls();
-    if (urls.isEmpty()) {
-        return;
+    std::vector<fs::path> files;
+    for (const auto& url : event->mimeData()->urls()) {
+        files.emplace_back(url.toLocalFile().toStdString());
     }
-    const fs::path path = urls.front().toLocalFile().toStdString();
-    if (fs::is_directory(path) || path.filename() == "study.toml") {
-        open_study(path);
-    } else {
-        show_panel(body_);
-        body_->show_file(path, {}, QString::fromStdString(path.filename().string()));
+    take_files(files);
+}
+
+void MainWindow::take_files(const std::vector<fs::path>& files) {
+    Words fields = {"select"};
+    for (const fs::path& path : files) {
+        guarded("opening " + qt(path.string()), [&] {
+            if (fs::is_directory(path) || path.filename() == "study.toml" || !fs::exists(path)) {
+                open_study(path);
+            } else if (path.extension() == ".ubs") {
+                desk_->open_session_file(path);
+            } else if (path.extension() == ".toml") {
+                static_cast<void>(geometry::read_shape(path));  // says what is wrong with it
+                desk_->act({"add", "shape", path.string()});
+                desk_->act({"shape", path.stem().string()});
+                desk_->act({"workspace", "design"});
+            } else if (desk_->act({"add", "field", path.string()})) {
+                fields.push_back("field/" + fs::absolute(path).lexically_normal().string());
+            }
+        });
+    }
+    if (fields.size() > 1) {
+        desk_->act(fields);
+        desk_->act({"workspace", "compare"});
     }
 }
 

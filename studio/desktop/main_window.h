@@ -1,44 +1,57 @@
-// The window: cases on the left, panels in the middle, problems below, progress in the status bar.
+// The window: the study on the left, workspaces in the middle, commands, problems, jobs and history below.
 #pragma once
 
 #include <QMainWindow>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
-#include "studio/desktop/session.h"
+#include "studio/desktop/desk.h"
 
-class QAction;
+class QActionGroup;
 class QDockWidget;
+class QFileSystemWatcher;
 class QLabel;
 class QMenu;
 class QProgressBar;
+class QStackedWidget;
 class QTabWidget;
 class QToolButton;
 
 namespace underbody::studio {
 
 class Banner;
-class BodyPanel;
-class CasesTree;
-class Jobs;
+class FirstPage;
 class Panel;
 class ProblemList;
+class StudyTree;
 
 class MainWindow : public QMainWindow {
     Q_OBJECT
 public:
-    /// `remember`: window layout and recent studies are kept between starts.
+    /// `remember`: window layout, recent studies and the log of the session are kept between starts.
     explicit MainWindow(bool remember);
     ~MainWindow() override;
 
     /// Opens a study folder in the background; what is wrong with it is shown, and the study that was open stays.
-    void open_study(const std::filesystem::path& folder);
-    [[nodiscard]] bool has_study() const { return session_ != nullptr; }
+    void open_study(const std::filesystem::path& folder) { desk_->open_study(folder); }
+    [[nodiscard]] bool has_study() const { return desk_->has_study(); }
+    [[nodiscard]] Desk& desk() { return *desk_; }
     [[nodiscard]] Jobs& jobs() { return *jobs_; }
     [[nodiscard]] const std::vector<Panel*>& panels() const { return panels_; }
-    void show_panel(Panel* panel);
+    /// What was dropped or named on the command line, by its content: a study, sessions and logs, shapes, CFD files.
+    void take_files(const std::vector<std::filesystem::path>& files);
+    /// Asks whether to go on where a program that did not wind up stopped.
+    void offer_recovery();
     /// The last error that was shown, for a start without anybody at the window.
     [[nodiscard]] QString last_error() const { return last_error_; }
+    /// Writes to a path that somebody chose: adds the ending, asks before it replaces a file. False when it was not
+    /// written.
+    bool write_chosen(QString path, const QStringList& endings,
+                      const std::function<void(const std::filesystem::path&)>& write);
+
+    /// Asks the person; replaced where nobody is there. Title, text, what "yes" does.
+    std::function<bool(const QString& title, const QString& text, const QString& yes)> ask;
 
 protected:
     void closeEvent(QCloseEvent* event) override;
@@ -46,47 +59,57 @@ protected:
     void dropEvent(QDropEvent* event) override;
 
 private:
-    void build_panels();
-    void build_cases();
+    void build_workspaces();
+    void build_tree();
+    void build_below();
     void build_status();
+    void build_tool_bar();
     void build_file_menu();
+    void build_edit_menu();
     void build_study_menu();
     void build_view_menu();
     void build_help_menu();
-    void show_session(const SessionPointer& session);
+    QAction* add(QMenu* menu, const QString& text, const QString& key, const std::function<void()>& act);
+    void follow_state();
+    void follow_session();
+    void watch_files();
     void show_failure(const QString& what, const std::exception_ptr& error);
-    void run_study();
-    void reload();
     void open_report();
     void export_picture();
     void export_table();
+    void export_controller();
+    void save_session(bool elsewhere);
+    void copy_picture();
     void guarded(const QString& what, const std::function<void()>& work);
     void remember_study(const QString& folder);
     void fill_recent();
     void show_about();
     [[nodiscard]] Panel* current() const;
+    [[nodiscard]] QString pictures_folder() const;
 
     bool remember_;
-    SessionPointer session_;
     QString last_error_;
+    QString session_file_;
     Jobs* jobs_ = nullptr;
-    QTabWidget* tabs_ = nullptr;
-    CasesTree* cases_ = nullptr;
+    Desk* desk_ = nullptr;
+    QStackedWidget* middle_ = nullptr;
+    FirstPage* first_ = nullptr;
+    StudyTree* tree_ = nullptr;
     ProblemList* problems_ = nullptr;
     Banner* banner_ = nullptr;
-    BodyPanel* body_ = nullptr;
     std::vector<Panel*> panels_;
-    QDockWidget* cases_dock_ = nullptr;
-    QDockWidget* problems_dock_ = nullptr;
+    QDockWidget* tree_dock_ = nullptr;
+    QDockWidget* below_dock_ = nullptr;
+    QTabWidget* below_ = nullptr;
+    QFileSystemWatcher* watcher_ = nullptr;
     QProgressBar* bar_ = nullptr;
     QLabel* doing_ = nullptr;
     QToolButton* cancel_ = nullptr;
     QMenu* recent_ = nullptr;
-    QAction* run_ = nullptr;
-    QAction* reload_ = nullptr;
-    QAction* report_ = nullptr;
-    QAction* picture_ = nullptr;
-    QAction* table_ = nullptr;
+    QActionGroup* workspaces_ = nullptr;
+    QAction* undo_ = nullptr;
+    QAction* redo_ = nullptr;
+    std::vector<QAction*> need_study_;
 };
 
 }  // namespace underbody::studio

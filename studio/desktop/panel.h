@@ -1,33 +1,26 @@
-// What the window knows of its panels.
+// What the window knows of its panels: each is drawn from the state and the session alone.
 #pragma once
 
 #include <QWidget>
 #include <filesystem>
 #include <functional>
 
-#include "studio/desktop/session.h"
+#include "studio/desktop/desk.h"
 
 namespace underbody::studio {
-
-class Jobs;
 
 class Panel : public QWidget {
     Q_OBJECT
 public:
-    Panel(Jobs& jobs, QWidget* parent) : QWidget(parent), jobs_(jobs) {}
+    Panel(Desk& desk, QWidget* parent);
 
-    /// A study was opened or its results are newer.
-    virtual void show_session(const SessionPointer& session) = 0;
-    /// A case was chosen in the tree.
-    virtual void show_case(const cases::Case&) {}
-    /// File > Export picture: false when the panel has none.
+    /// File > Export picture: false when the panel has none. `picture_endings`: ".png", ".pdf".
     [[nodiscard]] virtual bool has_picture() const { return false; }
+    [[nodiscard]] virtual QStringList picture_endings() const { return {".png", ".pdf"}; }
     virtual void export_picture(const std::filesystem::path&) {}
     /// File > Export table (CSV).
     [[nodiscard]] virtual bool has_table() const { return false; }
     virtual void export_table(const std::filesystem::path&) {}
-    /// For --screenshot: does the one thing that shows what the panel is for (moves the slider, clicks a start).
-    virtual void demonstrate() {}
 
 Q_SIGNALS:
     /// For the status bar: what is under the mouse, what was just done.
@@ -36,7 +29,19 @@ Q_SIGNALS:
     void problem(const core::Problem& problem);
 
 protected:
+    /// Draws everything again. `session`: what is open is new, not only the state. Called when the panel is seen only.
+    virtual void draw_again(bool session) = 0;
+    void showEvent(QShowEvent* event) override;
+
+    [[nodiscard]] const State& state() const { return desk_.state(); }
+    [[nodiscard]] const Session& session() const { return desk_.session(); }
+    Desk& desk_;
     Jobs& jobs_;
+
+private:
+    void out_of_date(bool session);
+    bool old_state_ = true;
+    bool old_session_ = true;
 };
 
 }  // namespace underbody::studio

@@ -25,7 +25,7 @@ QString caption_of(const cases::StudyResults& results, const std::string& key) {
 
 }  // namespace
 
-PicturesPanel::PicturesPanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent) {
+PicturesPanel::PicturesPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     setObjectName("pictures");
     auto* row = new QHBoxLayout(this);
     list_ = new QListWidget;
@@ -46,33 +46,41 @@ PicturesPanel::PicturesPanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent) 
     caption_->setWordWrap(true);
     caption_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     column->addWidget(caption_);
-    connect(list_, &QListWidget::currentRowChanged, this, [this] { choose(); });
+    list_->setAccessibleName("Pictures of the study");
+    connect(list_, &QListWidget::currentRowChanged, this, [this](int chosen) {
+        if (chosen >= 0) {
+            desk_.act({"select", "picture/" + list_->item(chosen)->data(Qt::UserRole).toString().toStdString()});
+        }
+    });
 }
 
-void PicturesPanel::show_session(const SessionPointer& session) {
-    session_ = session;
-    const QString kept = list_->currentItem() != nullptr ? list_->currentItem()->text() : QString();
-    {
-        const QSignalBlocker quiet(list_);
+void PicturesPanel::draw_again(bool fresh) {
+    const QSignalBlocker quiet(list_);
+    std::vector<std::string> keys;
+    for (const auto& [key, png] : session().results.pictures) {
+        keys.push_back(key);
+    }
+    if (fresh) {
         list_->clear();
-        for (const auto& [key, png] : session->results.pictures) {
+        for (const auto& key : keys) {
             auto* item = new QListWidgetItem(qt(key).replace("/", " · "), list_);
             item->setData(Qt::UserRole, qt(key));
             item->setToolTip(item->text());
         }
-        const auto found = list_->findItems(kept, Qt::MatchExactly);
-        list_->setCurrentRow(found.isEmpty() || kept.isEmpty() ? 0 : list_->row(found.front()));
     }
-    choose();
-}
-
-void PicturesPanel::show_case(const cases::Case& chosen) {
-    for (int i = 0; i < list_->count(); ++i) {
-        if (list_->item(i)->data(Qt::UserRole).toString().contains("/" + qt(chosen.name) + "/")) {
-            list_->setCurrentRow(i);
-            return;
+    std::string wanted = state().current("picture", keys);
+    const auto chosen = state().selected("case");
+    if (!chosen.empty() && state().selected("picture").empty()) {  // the pictures of that case, when there are any
+        for (const auto& key : keys) {
+            wanted = key.find("/" + chosen.front() + "/") != std::string::npos ? key : wanted;
         }
     }
+    for (int i = 0; i < list_->count(); ++i) {
+        if (list_->item(i)->data(Qt::UserRole).toString().toStdString() == wanted) {
+            list_->setCurrentRow(i);
+        }
+    }
+    choose();
 }
 
 void PicturesPanel::choose() {
@@ -84,10 +92,10 @@ void PicturesPanel::choose() {
         return;
     }
     const std::string key = list_->currentItem()->data(Qt::UserRole).toString().toStdString();
-    if (const auto* png = session_->results.picture(key)) {
+    if (const auto* png = session().results.picture(key)) {
         whole_.loadFromData(reinterpret_cast<const uchar*>(png->data()), static_cast<uint>(png->size()), "PNG");
     }
-    caption_->setText(caption_of(session_->results, key));
+    caption_->setText(caption_of(session().results, key));
     fit();
 }
 
@@ -113,10 +121,8 @@ void PicturesPanel::export_picture(const std::filesystem::path& path) {
     if (path.extension() != ".png") {
         throw core::UsageError("format", "a stored picture is written as .png only");
     }
-    const auto* png = session_->results.picture(list_->currentItem()->data(Qt::UserRole).toString().toStdString());
+    const auto* png = session().results.picture(list_->currentItem()->data(Qt::UserRole).toString().toStdString());
     core::write_file(path, png != nullptr ? *png : std::string());
 }
-
-void PicturesPanel::demonstrate() { list_->setCurrentRow(std::min(list_->count() - 1, 3)); }
 
 }  // namespace underbody::studio

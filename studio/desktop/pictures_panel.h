@@ -14,22 +14,19 @@ namespace underbody::studio {
 class PicturesPanel : public Panel {
     Q_OBJECT
 public:
-    PicturesPanel(Jobs& jobs, QWidget* parent);
-    void show_session(const SessionPointer& session) override;
-    /// The pictures of that case, when there are any.
-    void show_case(const cases::Case& chosen) override;
+    PicturesPanel(Desk& desk, QWidget* parent);
     [[nodiscard]] bool has_picture() const override;
+    [[nodiscard]] QStringList picture_endings() const override { return {".png"}; }
     void export_picture(const std::filesystem::path& path) override;
-    void demonstrate() override;
 
 protected:
+    void draw_again(bool session) override;
     bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
     void choose();
     void fit();
 
-    SessionPointer session_;
     QListWidget* list_ = nullptr;
     QScrollArea* area_ = nullptr;
     QLabel* picture_ = nullptr;

@@ -8,6 +8,49 @@
 
 namespace underbody::studio {
 
+namespace {
+
+/// The window's own colours around a figure; exported pictures stay on white.
+void dress(QCustomPlot& plot, const QPalette& palette) {
+    const QColor text = palette.color(QPalette::Text);
+    const QColor base = palette.color(QPalette::Base);
+    if (base.lightness() >= 128) {
+        return;
+    }
+    QColor pale = text;
+    pale.setAlpha(60);
+    plot.setBackground(base);
+    for (auto* rect : plot.axisRects()) {
+        for (auto* axis : rect->axes()) {
+            for (const auto& set : {&QCPAxis::setBasePen, &QCPAxis::setTickPen, &QCPAxis::setSubTickPen}) {
+                (axis->*set)(QPen(text));
+            }
+            axis->setLabelColor(text);
+            axis->setTickLabelColor(text);
+            axis->grid()->setPen(QPen(pale, 0, Qt::DotLine));
+        }
+    }
+    if (plot.legend != nullptr) {
+        QColor ground = base;
+        ground.setAlpha(200);
+        plot.legend->setBrush(ground);
+        plot.legend->setTextColor(text);
+    }
+    for (int i = 0; i < plot.itemCount(); ++i) {
+        if (auto* item = qobject_cast<QCPItemText*>(plot.item(i)); item != nullptr && item->color().lightness() < 128) {
+            item->setColor(text);
+            item->setBrush(Qt::NoBrush);
+        }
+    }
+    for (int i = 0; i < plot.plotLayout()->elementCount(); ++i) {
+        if (auto* title = qobject_cast<QCPTextElement*>(plot.plotLayout()->elementAt(i))) {
+            title->setTextColor(text);
+        }
+    }
+}
+
+}  // namespace
+
 PlotView::PlotView(QWidget* parent) : QWidget(parent) {
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 0);
@@ -48,6 +91,7 @@ void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
     figure_ = figure;
     shown_ = true;
     draw(figure_, *plot_);
+    dress(*plot_, palette());
     zoomed_ = keep;
     if (keep) {
         plot_->xAxis->setRange(x);
@@ -59,6 +103,7 @@ void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
 void PlotView::show_text(const QString& text) {
     core::Figure empty;
     draw(empty, *plot_);
+    dress(*plot_, palette());
     shown_ = false;
     for (auto* axis : plot_->axisRect()->axes()) {
         axis->setVisible(false);
@@ -68,7 +113,7 @@ void PlotView::show_text(const QString& text) {
     label->position->setType(QCPItemPosition::ptAxisRectRatio);
     label->position->setCoords(0.5, 0.5);
     label->setText(text);
-    label->setColor(QColor(110, 110, 110));
+    label->setColor(palette().color(QPalette::PlaceholderText));
     plot_->replot(QCustomPlot::rpQueuedReplot);
 }
 
@@ -78,6 +123,7 @@ void PlotView::show_all() {
     if (shown_) {
         zoomed_ = false;
         draw(figure_, *plot_);
+        dress(*plot_, palette());
         plot_->replot(QCustomPlot::rpQueuedReplot);
     }
 }

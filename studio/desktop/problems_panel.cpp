@@ -1,7 +1,9 @@
 #include "studio/desktop/problems_panel.h"
 
+#include <QAction>
 #include <QApplication>
 #include <QBoxLayout>
+#include <QClipboard>
 #include <QHeaderView>
 #include <QLabel>
 #include <QStyle>
@@ -16,10 +18,23 @@ ProblemList::ProblemList(QWidget* parent) : QTreeWidget(parent) {
     setHeaderLabels({"time", "what", "where", "what to do"});
     setRootIsDecorated(false);
     setAlternatingRowColors(true);
-    setTextElideMode(Qt::ElideMiddle);
+    setTextElideMode(Qt::ElideRight);
+    header()->setStretchLastSection(false);
     header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
-    header()->resizeSection(1, 620);
-    header()->resizeSection(2, 260);
+    header()->setSectionResizeMode(1, QHeaderView::Stretch);
+    header()->resizeSection(2, 170);
+    header()->resizeSection(3, 210);
+    setAccessibleName("Problems");
+    setSelectionMode(QAbstractItemView::ExtendedSelection);
+    auto* copy = new QAction("&Copy all", this);
+    connect(copy, &QAction::triggered, this, [this] { QApplication::clipboard()->setText(text()); });
+    auto* clear_all = new QAction("C&lear", this);
+    connect(clear_all, &QAction::triggered, this, [this] {
+        clear();
+        Q_EMIT counted(count_ = 0);
+    });
+    addActions({copy, clear_all});
+    setContextMenuPolicy(Qt::ActionsContextMenu);
 }
 
 void ProblemList::add(const core::Problem& problem, const QString& hint) {
@@ -40,7 +55,11 @@ void ProblemList::add(const core::Problem& problem, const QString& hint) {
     for (int column = 1; column < 4; ++column) {
         item->setToolTip(column, item->text(column));
     }
+    item->setData(0, Qt::UserRole, static_cast<int>(problem.severity));
     scrollToItem(item);
+    if (problem.severity != Severity::note) {
+        Q_EMIT counted(++count_);
+    }
 }
 
 void ProblemList::note(const QString& text) { add({core::Problem::Severity::note, text.toStdString(), {}}); }
@@ -56,9 +75,7 @@ QString ProblemList::text() const {
 
 Banner::Banner(QWidget* parent) : QFrame(parent) {
     setObjectName("banner");
-    setStyleSheet(
-        "QFrame#banner { background: #fff0e6; border: 1px solid #d55e00; border-radius: 4px; }"
-        "QFrame#banner QLabel { color: #5c2600; }");
+    setStyleSheet("QFrame#banner { border: 2px solid #d55e00; border-radius: 4px; }");
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(10, 6, 6, 6);
     auto* icon = new QLabel;
@@ -83,6 +100,11 @@ void Banner::show_error(const QString& what, const QString& message, const QStri
         text += "<br><i>" + hint.toHtmlEscaped() + "</i>";
     }
     text_->setText(text);
+    show();
+}
+
+void Banner::show_note(const QString& text) {
+    text_->setText(text.toHtmlEscaped());
     show();
 }
 

@@ -19,6 +19,13 @@ public:
     void note(const QString& text);
     /// Tab-separated text of all lines, for reports of defects.
     [[nodiscard]] QString text() const;
+
+Q_SIGNALS:
+    /// Errors and warnings in the list.
+    void counted(int count);
+
+private:
+    int count_ = 0;
 };
 
 /// A message with its hint above the panels, until it is closed or something succeeds.
@@ -27,6 +34,7 @@ class Banner : public QFrame {
 public:
     explicit Banner(QWidget* parent);
     void show_error(const QString& what, const QString& message, const QString& hint);
+    void show_note(const QString& text);
 
 private:
     QLabel* text_ = nullptr;

@@ -9,7 +9,6 @@
 
 #include <QBoxLayout>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -22,7 +21,7 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "studio/desktop/jobs.h"
+#include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
@@ -82,7 +81,7 @@ void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, cons
 
 }  // namespace
 
-RegionPanel::RegionPanel(Jobs& jobs, QWidget* parent) : Panel(jobs, parent) {
+RegionPanel::RegionPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     setObjectName("stability");
     build();
 }
@@ -92,24 +91,20 @@ RegionPanel::~RegionPanel() = default;
 void RegionPanel::build() {
     auto* all = new QHBoxLayout(this);
     auto* controls = new QWidget;
-    controls->setFixedWidth(270);
+    controls->setFixedWidth(300);
     auto* left = new QVBoxLayout(controls);
     left->setContentsMargins(0, 0, 0, 0);
     all->addWidget(controls, 0);
-    auto* form = new QFormLayout;
-    form->setRowWrapPolicy(QFormLayout::WrapAllRows);
-    left->addLayout(form);
-    build_controls(*form);
-    auto* buttons = new QHBoxLayout;
-    compute_ = new QPushButton("Co&mpute map");
-    reset_ = new QPushButton("As &declared");
-    reset_->setToolTip("Forget the changed numbers");
-    buttons->addWidget(compute_);
-    buttons->addWidget(reset_);
-    left->addLayout(buttons);
+    form_ = new QFormLayout;
+    form_->setRowWrapPolicy(QFormLayout::WrapAllRows);
+    left->addLayout(form_);
+    build_controls(*form_);
     changes_label_ = new QLabel;
     changes_label_->setWordWrap(true);
     left->addWidget(changes_label_);
+    reset_ = new QPushButton("As &declared");
+    reset_->setToolTip("Forget the changed numbers");
+    left->addWidget(reset_);
     about_ = new QLabel;
     about_->setWordWrap(true);
     about_->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -124,110 +119,123 @@ void RegionPanel::build() {
     plots->addWidget(motion_);
     plots->setStretchFactor(0, 3);
     plots->setStretchFactor(1, 2);
-    map_->show_text("Open a study with a stability region");
-    motion_->show_text("Click a start in the map to see its motion");
+    say("Open a study with a stability region");
     connect(map_, &PlotView::hovered, this, &Panel::remark);
     connect(motion_, &PlotView::hovered, this, &Panel::remark);
     connect(map_, &PlotView::clicked, this, &RegionPanel::start_from);
-    connect(compute_, &QPushButton::clicked, this, [this] { compute(); });
-    connect(reset_, &QPushButton::clicked, this, [this] {
-        changes_.clear();
-        choose_parameter();
-        compute();
-    });
+    connect(reset_, &QPushButton::clicked, this, [this] { act("as_declared="); });
 }
 
 void RegionPanel::build_controls(QFormLayout& form) {
     choice_ = new QComboBox;
     choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    form.addRow("Region", choice_);
+    choice_->setAccessibleName("Region");
+    form.addRow("&Region", choice_);
     auto* sizes = new QHBoxLayout;
     cells_ = new QSpinBox;
     cells_->setRange(20, 1000);
     cells_->setSingleStep(50);
-    cells_->setValue(200);
+    cells_->setKeyboardTracking(false);
     cells_->setSuffix(" starts a side");
-    duration_ = new QDoubleSpinBox;
-    duration_->setRange(0.1, 100000);
-    duration_->setDecimals(1);
-    duration_->setSuffix(" s");
+    cells_->setAccessibleName("Starts a side");
+    duration_ = new NumberEdit("s", "s");
+    duration_->setAccessibleName("Time of motion");
     sizes->addWidget(cells_);
     sizes->addWidget(duration_);
     form.addRow("Starts and time", sizes);
     parameter_ = new QComboBox;
     parameter_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     parameter_->setToolTip("Any number that the model declares can be changed here; the model file stays as it is");
-    form.addRow("What if", parameter_);
-    value_ = new QDoubleSpinBox;
-    value_->setDecimals(6);
-    value_->setKeyboardTracking(false);
+    parameter_->setAccessibleName("Number of the model");
+    form.addRow("&What if", parameter_);
+    value_ = new NumberEdit("1", "1");
+    value_->setAccessibleName("Value of that number");
     form.addRow("were", value_);
-    connect(choice_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] { choose_region(); });
-    connect(parameter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] { choose_parameter(); });
-    connect(value_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double value) {
-        const std::string name = parameter_->currentData().toString().toStdString();
-        const auto at =
-            std::find_if(changes_.begin(), changes_.end(), [&](const auto& change) { return change.first == name; });
-        if (at != changes_.end()) {
-            at->second = value;
-        } else if (!name.empty()) {
-            changes_.emplace_back(name, value);
-        }
-        compute();
+    connect(choice_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+        desk_.act({"select", "region/" + choice_->currentText().toStdString()});
     });
+    connect(cells_, QOverload<int>::of(&QSpinBox::valueChanged), this,
+            [this](int cells) { act("cells=" + std::to_string(cells)); });
+    connect(duration_, &NumberEdit::entered, this,
+            [this](double value) { act("duration=" + core::format_number(value) + "s"); });
+    connect(parameter_, QOverload<int>::of(&QComboBox::activated), this, [this] { show_parameter(); });
 }
 
-void RegionPanel::show_session(const SessionPointer& session) {
-    session_ = session;
-    const QString kept = choice_->currentText();
-    {
-        const QSignalBlocker quiet(choice_);
-        choice_->clear();
-        for (const auto& region : session->study.regions) {
-            choice_->addItem(qt(region.name));
-        }
-        const int at = choice_->findText(kept);
-        choice_->setCurrentIndex(at >= 0 ? at : 0);
+void RegionPanel::act(const std::string& assignment) {
+    if (!spec_.name.empty()) {
+        desk_.act({"region", spec_.name, assignment});
     }
-    choose_region();
 }
 
-void RegionPanel::choose_region() {
-    const auto index = static_cast<std::size_t>(std::max(0, choice_->currentIndex()));
+const RegionView& RegionPanel::settings() const {
+    static const RegionView none;
+    const auto at = state().regions.find(spec_.name);
+    return at == state().regions.end() ? none : at->second;
+}
+
+void RegionPanel::say(const QString& text) {
     model_.reset();
     region_.reset();
     trajectory_.reset();
-    changes_.clear();
+    map_of_.clear();
+    motion_of_.clear();
     about_->clear();
+    changes_label_->clear();
+    reset_->setEnabled(false);
+    map_->show_text(text);
     motion_->show_text("Click a start in the map to see its motion");
-    const bool any = session_ && index < session_->study.regions.size();
-    compute_->setEnabled(any);
-    reset_->setEnabled(any);
-    if (!any) {
-        map_->show_text("This study has no stability regions");
+}
+
+void RegionPanel::draw_again(bool) {
+    const QSignalBlocker quiet(choice_), quiet_cells(cells_);
+    std::vector<std::string> names;
+    choice_->clear();
+    for (const auto& region : session().study.regions) {
+        names.push_back(region.name);
+        choice_->addItem(qt(region.name));
+    }
+    const std::string name = state().current("region", names);
+    if (name.empty()) {
+        spec_ = {};
+        say(desk_.has_study() ? "This study has no stability regions" : "Open a study with a stability region");
         return;
     }
-    spec_ = session_->study.regions[index];
-    if (!spec_.forces.empty() && session_->results.loads.rows() == 0) {
-        map_->show_text("The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)");
-        compute_->setEnabled(false);
-        return;
+    choice_->setCurrentText(qt(name));
+    const bool other = spec_.name != name || read_ != desk_.session_pointer();
+    spec_ = *std::find_if(session().study.regions.begin(), session().study.regions.end(),
+                          [&](const auto& region) { return region.name == name; });
+    cells_->setValue(settings().cells);
+    duration_->show_number(duration());
+    if (!spec_.forces.empty() && session().results.loads.rows() == 0) {
+        say("The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)");
+    } else if (other || !model_) {
+        read_model();
+    } else {
+        fill_parameters();
+        compute();
+        compute_motion();
     }
-    duration_->setValue(spec_.duration);
-    map_->show_text("…");
+}
+
+void RegionPanel::read_model() {
+    read_ = desk_.session_pointer();
+    say("…");
     jobs_.start("region model", "reading the model of " + qt(spec_.name),
-                [this, spec = spec_, session = session_](core::Progress&) {
+                [this, spec = spec_, session = read_](core::Progress&) {
                     auto model = std::make_shared<const dynamics::Model>(
                         cases::region_model(session->study, spec, session->results));
-                    return [this, model] {
-                        model_ = model;
-                        show_model();
-                        compute();
+                    return [this, model, session, name = spec.name] {
+                        if (session == read_ && name == spec_.name) {
+                            model_ = model;
+                            fill_parameters();
+                            compute();
+                            compute_motion();
+                        }
                     };
                 });
 }
 
-void RegionPanel::show_model() {
+void RegionPanel::fill_parameters() {
     const QSignalBlocker quiet(parameter_);
     const QString kept = parameter_->currentData().toString();
     parameter_->clear();
@@ -237,10 +245,10 @@ void RegionPanel::show_model() {
     }
     const int at = parameter_->findData(kept.isEmpty() ? "vehicle.net_weight" : kept);
     parameter_->setCurrentIndex(at >= 0 ? at : 0);
-    choose_parameter();
+    show_parameter();
 }
 
-void RegionPanel::choose_parameter() {
+void RegionPanel::show_parameter() {
     if (!model_) {
         return;
     }
@@ -249,50 +257,119 @@ void RegionPanel::choose_parameter() {
         if (parameter.name != name) {
             continue;
         }
-        const auto at =
-            std::find_if(changes_.begin(), changes_.end(), [&](const auto& change) { return change.first == name; });
-        const double value = at != changes_.end() ? at->second : parameter.value;
-        const QSignalBlocker quiet(value_);
-        value_->setRange(parameter.lower, parameter.upper);
-        const double step = value != 0 ? std::pow(10, std::floor(std::log10(std::abs(value)))) / 2 : 0.01;
-        value_->setSingleStep(step);
-        value_->setSuffix(parameter.unit.empty() || parameter.unit == "1" ? "" : " " + qt(pretty_unit(parameter.unit)));
-        value_->setValue(value);
-        value_->setToolTip(qt(parameter.meaning) + QString("\ndeclared: %1").arg(map_number(parameter.value)));
+        const auto at = settings().set.find(name);
+        const bool plain = parameter.unit.empty() || !core::is_unit(parameter.unit);
+        // A field for the unit of this number.
+        auto* field = new NumberEdit(plain ? "1" : parameter.unit, plain ? "1" : parameter.unit);
+        field->setAccessibleName(parameter_->currentText());
+        field->show_number(at != settings().set.end() ? at->second : parameter.value);
+        field->setToolTip(qt(parameter.meaning) + QString("\ndeclared: %1, between %2 and %3")
+                                                      .arg(map_number(parameter.value))
+                                                      .arg(map_number(parameter.lower))
+                                                      .arg(map_number(parameter.upper)));
+        connect(field, &NumberEdit::entered, this, [this, name, parameter](double value) {
+            if (value >= parameter.lower && value <= parameter.upper) {
+                act("set." + name + "=" + core::format_number(value));
+            } else {
+                Q_EMIT remark(QString("%1 lies between %2 and %3")
+                                  .arg(qt(name), map_number(parameter.lower), map_number(parameter.upper)));
+                show_parameter();
+            }
+        });
+        form_->replaceWidget(value_, field);
+        value_->deleteLater();
+        value_ = field;
+        QWidget::setTabOrder(parameter_, value_);
     }
     QString text;
-    for (const auto& [changed, value] : changes_) {
+    for (const auto& [changed, value] : settings().set) {
         text += QString("%1 = %2 (declared %3)\n")
-                    .arg(qt(changed), map_number(value), map_number(model_->parameter(changed)));
+                    .arg(qt(changed), qt(core::format_number(value, 12)), map_number(model_->parameter(changed)));
     }
     changes_label_->setText(text.trimmed());
+    reset_->setEnabled(!settings().set.empty());
 }
 
 dynamics::Model RegionPanel::changed_model() const {
     dynamics::Model model = *model_;
-    for (const auto& [name, value] : changes_) {
+    for (const auto& [name, value] : settings().set) {
         model = model.with_parameter(name, value);
     }
     return model.resolved();
 }
 
+std::string RegionPanel::map_key() const {
+    std::string key = spec_.name + " " + std::to_string(settings().cells) + " " + core::format_number(duration());
+    for (const auto& [name, value] : settings().set) {
+        key += " " + name + "=" + core::format_number(value);
+    }
+    return key;
+}
+
+std::string RegionPanel::motion_key() const {
+    const auto& start = settings().start;
+    return start ? map_key() + " from " + core::format_number((*start)[0]) + " " + core::format_number((*start)[1])
+                 : std::string();
+}
+
 void RegionPanel::compute() {
-    if (!model_) {
+    if (map_of_ == map_key()) {
         return;
     }
-    choose_parameter();
+    map_of_ = map_key();
+    region_.reset();
     trajectory_.reset();
+    motion_of_.clear();
     dynamics::RegionOptions options = cases::region_options(spec_);
-    options.columns = options.rows = static_cast<std::size_t>(cells_->value());
-    options.duration = duration_->value();
-    jobs_.start("region", "stability map", [this, model = changed_model(), options](core::Progress& progress) {
-        auto region =
-            std::make_shared<const dynamics::StabilityRegion>(dynamics::stability_region(model, options, progress));
-        return [this, region] {
-            region_ = region;
-            show_region();
-        };
-    });
+    options.columns = options.rows = static_cast<std::size_t>(settings().cells);
+    options.duration = duration();
+    jobs_.start(
+        "region", "stability map", [this, model = changed_model(), options, key = map_of_](core::Progress& progress) {
+            auto region =
+                std::make_shared<const dynamics::StabilityRegion>(dynamics::stability_region(model, options, progress));
+            return [this, region, key] {
+                if (key == map_of_) {
+                    region_ = region;
+                    show_region();
+                    compute_motion();
+                }
+            };
+        });
+}
+
+/// The motion is always that of the model and the start that stand in the state.
+void RegionPanel::compute_motion() {
+    if (motion_of_ == motion_key() || !region_) {
+        return;
+    }
+    motion_of_ = motion_key();
+    trajectory_.reset();
+    jobs_.cancel("trajectory");
+    if (!settings().start) {
+        motion_->show_text("Click a start in the map to see its motion");
+        show_region();
+        return;
+    }
+    motion_->show_text("…");
+    dynamics::TrajectoryOptions options;
+    options.duration = duration();
+    options.output_step = options.duration / 3000;
+    options.escape_gap = region_->escape_gap;
+    options.stop_at_contact = true;
+    jobs_.start("trajectory", "motion",
+                [this, model = changed_model(), start = *settings().start, options,
+                 key = motion_of_](core::Progress& progress) {
+                    dynamics::InputSignals inputs;
+                    inputs.held = model.conditions;
+                    auto trajectory = std::make_shared<const dynamics::Trajectory>(
+                        dynamics::simulate(model, start[0], start[1], inputs, options, progress));
+                    return [this, trajectory, key] {
+                        if (key == motion_of_) {
+                            trajectory_ = trajectory;
+                            show_trajectory();
+                        }
+                    };
+                });
 }
 
 void RegionPanel::show_region() {
@@ -327,22 +404,7 @@ void RegionPanel::start_from(double x, double y) {
         Q_EMIT remark("motions are shown for maps over the gap");
         return;
     }
-    dynamics::TrajectoryOptions options;
-    options.duration = duration_->value();
-    options.output_step = options.duration / 3000;
-    options.escape_gap = region_->escape_gap;
-    options.stop_at_contact = true;
-    jobs_.start("trajectory", "motion",
-                [this, model = changed_model(), gap, velocity, options](core::Progress& progress) {
-                    dynamics::InputSignals inputs;
-                    inputs.held = model.conditions;
-                    auto trajectory = std::make_shared<const dynamics::Trajectory>(
-                        dynamics::simulate(model, gap, velocity, inputs, options, progress));
-                    return [this, trajectory] {
-                        trajectory_ = trajectory;
-                        show_trajectory();
-                    };
-                });
+    act("start=" + core::format_number(gap) + "m," + core::format_number(velocity) + "m/s");
 }
 
 void RegionPanel::show_trajectory() {
@@ -366,23 +428,6 @@ void RegionPanel::export_table(const std::filesystem::path& path) {
     core::Table table = trajectory_->table();
     table.comments.push_back("motion in the study's region '" + spec_.name + "', end: " + trajectory_->end);
     core::write_csv(path, table);
-}
-
-void RegionPanel::demonstrate() {
-    if (!region_ || region_->axes[0].name != "gap" || region_->axes[1].name != "heave_velocity") {
-        return;
-    }
-    // A small kick away from the first equilibrium that holds, or from the middle of the map.
-    double gap = 0.5 * (region_->axes[0].lower + region_->axes[0].upper);
-    for (const auto& equilibrium : region_->equilibria) {
-        if (equilibrium.stable) {
-            gap = equilibrium.gap;
-            break;
-        }
-    }
-    const core::Figure figure = dynamics::region_figure(*region_);
-    start_from(core::convert(gap, "m", figure.x.unit),
-               0.05 * core::convert(region_->axes[1].upper, "m/s", figure.y.unit));
 }
 
 }  // namespace underbody::studio

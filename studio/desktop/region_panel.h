@@ -7,7 +7,6 @@
 #include "studio/desktop/panel.h"
 
 class QComboBox;
-class QDoubleSpinBox;
 class QFormLayout;
 class QLabel;
 class QPushButton;
@@ -21,47 +20,60 @@ struct Trajectory;
 
 namespace underbody::studio {
 
+class NumberEdit;
 class PlotView;
 
 class RegionPanel : public Panel {
     Q_OBJECT
 public:
-    RegionPanel(Jobs& jobs, QWidget* parent);
+    RegionPanel(Desk& desk, QWidget* parent);
     ~RegionPanel() override;
 
-    void show_session(const SessionPointer& session) override;
     [[nodiscard]] bool has_picture() const override;
     void export_picture(const std::filesystem::path& path) override;
     [[nodiscard]] bool has_table() const override;
     void export_table(const std::filesystem::path& path) override;
-    void demonstrate() override;
+    /// The motion that is shown; nullptr while there is none.
+    [[nodiscard]] std::shared_ptr<const dynamics::Trajectory> trajectory() const { return trajectory_; }
+    [[nodiscard]] std::shared_ptr<const dynamics::StabilityRegion> region() const { return region_; }
+
+protected:
+    void draw_again(bool session) override;
 
 private:
     void build();
     void build_controls(QFormLayout& form);
-    void choose_region();
-    void show_model();
-    void choose_parameter();
+    void act(const std::string& assignment);
+    void say(const QString& text);
+    void read_model();
+    void fill_parameters();
+    void show_parameter();
     void compute();
+    void compute_motion();
     void show_region();
     void start_from(double x, double y);
     void show_trajectory();
-    /// The model with what the panel changes.
+    [[nodiscard]] const RegionView& settings() const;
+    [[nodiscard]] double duration() const { return settings().duration.value_or(spec_.duration); }
+    /// The model with what the state changes.
     [[nodiscard]] dynamics::Model changed_model() const;
+    /// What the map, and what the motion was computed of: another one, another computation.
+    [[nodiscard]] std::string map_key() const;
+    [[nodiscard]] std::string motion_key() const;
 
-    SessionPointer session_;
     cases::RegionSpec spec_;
+    SessionPointer read_;  ///< what the model was read of
     std::shared_ptr<const dynamics::Model> model_;
     std::shared_ptr<const dynamics::StabilityRegion> region_;
     std::shared_ptr<const dynamics::Trajectory> trajectory_;
-    std::vector<std::pair<std::string, double>> changes_;  ///< of declared parameters, SI
+    std::string map_of_, motion_of_;
     QComboBox* choice_ = nullptr;
     QSpinBox* cells_ = nullptr;
-    QDoubleSpinBox* duration_ = nullptr;
+    NumberEdit* duration_ = nullptr;
     QComboBox* parameter_ = nullptr;
-    QDoubleSpinBox* value_ = nullptr;
+    NumberEdit* value_ = nullptr;
+    QFormLayout* form_ = nullptr;
     QLabel* changes_label_ = nullptr;
-    QPushButton* compute_ = nullptr;
     QPushButton* reset_ = nullptr;
     QLabel* about_ = nullptr;
     PlotView* map_ = nullptr;

@@ -12,6 +12,7 @@
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkLookupTable.h>
+#include <vtkObjectFactory.h>
 #include <vtkOrientationMarkerWidget.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
@@ -32,6 +33,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "studio/figures/colour_scale.h"
 #include "studio/figures/render.h"
@@ -76,8 +78,11 @@ struct Scene::Parts {
     std::vector<Surface> surfaces;
     std::vector<bool> seen;
     Choice choice;
-    std::string mirror;
+    bool mirrored = false;
+    std::string mirror;  ///< axis of the prepared mirror
     std::function<void(const QString&)>* picked = nullptr;
+    std::function<void()>* turned = nullptr;
+    vtkNew<vtkCallbackCommand> on_turn;
 
     void pick();
     [[nodiscard]] const postproc::ArrayInfo* info(const Surface& surface) const {
@@ -119,6 +124,17 @@ std::array<double, 3> direction(const std::string& axis, std::array<double, 3> f
     return result;
 }
 
+/// Turns the view by the mouse alone: VTK's keys (w: wireframe, s: surface, e: exit, ...) are not ours.
+class MouseStyle : public vtkInteractorStyleTrackballCamera {
+public:
+    static MouseStyle* New();
+    vtkTypeMacro(MouseStyle, vtkInteractorStyleTrackballCamera);
+    void OnChar() override {}
+    void OnKeyPress() override {}
+    void OnKeyDown() override {}
+};
+vtkStandardNewMacro(MouseStyle);
+
 vtkSmartPointer<vtkPolyDataMapper> new_mapper(vtkLookupTable* colours) {
     auto mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
     mapper->SetLookupTable(colours);
@@ -142,9 +158,10 @@ vtkSmartPointer<vtkPolyData> in_mirror(vtkPolyData* surface, const std::string& 
     return reverse->GetOutput();
 }
 
-void dress_text(vtkTextProperty& text, int size) {
+void dress_text(vtkTextProperty& text, int size, bool dark = false) {
     text.SetFontFamilyToArial();
-    text.SetColor(0.15, 0.15, 0.15);
+    const double grey = dark ? 0.88 : 0.15;
+    text.SetColor(grey, grey, grey);
     text.SetFontSize(size);
     text.BoldOff();
     text.ItalicOff();
@@ -162,7 +179,7 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.renderer->SetBackground(1, 1, 1);
     p.renderer->SetBackground2(0.88, 0.91, 0.94);
     p.renderer->GradientBackgroundOn();
-    vtkNew<vtkInteractorStyleTrackballCamera> style;
+    vtkNew<MouseStyle> style;
     p.window->GetInteractor()->SetInteractorStyle(style);
     p.bar->SetLookupTable(p.colours);
     p.bar->SetNumberOfLabels(6);
@@ -195,39 +212,82 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.on_press->SetClientData(&p);
     p.on_press->SetCallback([](vtkObject*, unsigned long, void* data, void*) { static_cast<Parts*>(data)->pick(); });
     p.window->GetInteractor()->AddObserver(vtkCommand::LeftButtonPressEvent, p.on_press);
+    p.turned = &on_turn;
+    p.on_turn->SetClientData(&p);
+    p.on_turn->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+        const auto& turned = *static_cast<Parts*>(data)->turned;
+        if (turned) {
+            turned();
+        }
+    });
+    style->AddObserver(vtkCommand::InteractionEvent, p.on_turn);
+    p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelForwardEvent, p.on_turn);
+    p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelBackwardEvent, p.on_turn);
 }
 
-Scene::~Scene() { parts_->window->GetInteractor()->RemoveObserver(parts_->on_press); }
+Scene::~Scene() {
+    parts_->window->GetInteractor()->RemoveObserver(parts_->on_press);
+    parts_->window->GetInteractor()->RemoveObserver(parts_->on_turn);
+}
 
 QWidget* Scene::widget() const { return parts_->widget; }
 
 const postproc::Field* Scene::field() const { return parts_->field.get(); }
 
-void Scene::show(std::shared_ptr<const postproc::Field> field, bool refit) {
-    Parts& p = *parts_;
-    for (const auto& surface : p.surfaces) {
-        p.renderer->RemoveActor(surface.actor);
-        p.renderer->RemoveActor(surface.mirrored);
-    }
-    p.surfaces.clear();
-    p.field = std::move(field);
-    p.seen.assign(p.field->zones.size(), true);
-    for (std::size_t i = 0; i < p.field->zones.size(); ++i) {
-        const auto& zone = p.field->zones[i];
+struct Scene::Prepared {
+    std::shared_ptr<const postproc::Field> field;
+    std::string mirror;
+    struct Surface {
+        std::size_t zone = 0;
+        vtkSmartPointer<vtkPolyData> surface, mirrored;
+    };
+    std::vector<Surface> surfaces;
+};
+
+std::shared_ptr<const Scene::Prepared> Scene::prepare(std::shared_ptr<const postproc::Field> field,
+                                                      const std::string& mirror) {
+    auto prepared = std::make_shared<Prepared>();
+    prepared->field = std::move(field);
+    prepared->mirror = mirror;
+    for (std::size_t i = 0; i < prepared->field->zones.size(); ++i) {
+        const auto& zone = prepared->field->zones[i];
         if (!zone.surface || zone.surface->GetNumberOfCells() == 0) {
             continue;
         }
-        Parts::Surface surface;
-        surface.zone = i;
         // Smooth to the eye; points and faces keep their numbers, so that a click finds its value.
         vtkNew<vtkPolyDataNormals> normals;
         normals->SetInputData(zone.surface);
         normals->SplittingOff();
         normals->ConsistencyOff();
         normals->Update();
+        Prepared::Surface surface;
+        surface.zone = i;
+        surface.surface = normals->GetOutput();
+        surface.mirrored = mirror.empty() ? nullptr : in_mirror(surface.surface, mirror);
+        prepared->surfaces.push_back(std::move(surface));
+    }
+    return prepared;
+}
+
+void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
+    Parts& p = *parts_;
+    for (const auto& surface : p.surfaces) {
+        p.renderer->RemoveActor(surface.actor);
+        p.renderer->RemoveActor(surface.mirrored);
+    }
+    p.surfaces.clear();
+    p.field = prepared->field;
+    p.mirror = prepared->mirror;
+    p.seen.assign(p.field->zones.size(), true);
+    for (const auto& ready : prepared->surfaces) {
+        Parts::Surface surface;
+        surface.zone = ready.zone;
         surface.mapper = new_mapper(p.colours);
-        surface.mapper->SetInputData(normals->GetOutput());
+        surface.mapper->SetInputData(ready.surface);
         surface.mirrored_mapper = new_mapper(p.colours);
+        if (ready.mirrored) {
+            surface.mirrored_mapper->SetInputData(ready.mirrored);
+        }
         surface.actor = vtkSmartPointer<vtkActor>::New();
         surface.actor->SetMapper(surface.mapper);
         surface.actor->GetProperty()->SetColor(0.72, 0.76, 0.8);
@@ -241,7 +301,7 @@ void Scene::show(std::shared_ptr<const postproc::Field> field, bool refit) {
         p.renderer->AddActor(surface.mirrored);
         p.surfaces.push_back(std::move(surface));
     }
-    mirror(p.mirror);
+    mirror(p.mirrored);
     if (refit) {
         p.renderer->ResetCamera();
     }
@@ -252,7 +312,7 @@ void Scene::set_visible(const std::vector<bool>& zones) {
     for (const auto& surface : parts_->surfaces) {
         const bool seen = surface.zone < zones.size() && zones[surface.zone];
         surface.actor->SetVisibility(seen);
-        surface.mirrored->SetVisibility(seen && !parts_->mirror.empty());
+        surface.mirrored->SetVisibility(seen && parts_->mirrored && !parts_->mirror.empty());
     }
 }
 
@@ -281,10 +341,47 @@ std::vector<Scene::Choice> Scene::choices() const {
     return result;
 }
 
-void Scene::colour_by(const Choice& choice, bool whole_range) {
+std::optional<std::array<double, 2>> Scene::range_of(const Choice& choice, bool whole_range) const {
+    const Parts& p = *parts_;
+    std::vector<double> values;
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
+    for (const auto& surface : p.surfaces) {
+        const auto* info = choice.name.empty() ? nullptr : p.field->zones[surface.zone].find(choice.name);
+        vtkDataArray* array =
+            info != nullptr && visible(surface.zone) ? array_of(p.field->zones[surface.zone], *info) : nullptr;
+        const vtkIdType count = array != nullptr ? array->GetNumberOfTuples() : 0;
+        // Of a large surface every n-th value is enough to know its hundredths.
+        const vtkIdType step = whole_range ? 1 : std::max<vtkIdType>(1, count / 50000);
+        for (vtkIdType i = 0; i < count; i += step) {
+            const double value = value_of(*array, i, choice.component);
+            if (!std::isfinite(value)) {
+                continue;
+            }
+            lowest = std::min(lowest, value);
+            highest = std::max(highest, value);
+            if (!whole_range) {
+                values.push_back(value);
+            }
+        }
+    }
+    if (!(lowest <= highest)) {
+        return {};
+    }
+    if (whole_range) {
+        return std::array<double, 2>{lowest, highest};
+    }
+    const std::size_t cut = values.size() / 100;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(cut), values.end());
+    lowest = values[cut];
+    std::nth_element(values.begin(), values.end() - 1 - static_cast<std::ptrdiff_t>(cut), values.end());
+    return std::array<double, 2>{lowest, values[values.size() - 1 - cut]};
+}
+
+void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
     Parts& p = *parts_;
     p.choice = choice;
-    std::vector<double> values;
+    bool any = false;
     for (auto& surface : p.surfaces) {
         const auto* info = choice.name.empty() ? nullptr : p.info(surface);
         vtkDataArray* array = info != nullptr ? array_of(p.field->zones[surface.zone], *info) : nullptr;
@@ -295,6 +392,7 @@ void Scene::colour_by(const Choice& choice, bool whole_range) {
         if (array == nullptr) {
             continue;
         }
+        any = any || visible(surface.zone);
         for (const auto& mapper : {surface.mapper, surface.mirrored_mapper}) {
             if (info->on == Location::nodes) {
                 mapper->SetScalarModeToUsePointFieldData();
@@ -303,24 +401,8 @@ void Scene::colour_by(const Choice& choice, bool whole_range) {
             }
             mapper->SelectColorArray(info->name.c_str());
         }
-        if (visible(surface.zone)) {
-            for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
-                const double value = value_of(*array, i, choice.component);
-                if (std::isfinite(value)) {
-                    values.push_back(value);
-                }
-            }
-        }
     }
-    double lower = 0;
-    double upper = 1;
-    if (!values.empty()) {
-        const std::size_t cut = whole_range ? 0 : values.size() / 100;
-        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(cut), values.end());
-        lower = values[cut];
-        std::nth_element(values.begin(), values.end() - 1 - static_cast<std::ptrdiff_t>(cut), values.end());
-        upper = values[values.size() - 1 - cut];
-    }
+    auto [lower, upper] = range;
     // Around zero the two sides have two colours; what is of one sign goes from dark to light.
     const bool both_signs = lower < 0 && upper > 0 && std::min(-lower, upper) > 0.05 * std::max(-lower, upper);
     if (both_signs) {
@@ -340,7 +422,7 @@ void Scene::colour_by(const Choice& choice, bool whole_range) {
         p.colours->SetVectorModeToMagnitude();
     }
     p.bar->SetTitle(axis_title(choice.label, choice.unit).c_str());
-    p.bar->SetVisibility(!values.empty());
+    p.bar->SetVisibility(any);
 }
 
 void Scene::show_edges(bool edges) {
@@ -351,14 +433,25 @@ void Scene::show_edges(bool edges) {
     }
 }
 
-void Scene::mirror(const std::string& axis) {
-    const bool other = axis != parts_->mirror;
-    parts_->mirror = axis;
+void Scene::mirror(bool on) {
+    parts_->mirrored = on;
     for (auto& surface : parts_->surfaces) {
-        if (!axis.empty() && (other || surface.mirrored_mapper->GetInput() == nullptr)) {
-            surface.mirrored_mapper->SetInputData(in_mirror(surface.mapper->GetInput(), axis));
-        }
-        surface.mirrored->SetVisibility(!axis.empty() && visible(surface.zone));
+        surface.mirrored->SetVisibility(on && !parts_->mirror.empty() && visible(surface.zone));
+    }
+}
+
+void Scene::share_camera(Scene& other) { parts_->renderer->SetActiveCamera(other.parts_->renderer->GetActiveCamera()); }
+
+void Scene::set_ground(bool dark) {
+    Parts& p = *parts_;
+    p.renderer->SetBackground(dark ? 0.11 : 1, dark ? 0.12 : 1, dark ? 0.13 : 1);
+    p.renderer->SetBackground2(dark ? 0.2 : 0.88, dark ? 0.22 : 0.91, dark ? 0.25 : 0.94);
+    const double ratio = p.widget->devicePixelRatioF();
+    dress_text(*p.bar->GetTitleTextProperty(), static_cast<int>(15 * ratio), dark);
+    dress_text(*p.bar->GetLabelTextProperty(), static_cast<int>(13 * ratio), dark);
+    for (auto* caption :
+         {p.axes->GetXAxisCaptionActor2D(), p.axes->GetYAxisCaptionActor2D(), p.axes->GetZAxisCaptionActor2D()}) {
+        dress_text(*caption->GetCaptionTextProperty(), static_cast<int>(14 * ratio), dark);
     }
 }
 

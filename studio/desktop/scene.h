@@ -3,8 +3,10 @@
 
 #include <QString>
 #include <QWidget>
+#include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +26,14 @@ public:
 
     [[nodiscard]] QWidget* widget() const;
 
+    /// A field made ready for drawing: normals and, for half models, the mirrored side. Made in a job.
+    struct Prepared;
+    /// `mirror`: "x", "y", "z": the plane through the origin normal to it; empty: none. Safe from any thread.
+    static std::shared_ptr<const Prepared> prepare(std::shared_ptr<const postproc::Field> field,
+                                                   const std::string& mirror);
+
     /// Shows the surfaces of a field; keeps the camera unless `refit`.
-    void show(std::shared_ptr<const postproc::Field> field, bool refit);
+    void show(std::shared_ptr<const Prepared> prepared, bool refit);
     [[nodiscard]] const postproc::Field* field() const;
 
     /// One tick a zone of the field.
@@ -41,19 +49,30 @@ public:
     };
     [[nodiscard]] std::vector<Choice> choices() const;
 
-    /// Colours the visible zones. `whole_range` false: from the 1st to the 99th hundredth, so that single points at an
-    /// edge do not take all the colours. An empty name: plain.
-    void colour_by(const Choice& choice, bool whole_range);
+    /// Of the visible zones; nothing where they have no such array. `whole_range` false: from the 1st to the 99th
+    /// hundredth, so that single points at an edge do not take all the colours.
+    [[nodiscard]] std::optional<std::array<double, 2>> range_of(const Choice& choice, bool whole_range) const;
+    /// Colours the visible zones over the range; around zero with two colours when it holds both signs. An empty name:
+    /// plain.
+    void colour_by(const Choice& choice, std::array<double, 2> range);
     void show_edges(bool edges);
-    /// Mirrors half models in the plane through the origin normal to "x", "y" or "z"; empty: not.
-    void mirror(const std::string& axis);
+    /// Shows the mirrored side of half models where one was prepared.
+    void mirror(bool on);
+    /// Both are seen by one camera from now on.
+    void share_camera(Scene& other);
+    /// Light text on dark ground or the other way round.
+    void set_ground(bool dark);
+    /// What is seen of the body of a shape or file: the surfaces have no arrays.
+    [[nodiscard]] bool has_arrays() const { return !choices().empty(); }
     /// "bottom", "top", "side", "front", "iso" in the frame of the file.
     void look_from(const std::string& view, const std::string& forward, const std::string& up);
 
     /// Called with the value under the mouse at a click.
     std::function<void(const QString&)> on_pick;
+    /// Called while the view is turned by hand, so that those with the same camera follow.
+    std::function<void()> on_turn;
 
-    /// PNG bytes of what is seen, at twice the screen's resolution.
+    /// PNG bytes of what is seen.
     std::string png();
     void render();
 

@@ -17,19 +17,19 @@
 
 namespace underbody::studio {
 
-namespace {
-
 /// Lets the window work until nothing runs beside it and it has drawn itself.
 void settle(MainWindow& window) {
     QElapsedTimer waited;
     waited.start();
     int quiet = 0;
-    while (quiet < 6 && waited.elapsed() < 120000) {
+    while (quiet < 14 && waited.elapsed() < 120000) {
         QApplication::processEvents(QEventLoop::AllEvents, 50);
         quiet = window.jobs().busy() ? 0 : quiet + 1;
         QThread::msleep(15);
     }
 }
+
+namespace {
 
 void save(QWidget& widget, const std::filesystem::path& file) {
     QByteArray bytes;
@@ -40,26 +40,55 @@ void save(QWidget& widget, const std::filesystem::path& file) {
     std::printf("%s\n", file.c_str());
 }
 
+/// For each workspace, what shows what it is for.
+Words use_of(const MainWindow& window, const std::string& workspace) {
+    const auto& study = const_cast<MainWindow&>(window).desk().session().study;
+    if (workspace == "design") {
+        return {"operation", "gap=10mm"};
+    }
+    if (workspace == "explore") {
+        return {"brush", "gap=0:6mm"};
+    }
+    if (workspace == "compare") {
+        return {"fields", "camera=bottom"};
+    }
+    if (workspace == "tables" && !study.tables.empty()) {
+        const double weight = study.tables.front().net_weight.value_or(0);
+        return {"table", study.tables.front().name, "net_weight=" + std::to_string(0.8 * weight) + "N"};
+    }
+    if (workspace == "stability" && !study.regions.empty()) {
+        return {"region", study.regions.front().name, "start=5mm,5mm/s"};
+    }
+    return {};
+}
+
 }  // namespace
 
-int take_screenshots(MainWindow& window, const std::filesystem::path& study, const std::filesystem::path& folder) {
+int take_screenshots(MainWindow& window, const std::filesystem::path& study, const std::filesystem::path& log,
+                     const std::filesystem::path& folder) {
     window.show();
     settle(window);
     save(window, folder / "empty.png");
-    window.open_study(study);
+    if (!log.empty()) {
+        window.desk().replay_log(log);
+    } else {
+        window.open_study(study);
+    }
     settle(window);
-    if (!window.has_study()) {
+    if (!window.has_study() && log.empty()) {
         std::fprintf(stderr, "underbody-studio: %s\n", window.last_error().toLocal8Bit().constData());
         save(window, folder / "window.png");
         return 3;
     }
-    for (auto* panel : window.panels()) {
-        window.show_panel(panel);
+    save(window, folder / "window.png");
+    for (const auto& name : workspace_names()) {
+        window.desk().act({"workspace", name});
         settle(window);
-        const std::string name = panel->objectName().toStdString();
         save(window, folder / (name + ".png"));
-        panel->demonstrate();
-        settle(window);
+        if (const Words use = use_of(window, name); !use.empty()) {
+            window.desk().act(use);
+            settle(window);
+        }
         save(window, folder / (name + "-used.png"));
     }
     show_effect_catalogue(&window);
@@ -68,9 +97,6 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& study, con
         save(*catalogue, folder / "effects.png");
         catalogue->close();
     }
-    window.show_panel(window.panels().front());
-    settle(window);
-    save(window, folder / "window.png");
     if (!window.last_error().isEmpty()) {
         std::fprintf(stderr, "underbody-studio: %s\n", window.last_error().toLocal8Bit().constData());
         return 1;

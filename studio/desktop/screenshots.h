@@ -1,4 +1,4 @@
-// --screenshot: visits every panel of an opened study and saves pictures of the window.
+// Pictures of the window without anybody at it.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,12 @@ namespace underbody::studio {
 
 class MainWindow;
 
-/// Opens the study, waits for it, visits each panel (and has it demonstrate itself), writes `window.png`, `PANEL.png`
-/// and `effects.png` into the folder. Returns the exit code: 0, or 3 when the study could not be opened (said on
-/// stderr).
-int take_screenshots(MainWindow& window, const std::filesystem::path& study, const std::filesystem::path& folder);
+/// Lets the window work until nothing runs beside it and it has drawn itself.
+void settle(MainWindow& window);
+
+/// Opens the study (or replays the log), visits each workspace, and writes `empty.png`, `window.png`, WORKSPACE.png,
+/// WORKSPACE-used.png and `effects.png`. Returns the exit code.
+int take_screenshots(MainWindow& window, const std::filesystem::path& study, const std::filesystem::path& log,
+                     const std::filesystem::path& folder);
 
 }  // namespace underbody::studio

@@ -4,9 +4,11 @@
 
 #include <QImage>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/file.h"
+#include "tests/studio/desktop/few_gaps.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -22,53 +24,6 @@ test::ProgramRun run_studio(const std::vector<std::string>& arguments,
 }
 
 bool has_xvfb() { return std::system("command -v Xvfb > /dev/null 2>&1") == 0; }
-
-/// A study of a few cases of the shipped one, small enough to be computed in a test.
-void make_study(const fs::path& folder) {
-    const fs::path shipped = test::source_folder() / "cases" / "evie";
-    fs::create_directories(folder / "fields");
-    for (const char* gap : {"2", "3", "5", "10", "20"}) {
-        const std::string name = std::string("ellipse-h") + gap + "-p0.csv";
-        fs::copy_file(shipped / "fields" / name, folder / "fields" / name);
-    }
-    fs::copy_file(shipped / "glide.toml", folder / "glide.toml");
-    core::write_file(folder / "study.toml", R"(title = "A few gaps"
-summary = "Five cases of the shipped study."
-origin = "see cases/evie/ORIGIN.md"
-
-[frame]
-forward = "+x"
-up = "+z"
-symmetry = "y"
-
-[reference]
-length = "203.2 mm"
-width = "152 mm"
-height = "145 mm"
-density = "998 kg/m^3"
-
-[[case]]
-files = "fields/{variant}-h{gap:mm}-p{pitch:deg}.csv"
-conditions = { speed = "0.5 m/s" }
-
-[[table]]
-name = "lift"
-quantity = "lift_force"
-axes = ["gap"]
-where = { variant = "ellipse", pitch = 0, speed = "0.5 m/s" }
-net_weight = "0.30 N"
-virtual_mass = "3.954 kg"
-
-[[region]]
-name = "glide"
-model = "glide.toml"
-forces = ["lift"]
-axes = "gap=2mm:20mm,heave_velocity=-0.06:0.06"
-for = "20 s"
-columns = 40
-rows = 40
-)");
-}
 
 QImage picture(const fs::path& file) {
     QImage image(QString::fromStdString(file.string()));
@@ -133,12 +88,12 @@ TEST(Desktop, AWrongFolderIsAMessageInTheWindow) {
     }
 }
 
-TEST(Desktop, ShowsAStudyInEveryPanel) {
+TEST(Desktop, ShowsAStudyInEveryWorkspace) {
     if (!has_xvfb()) {
         GTEST_SKIP() << "skipped: Xvfb is not installed";
     }
     const core::TemporaryFolder folder;
-    make_study(folder.path() / "study");
+    test::make_few_gaps(folder.path() / "study");
     const auto computed = test::run_underbody({"study", "run", (folder.path() / "study").string()});
     ASSERT_EQ(computed.exit_code, 0) << computed.errors;
 
@@ -149,17 +104,36 @@ TEST(Desktop, ShowsAStudyInEveryPanel) {
     ASSERT_EQ(run.exit_code, 0) << run.errors;
 
     const QImage empty = picture(shots / "empty.png");
-    for (const char* name : {"body", "forces", "stability", "discovery", "pictures"}) {
+    for (const auto& name : {"design", "explore", "compare", "tables", "stability", "loop"}) {
         const QImage image = picture(shots / (std::string(name) + ".png"));
         EXPECT_EQ(image.width(), 1200);
         EXPECT_EQ(image.height(), 800);
         EXPECT_GT(difference(empty, image), 0.05) << name;
     }
-    EXPECT_GT(colours(picture(shots / "body.png")), 200U) << "pressure in colours";
-    EXPECT_GT(difference(picture(shots / "body.png"), picture(shots / "body-used.png")), 0.05) << "the underbody view";
-    EXPECT_GT(difference(picture(shots / "forces.png"), picture(shots / "forces-used.png")), 0.0005)
+    EXPECT_GT(colours(picture(shots / "compare.png")), 200U) << "pressure in colours";
+    EXPECT_GT(difference(picture(shots / "compare.png"), picture(shots / "compare-used.png")), 0.05)
+        << "the underbody view";
+    EXPECT_GT(difference(picture(shots / "tables.png"), picture(shots / "tables-used.png")), 0.0005)
         << "equilibria move";
     EXPECT_GT(difference(picture(shots / "stability.png"), picture(shots / "stability-used.png")), 0.01) << "a motion";
+}
+
+TEST(Desktop, ReplaysALogWithoutAWindow) {
+    const core::TemporaryFolder folder;
+    test::make_few_gaps(folder.path() / "study");
+    core::write_file(folder.path() / "done.log", "open " + (folder.path() / "study").string() +
+                                                     "\nset 'protrusion.height=2 mm'  # a bump\nundo\nredo\n");
+    const auto run = run_studio({"--replay", (folder.path() / "done.log").string()});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const auto document = nlohmann::json::parse(run.output);
+    EXPECT_EQ(document["state"]["design"]["changes"]["ellipse"]["protrusion.height"], "2 mm");
+    EXPECT_EQ(document["steps"], 2);
+    EXPECT_EQ(run_studio({"--replay", (folder.path() / "done.log").string()}).output, run.output);
+
+    core::write_file(folder.path() / "wrong.log", "workspace nowhere\n");
+    const auto wrong = run_studio({"--replay", (folder.path() / "wrong.log").string()});
+    EXPECT_EQ(wrong.exit_code, 3);
+    EXPECT_NE(wrong.errors.find("wrong.log:1"), std::string::npos) << wrong.errors;
 }
 
 }  // namespace

@@ -1,0 +1,132 @@
+#include "studio/cli/study_set.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cases/study.h"
+#include "core/file.h"
+#include "core/own_files.h"
+#include "core/text.h"
+#include "core/toml.h"
+#include "studio/cli/option_value.h"
+#include "studio/cli/shell.h"
+
+namespace underbody::studio {
+
+namespace {
+
+/// A number stays one; all else becomes a string ("0.28 N").
+std::string toml_value(const std::string& text) {
+    const bool word = text == "true" || text == "false";
+    return word || core::parse_number(text) ? text : core::toml_string(text);
+}
+
+std::string key_of_line(std::string_view line) {
+    const auto equal = line.find('=');
+    return equal == std::string_view::npos ? std::string() : std::string(core::trimmed(line.substr(0, equal)));
+}
+
+/// The comment behind a value, with the space before it; "" when there is none.
+std::string comment_of(std::string_view line) {
+    char quote = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (quote != 0) {
+            quote = line[i] == quote ? char(0) : quote;
+        } else if (line[i] == '"' || line[i] == '\'') {
+            quote = line[i];
+        } else if (line[i] == '#') {
+            const auto end = line.find_last_not_of(" \t", i - 1);
+            return std::string(line.substr(end + 1));
+        }
+    }
+    return {};
+}
+
+/// The text with `key = value` in the [[kind]] of that name; everything else, comments too, stays as it is.
+std::string with_value(const std::string& text, const std::string& kind, const std::string& name,
+                       const std::string& key, const std::string& value) {
+    std::vector<std::string> lines;
+    for (const auto line : core::split(text, '\n')) {
+        lines.emplace_back(line);
+    }
+    std::vector<std::string> names;
+    const std::string head = "[[" + kind + "]]";
+    for (std::size_t begin = 0; begin < lines.size(); ++begin) {
+        if (!core::trimmed(lines[begin]).starts_with(head)) {
+            continue;
+        }
+        std::size_t end = begin + 1, at = 0, last = begin;
+        std::string found;
+        for (; end < lines.size() && !core::trimmed(lines[end]).starts_with("["); ++end) {
+            const std::string here = key_of_line(lines[end]);
+            last = core::trimmed(lines[end]).empty() || core::trimmed(lines[end]).starts_with("#") ? last : end;
+            at = here == key ? end : at;
+            if (here == "name") {
+                const auto quoted = core::split(lines[end], lines[end].find('"') != std::string::npos ? '"' : '\'');
+                found = quoted.size() > 1 ? std::string(quoted[1]) : std::string();
+            }
+        }
+        names.push_back(found);
+        if (found != name) {
+            continue;
+        }
+        if (at > 0) {
+            lines[at] = key + " = " + toml_value(value) + comment_of(lines[at]);
+        } else {
+            lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(last) + 1, key + " = " + toml_value(value));
+        }
+        std::string result;
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            result += (i > 0 ? "\n" : "") + lines[i];
+        }
+        return result;
+    }
+    throw core::UsageError("missing", "the study has no [[" + kind + "]] '" + name + "'", {},
+                           core::did_you_mean(name, names));
+}
+
+/// KIND.NAME.KEY=VALUE; a name may hold dots.
+std::string with_assignment(const std::string& text, const std::string& assignment) {
+    const auto [path, value] = name_and_value("study set", assignment);
+    const auto first = path.find('.');
+    const auto last = path.rfind('.');
+    if (first == std::string::npos || first == last) {
+        throw core::UsageError("parse", "'" + path + "' is not KIND.NAME.KEY", {},
+                               "such as table.lift.net_weight=0.28N");
+    }
+    return with_value(text, path.substr(0, first), path.substr(first + 1, last - first - 1), path.substr(last + 1),
+                      value);
+}
+
+int set_values(Shell& shell, const std::string& folder, const std::vector<std::string>& assignments) {
+    const std::filesystem::path file = std::filesystem::path(folder) / "study.toml";
+    std::string text = core::read_file(file);
+    for (const auto& assignment : assignments) {
+        text = with_assignment(text, assignment);
+    }
+    const auto after = cases::Study::from_text(text, file);  // what is wrong with it is said before it is written
+    const core::ReplacingAllowed of_the_user;                // who asked for it
+    core::write_file(file, text);
+    shell.print(file.string() + ": " + std::to_string(assignments.size()) +
+                (assignments.size() == 1 ? " value set" : " values set"));
+    if (shell.json) {
+        shell.print_json({{"study", file.string()}, {"set", assignments}});
+    }
+    return done;
+}
+
+}  // namespace
+
+void add_study_set(CLI::App& study, Shell& shell) {
+    auto* command = study.add_subcommand("set", "change values in study.toml; comments and order stay");
+    auto folder = std::make_shared<std::string>();
+    auto assignments = std::make_shared<std::vector<std::string>>();
+    command->add_option("study", *folder, "folder of the study")->required();
+    command->add_option("values", *assignments, "KIND.NAME.KEY=VALUE ...")->required();
+    command->footer("Example:\n  underbody study set cases/evie table.lift.net_weight=0.28N");
+    shell.on(command, [folder, assignments, &shell] { return set_values(shell, *folder, *assignments); });
+}
+
+}  // namespace underbody::studio

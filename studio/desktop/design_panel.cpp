@@ -1,0 +1,411 @@
+#include "studio/desktop/design_panel.h"
+
+#include <QBoxLayout>
+#include <QComboBox>
+#include <QHeaderView>
+#include <QInputDialog>
+#include <QLabel>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSignalBlocker>
+#include <QSplitter>
+#include <QTableWidget>
+#include <QTimer>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "geometry/body/variants.h"
+#include "studio/desktop/parameter_row.h"
+#include "studio/desktop/plot_view.h"
+#include "studio/desktop/qt_text.h"
+
+namespace underbody::studio {
+
+namespace {
+
+std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
+
+/// As it stands in files and commands: "2 mm".
+std::string written(double value, const std::string& unit) {
+    const std::string shown = shown_unit(unit);
+    return core::format_number(core::convert(value, unit, shown), 12) + (shown == "1" ? "" : " " + shown);
+}
+
+}  // namespace
+
+DesignPanel::DesignPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
+    setObjectName("design");
+    rest_ = new QTimer(this);
+    rest_->setSingleShot(true);
+    rest_->setInterval(120);
+    connect(rest_, &QTimer::timeout, this, &DesignPanel::ask_rest);
+    build();
+}
+
+DesignPanel::~DesignPanel() = default;
+
+void DesignPanel::build() {
+    auto* all = new QHBoxLayout(this);
+    auto* views = new QSplitter(Qt::Vertical);
+    all->addWidget(views, 1);
+    auto* upper = new QSplitter(Qt::Horizontal);
+    if (Scene::possible()) {
+        scene_ = std::make_unique<Scene>(this);
+        scene_->widget()->setMinimumSize(200, 160);
+        scene_->on_pick = [this](const QString& text) { Q_EMIT remark(text); };
+        upper->addWidget(scene_->widget());
+    } else {
+        upper->addWidget(new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer."));
+    }
+    section_ = new PlotView(this);
+    upper->addWidget(section_);
+    lift_plot_ = new PlotView(this);
+    views->addWidget(upper);
+    views->addWidget(lift_plot_);
+    views->setStretchFactor(0, 3);
+    views->setStretchFactor(1, 2);
+    auto* side = new QWidget;
+    side->setFixedWidth(390);
+    all->addWidget(side);
+    auto* column = new QVBoxLayout(side);
+    column->setContentsMargins(0, 0, 0, 0);
+    build_side(*column);
+    connect(section_, &PlotView::hovered, this, &Panel::remark);
+    connect(lift_plot_, &PlotView::hovered, this, &Panel::remark);
+}
+
+void DesignPanel::build_side(QVBoxLayout& side) {
+    choice_ = new QComboBox;
+    choice_->setAccessibleName("Shape");
+    connect(choice_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+        desk_.act({"shape", choice_->currentText().toStdString()});
+    });
+    side.addWidget(choice_);
+    auto* area = new QScrollArea;
+    area->setWidgetResizable(true);
+    area->setFrameShape(QFrame::NoFrame);
+    auto* inside = new QWidget;
+    parameter_column_ = new QVBoxLayout(inside);
+    parameter_column_->setContentsMargins(0, 0, 6, 0);
+    parameter_column_->setSpacing(1);
+    area->setWidget(inside);
+    side.addWidget(area, 3);
+    make_rows();
+    auto* buttons = new QHBoxLayout;
+    auto* keep = new QPushButton("&Keep as variant …");
+    auto* reset = new QPushButton("&As in the file");
+    auto* pin = new QPushButton("&Pin as before");
+    pin->setToolTip("The column `before` holds what is now (Ctrl+D)");
+    buttons->addWidget(keep);
+    buttons->addWidget(reset);
+    buttons->addWidget(pin);
+    side.addLayout(buttons);
+    connect(keep, &QPushButton::clicked, this, [this] {
+        const QString name = QInputDialog::getText(this, "Keep as variant", "Name of the new shape", QLineEdit::Normal,
+                                                   qt(name_) + "-2");
+        if (!name.isEmpty()) {
+            desk_.act({"keep", name.toStdString()});
+        }
+    });
+    connect(reset, &QPushButton::clicked, this, [this] { desk_.act({"reset"}); });
+    connect(pin, &QPushButton::clicked, this, [this] { desk_.act({"pin"}); });
+    card_ = new QTableWidget(0, 3);
+    card_->setAccessibleName("Results now and before");
+    card_->setHorizontalHeaderLabels({"result", "now", "before"});
+    card_->verticalHeader()->hide();
+    card_->verticalHeader()->setDefaultSectionSize(21);
+    card_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    card_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+    card_->setMinimumHeight(250);
+    side.addWidget(card_, 2);
+    state_label_ = new QLabel;
+    state_label_->setWordWrap(true);
+    side.addWidget(state_label_);
+    lift_label_ = new QLabel;
+    lift_label_->setWordWrap(true);
+    side.addWidget(lift_label_);
+}
+
+void DesignPanel::connect_row(ParameterRow* row, const std::string& verb, const std::string& key,
+                              const std::string& unit) {
+    const auto text = [key, unit](double value) { return key + "=" + written(value, unit); };
+    connect(row, &ParameterRow::moved, this, [this, verb, text](double value, const QString& gesture) {
+        desk_.act({verb, text(value)}, gesture);
+    });
+    connect(row, &ParameterRow::entered, this, [this, verb, text](double value) { desk_.act({verb, text(value)}); });
+    connect(row, &ParameterRow::released, this, [this] {
+        desk_.end_gesture();
+        rest_->start();
+    });
+}
+
+void DesignPanel::make_rows() {
+    std::string part;
+    const auto heading = [&](const std::string& text) {
+        auto* label = new QLabel("<b>" + qt(text) + "</b>");
+        parameter_column_->addWidget(label);
+    };
+    for (const auto& parameter : geometry::parameter_names()) {
+        const std::string of = parameter.name.substr(0, parameter.name.find('.'));
+        if (parameter.unit.empty()) {
+            continue;
+        }
+        if (of != part) {
+            part = of;
+            heading(part);
+            for (const auto& word : geometry::parameter_names()) {
+                if (!word.unit.empty() || !word.name.starts_with(part + ".")) {
+                    continue;
+                }
+                auto* box = new QComboBox;
+                box->setAccessibleName(qt(word.name));
+                if (word.name == "body.base") {
+                    for (const auto& base : geometry::base_names()) {
+                        box->addItem(qt(base));
+                    }
+                } else {
+                    box->addItems({"rounded", "sharp"});
+                }
+                connect(box, QOverload<int>::of(&QComboBox::activated), this, [this, box, name = word.name] {
+                    desk_.act({"set", name + "=" + box->currentText().toStdString()});
+                });
+                auto* line = new QHBoxLayout;
+                line->addWidget(new QLabel(qt(word.name.substr(word.name.find('.') + 1))));
+                line->addWidget(box, 1);
+                parameter_column_->addLayout(line);
+                words_.emplace_back(word.name, box);
+            }
+        }
+        auto* row = new ParameterRow(qt(parameter.name), {}, parameter.unit, shown_unit(parameter.unit));
+        parameter_column_->addWidget(row);
+        rows_.emplace_back(parameter.name, row);
+        connect_row(row, "set", parameter.name, parameter.unit);
+        connect(row, &ParameterRow::reset, this, [this, name = parameter.name] { desk_.act({"reset", name}); });
+    }
+    heading("operation");
+    gap_ = new ParameterRow("gap", "under the centre of the base", "m", "mm");
+    pitch_ = new ParameterRow("pitch", "nose up positive", "rad", "deg");
+    speed_ = new ParameterRow("speed", "through the water, where the surrogate knows several", "m/s", "m/s");
+    for (const auto& [row, unit] : {std::pair{gap_, "m"}, {pitch_, "rad"}, {speed_, "m/s"}}) {
+        parameter_column_->addWidget(row);
+        connect_row(row, "operation", row->objectName().toStdString(), unit);
+    }
+    speed_->hide();
+    parameter_column_->addStretch(1);
+}
+
+/// The library decides what a number may be; asking it about all takes a while, so a job does.
+void DesignPanel::ask_ranges() {
+    const std::string key = geometry::shape_hash(shape_);
+    if (ranges_of_ == key) {
+        return;
+    }
+    ranges_of_ = key;
+    jobs_.start(
+        "design ranges", "limits",
+        [this, shape = shape_, key](core::Progress& progress) {
+            const auto ranges = allowed_ranges(shape, progress);
+            return [this, ranges, key] {
+                if (key == ranges_of_) {
+                    ranges_ = ranges;
+                    fill_rows(name_, shape_);
+                }
+            };
+        },
+        true);
+}
+
+void DesignPanel::fill_rows(const std::string& name, const geometry::BodyShape& shape) {
+    const auto changed = state().design.changes.find(name);
+    const auto is_changed = [&](const std::string& parameter) {
+        return changed != state().design.changes.end() && changed->second.contains(parameter);
+    };
+    for (const auto& [parameter, row] : rows_) {
+        std::optional<double> value;
+        try {
+            value = geometry::parameter(shape, parameter);
+        } catch (const core::Error&) {  // the part is not there
+        }
+        if (value && !std::isfinite(*value)) {
+            value.reset();
+        }
+        const auto range = ranges_.find(parameter);
+        const double size = 2 * std::abs(value.value_or(0));
+        row->show_value(value, range != ranges_.end() ? range->second[0] : 0,
+                        range != ranges_.end() ? range->second[1] : size, is_changed(parameter));
+    }
+    for (const auto& [parameter, box] : words_) {
+        const QSignalBlocker quiet(box);
+        const bool base = parameter == "body.base";
+        box->setCurrentText(base               ? qt(geometry::name_of(shape.base))
+                            : shape.protrusion ? qt(geometry::name_of(shape.protrusion->profile))
+                                               : QString("rounded"));
+    }
+    gap_->show_value(state().design.gap, 0.0005, 0.05, false);
+    pitch_->show_value(state().design.pitch, -0.1, 0.1, false);
+    speed_->show_value(state().design.speed, 0.1, 5, false);
+}
+
+geometry::Placement DesignPanel::placement() const { return {state().design.gap, state().design.pitch, 0}; }
+
+std::string DesignPanel::key_of(const geometry::BodyShape& shape) const {
+    return geometry::shape_hash(shape) + " " + core::format_number(state().design.gap) + " " +
+           core::format_number(state().design.pitch);
+}
+
+std::shared_ptr<const LiveBody> DesignPanel::remembered(const std::string& key) const {
+    for (const auto& known : cache_) {
+        if (known.key == key) {
+            return known.body;
+        }
+    }
+    return nullptr;
+}
+
+void DesignPanel::draw_again(bool fresh) {
+    const QSignalBlocker quiet(choice_);
+    choice_->clear();
+    for (const auto& name : shape_names(state(), session())) {
+        choice_->addItem(qt(name));
+    }
+    const std::string name = shown_shape(state(), session());
+    setEnabled(!name.empty());
+    if (name.empty()) {
+        shown_.reset();
+        section_->show_text("This study has no [[body]]; drop a SHAPE.toml on the window");
+        lift_plot_->show_text("");
+        return;
+    }
+    choice_->setCurrentText(qt(name));
+    try {
+        shape_ = shape_of(state(), session(), name);
+    } catch (const core::Error& error) {
+        section_->show_text(qt(error.what()));
+        return;
+    }
+    if (name != name_ || fresh) {
+        ranges_.clear();
+        ranges_of_.clear();
+        name_ = name;
+        ask_ranges();
+    }
+    fill_rows(name, shape_);
+    make_before();
+    const std::string key = key_of(shape_);
+    if (key != key_ || !shown_) {
+        key_ = key;
+        if (const auto known = remembered(key)) {
+            jobs_.cancel("design rest");
+            rest_->stop();
+            show_body(known);
+        } else {
+            ask_move();
+            rest_->start();
+        }
+    } else {
+        show_card();
+    }
+    show_lift();
+}
+
+/// One at a time, and the newest next: a slow body is not asked for twice.
+void DesignPanel::ask_move() {
+    if (moving_) {
+        move_again_ = true;
+        return;
+    }
+    moving_ = true;
+    jobs_.start(
+        "design move", "body",
+        [this, shape = shape_, at = placement(), key = key_](core::Progress& progress) {
+            const auto body = std::make_shared<const LiveBody>(moving_body(shape, at, progress));
+            return [this, body, key] {
+                const bool whole = shown_ && shown_->certificate && key_of(shown_->shape) == key;
+                if (!whole) {
+                    show_body(body);
+                }
+            };
+        },
+        true,
+        [this] {
+            moving_ = false;
+            if (std::exchange(move_again_, false)) {
+                ask_move();
+            }
+        });
+}
+
+void DesignPanel::ask_rest() {
+    bool drag = gap_->dragging() || pitch_->dragging() || speed_->dragging();
+    for (const auto& [name, row] : rows_) {
+        drag = drag || row->dragging();
+    }
+    if (drag) {
+        rest_->start();
+        return;
+    }
+    ask_ranges();
+    const auto known = remembered(key_);
+    const bool whole = known && (known->added_mass || !known->contact.empty());
+    if (whole || (rest_of_ == key_ && jobs_.busy("design rest"))) {
+        return;
+    }
+    rest_of_ = key_;
+    if (known) {  // its added mass was interrupted
+        ask_added_mass(known, key_);
+        return;
+    }
+    jobs_.start("design rest", "surface and certificate of " + qt(name_),
+                [this, shape = shape_, at = placement(), key = key_](core::Progress& progress) {
+                    const auto body = std::make_shared<const LiveBody>(resting_body(shape, at, progress));
+                    return [this, body, key] {
+                        ask_added_mass(body, key);
+                        take(body, key);
+                    };
+                });
+}
+
+void DesignPanel::ask_added_mass(const std::shared_ptr<const LiveBody>& body, const std::string& key) {
+    jobs_.start("design rest", "added mass of " + qt(name_), [this, body, key](core::Progress& progress) {
+        const auto whole = std::make_shared<LiveBody>(*body);
+        add_added_mass(*whole, progress);
+        return [this, whole, key] { take(whole, key); };
+    });
+}
+
+void DesignPanel::take(const std::shared_ptr<const LiveBody>& body, const std::string& key) {
+    std::erase_if(cache_, [&](const Known& known) { return known.key == key; });
+    cache_.push_front({key, body});
+    if (cache_.size() > 24) {
+        cache_.pop_back();
+    }
+    if (key == key_) {
+        show_body(body);
+    }
+}
+
+void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
+    const bool first = shown_ == nullptr;
+    shown_ = body;
+    if (scene_) {
+        scene_->set_ground(palette().base().color().lightness() < 128);
+        scene_->show(body->drawn, first);
+        scene_->colour_by({}, {0, 1});
+        if (first) {
+            scene_->look_from("iso", "+x", "+z");
+        }
+        scene_->render();
+    }
+    section_->show_figure(body->section, true);
+    show_card();
+    if (body->certificate && !body->added_mass && body->contact.empty() && !jobs_.busy("design rest")) {
+        rest_->start();  // its added mass was interrupted
+    }
+}
+
+void DesignPanel::export_picture(const std::filesystem::path& path) { section_->write(path); }
+
+}  // namespace underbody::studio

@@ -1,0 +1,103 @@
+// Design: a shape with its numbers; the body, its section and what is known of its forces follow while they move.
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "cases/known_lift.h"
+#include "studio/desktop/live_body.h"
+#include "studio/desktop/panel.h"
+
+class QComboBox;
+class QLabel;
+class QTableWidget;
+class QTimer;
+class QVBoxLayout;
+
+namespace underbody::tables {
+class ForceTable;
+}
+
+namespace underbody::studio {
+
+class ParameterRow;
+class PlotView;
+
+class DesignPanel : public Panel {
+    Q_OBJECT
+public:
+    DesignPanel(Desk& desk, QWidget* parent);
+    ~DesignPanel() override;
+
+    [[nodiscard]] bool has_picture() const override { return shown_ != nullptr; }
+    void export_picture(const std::filesystem::path& path) override;
+    /// What is shown: the body of the state once `settled`.
+    [[nodiscard]] std::shared_ptr<const LiveBody> shown() const { return shown_; }
+    [[nodiscard]] QTableWidget* card() const { return card_; }
+    /// What the lift that is drawn rests on.
+    [[nodiscard]] const cases::KnownLift& lift() const { return lift_; }
+
+protected:
+    void draw_again(bool session) override;
+
+private:
+    void build();
+    void build_side(QVBoxLayout& side);
+    void fill_rows(const std::string& name, const geometry::BodyShape& shape);
+    void make_rows();
+    void ask_ranges();
+    void connect_row(ParameterRow* row, const std::string& verb, const std::string& key, const std::string& unit);
+    void ask_move();
+    void ask_rest();
+    void ask_added_mass(const std::shared_ptr<const LiveBody>& body, const std::string& key);
+    void take(const std::shared_ptr<const LiveBody>& body, const std::string& key);
+    void show_body(const std::shared_ptr<const LiveBody>& body);
+    void show_card();
+    void show_lift();
+    void learn();
+    void fit_lift();
+    void draw_lift();
+    void make_before();
+    [[nodiscard]] std::string key_of(const geometry::BodyShape& shape) const;
+    [[nodiscard]] geometry::Placement placement() const;
+
+    struct Known {
+        std::string key;
+        std::shared_ptr<const LiveBody> body;
+    };
+    [[nodiscard]] std::shared_ptr<const LiveBody> remembered(const std::string& key) const;
+
+    geometry::BodyShape shape_;
+    std::string key_;   ///< of what the state wants
+    std::string name_;  ///< of the shape that the rows are of
+    std::shared_ptr<const LiveBody> shown_, before_;
+    std::deque<Known> cache_;                              ///< whole bodies, newest first
+    std::map<std::string, std::array<double, 2>> ranges_;  ///< that the sliders run over
+    std::string ranges_of_;
+    bool moving_ = false, move_again_ = false;
+    std::string rest_of_;  ///< key of the body that "design rest" makes
+    QTimer* rest_ = nullptr;
+    cases::KnownLift lift_;
+    std::shared_ptr<const cases::LiftSurrogate> surrogate_;
+    std::string no_surrogate_;  ///< why the study's search gives none
+    SessionPointer learned_;    ///< that the surrogate is of
+    std::shared_ptr<const tables::ForceTable> table_;
+    std::string table_of_;
+    SessionPointer fitted_;
+
+    std::unique_ptr<Scene> scene_;
+    QComboBox* choice_ = nullptr;
+    std::vector<std::pair<std::string, ParameterRow*>> rows_;
+    std::vector<std::pair<std::string, QComboBox*>> words_;
+    ParameterRow* gap_ = nullptr;
+    ParameterRow* pitch_ = nullptr;
+    ParameterRow* speed_ = nullptr;
+    QTableWidget* card_ = nullptr;
+    QLabel* state_label_ = nullptr;
+    QLabel* lift_label_ = nullptr;
+    PlotView* section_ = nullptr;
+    PlotView* lift_plot_ = nullptr;
+    QVBoxLayout* parameter_column_ = nullptr;
+};
+
+}  // namespace underbody::studio

@@ -1,0 +1,258 @@
+#include "studio/desktop/desk.h"
+
+#include <QTimer>
+#include <set>
+
+#include "core/file.h"
+#include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/session_file.h"
+#include "studio/figures/render.h"
+
+namespace underbody::studio {
+
+namespace fs = std::filesystem;
+
+Desk::Desk(Jobs& jobs, const fs::path& log_folder, QObject* parent)
+    : QObject(parent), jobs_(jobs), session_(open_session({})), refresh_(new QTimer(this)) {
+    if (!log_folder.empty()) {
+        log_ = std::make_unique<ActionLog>(log_folder);
+    }
+    history_.on_line = [this](const std::string& line) {
+        if (log_) {
+            log_->append(line);
+        }
+        const bool action = line != "undo" && line != "redo" && history_.position() > 0;
+        Q_EMIT acted(qt(line), action ? qt(history_.steps()[history_.position() - 1].command) : QString());
+    };
+    refresh_->setInterval(2500);
+    connect(refresh_, &QTimer::timeout, this, &Desk::refresh_results);
+}
+
+Desk::~Desk() = default;
+
+bool Desk::act(const Words& words, const QString& gesture) {
+    try {
+        if (history_.act(words, *session_, gesture.toStdString())) {
+            follow_state();
+            Q_EMIT changed();
+        }
+        return true;
+    } catch (...) {
+        Q_EMIT refused(words.empty() ? QString() : qt(words.front()), std::current_exception());
+        return false;
+    }
+}
+
+void Desk::end_gesture() { history_.end_gesture(); }
+
+void Desk::undo() {
+    if (history_.undo()) {
+        follow_state();
+        Q_EMIT changed();
+    }
+}
+
+void Desk::redo() {
+    if (history_.redo()) {
+        follow_state();
+        Q_EMIT changed();
+    }
+}
+
+void Desk::go_to(std::size_t position) {
+    history_.go_to(position);
+    follow_state();
+    Q_EMIT changed();
+}
+
+void Desk::take_session(const SessionPointer& session) {
+    std::erase_if(earlier_, [&](const SessionPointer& one) { return one->folder == session->folder; });
+    earlier_.push_back(session);
+    if (earlier_.size() > 3) {
+        earlier_.erase(earlier_.begin());
+    }
+    session_ = session;
+    for (const auto& problem : session->problems) {
+        Q_EMIT found(problem);
+    }
+    for (const auto& step : session->results.steps) {
+        if (!step.error.empty()) {
+            Q_EMIT found({core::Problem::Severity::error, step.kind + " '" + step.name + "': " + step.error, {}});
+        }
+    }
+    Q_EMIT session_changed();
+}
+
+void Desk::follow_state() {
+    const State& wanted = state();
+    SessionPointer known;
+    for (const auto& one : earlier_) {
+        known = one->folder == fs::path(wanted.study) ? one : known;
+    }
+    if (wanted.study.empty()) {
+        known = session_->folder.empty() ? session_ : open_session({});
+    }
+    if (known) {
+        std::set<std::string> had, want;
+        for (const auto& [name, file] : known->shape_files) {
+            had.insert(file.string());
+        }
+        bool all = known == session_;
+        for (const auto& entry : wanted.files) {
+            all = all && (!entry.starts_with("shape:") || had.contains(entry.substr(6)));
+        }
+        if (!all) {
+            take_session(with_files(*known, wanted.files));
+        }
+        return;
+    }
+    jobs_.start("open", "opening " + qt(wanted.study),
+                [this, study = wanted.study, files = wanted.files](core::Progress&) {
+                    auto session = open_session(study, files);
+                    return [this, session] { take_session(session); };
+                });
+}
+
+void Desk::open_study(const fs::path& folder) {
+    const QString name = qt(folder.string());
+    jobs_.start("open", "opening " + name, [this, folder, name, files = state().files](core::Progress&) {
+        auto session = open_session(folder, files);
+        return [this, session, name] {
+            take_session(session);
+            act({"open", session->folder.string()});
+            Q_EMIT noted(QString("Opened %1: %2 cases").arg(name).arg(session->study.cases.size()));
+            if (session->results.loads.rows() == 0 && !session->study.cases.empty()) {
+                Q_EMIT noted("Nothing of this study is computed yet: Study > Compute what changed (Ctrl+R).");
+            }
+            Q_EMIT opened(qt(session->folder.string()));
+        };
+    });
+}
+
+void Desk::reload() {
+    if (!has_study()) {
+        return;
+    }
+    if (computing()) {
+        reload_later_ = true;
+        Q_EMIT noted("The study is being computed: it is read again when that is done.");
+        return;
+    }
+    jobs_.start("open", "reading " + qt(session_->folder.string()),
+                [this, folder = session_->folder, files = state().files](core::Progress&) {
+                    auto session = open_session(folder, files);
+                    return [this, session] { take_session(session); };
+                });
+}
+
+void Desk::run_study() {
+    if (!has_study()) {
+        return;
+    }
+    if (computing()) {
+        Q_EMIT noted("The study is being computed already.");
+        return;
+    }
+    const fs::path folder = session_->folder;
+    refresh_->start();
+    jobs_.start(
+        "run", "computing",
+        [this, folder](core::Progress& progress) {
+            cases::RunOptions options;
+            options.renderer = [](const core::Figure& figure) { return render_png(figure); };
+            const auto results = cases::run_study(cases::Study::open(folder), options, progress);
+            const QString text = QString("Computed %1 steps, reused %2, failed %3")
+                                     .arg(results.computed)
+                                     .arg(results.reused)
+                                     .arg(results.failed);
+            return [this, text] { Q_EMIT noted(text); };
+        },
+        false,
+        [this] {
+            refresh_->stop();
+            reload_later_ = false;
+            reload();  // also what a cancelled or failed run has stored
+        });
+}
+
+void Desk::refresh_results() {
+    if (!computing() || jobs_.busy("refresh")) {
+        return;
+    }
+    jobs_.start(
+        "refresh", "reading results",
+        [this, session = session_](core::Progress&) {
+            auto newer = std::make_shared<Session>(*session);
+            newer->results = cases::stored_results(session->study, {});
+            newer->results.steps.clear();  // their errors are told at the end
+            return [this, session, newer] {
+                if (session_ == session) {
+                    take_session(newer);
+                }
+            };
+        },
+        true);
+}
+
+void Desk::start_from(const State& state, const QString& what) {
+    jobs_.start("open", what, [this, state](core::Progress&) {
+        auto session = open_session(state.study, state.files);
+        return [this, state, session] {
+            auto on_line = history_.on_line;
+            history_ = History(state);
+            history_.on_line = std::move(on_line);
+            take_session(session);
+            Q_EMIT changed();
+            Q_EMIT opened(qt(state.study));
+        };
+    });
+}
+
+void Desk::open_session_file(const fs::path& file) {
+    const auto saved = read_session(file);
+    for (const auto& problem : saved.problems) {
+        Q_EMIT found(problem);
+    }
+    if (!saved.missing.empty()) {
+        throw core::InputError("missing", "the session needs " + saved.missing.front() + ", which is not there",
+                               {file.string(), {}, {}, {}}, "File > Locate says where it is now");
+    }
+    start_from(saved.state, "opening " + qt(file.string()));
+}
+
+void Desk::save_session_file(const fs::path& file) {
+    end_gesture();
+    write_session(state(), file);
+    Q_EMIT noted("Saved the session as " + qt(file.string()));
+}
+
+void Desk::replay_log(const fs::path& file) {
+    jobs_.start("open", "replaying " + qt(file.string()), [this, file](core::Progress&) {
+        auto history = std::make_shared<History>();
+        SessionPointer session = open_session({});
+        std::exception_ptr error;
+        try {
+            replay(core::read_file(file), file.string(), *history, session,
+                   [&](const State& state) { return load_session(state, session); });
+        } catch (...) {
+            error = std::current_exception();  // what came before the wrong line is kept
+        }
+        return [this, history, session, error] {
+            auto on_line = history_.on_line;
+            history_ = *history;
+            history_.on_line = std::move(on_line);
+            for (std::size_t i = 0; i < history_.position(); ++i) {
+                if (log_) {
+                    log_->append(history_.steps()[i].line);
+                }
+            }
+            take_session(session);
+            Q_EMIT changed();
+            if (error) {
+                std::rethrow_exception(error);
+            }
+        };
+    });
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,78 @@
+// What every part of the window shares: the state with its history, the session, and the jobs. Nothing else changes
+// what is shown: a widget asks for an action, and is drawn again from the state that comes of it.
+#pragma once
+
+#include <QObject>
+#include <QStringList>
+#include <memory>
+
+#include "studio/desktop/jobs.h"
+#include "studio/desktop/state/action_log.h"
+
+class QTimer;
+
+namespace underbody::studio {
+
+class Desk : public QObject {
+    Q_OBJECT
+public:
+    /// `log_folder`: where the lines of the session are kept as they come; empty: nowhere.
+    Desk(Jobs& jobs, const std::filesystem::path& log_folder, QObject* parent);
+    ~Desk() override;
+
+    [[nodiscard]] const State& state() const { return *history_.state(); }
+    [[nodiscard]] const StatePointer& state_pointer() const { return history_.state(); }
+    [[nodiscard]] const Session& session() const { return *session_; }
+    [[nodiscard]] const SessionPointer& session_pointer() const { return session_; }
+    [[nodiscard]] const History& history() const { return history_; }
+    [[nodiscard]] Jobs& jobs() { return jobs_; }
+    [[nodiscard]] bool has_study() const { return !session_->folder.empty(); }
+
+    /// Carries an action out; what is wrong with it is said by `refused`, and false is given. Actions with the same
+    /// `gesture` are one step of the history until `end_gesture`.
+    bool act(const Words& words, const QString& gesture = {});
+    void end_gesture();
+    void undo();
+    void redo();
+    void go_to(std::size_t position);
+
+    /// Opens a study in a job, then acts.
+    void open_study(const std::filesystem::path& folder);
+    /// Reads the study and its store again. While it is computed: at the end of that.
+    void reload();
+    /// Computes what changed; what is stored is shown as it comes, also of a run that is cancelled or fails.
+    void run_study();
+    [[nodiscard]] bool computing() const { return jobs_.busy("run"); }
+    /// Carries out the lines of a log, from an empty state.
+    void replay_log(const std::filesystem::path& file);
+    void open_session_file(const std::filesystem::path& file);
+    void save_session_file(const std::filesystem::path& file);
+
+Q_SIGNALS:
+    void changed();
+    void session_changed();
+    /// A study was opened that was not open before.
+    void opened(const QString& folder);
+    void refused(const QString& what, std::exception_ptr error);
+    void noted(const QString& text);
+    void found(const core::Problem& problem);
+    /// An action was done: its line, and the command that does the same (may be empty).
+    void acted(const QString& line, const QString& command);
+
+private:
+    void take_session(const SessionPointer& session);
+    /// Gets the session that the state names.
+    void follow_state();
+    void refresh_results();
+    void start_from(const State& state, const QString& what);
+
+    Jobs& jobs_;
+    std::unique_ptr<ActionLog> log_;
+    History history_;
+    SessionPointer session_;
+    std::vector<SessionPointer> earlier_;  ///< of studies that were open: undo goes back without reading
+    QTimer* refresh_ = nullptr;
+    bool reload_later_ = false;
+};
+
+}  // namespace underbody::studio

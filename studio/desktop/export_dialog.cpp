@@ -1,0 +1,290 @@
+#include "studio/desktop/export_dialog.h"
+
+#include <QBoxLayout>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QFontDatabase>
+#include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMessageBox>
+#include <QPlainTextEdit>
+#include <QProcess>
+#include <QPushButton>
+#include <QSplitter>
+#include <QTimer>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/words.h"
+
+namespace underbody::studio {
+
+namespace fs = std::filesystem;
+
+ExportDialog::ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent)
+    : QDialog(parent), jobs_(jobs), all_(std::move(all)) {
+    setObjectName("export");
+    setAttribute(Qt::WA_DeleteOnClose);
+    setWindowTitle("Export " + qt(all_.front()->quantity()) + " for a controller");
+    resize(1000, 640);
+    soon_ = new QTimer(this);
+    soon_->setSingleShot(true);
+    soon_->setInterval(80);
+    connect(soon_, &QTimer::timeout, this, &ExportDialog::refresh);
+    build();
+    refresh();
+}
+
+void ExportDialog::build() {
+    auto* column = new QVBoxLayout(this);
+    auto* halves = new QSplitter;
+    column->addWidget(halves, 1);
+    auto* left = new QWidget;
+    auto* form = new QFormLayout(left);
+    format_ = new QComboBox;
+    for (const auto& format : tables::export_formats()) {
+        format_->addItem(qt(format.name + ": " + format.description), qt(format.name));
+    }
+    format_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    form->addRow("&Format", format_);
+    name_ = new QLineEdit(qt(all_.front()->quantity()));
+    form->addRow("&Name", name_);
+    frame_ = new QComboBox;
+    frame_->addItems({"up: lift positive up", "ned: body axes, z down"});
+    form->addRow("F&rame", frame_);
+    single_ = new QCheckBox("&float instead of double (C)");
+    form->addRow(single_);
+    max_error_ = new QLineEdit;
+    max_error_->setPlaceholderText("none: the full grid");
+    form->addRow("&Error allowed, % of the range", max_error_);
+    for (const auto& axis : all_.front()->axes()) {
+        auto* policy = new QComboBox;
+        for (const auto one :
+             {tables::RangePolicy::clamp, tables::RangePolicy::refuse, tables::RangePolicy::extrapolate}) {
+            policy->addItem(qt(tables::to_string(one) + ": " + tables::outside_words(one)), qt(tables::to_string(one)));
+        }
+        policy->setCurrentIndex(policy->findData(qt(tables::to_string(axis.range))));
+        policy->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        form->addRow("Beyond the ends of " + qt(axis.name), policy);
+        policies_.emplace_back(axis.name, policy);
+        connect(policy, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
+    }
+    facts_ = new QLabel;
+    facts_->setWordWrap(true);
+    facts_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    form->addRow(facts_);
+    proof_ = new QLabel;
+    proof_->setWordWrap(true);
+    form->addRow(proof_);
+    halves->addWidget(left);
+    text_ = new QPlainTextEdit;
+    text_->setReadOnly(true);
+    text_->setLineWrapMode(QPlainTextEdit::NoWrap);
+    text_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
+    text_->setAccessibleName("What would be written");
+    halves->addWidget(text_);
+    halves->setSizes({380, 620});
+    command_ = new QLabel;
+    command_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    command_->setWordWrap(true);
+    column->addWidget(command_);
+    auto* buttons = new QHBoxLayout;
+    prove_ = new QPushButton("&Prove");
+    prove_->setToolTip("Compiles the C header with the compiler of this machine and compares it at 200 points");
+    auto* write_button = new QPushButton("&Write …");
+    write_button->setDefault(true);
+    auto* close_button = new QPushButton("Close");
+    buttons->addWidget(prove_);
+    buttons->addStretch(1);
+    buttons->addWidget(write_button);
+    buttons->addWidget(close_button);
+    column->addLayout(buttons);
+    connect(prove_, &QPushButton::clicked, this, &ExportDialog::prove);
+    connect(write_button, &QPushButton::clicked, this, &ExportDialog::choose_and_write);
+    connect(close_button, &QPushButton::clicked, this, &QDialog::close);
+    connect(format_, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
+    connect(frame_, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
+    connect(single_, &QCheckBox::toggled, soon_, QOverload<>::of(&QTimer::start));
+    connect(name_, &QLineEdit::textEdited, soon_, QOverload<>::of(&QTimer::start));
+    connect(max_error_, &QLineEdit::textEdited, soon_, QOverload<>::of(&QTimer::start));
+}
+
+std::string ExportDialog::format() const { return format_->currentData().toString().toStdString(); }
+
+tables::ExportOptions ExportDialog::options() const {
+    tables::ExportOptions options;
+    options.name = name_->text().trimmed().toStdString();
+    options.single_precision = single_->isChecked();
+    options.frame = frame_->currentIndex() == 1 ? tables::Frame::ned : tables::Frame::up;
+    if (const std::string text = max_error_->text().trimmed().remove('%').toStdString(); !text.empty()) {
+        const auto percent = core::parse_number(text);
+        if (!percent || !(*percent > 0 && *percent < 100)) {
+            throw core::UsageError("range", "the error allowed is a share between 0 and 100 %");
+        }
+        options.max_error = *percent / 100;
+    }
+    return options;
+}
+
+tables::ForceTable ExportDialog::table() const {
+    const auto& known = *all_.front();
+    bool same = true;
+    tables::FitOptions fit;
+    for (std::size_t k = 0; k < policies_.size(); ++k) {
+        const auto policy = *tables::range_policy(policies_[k].second->currentData().toString().toStdString());
+        same = same && policy == known.axes()[k].range;
+        fit.range.named.emplace_back(policies_[k].first, policy);
+        fit.axes.push_back(policies_[k].first);
+    }
+    if (same) {
+        return known;
+    }
+    fit.kind = known.kind().find("aussian") != std::string::npos  ? tables::FitOptions::Kind::gaussian_process
+               : known.kind().find("spline") != std::string::npos ? tables::FitOptions::Kind::spline
+                                                                  : tables::FitOptions::Kind::interpolation;
+    return tables::ForceTable::fit(known.points(), known.quantity(), fit);
+}
+
+void ExportDialog::refresh() {
+    proof_->clear();
+    prove_->setEnabled(format() == "c");
+    command_->setText(command("FILE"));
+    tables::ExportOptions wanted;
+    try {
+        wanted = options();
+    } catch (const core::Error& error) {
+        facts_->setText(qt(error.what()));
+        return;
+    }
+    jobs_.start(
+        "export preview", "preview",
+        [this, wanted, chosen = table(), kind = format()](core::Progress& progress) {
+            const core::TemporaryFolder folder;
+            std::string ending;
+            for (const auto& one : tables::export_formats()) {
+                ending = one.name == kind ? one.ending : ending;
+            }
+            const fs::path file = folder.path() / (wanted.name + ending);
+            const auto result = tables::export_table(chosen, kind, file, wanted, progress);
+            const std::string bytes = core::read_file(file);
+            QString facts = "grid ";
+            for (std::size_t i = 0; i < result.grid.size(); ++i) {
+                facts += (i > 0 ? " x " : "") + QString::number(result.grid[i]);
+            }
+            facts += QString(" points; file %1 bytes").arg(bytes.size());
+            facts += result.error > 0 ? QString("; within %1 %2 of the table")
+                                            .arg(qt(core::format_number(result.error, 3)), qt(chosen.unit()))
+                                      : QString("; equal to the table");
+            for (const auto& remark : result.remarks) {
+                facts += "\n" + qt(remark.message);
+            }
+            const bool text = bytes.find('\0') == std::string::npos;
+            const QString shown = text ? qt(bytes.substr(0, 200000)) : QString("(a binary file)");
+            return [this, facts, shown] {
+                facts_->setText(facts);
+                text_->setPlainText(shown);
+            };
+        },
+        true);
+}
+
+QString ExportDialog::command(const QString& path) const {
+    Words words = {"underbody",
+                   "export",
+                   all_.front()->source().empty() ? "TABLE.csv" : all_.front()->source(),
+                   "--quantity",
+                   all_.front()->quantity(),
+                   "--format",
+                   format(),
+                   "--out",
+                   path.toStdString(),
+                   "--name",
+                   name_->text().toStdString()};
+    if (frame_->currentIndex() == 1) {
+        words.insert(words.end(), {"--frame", "ned"});
+    }
+    if (single_->isChecked()) {
+        words.insert(words.end(), {"--number", "float"});
+    }
+    if (!max_error_->text().trimmed().isEmpty()) {
+        words.insert(words.end(), {"--max-error", max_error_->text().trimmed().remove('%').toStdString() + "%"});
+    }
+    std::string range;
+    for (const auto& [axis, box] : policies_) {
+        range += (range.empty() ? "" : ",") + axis + "=" + box->currentData().toString().toStdString();
+    }
+    words.insert(words.end(), {"--range", range});
+    return qt(line_of(words));
+}
+
+void ExportDialog::write(const fs::path& path) {
+    tables::ExportOptions wanted = options();
+    wanted.overwrite = true;  // the person was asked
+    tables::export_table(table(), format(), path, wanted);
+    Q_EMIT written(command(qt(path.string())));
+}
+
+void ExportDialog::choose_and_write() {
+    QString ending;
+    for (const auto& one : tables::export_formats()) {
+        ending = one.name == format() ? qt(one.ending) : ending;
+    }
+    QString path = QFileDialog::getSaveFileName(this, "Write", name_->text() + ending, "*" + ending, nullptr,
+                                                QFileDialog::DontConfirmOverwrite);
+    if (path.isEmpty()) {
+        return;
+    }
+    path += path.endsWith(ending) ? QString() : ending;
+    if (QFileInfo::exists(path) &&
+        QMessageBox::question(this, "Replace", QFileInfo(path).fileName() + " is there already. Replace it?") !=
+            QMessageBox::Yes) {
+        return;
+    }
+    try {
+        write(path.toStdString());
+    } catch (...) {
+        Q_EMIT failed("writing " + path, std::current_exception());
+    }
+}
+
+QString ExportDialog::proof() const { return proof_->text(); }
+QString ExportDialog::preview() const { return text_->toPlainText(); }
+
+void ExportDialog::prove() {
+    tables::ExportOptions wanted = options();
+    wanted.self_test = true;
+    proof_->setText("compiling …");
+    jobs_.start("export proof", "compiling and comparing", [this, wanted, chosen = table()](core::Progress& progress) {
+        const core::TemporaryFolder folder;
+        const auto result = tables::export_table(chosen, "c", folder.path() / (wanted.name + ".h"), wanted, progress);
+        const auto run = [&](const QString& program, const QStringList& arguments, QString& said) {
+            QProcess process;
+            process.setWorkingDirectory(qt(folder.path().string()));
+            process.setProcessChannelMode(QProcess::MergedChannels);
+            process.start(program, arguments);
+            const bool ended = process.waitForStarted() && process.waitForFinished(60000);
+            said = QString::fromUtf8(process.readAll()).trimmed();
+            return ended && process.exitStatus() == QProcess::NormalExit && process.exitCode() == 0;
+        };
+        QString said, sentence;
+        bool equal = false;
+        const QString source = qt(result.files.back().filename().string());
+        if (!run("cc", {"-std=c99", "-O1", "-o", "proof", source, "-lm"}, said)) {
+            sentence = "It could not be compiled: " + (said.isEmpty() ? QString("there is no C compiler (cc)") : said);
+        } else {
+            equal = run(qt((folder.path() / "proof").string()), {}, said);
+            sentence = (equal ? "Compiled, run and equal. " : "NOT equal: ") + said;
+        }
+        return [this, sentence, equal] {
+            proof_->setText(sentence);
+            Q_EMIT proved(equal);
+        };
+    });
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,65 @@
+// A force table for a controller: every format, with the file, its size and its error before it is written, and a
+// proof.
+#pragma once
+
+#include <QDialog>
+#include <memory>
+#include <vector>
+
+#include "studio/desktop/jobs.h"
+#include "surrogates/tables/exports/export.h"
+
+class QCheckBox;
+class QComboBox;
+class QLabel;
+class QLineEdit;
+class QPlainTextEdit;
+class QPushButton;
+class QTimer;
+
+namespace underbody::studio {
+
+class ExportDialog : public QDialog {
+    Q_OBJECT
+public:
+    ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent);
+    /// The command that writes the same.
+    [[nodiscard]] QString command(const QString& path) const;
+    /// Writes; throws core::Error.
+    void write(const std::filesystem::path& path);
+    /// Compiles what is written for C and compares it; the sentence that says how that went is in `proof`.
+    void prove();
+    [[nodiscard]] QString proof() const;
+    [[nodiscard]] QString preview() const;
+
+Q_SIGNALS:
+    void written(const QString& command);
+    void failed(const QString& what, std::exception_ptr error);
+    void proved(bool equal);
+
+private:
+    void build();
+    void refresh();
+    void choose_and_write();
+    [[nodiscard]] std::string format() const;
+    [[nodiscard]] tables::ExportOptions options() const;
+    /// The table with the chosen policies beyond its ends.
+    [[nodiscard]] tables::ForceTable table() const;
+
+    Jobs& jobs_;
+    std::vector<std::shared_ptr<const tables::ForceTable>> all_;
+    QComboBox* format_ = nullptr;
+    QLineEdit* name_ = nullptr;
+    QComboBox* frame_ = nullptr;
+    QCheckBox* single_ = nullptr;
+    QLineEdit* max_error_ = nullptr;
+    std::vector<std::pair<std::string, QComboBox*>> policies_;
+    QPlainTextEdit* text_ = nullptr;
+    QLabel* facts_ = nullptr;
+    QLabel* proof_ = nullptr;
+    QPushButton* prove_ = nullptr;
+    QLabel* command_ = nullptr;
+    QTimer* soon_ = nullptr;
+};
+
+}  // namespace underbody::studio

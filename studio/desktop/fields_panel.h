@@ -1,0 +1,84 @@
+// Compare: the surfaces of one to six cases side by side, with one camera, array, range and set of zones.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/inputs.h"
+#include "studio/desktop/panel.h"
+#include "studio/desktop/scene.h"
+
+class QCheckBox;
+class QComboBox;
+class QGridLayout;
+class QImage;
+class QLabel;
+class QLineEdit;
+class QListWidget;
+class QStackedLayout;
+class QTableWidget;
+
+namespace underbody::studio {
+
+class FieldsPanel : public Panel {
+    Q_OBJECT
+public:
+    FieldsPanel(Desk& desk, QWidget* parent);
+    ~FieldsPanel() override;
+
+    [[nodiscard]] bool has_picture() const override;
+    [[nodiscard]] QStringList picture_endings() const override { return {".png"}; }
+    void export_picture(const std::filesystem::path& path) override;
+    [[nodiscard]] bool has_table() const override;
+    void export_table(const std::filesystem::path& path) override;
+    /// How many cells show a field that is read.
+    [[nodiscard]] std::size_t drawn() const;
+    [[nodiscard]] QImage sheet() const;
+
+protected:
+    void draw_again(bool session) override;
+
+private:
+    struct Source {
+        std::string id;
+        std::filesystem::path file;
+        std::vector<std::string> zones;
+        QString title;
+    };
+    struct Cell {
+        QWidget* box = nullptr;
+        QLabel* title = nullptr;
+        std::unique_ptr<Scene> scene;
+        Source source;
+        core::FileStamp stamp;
+        bool ready = false;
+    };
+    void build();
+    void build_controls(QWidget& side);
+    [[nodiscard]] std::vector<Source> wanted() const;
+    [[nodiscard]] Source source_of(const cases::Case& one) const;
+    void lay_out(const std::vector<Source>& sources);
+    void read(std::size_t cell);
+    void taken(std::size_t cell, const Source& source, const std::shared_ptr<const Scene::Prepared>& prepared);
+    void fill_controls();
+    void recolour();
+    void fill_loads(const std::vector<Source>& sources);
+    void look_from(const std::string& camera);
+    [[nodiscard]] Cell* first_ready() const;
+
+    std::vector<std::unique_ptr<Cell>> cells_;
+    std::string camera_;  ///< that the cells are seen from
+    QGridLayout* grid_ = nullptr;
+    QStackedLayout* stack_ = nullptr;
+    QLabel* empty_ = nullptr;
+    QListWidget* zones_ = nullptr;
+    QComboBox* array_ = nullptr;
+    QLineEdit* range_ = nullptr;
+    QLabel* range_shown_ = nullptr;
+    QCheckBox* whole_range_ = nullptr;
+    QCheckBox* edges_ = nullptr;
+    QCheckBox* mirror_ = nullptr;
+    QTableWidget* loads_ = nullptr;
+};
+
+}  // namespace underbody::studio

@@ -1,0 +1,280 @@
+// The menus, the tool bar and what their actions do.
+#include <QActionGroup>
+#include <QApplication>
+#include <QBoxLayout>
+#include <QClipboard>
+#include <QDateTime>
+#include <QDesktopServices>
+#include <QDockWidget>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMenu>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QStackedWidget>
+#include <QTabWidget>
+#include <QToolBar>
+#include <QUrl>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "geometry/body/body_shape.h"
+#include "studio/desktop/catalogue.h"
+#include "studio/desktop/export_dialog.h"
+#include "studio/desktop/force_panel.h"
+#include "studio/desktop/main_window.h"
+#include "studio/desktop/palette.h"
+#include "studio/desktop/panel.h"
+#include "studio/desktop/problems_panel.h"
+#include "studio/desktop/qt_text.h"
+#include "studio/desktop/study_tree.h"
+
+namespace underbody::studio {
+
+namespace fs = std::filesystem;
+
+QAction* MainWindow::add(QMenu* menu, const QString& text, const QString& key, const std::function<void()>& act) {
+    auto* action = menu->addAction(text, this, [act] { act(); });
+    if (!key.isEmpty()) {
+        action->setShortcut(QKeySequence(key));
+    }
+    action->setToolTip(QString(text).remove('&') + (key.isEmpty() ? "" : " (" + key + ")"));
+    addAction(action);
+    return action;
+}
+
+void MainWindow::build_file_menu() {
+    auto* menu = menuBar()->addMenu("&File");
+    add(menu, "&Open study …", "Ctrl+O", [this] {
+        const QString folder = QFileDialog::getExistingDirectory(this, "Folder of the study (it holds study.toml)");
+        if (!folder.isEmpty()) {
+            open_study(folder.toStdString());
+        }
+    });
+    recent_ = menu->addMenu("Open &recent");
+    add(menu, "Open &files …", "Ctrl+Shift+O", [this] {
+        std::vector<fs::path> files;
+        for (const auto& file : QFileDialog::getOpenFileNames(
+                 this, "CFD files of any format that Underbody reads, SHAPE.toml, sessions (.ubs)")) {
+            files.emplace_back(file.toStdString());
+        }
+        take_files(files);
+    });
+    menu->addSeparator();
+    add(menu, "&Save session", "Ctrl+S", [this] { save_session(false); });
+    add(menu, "Save session &as …", "Ctrl+Shift+S", [this] { save_session(true); });
+    add(menu, "&Locate what has moved …", "", [this] {
+        const QString folder = QFileDialog::getExistingDirectory(this, "Where is the study now?");
+        if (!folder.isEmpty()) {
+            desk_->act({"locate", desk_->state().study, folder.toStdString()});
+        }
+    });
+    menu->addSeparator();
+    add(menu, "Export &picture …", "F12", [this] { export_picture(); });
+    add(menu, "Export &table …", "Ctrl+Shift+E", [this] { export_table(); });
+    add(menu, "Export for a &controller …", "Ctrl+E", [this] { export_controller(); });
+    menu->addSeparator();
+    add(menu, "&Quit", "Ctrl+Q", [this] { close(); });
+}
+
+void MainWindow::build_edit_menu() {
+    auto* menu = menuBar()->addMenu("&Edit");
+    undo_ = add(menu, "&Undo", "Ctrl+Z", [this] { desk_->undo(); });
+    redo_ = add(menu, "&Redo", "Ctrl+Shift+Z", [this] { desk_->redo(); });
+    menu->addSeparator();
+    add(menu, "&Copy picture", "Ctrl+Shift+C", [this] { copy_picture(); });
+    add(menu, "&Star or unstar what is selected", "Ctrl+B", [this] {
+        for (const auto& id : desk_->state().selection) {
+            desk_->act({desk_->state().stars.contains(id) ? "unstar" : "star", id});
+        }
+    });
+    menu->addSeparator();
+    add(menu, "&Find a command, a case, a parameter …", "Ctrl+K", [this] { show_palette(this, *desk_, actions()); });
+}
+
+void MainWindow::build_study_menu() {
+    auto* menu = menuBar()->addMenu("&Study");
+    need_study_.push_back(add(menu, "&Compute what changed", "Ctrl+R", [this] { desk_->run_study(); }));
+    need_study_.push_back(add(menu, "Re&load", "F5", [this] { desk_->reload(); }));
+    need_study_.push_back(add(menu, "Open re&port", "Ctrl+P", [this] { open_report(); }));
+    menu->addSeparator();
+    need_study_.push_back(add(menu, "&Next case", "Ctrl+PgDown", [this] { tree_->step(1); }));
+    need_study_.push_back(add(menu, "Pre&vious case", "Ctrl+PgUp", [this] { tree_->step(-1); }));
+    menu->addSeparator();
+    add(menu, "Compare &results with those of now", "Ctrl+D", [this] { desk_->act({"pin"}); });
+}
+
+void MainWindow::build_view_menu() {
+    auto* menu = menuBar()->addMenu("&View");
+    workspaces_ = new QActionGroup(this);
+    const std::vector<std::pair<QString, QString>> titles = {{"&Design", "F2"},    {"E&xplore", "F3"},
+                                                             {"&Compare", "F4"},   {"&Tables", "F6"},
+                                                             {"&Stability", "F7"}, {"&Loop", "F8"}};
+    for (std::size_t i = 0; i < titles.size(); ++i) {
+        auto* action = add(menu, titles[i].first, titles[i].second, [this, i] {
+            desk_->act({"workspace", workspace_names()[i]});
+        });
+        action->setCheckable(true);
+        workspaces_->addAction(action);
+    }
+    menu->addSeparator();
+    const auto toggle = [&](QDockWidget* dock, const QString& text, const QString& key) {
+        auto* action = dock->toggleViewAction();
+        action->setText(text);
+        action->setShortcut(QKeySequence(key));
+        menu->addAction(action);
+        addAction(action);
+    };
+    toggle(tree_dock_, "St&udy on the left", "F9");
+    toggle(below_dock_, "C&ommands, problems, jobs, history", "Ctrl+F9");
+    const QStringList tabs = {"Show co&mmands", "Show &problems", "Show &jobs", "Show &history"};
+    for (int i = 0; i < tabs.size(); ++i) {
+        add(menu, tabs[i], QString("Ctrl+%1").arg(i + 1), [this, i] {
+            below_dock_->show();
+            below_->setCurrentIndex(i);
+        });
+    }
+    auto* full = add(menu, "&Full screen", "F11", [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
+    full->setCheckable(true);
+}
+
+void MainWindow::build_help_menu() {
+    auto* menu = menuBar()->addMenu("&Help");
+    add(menu, "&Keys", "F1", [this] { show_keys(this, actions()); });
+    add(menu, "&Effects that a model may lack …", "Shift+F1", [this] { show_effect_catalogue(this); });
+    add(menu, "&About", "", [this] { show_about(); });
+}
+
+void MainWindow::build_tool_bar() {
+    auto* bar = addToolBar("Workspaces");
+    bar->setObjectName("workspaces_bar");
+    bar->setMovable(false);
+    bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
+    auto* back = bar->addAction("↶", undo_, &QAction::trigger);
+    auto* forth = bar->addAction("↷", redo_, &QAction::trigger);
+    const auto follow = [](QAction* mine, QAction* menu) {
+        connect(menu, &QAction::changed, mine, [mine, menu] {
+            mine->setEnabled(menu->isEnabled());
+            mine->setToolTip(menu->text().remove('&') + " (" + menu->shortcut().toString() + ")");
+        });
+    };
+    follow(back, undo_);
+    follow(forth, redo_);
+    bar->addSeparator();
+    bar->addActions(workspaces_->actions());
+}
+
+bool MainWindow::write_chosen(QString path, const QStringList& endings,
+                              const std::function<void(const fs::path&)>& write) {
+    if (path.isEmpty()) {
+        return false;
+    }
+    bool fits = endings.isEmpty();
+    for (const auto& ending : endings) {
+        fits = fits || path.endsWith(ending, Qt::CaseInsensitive);
+    }
+    path += fits ? QString() : endings.front();
+    const QFileInfo file(path);
+    if (file.exists() &&
+        !ask("Replace",
+             file.fileName() + " is there already, of " + file.lastModified().toString("yyyy-MM-dd HH:mm") + ".",
+             "Replace it")) {
+        return false;
+    }
+    bool written = false;
+    guarded("writing " + file.fileName(), [&] {
+        write(path.toStdString());
+        problems_->note("Wrote " + path);
+        written = true;
+    });
+    return written;
+}
+
+namespace {
+/// The dialog does not ask: `write_chosen` does, when the ending is known.
+QString ask_path(QWidget* parent, const QString& title, const QString& filter) {
+    return QFileDialog::getSaveFileName(parent, title, {}, filter, nullptr, QFileDialog::DontConfirmOverwrite);
+}
+}  // namespace
+
+void MainWindow::save_session(bool elsewhere) {
+    const QString path =
+        elsewhere || session_file_.isEmpty() ? ask_path(this, "Save session", "Sessions (*.ubs)") : session_file_;
+    const auto write = [&](const fs::path& file) {
+        desk_->save_session_file(file);
+        session_file_ = qt(file.string());
+    };
+    if (path == session_file_ && !path.isEmpty()) {
+        guarded("saving the session", [&] { write(path.toStdString()); });
+    } else {
+        write_chosen(path, {".ubs"}, write);
+    }
+}
+
+void MainWindow::export_picture() {
+    guarded("exporting a picture", [&] {
+        if (!current()->has_picture()) {
+            throw core::InputError("missing", "this workspace shows no picture yet");
+        }
+        const QStringList endings = current()->picture_endings();
+        QString filter = "Pictures (";
+        for (const auto& ending : endings) {
+            filter += "*" + ending + " ";
+        }
+        write_chosen(ask_path(this, "Export picture", filter.trimmed() + ")"), endings,
+                     [&](const fs::path& path) { current()->export_picture(path); });
+    });
+}
+
+void MainWindow::export_table() {
+    guarded("exporting a table", [&] {
+        if (!current()->has_table()) {
+            throw core::InputError("missing", "this workspace shows no table yet");
+        }
+        write_chosen(ask_path(this, "Export table", "Tables (*.csv)"), {".csv"},
+                     [&](const fs::path& path) { current()->export_table(path); });
+    });
+}
+
+void MainWindow::export_controller() {
+    guarded("exporting for a controller", [&] {
+        for (auto* panel : panels_) {
+            if (auto* forces = dynamic_cast<ForcePanel*>(panel); forces != nullptr && forces->table()) {
+                auto* dialog = new ExportDialog(*jobs_, {forces->table()}, this);
+                connect(dialog, &ExportDialog::written, this,
+                        [this](const QString& command) { problems_->note("Wrote it. The same: " + command); });
+                connect(dialog, &ExportDialog::failed, this, &MainWindow::show_failure);
+                dialog->show();
+                return;
+            }
+        }
+        throw core::InputError("missing", "no force table is shown yet", {}, "choose one in Tables (F6)");
+    });
+}
+
+void MainWindow::copy_picture() { QApplication::clipboard()->setPixmap(middle_->grab()); }
+
+void MainWindow::open_report() {
+    const Session& session = desk_->session();
+    fs::path report = session.results.report;
+    if (report.empty()) {
+        report = session.folder / "report" / "index.html";
+    }
+    guarded("opening the report", [&] {
+        if (!fs::exists(report)) {
+            throw core::InputError("missing", "there is no report at " + report.string(), {},
+                                   "make it: Study > Compute what changed (Ctrl+R)");
+        }
+        QDesktopServices::openUrl(QUrl::fromLocalFile(qt(fs::absolute(report).string())));
+    });
+}
+
+void MainWindow::show_about() {
+    QMessageBox::about(this, "Underbody Studio",
+                       "<h3>Underbody Studio " UNDERBODY_VERSION
+                       "</h3><p>CFD post-processing and ground-effect design.</p>"
+                       "<p>Free software under the GNU General Public License, version 3 or later.</p>"
+                       "<p>What it shows, the libraries and the command <tt>underbody</tt> return too.</p>");
+}
+
+}  // namespace underbody::studio

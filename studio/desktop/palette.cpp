@@ -1,0 +1,178 @@
+#include "studio/desktop/palette.h"
+
+#include <QBoxLayout>
+#include <QHeaderView>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QTableWidget>
+#include <algorithm>
+
+#include "geometry/body/variants.h"
+#include "studio/desktop/qt_text.h"
+
+namespace underbody::studio {
+
+namespace {
+
+struct Entry {
+    QString text;
+    QString hint;
+    std::function<void()> take;
+};
+
+QString plain(const QAction& action) { return action.text().remove('&').remove(" …"); }
+
+std::vector<Entry> entries(Desk& desk, const QList<QAction*>& actions) {
+    std::vector<Entry> all;
+    for (QAction* action : actions) {
+        if (!action->text().isEmpty() && action->isEnabled() && action->menu() == nullptr) {
+            all.push_back({plain(*action), action->shortcut().toString(), [action] { action->trigger(); }});
+        }
+    }
+    const auto things = [&](const char* kind, const auto& list) {
+        for (const auto& one : list) {
+            const std::string id = std::string(kind) + "/" + one.name;
+            all.push_back({qt(one.name), kind, [&desk, id] { desk.act({"select", id}); }});
+        }
+    };
+    const auto& study = desk.session().study;
+    for (const auto& name : shape_names(desk.state(), desk.session())) {
+        all.push_back({qt(name), "shape", [&desk, name] { desk.act({"shape", name}); }});
+    }
+    things("case", study.cases);
+    things("table", study.tables);
+    things("region", study.regions);
+    things("measurement", study.measurements);
+    for (const auto& kind : action_kinds()) {
+        all.push_back({qt(kind.verb + " " + kind.arguments), qt(kind.meaning), {}});
+    }
+    return all;
+}
+
+class Palette : public QDialog {
+public:
+    Palette(QWidget* parent, Desk& desk, const QList<QAction*>& actions)
+        : QDialog(parent), desk_(desk), entries_(entries(desk, actions)) {
+        setObjectName("palette");
+        setWindowTitle("Find a command, a case, a parameter");
+        setAttribute(Qt::WA_DeleteOnClose);
+        resize(620, 420);
+        auto* column = new QVBoxLayout(this);
+        line_ = new QLineEdit;
+        line_->setPlaceholderText("Type to find; or a whole line: set 'protrusion.height=2 mm'");
+        line_->setAccessibleName("Command");
+        line_->installEventFilter(this);
+        list_ = new QListWidget;
+        list_->setAccessibleName("Found");
+        column->addWidget(line_);
+        column->addWidget(list_, 1);
+        connect(line_, &QLineEdit::textChanged, this, &Palette::fill);
+        connect(line_, &QLineEdit::returnPressed, this, &Palette::take);
+        connect(list_, &QListWidget::itemActivated, this, &Palette::take);
+        fill();
+    }
+
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (event->type() == QEvent::KeyPress) {
+            auto* key = static_cast<QKeyEvent*>(event);
+            const int by = key->key() == Qt::Key_Down ? 1 : key->key() == Qt::Key_Up ? -1 : 0;
+            if (by != 0) {
+                list_->setCurrentRow(std::clamp(list_->currentRow() + by, 0, list_->count() - 1));
+                return true;
+            }
+        }
+        return QDialog::eventFilter(watched, event);
+    }
+
+private:
+    void fill() {
+        list_->clear();
+        const QStringList parts = line_->text().split(' ', Qt::SkipEmptyParts);
+        for (std::size_t i = 0; i < entries_.size() && list_->count() < 200; ++i) {
+            const QString whole = entries_[i].text + " " + entries_[i].hint;
+            const bool fits = std::all_of(parts.begin(), parts.end(), [&](const QString& part) {
+                return whole.contains(part, Qt::CaseInsensitive);
+            });
+            if (fits) {
+                auto* item = new QListWidgetItem(
+                    entries_[i].text + (entries_[i].hint.isEmpty() ? "" : "   –   " + entries_[i].hint), list_);
+                item->setData(Qt::UserRole, static_cast<int>(i));
+            }
+        }
+        list_->setCurrentRow(0);
+    }
+
+    void take() {
+        const QString typed = line_->text().trimmed();
+        const QString verb = typed.section(' ', 0, 0);
+        const auto& kinds = action_kinds();
+        const bool line =
+            std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return qt(kind.verb) == verb; });
+        const auto* item = list_->currentItem();
+        const auto run = item != nullptr ? entries_[item->data(Qt::UserRole).toUInt()].take : std::function<void()>();
+        if (line && (typed.contains(' ') || !run)) {
+            try {
+                if (!desk_.act(words_of(typed.toStdString()))) {
+                    return;
+                }
+            } catch (...) {
+                Q_EMIT desk_.refused(verb, std::current_exception());
+                return;
+            }
+            close();
+        } else if (run) {
+            close();
+            run();
+        } else if (item != nullptr) {
+            line_->setText(item->text().section(' ', 0, 0) + " ");
+        }
+    }
+
+    Desk& desk_;
+    std::vector<Entry> entries_;
+    QLineEdit* line_ = nullptr;
+    QListWidget* list_ = nullptr;
+};
+
+}  // namespace
+
+void show_palette(QWidget* parent, Desk& desk, const QList<QAction*>& actions) {
+    auto* palette = new Palette(parent, desk, actions);
+    palette->show();
+}
+
+void show_keys(QWidget* parent, const QList<QAction*>& actions) {
+    auto* dialog = new QDialog(parent);
+    dialog->setObjectName("keys");
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setWindowTitle("Keys");
+    dialog->resize(460, 560);
+    auto* column = new QVBoxLayout(dialog);
+    auto* table = new QTableWidget(0, 2);
+    table->setAccessibleName("Keys and what they do");
+    table->setHorizontalHeaderLabels({"key", "does"});
+    table->verticalHeader()->hide();
+    table->horizontalHeader()->setStretchLastSection(true);
+    table->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    const auto add = [&](const QString& key, const QString& text) {
+        const int row = table->rowCount();
+        table->insertRow(row);
+        table->setItem(row, 0, new QTableWidgetItem(key));
+        table->setItem(row, 1, new QTableWidgetItem(text));
+    };
+    for (const QAction* action : actions) {
+        if (!action->shortcut().isEmpty()) {
+            add(action->shortcut().toString(), plain(*action));
+        }
+    }
+    add("Wheel, drag, double click", "in a plot: zoom, move, show all");
+    add("Left, middle, right button", "in 3D: turn, move, zoom; a click reads the value");
+    table->resizeColumnToContents(0);
+    column->addWidget(table);
+    dialog->show();
+}
+
+}  // namespace underbody::studio

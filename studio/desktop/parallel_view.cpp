@@ -1,0 +1,175 @@
+#include "studio/desktop/parallel_view.h"
+
+#include <QEvent>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QPainterPath>
+#include <cmath>
+
+#include "core/text.h"
+#include "studio/desktop/qt_text.h"
+
+namespace underbody::studio {
+
+namespace {
+constexpr int top = 44, bottom = 22, side = 60;
+}
+
+ParallelView::ParallelView(QWidget* parent) : QWidget(parent) {
+    setMouseTracking(true);
+    setToolTip("Drag along an axis to keep a range; click on the axis to take it away");
+}
+
+void ParallelView::show_axes(std::vector<Axis> axes) {
+    axes_ = std::move(axes);
+    for (auto& axis : axes_) {
+        axis.lower = INFINITY;
+        axis.upper = -INFINITY;
+        for (const double value : axis.values) {
+            if (std::isfinite(value)) {
+                axis.lower = std::min(axis.lower, value);
+                axis.upper = std::max(axis.upper, value);
+            }
+        }
+        if (!(axis.lower < axis.upper)) {
+            axis.lower = std::isfinite(axis.lower) ? axis.lower - 1 : 0;
+            axis.upper = axis.lower + 2;
+        }
+    }
+    pale_ = {};
+    update();
+}
+
+void ParallelView::show_brush(const std::map<std::string, std::array<double, 2>>& brush,
+                              const std::vector<std::size_t>& kept) {
+    brush_ = brush;
+    kept_ = kept;
+    update();
+}
+
+double ParallelView::x_of(std::size_t axis) const {
+    const double room = std::max(1, width() - 2 * side);
+    return axes_.size() < 2 ? side + room / 2
+                            : side + room * static_cast<double>(axis) / static_cast<double>(axes_.size() - 1);
+}
+
+double ParallelView::y_of(const Axis& axis, double value) const {
+    return height() - bottom - (height() - top - bottom) * (value - axis.lower) / (axis.upper - axis.lower);
+}
+
+double ParallelView::value_at(const Axis& axis, double y) const {
+    const double share = (height() - bottom - y) / std::max(1, height() - top - bottom);
+    return axis.lower + std::min(1.0, std::max(0.0, share)) * (axis.upper - axis.lower);
+}
+
+void ParallelView::draw_line(QPainter& painter, std::size_t row) const {
+    QPainterPath path;
+    bool open = false;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const double value = row < axes_[i].values.size() ? axes_[i].values[row] : NAN;
+        if (!std::isfinite(value)) {
+            open = false;
+            continue;
+        }
+        const QPointF at(x_of(i), y_of(axes_[i], value));
+        open ? path.lineTo(at) : path.moveTo(at);
+        open = true;
+    }
+    painter.drawPath(path);
+}
+
+void ParallelView::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.fillRect(rect(), palette().base());
+    if (axes_.empty()) {
+        painter.setPen(palette().placeholderText().color());
+        painter.drawText(rect(), Qt::AlignCenter, "No loads are computed yet: Study > Compute what changed (Ctrl+R)");
+        return;
+    }
+    if (pale_.size() != size() * devicePixelRatioF()) {
+        pale_ = QPixmap(size() * devicePixelRatioF());
+        pale_.setDevicePixelRatio(devicePixelRatioF());
+        pale_.fill(Qt::transparent);
+        QPainter pale(&pale_);
+        QColor colour = palette().text().color();
+        colour.setAlpha(40);
+        pale.setPen(colour);
+        for (std::size_t row = 0; row < axes_.front().values.size(); ++row) {
+            draw_line(pale, row);
+        }
+    }
+    painter.drawPixmap(0, 0, pale_);
+    painter.setRenderHint(QPainter::Antialiasing, kept_.size() < 2000);
+    painter.setPen(QPen(palette().highlight().color(), 1.4));
+    for (const std::size_t row : kept_) {
+        draw_line(painter, row);
+    }
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const Axis& axis = axes_[i];
+        const double x = x_of(i);
+        painter.setPen(QPen(palette().text().color(), 1));
+        painter.drawLine(QPointF(x, top), QPointF(x, height() - bottom));
+        painter.drawText(QRectF(x - 70, 2, 140, 18), Qt::AlignCenter, axis.title);
+        const auto text = [&](double value) { return qt(core::format_number(axis.factor * value, 4)); };
+        painter.drawText(QRectF(x - 60, 20, 120, 18), Qt::AlignCenter, text(axis.upper));
+        painter.drawText(QRectF(x - 60, height() - bottom + 2, 120, 18), Qt::AlignCenter, text(axis.lower));
+        std::array<double, 2> range{};
+        if (pressed_ == static_cast<int>(i)) {
+            range = {std::min(from_, to_), std::max(from_, to_)};
+        } else if (const auto at = brush_.find(axis.name); at != brush_.end()) {
+            range = at->second;
+        } else {
+            continue;
+        }
+        const QRectF box(QPointF(x - 7, y_of(axis, std::min(range[1], axis.upper))),
+                         QPointF(x + 7, y_of(axis, std::max(range[0], axis.lower))));
+        QColor fill = palette().highlight().color();
+        fill.setAlpha(90);
+        painter.fillRect(box, fill);
+        painter.drawRect(box);
+        painter.drawText(QPointF(x + 10, box.top() + 4), text(range[1]));
+        painter.drawText(QPointF(x + 10, box.bottom() + 4), text(range[0]));
+    }
+}
+
+void ParallelView::resizeEvent(QResizeEvent*) { pale_ = {}; }
+
+void ParallelView::changeEvent(QEvent* event) {
+    if (event->type() == QEvent::PaletteChange) {
+        pale_ = {};
+        update();
+    }
+    QWidget::changeEvent(event);
+}
+
+void ParallelView::mousePressEvent(QMouseEvent* event) {
+    pressed_ = -1;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        if (std::abs(event->pos().x() - x_of(i)) < 14) {
+            pressed_ = static_cast<int>(i);
+            from_ = to_ = value_at(axes_[i], event->pos().y());
+        }
+    }
+    update();
+}
+
+void ParallelView::mouseMoveEvent(QMouseEvent* event) {
+    if (pressed_ >= 0 && (event->buttons() & Qt::LeftButton) != 0) {
+        to_ = value_at(axes_[static_cast<std::size_t>(pressed_)], event->pos().y());
+        update();
+    }
+}
+
+void ParallelView::mouseReleaseEvent(QMouseEvent*) {
+    if (pressed_ < 0) {
+        return;
+    }
+    const Axis& axis = axes_[static_cast<std::size_t>(pressed_)];
+    pressed_ = -1;
+    const bool click = std::abs(y_of(axis, from_) - y_of(axis, to_)) < 4;
+    const double low = std::min(from_, to_);
+    Q_EMIT brushed(qt(axis.name), low, click ? low : std::max(from_, to_));
+    update();
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,55 @@
+// Parallel coordinates: one axis a column, one line a case, ranges dragged on the axes.
+#pragma once
+
+#include <QPixmap>
+#include <QWidget>
+#include <array>
+#include <map>
+#include <vector>
+
+class QPainter;
+
+namespace underbody::studio {
+
+class ParallelView : public QWidget {
+    Q_OBJECT
+public:
+    struct Axis {
+        std::string name;
+        QString title;
+        double factor = 1;  ///< shown = factor * SI
+        std::vector<double> values;
+        double lower = 0, upper = 1;
+    };
+    explicit ParallelView(QWidget* parent);
+    void show_axes(std::vector<Axis> axes);
+    void show_brush(const std::map<std::string, std::array<double, 2>>& brush, const std::vector<std::size_t>& kept);
+    [[nodiscard]] QSize minimumSizeHint() const override { return {300, 150}; }
+
+Q_SIGNALS:
+    /// A range was dragged on an axis; lower == upper: cleared by a click.
+    void brushed(const QString& column, double lower, double upper);
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void changeEvent(QEvent* event) override;
+
+private:
+    [[nodiscard]] double x_of(std::size_t axis) const;
+    [[nodiscard]] double y_of(const Axis& axis, double value) const;
+    [[nodiscard]] double value_at(const Axis& axis, double y) const;
+    void draw_line(QPainter& painter, std::size_t row) const;
+
+    std::vector<Axis> axes_;
+    std::map<std::string, std::array<double, 2>> brush_;
+    std::vector<std::size_t> kept_;
+    QPixmap pale_;  ///< all lines, drawn once
+    int pressed_ = -1;
+    double from_ = 0, to_ = 0;
+};
+
+}  // namespace underbody::studio

@@ -1,0 +1,364 @@
+#include "studio/desktop/study_tree.h"
+
+#include <QCollator>
+#include <QFont>
+#include <QHeaderView>
+#include <QScrollBar>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/desktop/qt_text.h"
+
+namespace underbody::studio {
+
+namespace {
+
+/// What is known of the loads of a case; nullptr when nothing is.
+const cases::CaseLoads* loads_of(const Session& session, std::size_t index) {
+    const auto& all = session.results.case_loads;
+    return index < all.size() && all[index].entry == index ? &all[index] : nullptr;
+}
+
+QString status_of(const cases::CaseLoads* loads) {
+    if (loads == nullptr || loads->state == cases::StepState::missing) {
+        return "not run";
+    }
+    if (loads->values.empty()) {
+        return qt(to_string(loads->state));
+    }
+    return loads->warnings.empty() ? "done" : "warning";
+}
+
+QString tip(const Session& session, std::size_t index) {
+    const auto& one = session.study.cases[index];
+    QString text = qt(one.conditions.label()) + "\n" + qt(one.file.string());
+    if (const auto* loads = loads_of(session, index)) {
+        text += loads->error.empty() ? "" : "\n" + qt(loads->error);
+        for (const auto& warning : loads->warnings) {
+            text += "\n" + qt(warning.message);
+        }
+    }
+    return text;
+}
+
+constexpr quintptr top = ~quintptr(0);
+
+}  // namespace
+
+StudyModel::StudyModel(Desk& desk, QObject* parent) : QAbstractItemModel(parent), desk_(desk) {}
+
+void StudyModel::read() {
+    beginResetModel();
+    session_ = desk_.session_pointer();
+    const auto& study = session_->study;
+    groups_.clear();
+    const auto add = [&](const char* kind, const char* title, auto&& things, auto&& name_of_thing) {
+        Group group{kind, title, {}};
+        for (const auto& thing : things) {
+            group.names.push_back(name_of_thing(thing));
+        }
+        if (!group.names.empty()) {
+            groups_.push_back(std::move(group));
+        }
+    };
+    const auto named = [](const auto& thing) { return thing.name; };
+    add("shape", "Shapes", shape_names(desk_.state(), *session_), [](const std::string& text) { return text; });
+    add("case", "Cases", study.cases, named);
+    add("table", "Tables", study.tables, named);
+    add("region", "Stability", study.regions, named);
+    add("measurement", "Measurements", study.measurements, named);
+    add("picture", "Pictures", session_->results.pictures, [](const auto& one) { return one.first; });
+    add("field", "Files", desk_.state().files, [](const std::string& entry) {
+        return entry.starts_with("field:") ? entry.substr(6) : entry.substr(entry.find(':') + 1);
+    });
+    endResetModel();
+    places_.clear();
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const QModelIndex group = index(static_cast<int>(g), 0, {});
+        for (std::size_t i = 0; i < groups_[g].names.size(); ++i) {
+            places_.emplace_back(groups_[g].kind + "/" + groups_[g].names[i], index(static_cast<int>(i), 0, group));
+        }
+    }
+    std::sort(places_.begin(), places_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
+QModelIndex StudyModel::find(const std::string& id) const {
+    const auto at = std::lower_bound(places_.begin(), places_.end(), id,
+                                     [](const auto& place, const std::string& wanted) { return place.first < wanted; });
+    return at != places_.end() && at->first == id ? at->second : QModelIndex();
+}
+
+QModelIndex StudyModel::index(int row, int column, const QModelIndex& above) const {
+    if (row < 0 || column < 0 || column >= column_count || row >= rowCount(above)) {
+        return {};
+    }
+    return above.isValid() ? createIndex(row, column, static_cast<quintptr>(above.row()))
+                           : createIndex(row, column, top);
+}
+
+QModelIndex StudyModel::parent(const QModelIndex& child) const {
+    return !child.isValid() || child.internalId() == top ? QModelIndex()
+                                                         : createIndex(static_cast<int>(child.internalId()), 0, top);
+}
+
+int StudyModel::rowCount(const QModelIndex& above) const {
+    if (!above.isValid()) {
+        return static_cast<int>(groups_.size());
+    }
+    return above.internalId() == top && above.column() == 0
+               ? static_cast<int>(groups_[static_cast<std::size_t>(above.row())].names.size())
+               : 0;
+}
+
+double StudyModel::number(std::size_t entry, int column) const {
+    const auto& conditions = session_->study.cases[entry].conditions;
+    const auto* loads = loads_of(*session_, entry);
+    const double none = std::nan("");
+    switch (column) {
+        case gap:
+            return 1000 * conditions.number("gap").value_or(none);
+        case pitch:
+            return core::convert(conditions.number("pitch").value_or(none), "rad", "deg");
+        case speed:
+            return conditions.number("speed").value_or(none);
+        case lift:
+            return loads != nullptr ? loads->value("lift_force") : none;
+        case drag:
+            return loads != nullptr ? loads->value("drag_force") : none;
+        default:
+            return none;
+    }
+}
+
+QVariant StudyModel::cell(const Group& group, std::size_t row, int column, int role) const {
+    const std::string id = group.kind + "/" + group.names[row];
+    if (role == id_role) {
+        return qt(id);
+    }
+    if (column == name) {
+        if (role == Qt::DisplayRole || role == sort_role) {
+            const bool changed = group.kind == "shape" && desk_.state().design.changes.contains(group.names[row]);
+            const bool starred = role == Qt::DisplayRole && desk_.state().stars.contains(id);
+            QString text = qt(group.names[row]);
+            if (group.kind == "picture") {
+                text.replace("/", " · ");
+            } else if (group.kind == "field") {
+                text = text.section('/', -1);
+            }
+            return (starred ? QString("★ ") : QString()) + text + (changed ? " *" : "");
+        }
+        if (role == Qt::ToolTipRole) {
+            return group.kind == "case" ? tip(*session_, row) : qt(group.names[row]);
+        }
+        return {};
+    }
+    if (group.kind != "case") {
+        return {};
+    }
+    if (column == status) {
+        return role == Qt::DisplayRole || role == sort_role ? status_of(loads_of(*session_, row))
+               : role == Qt::ToolTipRole                    ? tip(*session_, row)
+                                                            : QVariant();
+    }
+    const double value = number(row, column);
+    if (role == Qt::TextAlignmentRole) {
+        return int(Qt::AlignRight | Qt::AlignVCenter);
+    }
+    if (!std::isfinite(value)) {
+        return {};
+    }
+    if (role == sort_role) {
+        return value;
+    }
+    return role == Qt::DisplayRole ? qt(core::format_number(value, column < lift ? 5 : 3)).replace('-', QChar(0x2212))
+                                   : QVariant();
+}
+
+QVariant StudyModel::data(const QModelIndex& index, int role) const {
+    if (!index.isValid()) {
+        return {};
+    }
+    if (index.internalId() != top) {
+        return cell(groups_[index.internalId()], static_cast<std::size_t>(index.row()), index.column(), role);
+    }
+    const Group& group = groups_[static_cast<std::size_t>(index.row())];
+    if (role == Qt::FontRole) {
+        QFont bold;
+        bold.setBold(true);
+        return bold;
+    }
+    if (role == sort_role) {
+        return index.row();
+    }
+    return role == Qt::DisplayRole && index.column() == name
+               ? QString("%1 (%2)").arg(group.title).arg(group.names.size())
+               : QVariant();
+}
+
+QVariant StudyModel::headerData(int section, Qt::Orientation orientation, int role) const {
+    static const QStringList titles = {"study", "gap\nmm", "pitch\n°", "speed\nm/s", "lift\nN", "drag\nN", "status"};
+    return orientation == Qt::Horizontal && role == Qt::DisplayRole ? titles.value(section) : QVariant();
+}
+
+bool StudyFilter::lessThan(const QModelIndex& left, const QModelIndex& right) const {
+    const QVariant mine = left.data(StudyModel::sort_role);
+    const QVariant others = right.data(StudyModel::sort_role);
+    if (!left.parent().isValid()) {  // kinds stay in their order
+        const bool ascending = sortOrder() == Qt::AscendingOrder;
+        return ascending ? left.row() < right.row() : left.row() > right.row();
+    }
+    if (mine.type() == QVariant::Double && others.type() == QVariant::Double) {
+        return mine.toDouble() < others.toDouble();
+    }
+    static const QCollator natural = [] {
+        QCollator collator(QLocale(QLocale::English));  // the C locale cannot
+        collator.setNumericMode(true);                  // h2 before h10
+        return collator;
+    }();
+    return natural.compare(mine.toString(), others.toString()) < 0;
+}
+
+StudyTree::StudyTree(Desk& desk, QWidget* parent)
+    : QTreeView(parent), desk_(desk), model_(new StudyModel(desk, this)), proxy_(new StudyFilter(this)) {
+    setObjectName("study");
+    setAccessibleName("Study: shapes, cases, tables, stability maps, measurements");
+    proxy_->setSourceModel(model_);
+    proxy_->setRecursiveFilteringEnabled(true);
+    proxy_->setFilterCaseSensitivity(Qt::CaseInsensitive);
+    proxy_->setFilterKeyColumn(0);
+    setModel(proxy_);
+    setUniformRowHeights(true);
+    setAlternatingRowColors(true);
+    setSelectionMode(QAbstractItemView::ExtendedSelection);
+    setSortingEnabled(true);
+    setIndentation(12);
+    sortByColumn(StudyModel::name, Qt::AscendingOrder);
+    header()->setDefaultAlignment(Qt::AlignCenter);
+    header()->setMinimumSectionSize(30);
+    header()->setStretchLastSection(true);
+    header()->resizeSection(StudyModel::name, 172);
+    for (int column = StudyModel::gap; column < StudyModel::column_count; ++column) {
+        header()->resizeSection(column, column < StudyModel::lift ? 42 : 50);
+    }
+    connect(selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { take_selection(); });
+    connect(&desk, &Desk::session_changed, this, &StudyTree::read_again);
+    connect(&desk, &Desk::changed, this, [this] {
+        if (look() != look_) {
+            read_again();
+        } else {
+            show_selection();
+        }
+    });
+}
+
+StudyTree::Look StudyTree::look() const {
+    const studio::State& state = desk_.state();
+    Look look{state.stars, state.files, {}};
+    for (const auto& [name, changes] : state.design.changes) {
+        look.shapes.push_back("*" + name);
+    }
+    for (const auto& [name, variant] : state.design.variants) {
+        look.shapes.push_back(name);
+    }
+    return look;
+}
+
+void StudyTree::read_again() {
+    quiet_ = true;
+    std::set<QString> closed;
+    for (int row = 0; row < proxy_->rowCount(); ++row) {
+        if (!isExpanded(proxy_->index(row, 0))) {
+            closed.insert(proxy_->index(row, 0).data().toString().section(' ', 0, 0));
+        }
+    }
+    const bool other = shown_ == nullptr || shown_->folder != desk_.session().folder;
+    const int scrolled = verticalScrollBar()->value();
+    model_->read();
+    look_ = look();
+    for (int row = 0; row < proxy_->rowCount(); ++row) {
+        const QString title = proxy_->index(row, 0).data().toString().section(' ', 0, 0);
+        setExpanded(proxy_->index(row, 0), other ? title != "Pictures" : closed.count(title) == 0);
+    }
+    shown_ = desk_.session_pointer();
+    show_selection();
+    if (!other) {
+        verticalScrollBar()->setValue(scrolled);
+    }
+    quiet_ = false;
+    Q_EMIT counted(count());
+}
+
+void StudyTree::show_selection() {
+    QItemSelection wanted;
+    QModelIndex first;
+    for (const auto& id : desk_.state().selection) {
+        const QModelIndex at = proxy_->mapFromSource(model_->find(id));
+        if (at.isValid()) {
+            wanted.select(at, at.sibling(at.row(), StudyModel::column_count - 1));
+            first = first.isValid() ? first : at;
+        }
+    }
+    if (wanted != selectionModel()->selection()) {
+        const bool was = std::exchange(quiet_, true);
+        selectionModel()->select(wanted, QItemSelectionModel::ClearAndSelect);
+        if (first.isValid() && !selectionModel()->isSelected(currentIndex())) {
+            selectionModel()->setCurrentIndex(first, QItemSelectionModel::NoUpdate);
+            scrollTo(first);
+        }
+        quiet_ = was;
+    }
+}
+
+void StudyTree::take_selection() {
+    if (quiet_) {
+        return;
+    }
+    Words words = {"select"};
+    for (const auto& index : selectionModel()->selectedRows()) {
+        if (index.parent().isValid()) {
+            words.push_back(index.data(StudyModel::id_role).toString().toStdString());
+        }
+    }
+    desk_.act(words);
+}
+
+void StudyTree::filter(const QString& text) {
+    const bool was = std::exchange(quiet_, true);
+    proxy_->setFilterFixedString(text);
+    show_selection();
+    quiet_ = was;
+    Q_EMIT counted(count());
+}
+
+QString StudyTree::count() const {
+    for (int row = 0; row < proxy_->rowCount(); ++row) {
+        const QModelIndex group = proxy_->index(row, 0);
+        if (group.data().toString().startsWith("Cases")) {
+            return QString("%1 of %2 cases").arg(proxy_->rowCount(group)).arg(desk_.session().study.cases.size());
+        }
+    }
+    return desk_.session().study.cases.empty() ? QString()
+                                               : QString("0 of %1 cases").arg(desk_.session().study.cases.size());
+}
+
+void StudyTree::step(int by) {
+    QModelIndex at;
+    for (const auto& id : desk_.state().selection) {
+        at = id.starts_with("case/") ? proxy_->mapFromSource(model_->find(id)) : at;
+    }
+    if (!at.isValid()) {
+        const auto& cases = desk_.session().study.cases;
+        at = cases.empty() ? QModelIndex() : proxy_->mapFromSource(model_->find("case/" + cases.front().name));
+        by = 0;
+    }
+    const QModelIndex next = at.isValid() ? at.sibling(at.row() + by, 0) : at;
+    if (next.isValid()) {
+        desk_.act({"select", next.data(StudyModel::id_role).toString().toStdString()});
+        scrollTo(next);
+    }
+}
+
+}  // namespace underbody::studio

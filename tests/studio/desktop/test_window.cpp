@@ -1,0 +1,480 @@
+// The real window, driven without a display (Qt's `offscreen` platform; 3D is tested by the pictures of test_desktop).
+#include <gtest/gtest.h>
+#include <time.h>
+
+#include <QAbstractEventDispatcher>
+#include <QAbstractSpinBox>
+#include <QAction>
+#include <QApplication>
+#include <QComboBox>
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMenuBar>
+#include <QSlider>
+#include <QTableWidget>
+#include <QTest>
+#include <clocale>
+#include <random>
+
+#include "core/text.h"
+#include "geometry/body/body_report.h"
+#include "studio/desktop/design_panel.h"
+#include "studio/desktop/explore_panel.h"
+#include "studio/desktop/export_dialog.h"
+#include "studio/desktop/fields_panel.h"
+#include "studio/desktop/force_panel.h"
+#include "studio/desktop/main_window.h"
+#include "studio/desktop/parameter_row.h"
+#include "studio/desktop/problems_panel.h"
+#include "studio/desktop/region_panel.h"
+#include "studio/desktop/screenshots.h"
+#include "studio/desktop/study_tree.h"
+#include "surrogates/tables/fit/force_table.h"
+#include "tests/studio/desktop/few_gaps.h"
+
+namespace underbody::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One application for all tests: Qt allows no second one.
+QApplication& application() {
+    static int count = 1;
+    static char name[] = "test_desktop";
+    static char* arguments[] = {name, nullptr};
+    ::setenv("QT_QPA_PLATFORM", "offscreen", 1);
+    static auto* instance = new QApplication(count, arguments);  // it must outlive whatever goes at the end
+    std::setlocale(LC_NUMERIC, "C");
+    QLocale::setDefault(QLocale::c());
+    return *instance;
+}
+
+/// Computed once; tests that change it take a copy.
+fs::path computed_study() {
+    static const core::TemporaryFolder folder;
+    static const fs::path study = [] {
+        test::make_few_gaps(folder.path() / "study");
+        const auto run = test::run_underbody({"study", "run", (folder.path() / "study").string(), "--no-pictures"});
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        return folder.path() / "study";
+    }();
+    return study;
+}
+
+class Window : public ::testing::Test {
+protected:
+    Window() {
+        application();
+        window_ = std::make_unique<MainWindow>(false);
+        window_->ask = [this](const QString&, const QString&, const QString&) {
+            ++asked_;
+            return answer_;
+        };
+        window_->resize(1200, 800);
+        window_->show();
+    }
+    void open(const fs::path& folder) {
+        window_->open_study(folder);
+        settle(*window_);
+        ASSERT_TRUE(window_->has_study()) << window_->last_error().toStdString();
+    }
+    fs::path copy_of_study() {
+        fs::copy(computed_study(), folder_.path() / "copy", fs::copy_options::recursive);
+        return folder_.path() / "copy";
+    }
+    bool act(const std::string& line) {
+        const bool done = window_->desk().act(words_of(line));
+        return done;
+    }
+    template <class Panel>
+    Panel& panel() {
+        return *window_->findChild<Panel*>();
+    }
+    QString status_of(const std::string& name) {
+        auto* tree = window_->findChild<StudyTree*>();
+        StudyModel model(window_->desk(), tree);
+        model.read();
+        const QModelIndex at = model.find("case/" + name);
+        return at.sibling(at.row(), StudyModel::status).data().toString();
+    }
+    core::TemporaryFolder folder_;
+    std::unique_ptr<MainWindow> window_;
+    bool answer_ = false;
+    int asked_ = 0;
+};
+
+TEST_F(Window, EveryActionIsDoneUndoneAndRedone) {
+    open(computed_study());
+    const std::vector<std::string> lines = {"select case/ellipse-h5-p0 case/ellipse-h2-p0",
+                                            "star case/ellipse-h5-p0",
+                                            "workspace design",
+                                            "set 'protrusion.height=1.5 mm'",
+                                            "pin",
+                                            "keep two",
+                                            "forget two",
+                                            "operation gap=3mm pitch=1deg",
+                                            "workspace explore",
+                                            "axes gap drag_force",
+                                            "brush gap=2mm:5mm",
+                                            "workspace compare",
+                                            "fields camera=bottom range=-100:100",
+                                            "workspace tables",
+                                            "table lift net_weight=0.25N",
+                                            "workspace stability",
+                                            "region glide cells=30 start=5mm,1mm/s set.vehicle.net_weight=0.25",
+                                            "region glide as_declared=",
+                                            "workspace loop",
+                                            "unstar case/ellipse-h5-p0",
+                                            "reset"};
+    for (const auto& line : lines) {
+        const std::string before = state_hash(window_->desk().state());
+        act(line);
+        EXPECT_TRUE(window_->last_error().isEmpty()) << line << window_->last_error().toStdString();
+        const std::string after = state_hash(window_->desk().state());
+        window_->desk().undo();
+        QApplication::processEvents();
+        window_->desk().redo();
+        QApplication::processEvents();
+        EXPECT_EQ(state_hash(window_->desk().state()), after) << line;
+        static_cast<void>(before);
+    }
+    settle(*window_);
+    window_->desk().go_to(1);  // the study stays open
+    settle(*window_);
+    EXPECT_TRUE(window_->has_study());
+    EXPECT_TRUE(window_->desk().state().stars.empty());
+    EXPECT_TRUE(window_->desk().state().tables.empty());
+}
+
+TEST_F(Window, ShowsTheBodyOfTheLibraryAndUndoBringsItBack) {
+    open(computed_study());
+    act("workspace design");
+    settle(*window_);
+    auto& design = panel<DesignPanel>();
+    ASSERT_TRUE(design.shown());
+    const auto first = design.shown();
+    ASSERT_TRUE(first->certificate && first->certificate->passed());
+    EXPECT_TRUE(first->added_mass);
+    act("set 'protrusion.height=2 mm'");
+    settle(*window_);
+    geometry::BodyOptions options;
+    options.set = {{"protrusion.height", "2 mm"}};
+    options.panels = 0;
+    const auto body = geometry::read_body(computed_study() / "shapes" / "ellipse.toml", options);
+    EXPECT_DOUBLE_EQ(design.shown()->mass.volume, body.mass.volume);
+    const QString shown = design.card()->item(0, 1)->text();
+    EXPECT_EQ(shown.toStdString(), core::format_number(1e6 * body.mass.volume, 6) + " cm³");
+    EXPECT_FALSE(design.card()->item(0, 2)->text().isEmpty()) << "before";
+    QElapsedTimer time;
+    time.start();
+    window_->desk().undo();
+    EXPECT_EQ(design.shown()->mass.volume, first->mass.volume) << "out of the cache, at once";
+    EXPECT_LT(time.elapsed(), 1000);
+}
+
+TEST_F(Window, AValueThatCannotBeIsRefusedWithTheLibrarysSentence) {
+    open(computed_study());
+    EXPECT_FALSE(act("set body.base_cut=7"));
+    EXPECT_NE(window_->last_error().indexOf("base_cut"), -1);
+    EXPECT_TRUE(window_->desk().state().design.changes.empty());
+}
+
+TEST_F(Window, ANumberIsShownWithEveryDigit) {
+    NumberEdit field("m^2/s", "m^2/s");
+    field.show_number(1.5e-6);
+    EXPECT_DOUBLE_EQ(field.parsed(field.text()), 1.5e-6);
+    EXPECT_NE(field.text().indexOf("1.5e-06"), -1) << field.text().toStdString();
+    double entered = 0;
+    QObject::connect(&field, &NumberEdit::entered, [&](double value) { entered = value; });
+    field.setFocus();
+    field.selectAll();
+    QTest::keyClicks(&field, "8.7e-6");
+    QTest::keyClick(&field, Qt::Key_Return);
+    EXPECT_DOUBLE_EQ(entered, 8.7e-6);
+    NumberEdit length("m", "mm");
+    length.show_number(0.0023);
+    EXPECT_EQ(length.text(), "2.3 mm");
+    EXPECT_DOUBLE_EQ(length.parsed("0.5 cm"), 0.005);
+    EXPECT_DOUBLE_EQ(length.parsed("4"), 0.004);
+    EXPECT_THROW(static_cast<void>(length.parsed("4 N")), core::Error);
+}
+
+TEST_F(Window, TheMotionIsThatOfTheModelThatIsShown) {
+    open(computed_study());
+    act("workspace stability");
+    act("region glide cells=40 start=5mm,0");
+    settle(*window_);
+    auto& stability = panel<RegionPanel>();
+    ASSERT_TRUE(stability.trajectory());
+    const auto before = stability.trajectory();
+    act("region glide set.vehicle.net_weight=0.05");
+    settle(*window_);
+    ASSERT_TRUE(stability.trajectory());
+    EXPECT_NE(before, stability.trajectory()) << "made again with the map";
+}
+
+TEST_F(Window, AReloadReadsWhatChangedOnDisk) {
+    const fs::path study = copy_of_study();
+    open(study);
+    EXPECT_EQ(status_of("ellipse-h5-p0"), status_of("ellipse-h3-p0"));
+    const QString was = status_of("ellipse-h5-p0");
+    fs::copy_file(study / "fields" / "ellipse-h20-p0.csv", study / "fields" / "ellipse-h5-p0.csv",
+                  fs::copy_options::overwrite_existing);
+    window_->desk().reload();
+    settle(*window_);
+    EXPECT_NE(status_of("ellipse-h5-p0"), was);
+    EXPECT_EQ(status_of("ellipse-h3-p0"), was);
+}
+
+TEST_F(Window, NothingIsOverwrittenUnasked) {
+    const fs::path file = folder_.path() / "t.csv";
+    core::write_file(file, "mine");
+    const auto write = [](const fs::path& path) { core::write_file(path, "other"); };
+    const QString typed = QString::fromStdString((folder_.path() / "t").string());
+    EXPECT_FALSE(window_->write_chosen(typed, {".csv"}, write));
+    EXPECT_EQ(asked_, 1) << "the ending is added first";
+    EXPECT_EQ(core::read_file(file), "mine");
+    answer_ = true;
+    EXPECT_TRUE(window_->write_chosen(typed, {".csv"}, write));
+    EXPECT_EQ(core::read_file(file), "other");
+}
+
+TEST_F(Window, ReloadingWhileItComputesDisturbsNothing) {
+    const fs::path study = folder_.path() / "fresh";
+    test::make_few_gaps(study);
+    open(study);
+    window_->desk().run_study();
+    window_->desk().reload();
+    window_->desk().run_study();
+    EXPECT_TRUE(window_->desk().computing());
+    settle(*window_);
+    EXPECT_TRUE(window_->last_error().isEmpty()) << window_->last_error().toStdString();
+    EXPECT_EQ(window_->desk().session().results.loads.rows(), 5U);
+}
+
+TEST_F(Window, WhatACancelledRunHasStoredIsShown) {
+    const fs::path study = folder_.path() / "fresh";
+    test::make_few_gaps(study);
+    open(study);
+    window_->desk().run_study();
+    // Until the store has a result.
+    QElapsedTimer waited;
+    waited.start();
+    bool any = false;
+    while (!any && window_->desk().computing() && waited.elapsed() < 60000) {
+        QTest::qWait(20);
+        any = cases::stored_loads(window_->desk().session().study, {}).loads.rows() > 0;
+    }
+    ASSERT_TRUE(any);
+    window_->jobs().cancel("run");
+    settle(*window_);
+    EXPECT_GT(window_->desk().session().results.loads.rows(), 0U);
+}
+
+TEST_F(Window, AnErrorGoesWhenSomethingSucceeds) {
+    open(computed_study());
+    act("workspace nowhere");
+    auto* banner = window_->findChild<Banner*>();
+    EXPECT_TRUE(banner->isVisible());
+    act("star case/ellipse-h5-p0");
+    EXPECT_FALSE(banner->isVisible());
+}
+
+TEST_F(Window, TakesWhatIsDroppedByItsContent) {
+    open(computed_study());
+    const fs::path evie = test::source_folder() / "cases" / "evie";
+    window_->take_files({evie / "shapes" / "ellipse_front_bump1.toml"});
+    settle(*window_);
+    EXPECT_EQ(shown_shape(window_->desk().state(), window_->desk().session()), "ellipse_front_bump1");
+    EXPECT_EQ(window_->desk().state().workspace, "design");
+    window_->take_files({evie / "fields" / "ellipse-h1-p0.csv", evie / "fields" / "ellipse-h100-p0.csv"});
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state().workspace, "compare");
+    EXPECT_EQ(window_->desk().state().selected("field").size(), 2U) << "all, not the first";
+    core::write_file(folder_.path() / "broken.toml", "[body]\nlenght = \"3 mm\"\n");
+    window_->take_files({folder_.path() / "broken.toml"});
+    EXPECT_NE(window_->last_error().indexOf("lenght"), -1) << window_->last_error().toStdString();
+}
+
+TEST_F(Window, ATableIsFittedAsTheStudySays) {
+    const fs::path study = copy_of_study();
+    std::string text = core::read_file(study / "study.toml");
+    text.insert(text.find("net_weight"), "fit = \"spline\"\n");
+    core::write_file(study / "study.toml", text);
+    open(study);
+    act("workspace tables");
+    settle(*window_);
+    ASSERT_TRUE(panel<ForcePanel>().table());
+    EXPECT_NE(panel<ForcePanel>().table()->kind().find("spline"), std::string::npos)
+        << panel<ForcePanel>().table()->kind();
+}
+
+TEST_F(Window, AWeightOutOfReachIsSaid) {
+    open(computed_study());
+    act("workspace tables");
+    act("table lift net_weight=50N");
+    settle(*window_);
+    bool said = false;
+    for (const auto* label : panel<ForcePanel>().findChildren<QLabel*>()) {
+        said = said || label->text().contains("No equilibrium");
+    }
+    EXPECT_TRUE(said);
+}
+
+TEST_F(Window, AnExportIsShownProvedAndWritten) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    ExportDialog* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get());
+    settle(*window_);
+    EXPECT_TRUE(dialog->preview().contains("#ifndef")) << dialog->preview().left(300).toStdString();
+    dialog->prove();
+    settle(*window_);
+    EXPECT_TRUE(dialog->proof().startsWith("Compiled, run and equal")) << dialog->proof().toStdString();
+    dialog->write(folder_.path() / "lift.h");
+    EXPECT_EQ(core::read_file(folder_.path() / "lift.h").substr(0, 40), dialog->preview().toStdString().substr(0, 40));
+    delete dialog;
+}
+
+TEST_F(Window, TheBrushKeepsWhatIsWithin) {
+    open(computed_study());
+    act("workspace explore");
+    act("brush gap=2.5mm:10mm");
+    settle(*window_);
+    EXPECT_EQ(panel<ExplorePanel>().kept().size(), 3U);
+    act("brush");
+    EXPECT_EQ(panel<ExplorePanel>().kept().size(), 5U);
+}
+
+TEST_F(Window, EveryKeyIsOneActionAndEveryInputHasAName) {
+    open(computed_study());
+    for (const auto& workspace : workspace_names()) {
+        act("workspace " + workspace);
+        settle(*window_);
+    }
+    std::map<QString, QString> keys;
+    for (const QAction* action : window_->actions()) {
+        if (!action->shortcut().isEmpty()) {
+            const QString key = action->shortcut().toString();
+            EXPECT_TRUE(keys.emplace(key, action->text()).second)
+                << key.toStdString() << ": " << action->text().toStdString() << " and " << keys[key].toStdString();
+        }
+        EXPECT_FALSE(action->text().isEmpty());
+    }
+    std::map<QChar, QString> letters;
+    for (const QAction* menu : window_->menuBar()->actions()) {
+        const int at = menu->text().indexOf('&');
+        ASSERT_GE(at, 0) << menu->text().toStdString();
+        EXPECT_TRUE(letters.emplace(menu->text()[at + 1].toLower(), menu->text()).second) << menu->text().toStdString();
+    }
+    for (const auto* widget : window_->findChildren<QWidget*>()) {
+        const bool input = qobject_cast<const QComboBox*>(widget) != nullptr ||
+                           (qobject_cast<const QLineEdit*>(widget) != nullptr &&
+                            qobject_cast<const QAbstractSpinBox*>(widget->parentWidget()) == nullptr) ||
+                           qobject_cast<const QSlider*>(widget) != nullptr;
+        if (input && widget->focusPolicy() != Qt::NoFocus) {
+            EXPECT_FALSE(widget->accessibleName().isEmpty())
+                << widget->metaObject()->className() << " in " << widget->parentWidget()->objectName().toStdString();
+        }
+    }
+}
+
+TEST_F(Window, ClosingWhileItComputesAsks) {
+    const fs::path study = folder_.path() / "fresh";
+    test::make_few_gaps(study);
+    open(study);
+    window_->desk().run_study();
+    EXPECT_FALSE(window_->close());
+    EXPECT_EQ(asked_, 1);
+    answer_ = true;
+    EXPECT_TRUE(window_->close());
+}
+
+/// Processor time that the window's thread spends without coming back to its loop, at most.
+class Heartbeat : public QObject {
+public:
+    Heartbeat() {
+        auto* dispatcher = QAbstractEventDispatcher::instance();
+        connect(dispatcher, &QAbstractEventDispatcher::awake, this, [this] { beat(); });
+        connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, [this] { beat(); });
+        last_ = now();
+    }
+    [[nodiscard]] double longest() const { return longest_; }
+
+private:
+    static double now() {
+        timespec time{};
+        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+    void beat() {
+        const double time = now();
+        longest_ = std::max(longest_, time - last_);
+        last_ = time;
+    }
+    double last_ = 0, longest_ = 0;
+};
+
+// A seeded monkey: any action at any time, also nonsense and damaged files; then all is taken back.
+TEST_F(Window, AMonkeyBreaksNothing) {
+    open(computed_study());
+    const std::string start = state_hash(window_->desk().state());
+    const auto begun = window_->desk().history().position();
+    core::write_file(folder_.path() / "damaged.csv", "[Name]\nbase\n[Data]\nX [ m ],Y [ m ]\n1,2,3\n");
+    core::write_file(folder_.path() / "damaged.toml", "[body\n");
+    std::mt19937 random(11);
+    const auto share = [&] { return std::uniform_real_distribution<>(0, 1)(random); };
+    const std::vector<std::string> cases = {"case/ellipse-h2-p0", "case/ellipse-h3-p0", "case/ellipse-h20-p0"};
+    Heartbeat heartbeat;
+    for (int step = 0; step < 150; ++step) {
+        switch (random() % 12) {
+            case 0:
+                act("workspace " + workspace_names()[random() % 6]);
+                break;
+            case 1:
+                act("select " + cases[random() % 3] + " " + cases[random() % 3]);
+                break;
+            case 2:
+                act("set body.base_cut=" + std::to_string(0.2 + share()));
+                break;
+            case 3:
+                act("set 'protrusion.height=" + std::to_string(4 * share()) + " mm'");
+                break;
+            case 4:
+                act("table lift net_weight=" + std::to_string(share()) + "N");
+                break;
+            case 5:
+                act("region glide cells=30 start=" + std::to_string(20 * share()) + "mm,1mm/s");
+                break;
+            case 6:
+                act("brush gap=" + std::to_string(0.01 * share()) + ":" + std::to_string(0.01 * share()));
+                break;
+            case 7:
+                window_->desk().undo();
+                break;
+            case 8:
+                window_->desk().redo();
+                break;
+            case 9:
+                window_->jobs().cancel();
+                break;
+            case 10:
+                window_->take_files({folder_.path() / (random() % 2 ? "damaged.csv" : "damaged.toml")});
+                break;
+            default:
+                act("keep v" + std::to_string(random() % 5));
+                break;
+        }
+        QTest::qWait(static_cast<int>(random() % 12));
+    }
+    settle(*window_);
+    // Parsing, laying out and drawing offscreen in a test that is hardly optimised.
+    EXPECT_LT(heartbeat.longest(), 0.6);
+    window_->desk().go_to(begun);
+    settle(*window_);
+    EXPECT_EQ(state_hash(window_->desk().state()), start);
+}
+
+}  // namespace
+}  // namespace underbody::studio
