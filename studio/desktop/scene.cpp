@@ -128,7 +128,6 @@ std::array<double, 3> direction(const std::string& axis, std::array<double, 3> f
 class MouseStyle : public vtkInteractorStyleTrackballCamera {
 public:
     static MouseStyle* New();
-    vtkTypeMacro(MouseStyle, vtkInteractorStyleTrackballCamera);
     void OnChar() override {}
     void OnKeyPress() override {}
     void OnKeyDown() override {}
