@@ -34,7 +34,8 @@ class Shell;
     X(list)                   \
     X(theory)                 \
     X(doctor)                 \
-    X(completion)
+    X(completion)             \
+    X(watch)
 
 #define UNDERBODY_DECLARE(name) void add_##name##_command(CLI::App& app, Shell& shell);
 UNDERBODY_COMMANDS(UNDERBODY_DECLARE)

@@ -165,7 +165,8 @@ const std::vector<std::vector<std::string>> with_file = {
     {"learn", "FILE", "--out", "out.json"},
     {"estimate", "FILE", "--data", ".", "--out", "out.csv"},
     {"control", "FILE", "--hold", "20mm", "--from", "gap=0.1", "--out", "out.csv"},
-    {"linear", "FILE", "--out", "out.png"}};
+    {"linear", "FILE", "--out", "out.png"},
+    {"watch", "FILE", "run.csv"}};
 
 TEST(CommandLine, OfEveryCommandSaysWhatIsWrongWithItsFileAndWritesNothing) {
     std::set<std::string> tried;

@@ -79,6 +79,7 @@ public:
     /// Throws for a channel that the log does not hold. `end`: of the log.
     void check_all_found(const std::string& log, const LogEnd& end) const;
     [[nodiscard]] std::vector<ChannelReadings>& readings() { return readings_; }
+    [[nodiscard]] const LogChannels& channels() const { return channels_; }
 
 private:
     struct Use {

@@ -1,6 +1,8 @@
-// bench_watch HOURS [PER_DAY [COLOUR [DISTURBANCE [RATE]]]]: false alarms of the watch over simulated hours in which
-// the rig is its model, with the interval of their rate; then how long changes take to be seen. Days of 24 hours run
-// side by side, each with its own seed (day 1 -> seed 1000).
+// bench_watch false-alarms HOURS [PER_DAY [KIND]]: alarms of the watch over simulated hours in which the rig is its
+// model, with the interval of their rate, for each kind of noise. Days run side by side, each with its own seed (day 1
+// -> 1000). bench_watch delays [SEEDS]: how long changes that make the model's 2 s prediction wrong by 1, 2 and 5
+// noises take to be seen. bench_watch speed: readings a second at 1 kHz, and memory.
+#include <sys/resource.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -8,98 +10,181 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <functional>
 #include <vector>
 
-#include "surrogates/discovery/watch/watch.h"
 #include "tests/support/watched_rig.h"
 
 namespace {
 
 using underbody::discovery::Watch;
-using underbody::discovery::WatchOptions;
 using underbody::test::WatchedRig;
 
-int alarms_in(WatchedRig rig, double hours, double per_day) {
-    WatchOptions options;
-    options.false_alarms_per_day = per_day;
-    Watch watch(WatchedRig::model(), options);
-    int alarms = 0;
-    while (rig.time < 3600 * hours) {
-        rig.advance();
-        if (watch.gap(rig.time, rig.reading)) {
-            ++alarms;
-            watch.reset();
-        }
-        watch.input(rig.time, rig.input);
-    }
-    return alarms;
+struct Kind {
+    const char* name;
+    std::function<void(WatchedRig&)> set;
+};
+
+const std::vector<Kind>& kinds() {
+    static const std::vector<Kind> all{{"white noise", [](WatchedRig&) {}},
+                                       {"coloured noise (AR 0.9)", [](WatchedRig& rig) { rig.colour = 0.9; }},
+                                       {"white, 1 % wild, 5 % lost",
+                                        [](WatchedRig& rig) {
+                                            rig.wild = 0.01;
+                                            rig.lost = 0.05;
+                                        }},
+                                       {"AR 0.9, 1 % wild, 5 % lost",
+                                        [](WatchedRig& rig) {
+                                            rig.colour = 0.9;
+                                            rig.wild = 0.01;
+                                            rig.lost = 0.05;
+                                        }},
+                                       {"AR 0.7 and gusts", [](WatchedRig& rig) {
+                                            rig.colour = 0.7;
+                                            rig.disturbance = 0.002;
+                                        }}};
+    return all;
 }
 
-template <typename Change>
-void delays(const char* name, double step, Change&& change) {
-    std::vector<double> found;
-    int before = 0, never = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        WatchedRig rig(seed);
-        rig.step = step;
-        Watch watch(WatchedRig::model(), {});
-        bool seen = false;
-        while (!seen && rig.time < 4200) {
-            if (rig.time >= 600) {
-                change(rig);
-            }
-            rig.advance();
-            seen = watch.gap(rig.time, rig.reading).has_value();
-            watch.input(rig.time, rig.input);
+void count_false_alarms(double hours, double per_day, int only) {
+    const auto days = static_cast<std::size_t>(std::max(1.0, hours / 24));
+    const double each = hours / static_cast<double>(days), in_days = hours / 24;
+    for (std::size_t k = 0; k < kinds().size(); ++k) {
+        if (only > 0 && k + 1 != static_cast<std::size_t>(only)) {
+            continue;
         }
-        if (!seen) {
-            ++never;
-        } else if (rig.time < 600) {
-            ++before;
-        } else {
-            found.push_back(rig.time - 600);
+        std::vector<int> alarms(days, 0);
+        tbb::parallel_for(std::size_t{0}, days, [&](std::size_t day) {
+            WatchedRig rig(1000 * (k + 1) + day);
+            kinds()[k].set(rig);
+            alarms[day] = underbody::test::false_alarms(rig, each, per_day);
+        });
+        int all = 0;
+        for (const int one : alarms) {
+            all += one;
+        }
+        // 95 % interval of a Poisson count (Garwood 1936)
+        const auto quantile = [](double degrees, double p) {
+            return degrees > 0 ? 0.5 * boost::math::quantile(boost::math::chi_squared(degrees), p) : 0.0;
+        };
+        std::printf(
+            "%-28s %g h at 20 Hz: %d false alarms, %.3g a day (95 %%: %.3g to %.3g), stated %g; on %zu days of %zu\n",
+            kinds()[k].name, hours, all, all / in_days, quantile(2.0 * all, 0.025) / in_days,
+            quantile(2.0 * all + 2, 0.975) / in_days, per_day,
+            static_cast<std::size_t>(std::count_if(alarms.begin(), alarms.end(), [](int n) { return n > 0; })), days);
+        std::fflush(stdout);
+    }
+}
+
+using Change = std::function<void(WatchedRig&, double)>;
+
+/// Root mean square over windows of 2 s of what a change of this size does to the gap under the same inputs.
+double apart(const Change& change, double size) {
+    WatchedRig rig(77);
+    rig.noise = 1e-9;
+    double sum = 0;
+    int count = 0;
+    for (int window = 0; window < 300; ++window) {
+        WatchedRig other = rig;
+        change(other, size);
+        for (int i = 0; i < 40; ++i) {
+            rig.advance();
+            other.advance();
+            other.input = rig.input;
+            sum += (rig.reading - other.reading) * (rig.reading - other.reading);
+            ++count;
         }
     }
-    std::sort(found.begin(), found.end());
-    std::printf("%-34s median %7.1f s, slowest %7.1f s, not within an hour %d, before the change %d (of 20)\n", name,
-                found.empty() ? 0.0 : found[found.size() / 2], found.empty() ? 0.0 : found.back(), never, before);
+    return std::sqrt(sum / count);
+}
+
+double size_of(const Change& change, double wanted) {
+    double size = 1e-3;
+    for (int i = 0; i < 6; ++i) {
+        size *= wanted / apart(change, size);
+    }
+    return size;
+}
+
+void measure_delays(std::uint64_t seeds) {
+    const std::vector<std::pair<const char*, Change>> changes{
+        {"constant force", [](WatchedRig& rig, double size) { rig.force = size; }},
+        {"friction", [](WatchedRig& rig, double size) { rig.friction = size; }},
+        {"input gain", [](WatchedRig& rig, double size) { rig.gain = 1 - size; }},
+        {"damping", [](WatchedRig& rig, double size) { rig.more_damping = size; }}};
+    for (const auto& [name, change] : changes) {
+        for (const double colour : {0.0, 0.9}) {
+            for (const double noises : {1.0, 2.0, 5.0}) {
+                const double size = size_of(change, noises * 2e-4);
+                std::vector<double> found(seeds, 0);
+                tbb::parallel_for(std::size_t{0}, found.size(), [&, &effect = change](std::size_t i) {
+                    WatchedRig rig(i + 1);
+                    rig.colour = colour;
+                    Watch watch(WatchedRig::model(), {});
+                    const double begin = 600;
+                    bool seen = false;
+                    while (!seen && rig.time < begin + 3600) {
+                        if (rig.time >= begin) {
+                            effect(rig, size);
+                        }
+                        seen = rig.show(watch).has_value();
+                    }
+                    found[i] = seen ? rig.time - begin : 1e9;
+                });
+                const auto before = std::count_if(found.begin(), found.end(), [](double t) { return t < 0; });
+                const auto never = std::count_if(found.begin(), found.end(), [](double t) { return t > 1e8; });
+                std::sort(found.begin(), found.end());
+                std::printf(
+                    "%-15s noise AR %.1f, %g noises (%.3g): median %.0f s, slowest %.0f s; before %td, not "
+                    "within an hour %td of %zu\n",
+                    name, colour, noises, size, found[found.size() / 2], found.back() > 1e8 ? NAN : found.back(),
+                    before, never, found.size());
+                std::fflush(stdout);
+            }
+        }
+    }
+}
+
+void measure_speed() {
+    WatchedRig rig(5);
+    rig.step = 1e-3;
+    std::vector<std::array<double, 3>> rows;
+    for (int i = 0; i < 1800000; ++i) {
+        rig.advance();
+        rows.push_back({rig.time, rig.reading, rig.input});
+    }
+    rusage before{}, after{};
+    getrusage(RUSAGE_SELF, &before);
+    Watch watch(WatchedRig::model(), {});
+    const auto begun = std::chrono::steady_clock::now();
+    double slowest = 0;
+    for (const auto& [time, gap, input] : rows) {
+        const auto at = std::chrono::steady_clock::now();
+        watch.gap(time, gap);
+        watch.input(time, input);
+        slowest = std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - at).count());
+    }
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    getrusage(RUSAGE_SELF, &after);
+    std::printf(
+        "half an hour at 1 kHz: %.3g million readings a second on one core, longest pause %.2f s, %ld MB more\n",
+        1e-6 * static_cast<double>(rows.size()) / took, slowest, (after.ru_maxrss - before.ru_maxrss) / 1024);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     const auto given = [&](int i, double otherwise) { return argc > i ? std::atof(argv[i]) : otherwise; };
-    const double hours = given(1, 24), per_day = given(2, 1), rate = given(5, 20);
-    const auto days = static_cast<std::size_t>(std::max(1.0, hours / 24));
-    const double each = hours / static_cast<double>(days);
-    std::vector<int> alarms(days, 0);
-    const auto begun = std::chrono::steady_clock::now();
-    tbb::parallel_for(std::size_t{0}, days, [&](std::size_t day) {
-        WatchedRig rig(1000 + day);
-        rig.step = 1 / rate;
-        rig.colour = given(3, 0);
-        rig.disturbance = given(4, 0);
-        alarms[day] = alarms_in(rig, each, per_day);
-    });
-    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    int all = 0;
-    for (const int one : alarms) {
-        all += one;
+    if (argc > 1 && std::strcmp(argv[1], "delays") == 0) {
+        measure_delays(static_cast<std::uint64_t>(given(2, 20)));
+    } else if (argc > 1 && std::strcmp(argv[1], "speed") == 0) {
+        measure_speed();
+    } else if (argc > 1 && std::strcmp(argv[1], "false-alarms") == 0) {
+        count_false_alarms(given(2, 24), given(3, 1), static_cast<int>(given(4, 0)));
+    } else {
+        std::fprintf(stderr, "bench_watch false-alarms HOURS [PER_DAY [KIND]] | delays [SEEDS] | speed\n");
+        return 2;
     }
-    // 95 % interval of a Poisson count (Garwood 1936)
-    const auto quantile = [](double degrees, double p) {
-        return degrees > 0 ? 0.5 * boost::math::quantile(boost::math::chi_squared(degrees), p) : 0.0;
-    };
-    const double in_days = hours / 24;
-    std::printf(
-        "%g hours at %g Hz, colour %g, disturbance %g: %d false alarms, %.3g a day (95 %%: %.3g to %.3g); stated "
-        "at most %g; %.3g million readings a second\n",
-        hours, rate, given(3, 0), given(4, 0), all, all / in_days, quantile(2.0 * all, 0.025) / in_days,
-        quantile(2.0 * all + 2, 0.975) / in_days, per_day, hours * 3600 * rate / took / 1e6);
-    delays("constant force of 4 mN", 1 / rate, [](WatchedRig& rig) { rig.force = 0.004; });
-    delays("friction of 4 mN", 1 / rate, [](WatchedRig& rig) { rig.friction = 0.004; });
-    delays("input gain 0.9", 1 / rate, [](WatchedRig& rig) { rig.gain = 0.9; });
-    delays("damping more by 0.2 N s/m", 1 / rate, [](WatchedRig& rig) { rig.more_damping = 0.2; });
-    delays("noise half as large again", 1 / rate, [](WatchedRig& rig) { rig.noise = 3e-4; });
     return 0;
 }

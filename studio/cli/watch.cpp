@@ -1,0 +1,394 @@
+// underbody watch: reads a log as it grows and says when the vehicle stops being its model.
+#include "surrogates/discovery/watch/watch.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <future>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/cli/commands.h"
+#include "studio/cli/shell.h"
+#include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/wording.h"
+#include "surrogates/dynamics/logs/growing.h"
+#include "surrogates/dynamics/model/measurement_setup.h"
+
+namespace underbody::studio {
+
+namespace {
+
+struct WatchArguments {
+    std::string model;
+    std::string log = "-";
+    std::string data;
+    std::string learn = "60 s", after = "60 s";
+    double per_day = 1;
+    bool follow = false;
+    bool no_cause = false;
+};
+
+/// Looks for what changed, in a thread of its own where the log does not wait.
+class CauseSearch {
+public:
+    struct Result {
+        discovery::Discovery found;
+        std::string error;  ///< why nothing can be told
+    };
+    ~CauseSearch() {
+        progress_.cancel();
+        if (result_.valid()) {
+            result_.wait();
+        }
+    }
+    void begin(dynamics::Model model, dynamics::Measurements data) {
+        result_ = std::async(std::launch::async, [this, model = std::move(model), data = std::move(data)] {
+            return search(model, data, progress_);
+        });
+    }
+    [[nodiscard]] bool running() const { return result_.valid(); }
+    [[nodiscard]] bool ready() const {
+        return running() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    }
+    /// Waits for it; Ctrl-C ends both. Throws core::Cancelled.
+    Result wait(core::Progress& outer) {
+        while (result_.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+            if (outer.cancelled()) {
+                progress_.cancel();
+            }
+        }
+        return result_.get();
+    }
+    static Result search(const dynamics::Model& model, const dynamics::Measurements& data, core::Progress& progress) {
+        discovery::DiscoverOptions options;
+        options.consequence = false;
+        options.figures = false;
+        try {
+            return {discovery::discover(model, data, options, progress), {}};
+        } catch (const core::Cancelled&) {
+            throw;
+        } catch (const core::Error& error) {
+            return {{}, error.message()};
+        }
+    }
+
+private:
+    core::Progress progress_;
+    std::future<Result> result_;
+};
+
+/// The watch, what it says, and what happens after an alarm.
+class Watching {
+public:
+    Watching(Shell& shell, const WatchArguments& arguments)
+        : shell_(shell), arguments_(arguments), model_(dynamics::read_model(arguments.model)) {
+        if (!arguments.data.empty()) {
+            setup_ = dynamics::read_measurement_setup(arguments.data);
+        }
+        options_.false_alarms_per_day = arguments.per_day;
+        options_.learn = core::parse_in(arguments.learn, "s");
+        after_ = core::parse_in(arguments.after, "s");
+        options_.noise = setup_.noise;
+        options_.conditions = setup_.conditions;
+        begin();
+    }
+
+    [[nodiscard]] const dynamics::MeasurementSetup& setup() const { return setup_; }
+    /// The log does not wait while what changed is looked for.
+    void is_live() { live_ = true; }
+
+    void reading(const std::string& quantity, double time, double value) {
+        if (quantity == "input_force") {
+            watch_->input(time, value);
+        } else if (quantity == "heave_velocity") {
+            watch_->velocity(time, value);
+        } else if (quantity == "gap") {
+            gap(time, value);
+        } else {
+            watch_->condition(quantity, value);
+        }
+    }
+
+    /// The log has ended, or somebody ended the watch. True if there was an alarm.
+    bool end(bool cancelled) {
+        if (!cancelled) {
+            if (alarm_) {
+                look_for_cause();
+            }
+            if (search_) {
+                say_cause(search_->wait(shell_.progress()));
+            }
+        }
+        search_.reset();
+        watched_ += watch_->judged();
+        passed_over_ += watch_->passed_over();
+        readings_ += watch_->readings();
+        const bool nothing = watched_ == 0;
+        const std::string alarms = std::to_string(alarms_) + (alarms_ == 1 ? " alarm" : " alarms");
+        std::string text = seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
+                           std::to_string(readings_) + " readings, " + seconds(watched_) + " of them judged; " +
+                           (nothing        ? "nothing was judged: the noise was still being learned"
+                            : alarms_ == 0 ? "the vehicle was the model all the time"
+                                           : alarms);
+        if (passed_over_ > 0) {
+            text += "; " + std::to_string(passed_over_) + " readings whose time did not ascend were passed over";
+        }
+        say({{"event", "end"},
+             {"time", last_},
+             {"readings", readings_},
+             {"judged", watched_},
+             {"passed_over", passed_over_},
+             {"alarms", alarms_},
+             {"cancelled", cancelled}},
+            text);
+        if (shell_.caller() != nullptr) {
+            shell_.print_json({{"events", events_}, {"alarms", alarms_}});
+        }
+        return alarms_ > 0;
+    }
+
+private:
+    static std::string seconds(double time) { return core::format_number(time, 8) + " s"; }
+
+    void begin() {
+        if (watch_) {
+            watched_ += watch_->judged();
+            passed_over_ += watch_->passed_over();
+            readings_ += watch_->readings();
+        }
+        watch_ = std::make_unique<discovery::Watch>(model_, options_);
+        told_ = false;
+    }
+
+    void gap(double time, double value) {
+        const auto alarm = watch_->gap(time, value);
+        last_ = time;
+        if (!told_ && watch_->learned()) {
+            told_ = true;
+            say_learned();
+        }
+        if (search_ && search_->ready()) {
+            say_cause(search_->wait(shell_.progress()));
+        }
+        if (alarm && !alarm_ && !search_ && !(time < silent_until_)) {
+            ++alarms_;
+            alarm_ = alarm;
+            say({{"event", "alarm"},
+                 {"time", alarm->time},
+                 {"since", alarm->since},
+                 {"shows", alarm->shows},
+                 {"force", alarm->force}},
+                seconds(alarm->time) + ": the vehicle is no longer the model, since about " + seconds(alarm->since) +
+                    "; what shows is " + alarm->shows);
+        }
+        if (alarm_ && time >= alarm_->time + after_) {
+            look_for_cause();
+        }
+    }
+
+    void say_learned() {
+        const double colour = watch_->correlation_time();
+        say({{"event", "learned"},
+             {"time", last_},
+             {"gap_noise", watch_->noise()},
+             {"correlation_time", colour},
+             {"block", watch_->block()},
+             {"false_alarms_per_day", options_.false_alarms_per_day}},
+            seconds(last_) + ": watching, noise of the gap " + core::format_number(watch_->noise(), 3) + " m" +
+                (colour > 0 ? " (correlated over " + core::format_number(colour, 2) + " s)" : "") + ", judged every " +
+                core::format_number(watch_->block(), 2) + " s; at most " +
+                core::format_number(options_.false_alarms_per_day, 3) + " false alarms a day");
+    }
+
+    void look_for_cause() {
+        alarmed_since_ = alarm_->since;
+        alarm_.reset();
+        if (arguments_.no_cause) {
+            go_on_as_before();
+            return;
+        }
+        dynamics::Model as_read = model_;
+        as_read.records = {};
+        if (live_) {
+            say({{"event", "searching"}, {"time", last_}},
+                seconds(last_) + ": looking for what changed; the log is read on");
+            search_ = std::make_unique<CauseSearch>();
+            search_->begin(as_read, watch_->since(alarmed_since_));
+        } else {
+            say_cause(CauseSearch::search(as_read, watch_->since(alarmed_since_), shell_.progress()));
+        }
+    }
+
+    /// The watch goes on with the model as found.
+    void say_cause(const CauseSearch::Result& result) {
+        search_.reset();
+        const discovery::Discovery& found = result.found;
+        nlohmann::json event = {{"event", "cause"}, {"time", last_}, {"since", alarmed_since_}};
+        if (!result.error.empty()) {
+            event["verdict"] = "unknown";
+            event["sentence"] = result.error;
+            say(event, seconds(last_) + ": what changed cannot be told: " + result.error);
+            go_on_as_before();
+            return;
+        }
+        event["verdict"] = found.verdict;
+        event["sentence"] = found.sentence;
+        event["effects"] = discovery::to_json(found)["effects"];
+        std::string text = seconds(last_) + ": " + found.sentence;
+        for (const auto& effect : found.effects) {
+            for (const auto& parameter : effect.parameters) {
+                text += "\n  " + effect.name + ": " + parameter.name + " = " + discovery::value_text(parameter);
+            }
+        }
+        say(event, text);
+        if (found.verdict == "none") {
+            go_on_as_before();
+            return;
+        }
+        const dynamics::RecordReading records = model_.records;
+        model_ = found.model;
+        model_.records = records;
+        begin();
+    }
+
+    /// With the same model: the same change is not said again at once.
+    void go_on_as_before() {
+        watch_->reset();
+        silent_until_ = last_ + after_;
+    }
+
+    /// A line at once; for a caller all of them at the end.
+    void say(nlohmann::json event, const std::string& text) {
+        if (shell_.caller() != nullptr) {
+            events_.push_back(std::move(event));
+        } else if (shell_.json) {
+            std::cout << event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
+        } else {
+            shell_.print(text);
+            std::cout.flush();
+        }
+    }
+
+    Shell& shell_;
+    const WatchArguments& arguments_;
+    dynamics::Model model_;
+    dynamics::MeasurementSetup setup_;
+    discovery::WatchOptions options_;
+    double after_ = 60, last_ = 0, alarmed_since_ = 0, silent_until_ = -1e300, watched_ = 0;
+    std::size_t readings_ = 0, passed_over_ = 0;
+    bool live_ = false;
+    std::unique_ptr<discovery::Watch> watch_;
+    std::optional<discovery::WatchAlarm> alarm_;
+    std::unique_ptr<CauseSearch> search_;
+    nlohmann::json events_ = nlohmann::json::array();
+    std::size_t alarms_ = 0;
+    bool told_ = false;
+};
+
+/// Readings as they come go to the watch.
+class WatchSink : public dynamics::ChannelSink {
+public:
+    WatchSink(const dynamics::LogChannels& channels, Watching& watching)
+        : ChannelSink(channels, {}), watching_(watching) {}
+    void reading(std::size_t channel, double time, double value) override {
+        watching_.reading(channels().channels[channel].quantity, time, value);
+    }
+
+private:
+    Watching& watching_;
+};
+
+void need_gap(const dynamics::LogChannels& channels, const std::string& name, const std::string& hint) {
+    if (std::none_of(channels.channels.begin(), channels.channels.end(),
+                     [](const dynamics::LogChannel& one) { return one.quantity == "gap"; })) {
+        throw core::InputError("missing", "nothing says which number is the gap", {name, {}, {}, {}}, hint);
+    }
+}
+
+void watch_csv(dynamics::GrowingStream& stream, const std::string& name, Watching& watching, core::Problems& problems) {
+    const auto sink_of = [&](const core::Table& first) {
+        dynamics::LogChannels channels = watching.setup().channels.of(false).with_csv_clock();
+        if (channels.channels.empty()) {
+            channels = dynamics::channels_by_name(first);
+        }
+        need_gap(channels, name, "a column gap [m] beside time [s], or [log.channel.gap] in a dataset.toml");
+        return std::make_unique<WatchSink>(channels, watching);
+    };
+    dynamics::read_csv_stream(stream, name, sink_of, problems);
+}
+
+void watch_log(const WatchArguments& arguments, Watching& watching, Shell& shell, core::Problems& problems) {
+    const auto by_mapping = [&](const auto& read) {
+        const dynamics::LogChannels channels = watching.setup().channels.of(true);
+        need_gap(channels, arguments.log,
+                 "a dataset.toml with [log.channel.gap] message = ..., field = ..., named with --data");
+        WatchSink sink(channels, watching);
+        const dynamics::LogEnd end = read(sink);
+        sink.check_all_found(arguments.log, end);
+        problems = end.problems;
+    };
+    if (!arguments.follow && arguments.log != "-" &&
+        !dynamics::log_format(std::filesystem::path(arguments.log)).empty()) {
+        by_mapping([&](WatchSink& sink) {
+            return dynamics::read_log(std::filesystem::path(arguments.log), sink, shell.progress());
+        });
+        return;
+    }
+    dynamics::GrowingStream stream(arguments.log, arguments.follow, shell.progress());
+    if (stream.live()) {
+        watching.is_live();
+    }
+    const std::string first = stream.first(16);
+    if (first.empty()) {
+        throw core::InputError("missing", "the log is empty", {arguments.log, {}, {}, {}},
+                               "to wait for what will be written to it: --follow");
+    }
+    if (dynamics::log_format(std::string_view(first)).empty()) {
+        watch_csv(stream, arguments.log, watching, problems);
+    } else {
+        by_mapping([&](WatchSink& sink) { return dynamics::read_log(stream, arguments.log, sink, shell.progress()); });
+    }
+}
+
+int run_watch(const WatchArguments& arguments, Shell& shell) {
+    Watching watching(shell, arguments);
+    core::Problems problems;
+    try {
+        watch_log(arguments, watching, shell, problems);
+        shell.show(problems);
+        return watching.end(false) ? ExitCode::check_failed : ExitCode::done;
+    } catch (const core::Cancelled&) {
+        watching.end(true);
+        return ExitCode::cancelled;
+    }
+}
+
+}  // namespace
+
+void add_watch_command(CLI::App& app, Shell& shell) {
+    CLI::App* command =
+        app.add_subcommand("watch", "read a log as it grows and say when the vehicle stops being its model");
+    auto a = std::make_shared<WatchArguments>();
+    command->add_option("model", a->model, "the model (model.toml)")->required();
+    command->add_option("log", a->log, "CSV file, PX4 ULog, DataFlash or ROS 2 bag; - (default): from a pipe");
+    command->add_option("--data", a->data,
+                        "dataset.toml that says which message is which channel ([log]), noise and conditions");
+    command->add_option("--per-day", a->per_day, "false alarms a day at most (default 1)")->check(CLI::PositiveNumber);
+    command->add_option("--learn", a->learn, "time in which noise and its colour are learned (default 60 s)");
+    command->add_option("--after", a->after, "time after an alarm until what changed is looked for (default 60 s)");
+    command->add_flag("--follow", a->follow, "go on waiting at the end of the file; Ctrl-C ends it");
+    command->add_flag("--alarms-only", a->no_cause, "do not look for what changed");
+    command->footer(
+        "Examples:\n"
+        "  underbody watch model.toml run.csv\n"
+        "  underbody watch model.toml flight.ulg --data dataset.toml --follow --json\n"
+        "  nc rig 5000 | underbody watch model.toml --per-day 0.1\n"
+        "With --json each thing said is one JSON object on a line of its own, at once.\n"
+        "Exit code 4: there was an alarm. After one it looks for what changed and goes on with the model as found.");
+    shell.on(command, [a, &shell] { return run_watch(*a, shell); });
+}
+
+}  // namespace underbody::studio

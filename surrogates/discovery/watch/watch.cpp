@@ -1,0 +1,397 @@
+#include "surrogates/discovery/watch/watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "surrogates/discovery/watch/watch_scores.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+constexpr double least_block = 1;             ///< s
+constexpr double blocks_of_colour = 20;       ///< correlation times in a block: its neighbours do not know of it
+constexpr double least_steps = 10;            ///< of a block
+constexpr std::size_t steps_to_learn = 100;   ///< at least
+constexpr std::size_t most_steps = 60000;     ///< kept
+constexpr std::size_t most_waiting = 100000;  ///< inputs and velocities whose reading of the gap has not come
+constexpr std::size_t most_plants = 64;
+constexpr std::size_t most_backwards = 20;  ///< readings in a row that run backwards: the clock began anew
+constexpr double calm = 0.5;                ///< share of a threshold below which what was read may be learned from
+constexpr double longest_learned = 400;     ///< s, of what is learned from
+constexpr double input_late = 1.5;          ///< usual steps without an input: another one may have acted
+
+const char* words(std::size_t direction) {
+    constexpr const char* all[watch_directions] = {
+        "a constant force", "a force that grows with the velocity", "a force of the direction of motion",
+        "a force that grows with the gap", "a force that grows with the input"};
+    return all[direction];
+}
+
+}  // namespace
+
+struct Watch::Parts {
+    Parts(const dynamics::Model& of, WatchOptions with)
+        : model(of), options(std::move(with)), next_learn(options.learn) {
+        for (const auto& [name, value] : options.conditions) {
+            dynamics::Channel channel{};
+            if (dynamics::find_channel(name, channel)) {
+                held[channel] = value;
+            }
+        }
+        plant = plant_of_conditions();
+    }
+
+    std::shared_ptr<const dynamics::HeavePlant> plant_of_conditions() {
+        std::vector<double> key(held.value.begin(), held.value.end());
+        std::replace_if(
+            key.begin(), key.end(), [](double v) { return std::isnan(v); }, -1e300);
+        if (plants.size() > most_plants) {
+            plants.clear();
+        }
+        auto& found = plants[key];
+        if (!found) {
+            found = std::make_shared<const dynamics::HeavePlant>(model, held);
+        }
+        return found;
+    }
+
+    // ---- from readings to steps
+    void add_input(double time, double force) {
+        const double t = time - model.records.input_advance, u = force * model.records.input_factor;
+        if (!input_time.empty() && t <= input_time.back()) {
+            return;
+        }
+        if (!input_time.empty()) {
+            const double change = u - input_value.back();
+            input_change += 0.01 * (change * change - input_change);
+        }
+        if (input_time.size() > most_waiting) {  // inputs alone, no gap
+            input_time.erase(input_time.begin(), input_time.begin() + most_waiting / 2);
+            input_value.erase(input_value.begin(), input_value.begin() + most_waiting / 2);
+        }
+        input_time.push_back(t);
+        input_value.push_back(u);
+    }
+
+    /// Mean input that reached the body over the step, out of the last inputs; older ones are forgotten.
+    void find_input(double from, WatchStep& step) {
+        const dynamics::Actuator& actuator = plant->terms.actuator;
+        if (input_time.empty()) {
+            step.input = plant->held_input();
+            return;
+        }
+        from = std::min(from, step.time - 1e-3);  // the first step has none before it
+        std::vector<double> out;
+        const bool hold = model.records.input_between != dynamics::RecordReading::Between::linear;
+        dynamics::Actuator{}.mean_over_steps(input_time, input_value, hold, {from, step.time}, out);
+        step.command = out[1];
+        actuator.mean_over_steps(input_time, input_value, hold, {from, step.time}, out);
+        step.input = out[1];
+        const auto before = std::upper_bound(input_time.begin(), input_time.end(), from) - input_time.begin();
+        const bool logged_within = static_cast<std::size_t>(before) < input_time.size() &&
+                                   input_time[static_cast<std::size_t>(before)] < step.time - 1e-9;
+        if (usual_step > 0 && step.time - from > input_late * usual_step && !logged_within) {
+            const double missed = std::min((step.time - from) / usual_step, 100.0);
+            step.unknown_input = std::abs(actuator.gain) * std::sqrt(input_change * missed);
+        }
+        const double needed = from - std::max(actuator.delay, 0.0) - 12 * actuator.lag;
+        const auto old = std::upper_bound(input_time.begin(), input_time.end(), needed) - input_time.begin() - 1;
+        if (old > 64) {
+            input_time.erase(input_time.begin(), input_time.begin() + old);
+            input_value.erase(input_value.begin(), input_value.begin() + old);
+        }
+    }
+
+    std::optional<WatchAlarm> add_gap(double time, double value) {
+        std::optional<WatchAlarm> alarm;
+        if (count > 0 && time <= last_time) {
+            ++passed_over;
+            if (++backwards < most_backwards) {
+                return alarm;
+            }
+            begin_anew();
+        }
+        backwards = 0;
+        if (count_in_step > 0 && time - step_begin >= record_step * (1 - 1e-6)) {
+            alarm = flush(time);
+        }
+        if (count_in_step == 0) {
+            step_begin = time;
+        }
+        ++count;
+        last_time = time;
+        ++count_in_step;
+        sum_time += time;
+        if (std::isfinite(value)) {
+            sum_gap += value;
+            gaps += 1;
+        }
+        if (!noise) {
+            raw_time.push_back(time);
+            raw_gap.push_back(value);
+            if (raw_time.size() > most_waiting) {
+                raw_time.clear();
+                raw_gap.clear();
+            }
+        }
+        return alarm;
+    }
+
+    /// The logger was started anew and its clock with it. What was learned stays.
+    void begin_anew() {
+        steps.clear();
+        pending.clear();
+        input_time.clear();
+        input_value.clear();
+        count_in_step = 0;
+        sum_time = sum_gap = gaps = usual_step = 0;
+        if (noise) {
+            residuals = std::make_unique<WatchResiduals>(plant, noise->noise);
+            residuals->set_colours(noise->colours);
+            scores->restart();
+        }
+    }
+
+    std::optional<WatchAlarm> flush(double next_begin) {
+        double sum_velocity = 0, velocities = 0;
+        while (!pending.empty() && pending.front().first < next_begin) {
+            sum_velocity += pending.front().second;
+            velocities += 1;
+            pending.pop_front();
+        }
+        WatchStep step;
+        step.time = sum_time / static_cast<double>(count_in_step);
+        step.gap = gaps > 0 ? sum_gap / gaps : std::nan("");
+        step.gap_share = gaps > 0 ? 1 / std::sqrt(gaps) : 1;
+        step.velocity = velocities > 0 ? sum_velocity / velocities : std::nan("");
+        step.velocity_share = velocities > 0 ? 1 / std::sqrt(velocities) : 1;
+        count_in_step = 0;
+        sum_time = sum_gap = gaps = 0;
+        const double before = steps.empty() ? step.time : steps.back().time;
+        find_input(before, step);
+        if (!steps.empty()) {
+            const double dt = step.time - before;
+            if (!(dt > 0)) {
+                return {};
+            }
+            usual_step += usual_step == 0 ? dt : std::clamp(dt - usual_step, -0.01 * dt, 0.01 * usual_step);
+        }
+        steps.push_back(step);
+        while (steps.back().time - steps.front().time > options.remember || steps.size() > most_steps) {
+            steps.pop_front();
+        }
+        watched += std::min(step.time - before, 1.0);
+        const bool learn_now =
+            watched >= next_learn && steps.size() >= steps_to_learn && (!scores || scores->nearest() < calm);
+        if (!scores) {
+            if (learn_now) {
+                learn();
+            }
+            return {};
+        }
+        std::optional<WatchAlarm> alarm = judge(step);
+        if (learn_now && !alarm && 2 * next_learn <= options.remember) {
+            learn();
+        }
+        return alarm;
+    }
+
+    // ---- learning
+    void learn() {
+        next_learn = 2 * watched;
+        HeaveNoise begin = noise ? noise->noise : noise_of_readings();
+        begin.gap = noise ? std::hypot(begin.gap, begin.slow) : begin.gap;
+        std::deque<WatchStep> recent = steps;
+        while (recent.back().time - recent.front().time > longest_learned) {
+            recent.pop_front();
+        }
+        noise = learn_noise(plant, recent, begin);
+        raw_time = {};
+        raw_gap = {};
+        residuals = std::make_unique<WatchResiduals>(plant, noise->noise);
+        residuals->set_colours(noise->colours);
+        const double block =
+            std::max({least_block, least_steps * usual_step, blocks_of_colour * noise->correlation_time});
+        // what was learned from also gives the scores their scale; sums that have begun go on where the blocks are
+        // alike
+        auto fresh = std::make_unique<WatchScores>(block, usual_step, options.false_alarms_per_day);
+        const bool alike = scores && std::abs(block - scores->block()) < 0.2 * block;
+        for (const WatchStep& step : recent) {
+            const auto seen = residuals->take(step);
+            if (!alike) {
+                fresh->take(step.time, seen, false);
+            }
+        }
+        if (!alike) {
+            scores = std::move(fresh);
+        }
+    }
+
+    HeaveNoise noise_of_readings() {
+        HeaveNoise out;
+        const auto own = [&](const char* name, const std::vector<double>& time, const std::vector<double>& values,
+                             double otherwise) {
+            const auto declared = options.noise.find(name);
+            const double found = dynamics::sensor_noise(time, values);
+            return declared != options.noise.end()     ? declared->second
+                   : std::isfinite(found) && found > 0 ? found
+                                                       : otherwise;
+        };
+        std::vector<double> velocity_time, velocity;
+        for (const WatchStep& step : steps) {
+            if (std::isfinite(step.velocity)) {
+                velocity_time.push_back(step.time);
+                velocity.push_back(step.velocity / step.velocity_share);
+            }
+        }
+        out.gap = own("gap", raw_time, raw_gap, 1e-4);
+        out.velocity = own("heave_velocity", velocity_time, velocity, 1e-3);
+        return out;
+    }
+
+    // ---- judging
+    std::optional<WatchAlarm> judge(const WatchStep& step) {
+        const auto passed = scores->take(step.time, residuals->take(step), true);
+        if (!passed) {
+            return {};
+        }
+        WatchAlarm alarm;
+        alarm.time = step.time;
+        alarm.since = step.time - passed->since;
+        alarm.shows = passed->scatter ? "more scatter than before" : "";
+        for (const auto& [index, size] : passed->directions) {
+            const char* side = index == 0 ? (size > 0 ? ", up" : ", down") : size > 0 ? ", with it" : ", against it";
+            alarm.shows += (alarm.shows.empty() ? "" : ", or ") + std::string(words(index)) + side;
+        }
+        if (!passed->directions.empty() && passed->directions[0].index == 0) {
+            alarm.force = passed->directions[0].size;
+        }
+        return alarm;
+    }
+
+    const dynamics::Model model;
+    WatchOptions options;
+    dynamics::Conditions held;
+    std::shared_ptr<const dynamics::HeavePlant> plant;
+    std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
+    std::optional<WatchNoise> noise;
+    std::unique_ptr<WatchResiduals> residuals;
+    std::unique_ptr<WatchScores> scores;
+    double next_learn, watched = 0;
+
+    std::vector<double> input_time, input_value, raw_time, raw_gap;
+    double input_change = 0;  ///< N^2, mean square of the input's changes from one to the next
+    std::deque<WatchStep> steps;
+    std::size_t count = 0, count_in_step = 0, passed_over = 0, backwards = 0;
+    double last_time = 0, step_begin = 0, sum_time = 0, sum_gap = 0, gaps = 0, usual_step = 0;
+    std::deque<std::pair<double, double>> pending;  ///< velocities whose step is not complete
+};
+
+Watch::Watch(const dynamics::Model& model, WatchOptions options) {
+    for (const double value : {options.false_alarms_per_day, options.learn, options.remember}) {
+        if (!(value > 0)) {
+            throw core::UsageError("range", "rates and times of a watch must be positive");
+        }
+    }
+    parts_ = std::make_unique<Parts>(model, std::move(options));
+}
+
+Watch::~Watch() = default;
+
+void Watch::input(double time, double force) {
+    if (std::isfinite(force)) {
+        parts_->add_input(time, force);
+    }
+}
+
+void Watch::condition(const std::string& quantity, double value) {
+    if (!std::isfinite(value)) {
+        return;
+    }
+    // two digits: a plant for each hundredth or so, not for each reading
+    const double size = value == 0 ? 1 : std::pow(10.0, std::floor(std::log10(std::abs(value))) - 1);
+    const double rounded = std::round(value / size) * size;
+    dynamics::Channel channel{};
+    if (dynamics::find_channel(quantity, channel) && parts_->held[channel] != rounded) {
+        parts_->held[channel] = rounded;
+        parts_->plant = parts_->plant_of_conditions();
+        if (parts_->residuals) {
+            parts_->residuals->set_plant(parts_->plant);
+        }
+    }
+}
+
+void Watch::velocity(double time, double value) {
+    if (std::isfinite(value)) {
+        if (parts_->pending.size() > most_waiting) {
+            parts_->pending.pop_front();  // a log with velocities and no gap
+        }
+        parts_->pending.emplace_back(time, value * parts_->model.records.velocity_factor);
+    }
+}
+
+std::optional<WatchAlarm> Watch::gap(double time, double value) { return parts_->add_gap(time, value); }
+bool Watch::learned() const { return parts_->scores != nullptr; }
+std::size_t Watch::readings() const { return parts_->count; }
+std::size_t Watch::passed_over() const { return parts_->passed_over; }
+double Watch::noise() const {
+    return parts_->noise ? std::hypot(parts_->noise->noise.gap, parts_->noise->noise.slow) : 0;
+}
+double Watch::correlation_time() const { return parts_->noise ? parts_->noise->correlation_time : 0; }
+double Watch::block() const { return parts_->scores ? parts_->scores->block() : 0; }
+double Watch::judged() const { return parts_->scores ? parts_->scores->judged() : 0; }
+double Watch::nearest() const { return parts_->scores ? parts_->scores->nearest() : 0; }
+
+void Watch::reset() {
+    if (parts_->scores) {
+        parts_->scores->reset();
+        parts_->next_learn = std::numeric_limits<double>::infinity();
+    }
+}
+
+dynamics::Measurements Watch::since(double since) const {
+    std::vector<WatchStep> kept;
+    for (const WatchStep& step : parts_->steps) {
+        if (step.time >= since) {
+            kept.push_back(step);
+        }
+    }
+    dynamics::Measurements data;
+    data.title = "watched";
+    const std::size_t runs =
+        kept.empty()
+            ? 0
+            : std::clamp<std::size_t>(static_cast<std::size_t>((kept.back().time - kept.front().time) / 10), 1, 8);
+    for (std::size_t r = 0; r < runs; ++r) {
+        dynamics::MeasuredRun run;
+        run.name = "watched-" + std::to_string(r + 1);
+        run.conditions = parts_->options.conditions;
+        std::vector<double> time, gap, velocity, input;
+        for (std::size_t i = r * kept.size() / runs; i < (r + 1) * kept.size() / runs; ++i) {
+            time.push_back(kept[i].time);
+            gap.push_back(kept[i].gap);
+            velocity.push_back(kept[i].velocity);
+            // the mean that led to a step is the input from the step before on
+            input.push_back(i + 1 < kept.size() ? kept[i + 1].command : kept[i].command);
+        }
+        run.table.source = run.name;
+        run.table.add_numbers("time", "s", time);
+        run.table.add_numbers("gap", "m", gap);
+        if (std::any_of(velocity.begin(), velocity.end(), [](double v) { return std::isfinite(v); })) {
+            run.table.add_numbers("heave_velocity", "m/s", velocity);
+        }
+        if (!parts_->input_time.empty()) {
+            run.table.add_numbers("input_force", "N", input);
+        }
+        data.runs.push_back(std::move(run));
+    }
+    return data;
+}
+
+}  // namespace underbody::discovery

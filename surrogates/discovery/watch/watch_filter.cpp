@@ -1,0 +1,133 @@
+#include "surrogates/discovery/watch/watch_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace underbody::discovery {
+
+namespace {
+
+constexpr double longest_step = 0.05;   ///< s, of the integrator
+constexpr double shortest_step = 1e-4;  ///< s
+constexpr double series_holds = 0.5;    ///< of step times stiffness: the series of the matrix exponential is cut
+constexpr double motion_width = 2e-3;   ///< m/s: below this a direction of motion is no direction
+constexpr double unknown_gap = 1e-2, unknown_velocity = 0.1;  ///< m, m/s: what is known of a state at the begin
+constexpr double middle_time = 30;                            ///< s, over which the middle of the gaps is taken
+
+}  // namespace
+
+WatchFilter::WatchFilter(std::shared_ptr<const dynamics::HeavePlant> plant, HeaveNoise noise)
+    : plant_(std::move(plant)), noise_(noise) {}
+
+void WatchFilter::restart(double time, double gap) {
+    time_ = time;
+    state_ = {gap - plant_->terms.sensor_bias, 0, 0};
+    middle_ = state_[0];
+    spread_.setZero();
+    spread_.diagonal() << unknown_gap * unknown_gap, unknown_velocity * unknown_velocity, noise_.slow * noise_.slow;
+    deviations_.fill(Eigen::Vector3d::Zero());
+    memory_ = {};
+}
+
+/// Fourth order in time about the linearised equation.
+void WatchFilter::advance_part(double rest, double input) {
+    while (rest > 1e-9) {
+        double& h = state_[0];
+        double& w = state_[1];
+        dynamics::HeaveSlopes slopes;
+        const double* memory = plant_->terms.history != 0 ? memory_.data() : nullptr;
+        const double a = plant_->acceleration(h, w, {time_, input, nullptr, nullptr, spread_(1, 1)}, memory, slopes);
+        const double stiffness = std::max(std::abs(slopes.velocity), std::sqrt(std::abs(slopes.gap)));
+        double dt = std::min(rest, longest_step);
+        if (stiffness * dt > series_holds) {
+            dt = std::min(rest, std::max(series_holds / stiffness, shortest_step));
+        }
+        const double jerk = slopes.gap * w + slopes.velocity * a, snap = slopes.gap * a + slopes.velocity * jerk;
+        const double q = 0.5 * dt * dt;
+        Eigen::Matrix3d f = Eigen::Matrix3d::Zero();
+        f(0, 0) = 1 + q * slopes.gap;
+        f(0, 1) = dt + q * slopes.velocity;
+        f(1, 0) = dt * slopes.gap + q * slopes.gap * slopes.velocity;
+        f(1, 1) = std::max(0.0, 1 + dt * slopes.velocity + q * (slopes.gap + slopes.velocity * slopes.velocity));
+        f(2, 2) = noise_.slow > 0 ? std::exp(-dt / noise_.slow_time) : 0;
+        const double along[watch_directions] = {1, w, std::tanh(w / motion_width), h - middle_, input};
+        for (std::size_t j = 0; j < watch_directions; ++j) {
+            const double push = along[j] / slopes.mass;
+            deviations_[j] = f * deviations_[j] + Eigen::Vector3d(q * push, dt * push, 0);
+        }
+        state_[2] *= f(2, 2);
+        const double before = w;
+        h += dt * (w + dt * (a / 2 + dt * (jerk / 6 + dt * snap / 24)));
+        w += dt * (a + dt * (jerk / 2 + dt * snap / 6));
+        for (std::size_t i = 0; memory != nullptr && i < memory_.size(); ++i) {
+            memory_[i] = (before + memory_[i]) * std::exp(-dynamics::history_kernel().rate[i] * dt) - before;
+        }
+        spread_ = f * spread_ * f.transpose();
+        spread_(0, 0) += noise_.process * dt * dt * dt / 3;
+        spread_(0, 1) += noise_.process * q;
+        spread_(1, 0) += noise_.process * q;
+        spread_(1, 1) += noise_.process * dt;
+        spread_(2, 2) += noise_.slow * noise_.slow * (1 - f(2, 2) * f(2, 2));
+        if (h < plant_->contact_gap()) {
+            h = plant_->contact_gap();
+            w = std::max(w, 0.0);
+        }
+        middle_ += (h - middle_) * std::min(1.0, dt / middle_time);
+        time_ += dt;
+        rest -= dt;
+    }
+}
+
+void WatchFilter::advance(const WatchStep& step) {
+    const double dt = step.time - time_;
+    advance_part(dt, step.input);
+    if (step.unknown_input > 0) {
+        dynamics::HeaveSlopes slopes;
+        plant_->acceleration(state_[0], state_[1], {time_, step.input, nullptr, nullptr, 0}, nullptr, slopes);
+        const double push = step.unknown_input / slopes.mass;
+        const Eigen::Vector3d kick(0.5 * dt * dt * push, dt * push, 0);
+        spread_ += kick * kick.transpose();
+    }
+    time_ = step.time;
+}
+
+WatchInnovation WatchFilter::innovation(double residual, const Eigen::Vector3d& row, double variance) const {
+    WatchInnovation out;
+    const Eigen::Vector3d seen = spread_ * row;
+    out.sigma = std::sqrt(row.dot(seen) + variance);
+    out.normal = residual / out.sigma;
+    out.variance = variance;
+    out.gain = seen / out.sigma;
+    out.shown = row;
+    for (std::size_t j = 0; j < watch_directions; ++j) {
+        out.slope[j] = row.dot(deviations_[j]) / out.sigma;
+    }
+    return out;
+}
+
+WatchInnovation WatchFilter::gap_innovation(const WatchStep& step) const {
+    const double sigma = noise_.gap * step.gap_share, delay = plant_->terms.sensor_delay;
+    const Eigen::Vector3d row(1, -delay, 1);
+    return innovation(step.gap - plant_->terms.sensor_bias - row.dot(state_), row, sigma * sigma);
+}
+
+WatchInnovation WatchFilter::velocity_innovation(const WatchStep& step) const {
+    const double sigma = noise_.velocity * step.velocity_share;
+    return innovation(step.velocity - state_[1], Eigen::Vector3d(0, 1, 0), sigma * sigma);
+}
+
+void WatchFilter::absorb(const WatchInnovation& innovation, double normal) {
+    for (std::size_t j = 0; j < watch_directions; ++j) {
+        deviations_[j] -= innovation.gain * innovation.slope[j];
+    }
+    state_ += innovation.gain * normal;
+    for (double& memory : memory_) {
+        memory -= innovation.gain[1] * normal;
+    }
+    // Joseph's form: keeps its sign where a reading is much surer than the state
+    const Eigen::Vector3d gain = innovation.gain / innovation.sigma;
+    const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain * innovation.shown.transpose();
+    spread_ = left * spread_ * left.transpose() + innovation.variance * gain * gain.transpose();
+}
+
+}  // namespace underbody::discovery

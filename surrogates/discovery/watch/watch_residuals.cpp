@@ -1,0 +1,115 @@
+#include "surrogates/discovery/watch/watch_residuals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace underbody::discovery {
+
+namespace {
+
+constexpr std::size_t settle_steps = 25;  ///< not judged at the begin and after a silence
+constexpr std::size_t first_steps = 3;    ///< after a begin: the reading it began with may have been wild
+constexpr std::size_t most_restarts = 3;
+constexpr double silence = 1;         ///< s without a reading: the state is found anew
+constexpr double gate = 4.5;          ///< beyond it one reading is wild ...
+constexpr std::size_t most_wild = 4;  ///< ... and so many in a row are no accident
+constexpr double limit = 3;           ///< of what one reading may say
+constexpr double uneven = 1.5;        ///< of the usual step: the colour's past is not known then
+constexpr double median_of_normal = 0.6745;
+
+}  // namespace
+
+void WatchResiduals::set_colours(const std::array<WatchColour, 2>& colours) {
+    for (std::size_t s = 0; s < 2; ++s) {
+        sensors_[s].colour = colours[s];
+    }
+}
+
+std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const WatchInnovation& innovation) {
+    Sensor& sensor = sensors_[index];
+    WatchColour& colour = sensor.colour;
+    WatchInnovation expected;
+    for (std::size_t k = 0; k < WatchColour::order; ++k) {
+        expected.normal += colour.phi[k] * sensor.past[k].normal;
+        for (std::size_t j = 0; j < watch_directions; ++j) {
+            expected.slope[j] += colour.phi[k] * sensor.past[k].slope[j];
+        }
+    }
+    const double value = (innovation.normal - expected.normal) / colour.scale;
+    const bool wild =
+        std::abs(value) > gate && settling_ + first_steps <= settle_steps && ++sensor.rejected <= most_wild;
+    WatchInnovation used = innovation;
+    used.normal = wild ? expected.normal : expected.normal + colour.scale * std::clamp(value, -gate, gate);
+    if (likelihood_ != nullptr) {
+        likelihood_->normals[index].push_back(innovation.normal);
+        likelihood_->log_variances[index] += 2 * std::log(innovation.sigma);
+        // a step of the stochastic search of the median
+        colour.scale *= std::abs(innovation.normal) > median_of_normal * colour.scale ? 1.03 : 1 / 1.03;
+    }
+    if (wild) {
+        used.slope = expected.slope;
+    } else {
+        sensor.rejected = std::abs(value) > gate ? sensor.rejected : 0;
+        filter_.absorb(innovation, settling_ + first_steps > settle_steps ? innovation.normal : used.normal);
+    }
+    std::rotate(sensor.past.begin(), sensor.past.end() - 1, sensor.past.end());
+    sensor.past[0] = used;
+    if (wild || settling_ > 0 || sensor.unsettled > 0) {
+        sensor.unsettled -= sensor.unsettled > 0 ? 1 : 0;
+        return {};
+    }
+    WatchResidual out{std::clamp(value, -limit, limit), {}};
+    for (std::size_t j = 0; j < watch_directions; ++j) {
+        out.slope[j] = (innovation.slope[j] - expected.slope[j]) / colour.scale;
+    }
+    return out;
+}
+
+void WatchResiduals::restart(const WatchStep& step) {
+    filter_.restart(step.time, step.gap);
+    settling_ = settle_steps;
+    for (Sensor& sensor : sensors_) {
+        sensor.past = {};
+        sensor.rejected = 0;
+    }
+}
+
+std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep& step) {
+    if (!time_ || step.time - *time_ > silence) {
+        if (!std::isfinite(step.gap)) {
+            return {};
+        }
+        restarts_ = 0;
+        restart(step);
+    } else {
+        const double dt = step.time - *time_;
+        usual_step_ += usual_step_ == 0 ? dt : std::clamp(dt - usual_step_, -0.01 * dt, 0.01 * usual_step_);
+        if (dt > uneven * usual_step_) {
+            for (Sensor& sensor : sensors_) {
+                sensor.past = {};
+                sensor.unsettled = sensor.colour.white() ? 0 : WatchColour::order;
+            }
+        }
+    }
+    time_ = step.time;
+    filter_.advance(step);
+    std::array<std::optional<WatchResidual>, 2> out;
+    if (std::isfinite(step.gap)) {
+        WatchInnovation innovation = filter_.gap_innovation(step);
+        const bool just_begun = settling_ + first_steps > settle_steps;
+        if (std::abs(innovation.normal) > gate && restarts_ < most_restarts &&
+            (just_begun || (settling_ > 0 && sensors_[0].rejected >= most_wild))) {
+            ++restarts_;
+            restart(step);
+            innovation = filter_.gap_innovation(step);
+        }
+        out[0] = judge(0, innovation);
+    }
+    if (std::isfinite(step.velocity)) {
+        out[1] = judge(1, filter_.velocity_innovation(step));
+    }
+    settling_ -= settling_ > 0 ? 1 : 0;
+    return out;
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,77 @@
+// Readings as residuals: standard normal and independent of each other while the vehicle is the model, with wild ones
+// left out; and the noise that makes them so, learned from the vehicle.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surrogates/discovery/watch/watch_filter.h"
+
+namespace underbody::discovery {
+
+/// One reading, judged.
+struct WatchResidual {
+    double value = 0;                              ///< limited to +-3 (Huber 1964)
+    std::array<double, watch_directions> slope{};  ///< what one unit of each direction adds to it
+};
+
+/// What is left of colour in one sensor's innovations beside the filter's own, as an autoregressive process.
+struct WatchColour {
+    static constexpr std::size_t order = 3;
+    std::array<double, order> phi{};
+    double scale = 1;  ///< standard deviation of what remains
+    [[nodiscard]] bool white() const { return phi == std::array<double, order>{}; }
+};
+
+/// Filter, whitening and the gate for wild readings. Sensors: [0] the gap, [1] the heave velocity.
+class WatchResiduals {
+public:
+    WatchResiduals(std::shared_ptr<const dynamics::HeavePlant> plant, HeaveNoise noise) : filter_(plant, noise) {}
+    void set_plant(std::shared_ptr<const dynamics::HeavePlant> plant) { filter_.set_plant(std::move(plant)); }
+    void set_colours(const std::array<WatchColour, 2>& colours);
+    /// A silence of more than a second makes the state unknown; a while after it nothing is judged.
+    std::array<std::optional<WatchResidual>, 2> take(const WatchStep& step);
+
+    /// What the likelihood of a noise is made of: innovations over their deviations, and the sum of log variances.
+    struct Likelihood {
+        std::array<std::vector<double>, 2> normals;
+        std::array<double, 2> log_variances{};
+    };
+    /// The scale of the innovations is not known yet: it is followed, and what they were is kept.
+    void learn_into(Likelihood* likelihood) { likelihood_ = likelihood; }
+
+private:
+    struct Sensor {
+        WatchColour colour;
+        std::array<WatchInnovation, WatchColour::order> past{};
+        std::size_t rejected = 0, unsettled = 0;
+    };
+    void restart(const WatchStep& step);
+    std::optional<WatchResidual> judge(std::size_t sensor, const WatchInnovation& innovation);
+    WatchFilter filter_;
+    std::array<Sensor, 2> sensors_;
+    std::optional<double> time_;
+    double usual_step_ = 0;
+    std::size_t settling_ = 0, restarts_ = 0;
+    Likelihood* likelihood_ = nullptr;
+};
+
+/// Noise and colour that were learned.
+struct WatchNoise {
+    HeaveNoise noise;
+    std::array<WatchColour, 2> colours;
+    double correlation_time = 0;  ///< s, of the gap's readings; 0: white
+};
+
+/// The most likely noise of these steps under the model: white and coloured part of the gap's noise and the
+/// disturbances' density by maximum likelihood (the coloured part only where the Bayesian information criterion has
+/// it), then what colour is left. `begin`: where the search starts (its gap and velocity noise matter).
+WatchNoise learn_noise(const std::shared_ptr<const dynamics::HeavePlant>& plant, const std::deque<WatchStep>& steps,
+                       const HeaveNoise& begin);
+
+}  // namespace underbody::discovery

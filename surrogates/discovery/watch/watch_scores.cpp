@@ -1,0 +1,111 @@
+#include "surrogates/discovery/watch/watch_scores.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace underbody::discovery {
+
+namespace {
+
+constexpr double forgotten = 0.05;  ///< of what was read lately, with each block
+constexpr double alike = 6;  ///< of -2 log likelihood: directions that differ by less are not told apart (20 to 1)
+constexpr double least_filled = 0.5;     ///< share of a block's readings: with fewer it goes on
+constexpr double nothing_moved = 1e-30;  ///< information along a direction
+
+}  // namespace
+
+WatchScores::WatchScores(double block, double usual_step, double false_alarms_per_day)
+    : block_(block), least_count_(least_filled * block / usual_step) {
+    constexpr std::size_t tests = watch_directions * TwoSidedCusum::tests(false) + TwoSidedCusum::tests(true);
+    const double blocks = 86400 / block / false_alarms_per_day * static_cast<double>(tests);
+    for (std::size_t j = 0; j <= watch_directions; ++j) {
+        tests_.emplace_back(std::max(blocks, 2.0), j == watch_directions);
+    }
+}
+
+std::optional<WatchScores::Passed> WatchScores::take(double time,
+                                                     const std::array<std::optional<WatchResidual>, 2>& residuals,
+                                                     bool judge) {
+    for (const auto& one : residuals) {
+        if (!one) {
+            continue;
+        }
+        for (std::size_t j = 0; j < watch_directions; ++j) {
+            score_[j] += one->slope[j] * one->value;
+            information_[j] += one->slope[j] * one->slope[j];
+        }
+        squares_ += one->value * one->value;
+        ++count_;
+    }
+    if (count_ == 0 || !begin_) {
+        begin_ = time;
+        return {};
+    }
+    return time - *begin_ >= block_ * (1 - 1e-9) && count_ >= least_count_ ? end_block(time, judge) : std::nullopt;
+}
+
+std::optional<WatchScores::Passed> WatchScores::end_block(double time, bool judge) {
+    std::optional<std::size_t> worst;
+    for (std::size_t j = 0; j <= watch_directions; ++j) {
+        double u = 0;
+        if (j == watch_directions) {
+            u = scatter_.normal(std::cbrt(squares_ / count_));  // nearly normal (Wilson and Hilferty 1931)
+        } else if (information_[j] > nothing_moved) {
+            u = directions_[j].normal(score_[j] / std::sqrt(information_[j]));
+            late_score_[j] += score_[j] - forgotten * late_score_[j];
+            late_information_[j] += information_[j] - forgotten * late_information_[j];
+        } else {
+            continue;
+        }
+        if (judge && tests_[j].take(u) && (!worst || tests_[j].share() > tests_[*worst].share())) {
+            worst = j;
+        }
+    }
+    judged_ += judge ? time - *begin_ : 0;
+    begin_ = time;
+    score_ = information_ = {};
+    squares_ = count_ = 0;
+    return worst ? std::optional(what_shows(*worst)) : std::nullopt;
+}
+
+WatchScores::Passed WatchScores::what_shows(std::size_t test) const {
+    Passed out{test == watch_directions, block_ * static_cast<double>(tests_[test].steps_since()), {}};
+    if (out.scatter) {
+        return out;
+    }
+    std::array<double, watch_directions> explained{};  // fall of -2 log likelihood
+    for (std::size_t j = 0; j < watch_directions; ++j) {
+        explained[j] =
+            late_information_[j] > nothing_moved ? late_score_[j] * late_score_[j] / late_information_[j] : 0;
+    }
+    const double most = *std::max_element(explained.begin(), explained.end());
+    for (std::size_t j = 0; j < watch_directions; ++j) {
+        if (explained[j] > 0 && explained[j] > most - alike) {
+            const Passed::Direction one{j, late_score_[j] / late_information_[j]};
+            out.directions.insert(explained[j] == most ? out.directions.begin() : out.directions.end(), one);
+        }
+    }
+    return out;
+}
+
+void WatchScores::reset() {
+    for (TwoSidedCusum& test : tests_) {
+        test.reset();
+    }
+}
+
+void WatchScores::restart() {
+    begin_.reset();
+    score_ = information_ = {};
+    squares_ = count_ = 0;
+}
+
+double WatchScores::nearest() const {
+    double most = 0;
+    for (const TwoSidedCusum& test : tests_) {
+        most = std::max(most, test.share());
+    }
+    return most;
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,50 @@
+// Residuals to alarms: scores in blocks, made standard normal, summed up to thresholds of a stated rate.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "surrogates/discovery/watch/sequential_test.h"
+#include "surrogates/discovery/watch/watch_residuals.h"
+
+namespace underbody::discovery {
+
+class WatchScores {
+public:
+    /// `block`: s. `usual_step`: s between steps.
+    WatchScores(double block, double usual_step, double false_alarms_per_day);
+    /// A test passed its threshold.
+    struct Passed {
+        bool scatter = false;  ///< more scatter than before, no direction
+        double since = 0;      ///< s before now
+        struct Direction {
+            std::size_t index = 0;
+            double size = 0;  ///< lately
+        };
+        /// The direction that explains most of what was read lately, then those that explain nearly as much.
+        std::vector<Direction> directions;
+    };
+    /// `judge` false: the vehicle is known to be the model, the scores learn their scale from it.
+    std::optional<Passed> take(double time, const std::array<std::optional<WatchResidual>, 2>& residuals, bool judge);
+    void reset();
+    /// The clock began anew: the block that has begun is forgotten.
+    void restart();
+    [[nodiscard]] double nearest() const;
+    [[nodiscard]] double block() const { return block_; }
+    [[nodiscard]] double judged() const { return judged_; }
+
+private:
+    std::optional<Passed> end_block(double time, bool judge);
+    [[nodiscard]] Passed what_shows(std::size_t test) const;
+    double block_, least_count_, judged_ = 0;
+    std::optional<double> begin_;
+    std::array<double, watch_directions> score_{}, information_{};
+    std::array<double, watch_directions> late_score_{}, late_information_{};  ///< of the last twenty blocks or so
+    double squares_ = 0, count_ = 0;
+    std::array<SelfStartingScore, watch_directions> directions_;
+    SelfStartingLevel scatter_;
+    std::vector<TwoSidedCusum> tests_;
+};
+
+}  // namespace underbody::discovery

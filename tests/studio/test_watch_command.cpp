@@ -1,0 +1,144 @@
+// underbody watch and info of vehicles' logs, as a user runs them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "tests/support/support.h"
+#include "tests/support/watched_rig.h"
+
+namespace underbody::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+/// A rig on which a force of 10 mN appears after 200 s.
+std::string changed_rig(double seconds) {
+    WatchedRig rig(21);
+    std::string csv = "time [s], gap [mm], input_force [N]\n";
+    while (rig.time < seconds) {
+        rig.force = rig.time >= 200 ? -0.01 : 0;
+        rig.advance();
+        csv += core::format_number(rig.time) + ", " + core::format_number(1e3 * rig.reading) + ", " +
+               core::format_number(rig.input) + "\n";
+    }
+    return csv;
+}
+
+constexpr const char* rig_model =
+    "[vehicle]\nmass = 4\nnet_weight = 0\n[drag.heave]\nlinear = 0.5\nquadratic = 0\n[[effect]]\nname = "
+    "\"tether_stiffness\"\nstiffness = 8\ngap = 0.1\n";
+
+std::vector<json> lines_of(const std::string& output) {
+    std::vector<json> all;
+    std::istringstream lines(output);
+    for (std::string line; std::getline(lines, line);) {
+        all.push_back(json::parse(line));
+    }
+    return all;
+}
+
+TEST(WatchCommand, SaysWhenAndWhatChanged) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    core::write_file(folder.path() / "run.csv", changed_rig(400));
+    const ProgramRun run = run_underbody({"watch", "model.toml", "run.csv", "--json"}, folder.path());
+    EXPECT_EQ(run.exit_code, 4) << run.errors;
+    const std::vector<json> events = lines_of(run.output);
+    ASSERT_GE(events.size(), 4u) << run.output;
+    EXPECT_EQ(events[0]["event"], "learned");
+    EXPECT_NEAR(events[0]["gap_noise"].get<double>(), 2e-4, 5e-5);
+    EXPECT_EQ(events[1]["event"], "alarm");
+    EXPECT_GT(events[1]["time"].get<double>(), 200);
+    EXPECT_LT(events[1]["time"].get<double>(), 260);
+    EXPECT_THAT(events[1]["shows"].get<std::string>(), HasSubstr("a constant force, down"));
+    EXPECT_EQ(events[2]["event"], "cause");
+    EXPECT_EQ(events[2]["verdict"], "effect") << events[2].dump();
+    EXPECT_EQ(events.back()["event"], "end");
+}
+
+TEST(WatchCommand, IsSilentWhileNothingChanges) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    core::write_file(folder.path() / "run.csv", changed_rig(199));
+    const ProgramRun run = run_underbody({"watch", "model.toml", "run.csv"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+    EXPECT_THAT(run.output, HasSubstr("the vehicle was the model all the time"));
+}
+
+TEST(WatchCommand, ReadsHeadingsByADatasetAndNamesBadLines) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    core::write_file(folder.path() / "dataset.toml",
+                     "kind = \"time_series\"\n[log]\nclock = \"t_ms\"\nclock_unit = \"ms\"\nchannel.gap = { field = "
+                     "\"rng\", unit = \"mm\" }\n");
+    core::write_file(folder.path() / "run.csv", "# rig 7\nt_ms,rng\n0,100\n50,100.1\n100,oops\n");
+    const ProgramRun run =
+        run_underbody({"watch", "model.toml", "run.csv", "--data", "dataset.toml", "--json"}, folder.path());
+    EXPECT_EQ(run.exit_code, 3);
+    EXPECT_THAT(run.errors, HasSubstr("run.csv:5"));
+    EXPECT_THAT(run.errors, HasSubstr("'oops' is no number"));
+}
+
+/// Runs a line of the shell with $UNDERBODY in it.
+ProgramRun run_shell(const std::string& line, const std::filesystem::path& folder) {
+    return run_program("/bin/sh", {"-c", line}, folder, {{"UNDERBODY", (program_folder() / "underbody").string()}});
+}
+
+TEST(WatchCommand, ReadsAPipeAndGoesOnWhileItLooksForWhatChanged) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    core::write_file(folder.path() / "run.csv", changed_rig(500));
+    const ProgramRun run = run_shell("cat run.csv | \"$UNDERBODY\" watch model.toml --json", folder.path());
+    EXPECT_EQ(run.exit_code, 4) << run.errors;
+    const std::vector<json> events = lines_of(run.output);
+    std::vector<std::string> names;
+    for (const json& event : events) {
+        names.push_back(event["event"]);
+    }
+    EXPECT_THAT(names, ::testing::IsSupersetOf({"learned", "alarm", "searching", "cause", "end"}));
+    EXPECT_EQ(names.back(), "end");
+    EXPECT_EQ(events.back()["readings"], 9999);
+    EXPECT_NEAR(events.back()["time"].get<double>(), 500, 0.1) << "nothing is lost meanwhile";
+}
+
+TEST(WatchCommand, CtrlCEndsItWithASummary) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    core::write_file(folder.path() / "run.csv", changed_rig(150) + "150.05, 10");
+    const ProgramRun run = run_shell(
+        "\"$UNDERBODY\" watch model.toml run.csv --follow > said.txt & sleep 2; kill -INT $!; wait $!; code=$?; "
+        "cat said.txt; exit $code",
+        folder.path());
+    EXPECT_EQ(run.exit_code, 130) << run.errors;
+    EXPECT_THAT(run.output, HasSubstr("watching, noise of the gap"));
+    EXPECT_THAT(run.output, HasSubstr("ended by you; 3000 readings"));
+    EXPECT_THAT(run.output, HasSubstr("the vehicle was the model all the time"));
+}
+
+TEST(WatchCommand, NeedsAGap) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    core::write_file(folder.path() / "run.csv", "time [s], depth [m]\n0, 1\n1, 1\n");
+    const ProgramRun run = run_underbody({"watch", "model.toml", "run.csv"}, folder.path());
+    EXPECT_EQ(run.exit_code, 3);
+    EXPECT_THAT(run.errors, HasSubstr("nothing says which number is the gap"));
+}
+
+TEST(InfoOfLogs, ListsMessagesOfTheSamples) {
+    UNDERBODY_NEEDS_SHARED("samples/logs/ardusub_small.BIN");
+    const std::string file = (shared_folder() / "samples/logs/ardusub_small.BIN").string();
+    const ProgramRun run = run_underbody({"info", file, "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const json info = json::parse(run.output);
+    EXPECT_EQ(info["format"], "ArduPilot DataFlash");
+    EXPECT_GT(info["messages"].size(), 20u);
+    EXPECT_THAT(run_underbody({"info", file}).output, HasSubstr("BARO.Press"));
+}
+
+}  // namespace
+}  // namespace underbody::test

@@ -1,0 +1,215 @@
+// The watch: its rate of false alarms is what theory says, changes are seen and named by their direction.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "surrogates/discovery/watch/sequential_test.h"
+#include "surrogates/discovery/watch/watch.h"
+#include "surrogates/discovery/watch/watch_residuals.h"
+#include "tests/support/watched_rig.h"
+
+namespace underbody::discovery {
+namespace {
+
+using test::false_alarms;
+using test::WatchedRig;
+using ::testing::HasSubstr;
+
+TEST(SequentialTest, TheThresholdGivesTheStatedMeanTime) {
+    core::Random random(1);
+    for (const auto& [reference, mean] : {std::pair(0.5, 300.0), std::pair(0.15, 1000.0)}) {
+        const double threshold = cusum_threshold(reference, mean);
+        double sum = 0, steps = 0;
+        int alarms = 0;
+        for (; alarms < 600; ++steps) {
+            sum = std::max(0.0, sum + random.normal() - reference);
+            if (sum > threshold) {
+                ++alarms;
+                sum = 0;
+            }
+        }
+        EXPECT_NEAR(steps / alarms, mean, 0.15 * mean) << reference;  // 4 % of counting, the rest Siegmund's own
+    }
+}
+
+TEST(SequentialTest, SelfStartingNumbersAreStandardNormalWhateverTheScale) {
+    core::Random random(2);
+    double sum = 0, squares = 0, tails = 0, neighbours = 0, count = 0;
+    for (int series = 0; series < 3000; ++series) {
+        SelfStartingScore score;
+        SelfStartingLevel level;
+        const double scale = std::pow(10, random.uniform(-5, 5)), mean = random.uniform(-10, 10) * scale;
+        double before = 0;
+        for (int i = 0; i < 40; ++i) {
+            const double own = score.normal(random.normal(0, scale)), other = level.normal(random.normal(mean, scale));
+            if (i >= 8) {
+                neighbours += own * before;
+                for (const double u : {own, other}) {
+                    sum += u;
+                    squares += u * u;
+                    tails += std::abs(u) > 2.5758 ? 1 : 0;
+                    count += 1;
+                }
+            }
+            before = own;
+        }
+    }
+    EXPECT_NEAR(sum / count, 0, 0.01);
+    EXPECT_NEAR(squares / count, 1, 0.015);
+    EXPECT_NEAR(tails / count, 0.01, 0.0012);
+    EXPECT_NEAR(2 * neighbours / count, 0, 0.015) << "they are independent of each other";
+}
+
+TEST(WatchNoise, IsFoundWithItsColour) {
+    const auto plant = std::make_shared<const dynamics::HeavePlant>(WatchedRig::model());
+    for (const double colour : {0.0, 0.9}) {
+        WatchedRig rig(31);
+        rig.colour = colour;
+        rig.wild = 0.01;
+        std::deque<WatchStep> steps;
+        while (rig.time < 200) {
+            WatchStep step;
+            step.input = rig.input;
+            rig.advance();
+            step.time = rig.time;
+            step.gap = rig.reading;
+            step.velocity = std::nan("");
+            steps.push_back(step);
+        }
+        HeaveNoise begin;
+        begin.gap = 5e-5;
+        const WatchNoise found = learn_noise(plant, steps, begin);
+        EXPECT_NEAR(std::hypot(found.noise.gap, found.noise.slow), 2e-4, colour > 0 ? 6e-5 : 1e-5);
+        EXPECT_NEAR(found.correlation_time, colour > 0 ? -0.05 / std::log(colour) : 0, 0.2);
+        EXPECT_EQ(found.noise.slow > 0, colour > 0);
+        EXPECT_TRUE(found.colours[0].white());
+        EXPECT_NEAR(found.colours[0].scale, 1, 0.05);
+    }
+}
+
+/// Alarms over ten hours at 240 a day: 100 at most are meant. A rate twice as high would pass 130 nearly always.
+TEST(Watch, FalseAlarmsComeAtMostAsOftenAsStated) {
+    WatchedRig plain(3), coloured(4), disturbed(5), wild(6);
+    coloured.colour = 0.9;
+    disturbed.colour = 0.7;
+    disturbed.disturbance = 0.002;
+    wild.wild = 0.01;
+    wild.lost = 0.05;
+    const int alarms = false_alarms(plain, 10, 240);
+    EXPECT_LE(alarms, 130);
+    EXPECT_GE(alarms, 20) << "a test that never speaks would not be one";
+    EXPECT_LE(false_alarms(coloured, 10, 240), 130);
+    EXPECT_LE(false_alarms(disturbed, 10, 240), 130);
+    EXPECT_LE(false_alarms(wild, 10, 240), 130);
+}
+
+struct Seen {
+    std::optional<WatchAlarm> alarm;
+    double changed = 600;
+};
+
+template <typename Change>
+Seen watch_change(Change&& change, double colour = 0) {
+    WatchedRig rig(6);
+    rig.colour = colour;
+    Watch watch(WatchedRig::model(), {});
+    Seen seen;
+    while (rig.time < seen.changed + 900 && !seen.alarm) {
+        if (rig.time >= seen.changed) {
+            change(rig);
+        }
+        seen.alarm = rig.show(watch);
+    }
+    return seen;
+}
+
+TEST(Watch, AConstantForceIsSeenWithItsSideAndTime) {
+    const Seen seen = watch_change([](WatchedRig& rig) { rig.force = -0.004; });
+    ASSERT_TRUE(seen.alarm);
+    EXPECT_THAT(seen.alarm->shows, HasSubstr("a constant force, down"));
+    EXPECT_GT(seen.alarm->time, seen.changed);
+    EXPECT_LT(seen.alarm->time, seen.changed + 120);
+    EXPECT_NEAR(seen.alarm->since, seen.changed, 60);
+}
+
+TEST(Watch, OtherChangesAreSeen) {
+    EXPECT_TRUE(watch_change([](WatchedRig& rig) { rig.friction = 0.004; }).alarm);
+    EXPECT_TRUE(watch_change([](WatchedRig& rig) { rig.more_damping = 0.4; }).alarm);
+    const Seen scatter = watch_change([](WatchedRig& rig) { rig.noise = 3e-4; });
+    ASSERT_TRUE(scatter.alarm);
+    EXPECT_EQ(scatter.alarm->shows, "more scatter than before");
+    const Seen gain = watch_change([](WatchedRig& rig) { rig.gain = 0.8; });
+    ASSERT_TRUE(gain.alarm);
+    EXPECT_GT(gain.alarm->time, gain.changed);
+    EXPECT_FALSE(watch_change([](WatchedRig&) {}).alarm);
+}
+
+TEST(Watch, AColouredNoiseHidesLittle) {
+    const Seen seen = watch_change([](WatchedRig& rig) { rig.force = 0.004; }, 0.9);
+    ASSERT_TRUE(seen.alarm);
+    EXPECT_THAT(seen.alarm->shows, HasSubstr("a constant force, up"));
+    EXPECT_GT(seen.alarm->time, seen.changed);
+    EXPECT_LT(seen.alarm->time, seen.changed + 300);
+}
+
+TEST(Watch, SilencesAndWildReadingsAreNoChange) {
+    WatchedRig rig(8);
+    Watch watch(WatchedRig::model(), {});
+    core::Random random(9);
+    for (int i = 0; rig.time < 3000; ++i) {
+        rig.advance();
+        const bool silent = std::fmod(rig.time, 300) > 280;
+        if (!silent) {
+            const double wild = random.uniform() < 0.002 ? 0.5 : 0;
+            EXPECT_FALSE(watch.gap(rig.time, rig.reading + wild)) << rig.time;
+        }
+        watch.input(rig.time, rig.input);
+    }
+    EXPECT_GT(watch.judged(), 2500);
+}
+
+TEST(Watch, AClockThatBeginsAnewIsNoChange) {
+    WatchedRig rig(12);
+    Watch watch(WatchedRig::model(), {});
+    double passed_by = 0;
+    while (rig.time < 1200) {
+        rig.advance();
+        const double time = rig.time < 600 ? rig.time : rig.time - 600 + 0.01;
+        EXPECT_FALSE(watch.gap(time, rig.reading)) << rig.time;
+        watch.input(time, rig.input);
+        passed_by = watch.judged();
+    }
+    EXPECT_GT(passed_by, 1050);
+    EXPECT_EQ(watch.passed_over(), 20u);
+}
+
+TEST(Watch, ReadingsSinceTheChangeAreRuns) {
+    WatchedRig rig(10);
+    Watch watch(WatchedRig::model(), {});
+    while (rig.time < 200) {
+        rig.show(watch);
+    }
+    const dynamics::Measurements data = watch.since(100);
+    ASSERT_EQ(data.runs.size(), 8u);
+    EXPECT_GE(data.runs[0].table.numbers("time").front(), 100);
+    EXPECT_TRUE(data.all_have("input_force"));
+    WatchOptions forgetful;
+    forgetful.remember = 50;
+    Watch short_of(WatchedRig::model(), forgetful);
+    WatchedRig again(10);
+    while (again.time < 200) {
+        again.show(short_of);
+    }
+    EXPECT_GE(short_of.since(0).runs[0].table.numbers("time").front(), 149);
+}
+
+TEST(Watch, RatesThatAreNoneAreRefused) {
+    WatchOptions options;
+    options.false_alarms_per_day = 0;
+    EXPECT_THROW(Watch(WatchedRig::model(), options), core::UsageError);
+}
+
+}  // namespace
+}  // namespace underbody::discovery
