@@ -51,6 +51,19 @@ dynamics::Conditions held_conditions(const dynamics::MeasuredRun& run) {
     return held;
 }
 
+/// The input at its own samples, and at the end of the record; rows of other sensors between them say nothing of it.
+void read_input(const dynamics::MeasuredRun& run, const dynamics::RecordReading& records, HeaveRecord& record) {
+    const std::vector<double>& time = run.table.numbers("time");
+    const std::vector<double> written = run.values("input_force");
+    const std::vector<double> values = dynamics::as_read(run, "input_force", records);
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        if (values.empty() || std::isfinite(written[i]) || i + 1 == time.size()) {
+            record.raw_time.push_back(time[i] - records.input_advance);
+            record.raw_input.push_back(values.empty() || !std::isfinite(values[i]) ? 0 : values[i]);
+        }
+    }
+}
+
 /// Readings far from the middle of their neighbours become missing.
 std::size_t drop_outliers(std::vector<double>& values, double sigma) {
     // readings on either side, and how far to look for them across missing ones; rows of other sensors between the
@@ -151,6 +164,39 @@ std::vector<std::size_t> make_steps(const std::vector<double>& time, double step
     step_time.resize(sum.size());
     for (std::size_t k = 0; k < sum.size(); ++k) {
         step_time[k] = sum[k] / count[k];
+    }
+    return step_of;
+}
+
+/// Steps are made of the readings of the gap and lie at their mean time, and where it is silent for longer of those of
+/// the velocity; rows of other sensors belong to the nearest.
+std::vector<std::size_t> steps_of_rows(const std::vector<double>& time, const std::vector<double>& gap,
+                                       const std::vector<double>& velocity, double step,
+                                       std::vector<double>& step_time) {
+    std::vector<double> until_next(time.size(), 1e300), own;
+    for (std::size_t i = time.size(); i-- > 0;) {
+        until_next[i] = std::isfinite(gap[i]) ? 0
+                        : i + 1 < time.size() ? until_next[i + 1] + time[i + 1] - time[i]
+                                              : 1e300;
+    }
+    double last = -1e300;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        last = std::isfinite(gap[i]) ? time[i] : last;
+        const bool silent = time[i] - last > step && until_next[i] > step;
+        if (time[i] == last || (silent && i < velocity.size() && std::isfinite(velocity[i]))) {
+            own.push_back(time[i]);
+        }
+    }
+    if (own.size() == time.size()) {
+        return make_steps(time, step, step_time);
+    }
+    make_steps(own, step, step_time);
+    std::vector<std::size_t> step_of(time.size());
+    for (std::size_t i = 0, k = 0; i < time.size(); ++i) {
+        while (k + 1 < step_time.size() && time[i] > 0.5 * (step_time[k] + step_time[k + 1])) {
+            ++k;
+        }
+        step_of[i] = k;
     }
     return step_of;
 }
@@ -531,10 +577,16 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
             continue;
         }
         gap_noises.push_back(noise);
-        for (std::size_t i = 1; i < time.size(); ++i) {
-            steps.push_back(time[i] - time[i - 1]);
+        for (std::size_t i = 0, before = time.size(); i < time.size(); ++i) {
+            if (std::isfinite(gap[i])) {
+                if (before < i) {
+                    steps.push_back(time[i] - time[before]);
+                }
+                before = i;
+            }
         }
-        const std::vector<std::size_t> step_of = make_steps(time, result.step, record.time);
+        const std::vector<std::size_t> step_of =
+            steps_of_rows(time, run.values("gap"), run.values("heave_velocity"), result.step, record.time);
         average(time, gap, step_of, record.time.size(), record.gap, record.gap_share);
         const bool coloured = means_keep_scatter(record, noise);
         if (coloured) {
@@ -568,21 +620,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
                 result.velocity_measured = true;
             }
         }
-        record.raw_time = time;
-        for (double& t : record.raw_time) {
-            t -= model.records.input_advance;
-        }
-        record.raw_input = dynamics::as_read(run, "input_force", model.records);
-        if (record.raw_input.empty()) {
-            record.raw_input.assign(time.size(), 0);
-        } else {
-            result.input_recorded = true;
-        }
-        double last = 0;
-        for (double& u : record.raw_input) {
-            u = std::isfinite(u) ? u : last;
-            last = u;
-        }
+        read_input(run, model.records, record);
+        result.input_recorded = result.input_recorded || run.has("input_force");
         if (record.time.size() < 20) {
             remark(result.problems, run.name + " has fewer than 20 steps: left out", file);
             continue;

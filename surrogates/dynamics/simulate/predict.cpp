@@ -467,6 +467,36 @@ std::string reading_text(const RecordReading& records) {
     return text;
 }
 
+namespace {
+
+/// Rows of other sensors that stand between the samples of an input say nothing of it: there it acts as between
+/// samples.
+void fill_missing_input(const std::vector<double>& time, std::vector<double>& values, const RecordReading& records) {
+    const auto known = [&](std::size_t i) { return std::isfinite(values[i]); };
+    std::size_t first = 0;
+    while (first < values.size() && !known(first)) {
+        ++first;
+    }
+    if (first == values.size()) {
+        return;
+    }
+    std::fill(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values[first]);
+    const bool linear = records.input_between == RecordReading::Between::linear;
+    for (std::size_t last = first, i = first + 1; i <= values.size(); ++i) {
+        if (i < values.size() && !known(i)) {
+            continue;
+        }
+        for (std::size_t k = last + 1; k < i; ++k) {
+            const double share =
+                linear && i < values.size() ? (time[k] - time[last]) / (time[i] - time[last]) : 0;  // else held
+            values[k] = share > 0 ? values[last] + share * (values[i] - values[last]) : values[last];
+        }
+        last = i;
+    }
+}
+
+}  // namespace
+
 std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records) {
     std::vector<double> values = run.has(channel) ? run.values(channel) : std::vector<double>{};
     const double factor = channel == "input_force"      ? records.input_factor
@@ -474,6 +504,9 @@ std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, 
                                                         : 1;
     for (double& value : values) {
         value *= factor;
+    }
+    if (channel == "input_force" && run.table.find("time") != nullptr) {
+        fill_missing_input(run.table.numbers("time"), values, records);
     }
     return values;
 }

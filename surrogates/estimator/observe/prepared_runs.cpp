@@ -166,29 +166,14 @@ RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& rema
     s.input = dynamics::as_read(run, "input_force", records);
     s.held = records.input_between !=
              dynamics::RecordReading::Between::linear;  // as dynamics::predict takes recorded inputs
-    std::size_t bridged = 0, last = s.input.size();
-    for (std::size_t i = 0; i < s.input.size(); ++i) {
-        if (!std::isfinite(s.input[i])) {
-            ++bridged;
-            continue;
-        }
-        for (std::size_t k = last == s.input.size() ? 0 : last + 1; k < i; ++k) {
-            s.input[k] = last == s.input.size()
-                             ? s.input[i]
-                             : s.input[last] + (s.input[i] - s.input[last]) * (s.time[k] - s.time[last]) /
-                                                   (s.time[i] - s.time[last]);
-        }
-        last = i;
-    }
-    if (last == s.input.size()) {
+    if (!std::any_of(s.input.begin(), s.input.end(), [](double u) { return std::isfinite(u); })) {
         throw core::InputError("missing", "every value of input_force is missing", {run.file.string(), {}, {}, {}});
     }
-    for (std::size_t k = last + 1; k < s.input.size(); ++k) {
-        s.input[k] = s.input[last];
-    }
-    if (bridged > 0) {
-        note(remarks,
-             "run '" + run.name + "': " + std::to_string(bridged) + " missing values of input_force were interpolated");
+    const std::vector<double> written = run.values("input_force");
+    const auto missing = std::count_if(written.begin(), written.end(), [](double u) { return !std::isfinite(u); });
+    if (missing > 0) {
+        note(remarks, "run '" + run.name + "': " + std::to_string(missing) + " missing values of input_force were " +
+                          (s.held ? "held from the one before" : "interpolated"));
     }
     return s;
 }

@@ -107,6 +107,96 @@ TEST(ShortRuns, ArePredictedOverWhatTheyLastAndThisIsSaid) {
     EXPECT_THAT(prediction.remarks.back().message, ::testing::HasSubstr("predicted over 0.12"));
 }
 
+/// 20 Hz readings of a slow rig in rows of their own, and the same with rows of a 200 Hz IMU between them, as one CSV
+/// file each; 300 s.
+struct SlowRig {
+    static dynamics::Model model() {
+        return dynamics::read_model_text(
+            "[vehicle]\nmass = 4\nnet_weight = 0\n[drag.heave]\nlinear = 0.5\nquadratic = "
+            "0\n[[effect]]\nname = \"tether_stiffness\"\nstiffness = 8\ngap = 0.1\n",
+            "rig.toml", ".");
+    }
+    double friction = 0;
+    /// `imu`: rows of it between two readings. `own_input_rows`: the input stands in rows of its own as well.
+    [[nodiscard]] std::string csv(std::uint64_t seed, int imu, bool own_input_rows) const {
+        core::Random random(seed);
+        double h = 0.1 + random.uniform(-0.03, 0.03), w = 0, u = 0;
+        std::string text = "time [s], gap [m], input_force [N], heave_acceleration [m/s^2]\n";
+        for (int i = 0; i < 800; ++i) {
+            if (i % 60 == 0) {
+                u = random.uniform(-0.12, 0.12);
+            }
+            const std::string gap = core::format_number(h + random.normal(0, 2e-4), 9);
+            const std::string time = core::format_number(0.05 * i, 9), force = core::format_number(u, 9);
+            text += own_input_rows ? time + ", " + gap + ", ,\n" + core::format_number(0.05 * i + 1e-6, 12) + ", , " +
+                                         force + ",\n"
+                                   : time + ", " + gap + ", " + force + ",\n";
+            constexpr int parts = 20;
+            for (int k = 0; k < parts; ++k) {
+                const double dt = 0.05 / parts;
+                const double a = (u - 8 * (h - 0.1) - 0.5 * w - friction * std::tanh(w / 2e-4)) / 4;
+                w += dt * a;
+                h += dt * w;
+                if (imu > 0 && k % (parts / (imu + 1)) == 0 && k > 0) {
+                    text += core::format_number(0.05 * i + k * dt, 9) + ", , , " + core::format_number(a, 6) + "\n";
+                }
+            }
+        }
+        return text;
+    }
+    [[nodiscard]] dynamics::Measurements data(int imu, bool own_input_rows) const {
+        const core::TemporaryFolder folder;
+        std::string set = "kind = \"time_series\"\n[noise]\ngap = \"0.2 mm\"\n";
+        for (std::uint64_t r = 0; r < 6; ++r) {
+            const std::string name = "run-" + std::to_string(r) + ".csv";
+            core::write_file(folder.path() / name, csv(50 + r, imu, own_input_rows));
+            set += "[[run]]\nfile = \"" + name + "\"\n";
+        }
+        core::write_file(folder.path() / "dataset.toml", set);
+        return dynamics::read_measurements(folder.path());
+    }
+};
+
+TEST(RowsOfOtherSensors, DoNotHideTheReadings) {
+    const dynamics::Measurements plain = SlowRig{}.data(0, false);
+    const HeaveRecords expected = prepare_heave_records(SlowRig::model(), plain);
+    const double error = dynamics::predict(SlowRig::model(), plain).channels[0].rmse;
+    EXPECT_NEAR(error, 2e-4, 4e-5) << "the rig is the model";
+    for (const bool own_input_rows : {false, true}) {
+        const dynamics::Measurements mixed = SlowRig{}.data(9, own_input_rows);
+        ASSERT_GT(mixed.runs[0].table.rows(), 7000u);
+        const HeaveRecords records = prepare_heave_records(SlowRig::model(), mixed);
+        ASSERT_EQ(records.records.size(), expected.records.size());
+        EXPECT_NEAR(records.gap_noise, expected.gap_noise, 1e-9);
+        EXPECT_NEAR(records.raw_step, expected.raw_step, 1e-9);
+        for (std::size_t r = 0; r < records.records.size(); ++r) {
+            ASSERT_EQ(records.records[r].time, expected.records[r].time) << "at the time of its own reading";
+            ASSERT_EQ(records.records[r].gap, expected.records[r].gap);
+            for (std::size_t k = 0; k < records.records[r].time.size(); ++k) {
+                ASSERT_NEAR(records.records[r].held_input[k], expected.records[r].held_input[k], 2e-5);
+                ASSERT_NEAR(records.records[r].linear_input[k], expected.records[r].linear_input[k], 2e-5);
+            }
+        }
+        EXPECT_NEAR(dynamics::predict(SlowRig::model(), mixed).channels[0].rmse, error, 0.02 * error);
+    }
+}
+
+TEST(RowsOfOtherSensors, LeaveTheVerdictAsItIs) {
+    SlowRig rig;
+    rig.friction = 0.006;
+    DiscoverOptions options = quick();
+    options.candidates = {"coulomb_friction", "linear_damping", "constant_force", "input_delay"};
+    const Discovery plain = discover(SlowRig::model(), rig.data(0, false), options);
+    const Discovery mixed = discover(SlowRig::model(), rig.data(9, true), options);
+    ASSERT_EQ(plain.verdict, "effect") << plain.sentence;
+    ASSERT_EQ(mixed.verdict, "effect") << mixed.sentence;
+    ASSERT_FALSE(plain.effects.empty());
+    ASSERT_FALSE(mixed.effects.empty());
+    EXPECT_EQ(plain.effects[0].name, "coulomb_friction");
+    EXPECT_EQ(mixed.effects[0].name, "coulomb_friction");
+    EXPECT_NEAR(mixed.effects[0].parameters[0].value, plain.effects[0].parameters[0].value, 2e-4);
+}
+
 TEST(VehicleLogs, GiveTheVerdictOfTheCsv) {
     FastRig rig;
     rig.more_damping = 0.1;
