@@ -79,6 +79,9 @@ std::string known_unit(std::string_view stated) {
     if (unit == "deg/s" || unit == "rad/s" || unit == "degC" || unit == "deg") {
         return unit;
     }
+    if (unit == "degheading" || unit == "deglatitude" || unit == "deglongitude") {
+        return "deg";  // ArduPilot says what kind of angle it is
+    }
     return !unit.empty() && unit.find(' ') == std::string::npos && core::is_unit(unit) ? unit : std::string();
 }
 

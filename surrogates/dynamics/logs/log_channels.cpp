@@ -254,15 +254,18 @@ void ChannelSink::use(std::size_t index, std::size_t series, const LogSeries& de
     if (!channel.clock.empty()) {
         own.clock = find(channel.clock, "clock");
         const std::string& stated = description.fields[*own.clock].unit;
-        own.clock_factor = core::conversion(stated.empty() ? channels_.clock_unit : stated, "s", channel.place).scale;
+        const std::string& otherwise = channel.clock_unit.empty() ? channels_.clock_unit : channel.clock_unit;
+        own.clock_factor = core::conversion(stated.empty() ? otherwise : stated, "s", channel.place).scale;
     }
+    own.clock_factor *= channel.clock_scale;
+    own.clock_offset = channel.clock_offset;
     uses_[series].push_back(own);
     found_[index] = true;
 }
 
 void ChannelSink::row(std::size_t series, double time, std::span<const double> values) {
     for (const Use& one : uses_[series]) {
-        const double t = one.clock ? one.clock_factor * values[*one.clock] : time;
+        const double t = one.clock_factor * (one.clock ? values[*one.clock] : time) + one.clock_offset;
         const double value = values[one.field];
         if (t >= window_.begin && t <= window_.end && std::isfinite(value)) {
             reading(one.channel, t, one.factor * value + one.offset);

@@ -19,11 +19,14 @@ struct LogChannel {
     std::string quantity;  ///< of core::quantity_names()
     std::string message;   ///< series of the log; empty: a column of a CSV file
     std::string field;
-    std::string unit;   ///< of the number; empty: what the log states, or SI
-    double scale = 1;   ///< with its sign
-    double offset = 0;  ///< SI, added last
-    std::string clock;  ///< field of the same message that says when; empty: the log's own time (CSV: "time")
-    core::Place place;  ///< where it was asked for
+    std::string unit;         ///< of the number; empty: what the log states, or SI
+    double scale = 1;         ///< with its sign
+    double offset = 0;        ///< SI, added last
+    std::string clock;        ///< field of the same message that says when; empty: the log's own time (CSV: "time")
+    std::string clock_unit;   ///< of that field where it states none; empty: LogChannels::clock_unit
+    double clock_scale = 1;   ///< multiplies its time: its clock runs at another rate
+    double clock_offset = 0;  ///< s, added then: it began at another moment
+    core::Place place;        ///< where it was asked for
 };
 
 struct LogChannels {
@@ -85,7 +88,7 @@ private:
     struct Use {
         std::size_t channel = 0, field = 0;
         std::optional<std::size_t> clock;
-        double clock_factor = 1, factor = 1, offset = 0;
+        double clock_factor = 1, clock_offset = 0, factor = 1, offset = 0;
     };
     void use(std::size_t channel, std::size_t series, const LogSeries& description);
     LogChannels channels_;

@@ -249,7 +249,11 @@ std::vector<core::FileTable> log_tables() {
                      {"sign", "1 | -1", "-1", "1", "-1 turns the number round: a log whose z points down"},
                      {"offset", "the unit of the quantity", "\"12 mm\"", "0", "added last"},
                      {"clock", "text", "\"timestamp_sample\"", "the one of [log]",
-                      "field of the message that says when it was measured"}}});
+                      "field of the message that says when it was measured"},
+                     {"clock_unit", "text", "\"ms\"", "the one of [log]", "unit of that field where it states none"},
+                     {"clock_scale", "1", "1.0003", "1", "multiplies its times: a clock that runs at another rate"},
+                     {"clock_offset", "s", "\"-0.35 s\"", "0",
+                      "added to its times: a sensor whose clock began at another moment"}}});
     made.back().one_line = "channel.gap = { message = \"RFND\", field = \"Dist\" }";
     return made;
 }

@@ -48,6 +48,15 @@ double difference(const core::TomlTable& table, const std::string& key, const co
     return table.quantity(key, quantity.unit);
 }
 
+std::string read_clock_unit(const core::TomlTable& table, const std::string& otherwise) {
+    const std::string unit = table.string_or("clock_unit", otherwise);
+    if (!unit.empty() && !core::same_dimension(unit, "s")) {
+        throw core::InputError("unit", "'" + unit + "' is no unit of time", table.place("clock_unit"),
+                               "s, ms, us, ns, min; a clock that runs at another rate has clock_scale");
+    }
+    return unit;
+}
+
 LogChannel read_channel(const core::TomlTable& table, const std::string& name, const std::string& clock) {
     LogChannel channel;
     channel.place = table.place();
@@ -72,17 +81,20 @@ LogChannel read_channel(const core::TomlTable& table, const std::string& name, c
     channel.scale *= static_cast<double>(sign);
     channel.offset = table.has("offset") ? difference(table, "offset", quantity) : 0;
     channel.clock = table.string_or("clock", clock);
+    channel.clock_unit = read_clock_unit(table, {});
+    channel.clock_scale = table.quantity_or("clock_scale", "1", 1);
+    if (!(channel.clock_scale > 0)) {
+        throw core::InputError("range", "clock_scale of " + name + " must be positive", table.place("clock_scale"),
+                               "1.0003: its seconds are longer by 0.3 ms than those of the other channels");
+    }
+    channel.clock_offset = table.quantity_or("clock_offset", "s", 0);
     return channel;
 }
 
 LogChannels read_channels(const core::TomlTable& log) {
     LogChannels all;
     const std::string clock = log.string_or("clock", {});
-    all.clock_unit = log.string_or("clock_unit", "s");
-    if (!core::same_dimension(all.clock_unit, "s")) {
-        throw core::InputError("unit", "'" + all.clock_unit + "' is no unit of time", log.place("clock_unit"),
-                               "s, ms, us, ns, min");
-    }
+    all.clock_unit = read_clock_unit(log, "s");
     const core::TomlTable channels = log.table_or_empty("channel");
     for (const std::string& name : channels.keys()) {
         all.channels.push_back(read_channel(channels.table(name), name, clock));

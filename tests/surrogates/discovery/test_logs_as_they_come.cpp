@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "core/file.h"
 #include "core/random.h"
@@ -197,42 +198,137 @@ TEST(RowsOfOtherSensors, LeaveTheVerdictAsItIs) {
     EXPECT_NEAR(mixed.effects[0].parameters[0].value, plain.effects[0].parameters[0].value, 2e-4);
 }
 
-TEST(VehicleLogs, GiveTheVerdictOfTheCsv) {
+/// Runs of one rig, written by `write(name, sensors)` and named in a dataset.toml with `mapping`.
+template <typename Write>
+dynamics::Measurements logged_runs(const FastRig& rig, const std::string& ending, const std::string& gap_message,
+                                   const std::string& gap_type, const std::string& mapping, const Write& write) {
+    const core::TemporaryFolder folder;
+    std::string set = "kind = \"time_series\"\n[noise]\ngap = \"20 um\"\n";
+    for (std::uint64_t r = 0; r < 10; ++r) {
+        FastRig::Run run = rig.run(20 + r, 0.5, 1000);
+        for (double& gap : run.gap) {
+            gap = static_cast<double>(static_cast<float>(gap));  // a Range holds no more
+        }
+        const std::string name = "run-" + std::to_string(r) + ending;
+        write(folder.path() / name,
+              std::vector<test::LoggedSensor>{
+                  {gap_message, gap_type, "Dist", run.time, run.gap},
+                  {gap_type.empty() ? "PUSH" : "/push", "std_msgs/msg/Float64", "Force", run.time, run.push}});
+        set += "[[run]]\nfile = \"" + name + "\"\n";
+    }
+    core::write_file(folder.path() / "dataset.toml", set + mapping);
+    return dynamics::read_measurements(folder.path());
+}
+
+void write_csv(const std::filesystem::path& file, const std::vector<test::LoggedSensor>& sensors) {
+    std::string csv = "time [s], gap [m], input_force [N]\n";
+    for (std::size_t i = 0; i < sensors[0].time.size(); ++i) {
+        csv += core::format_number(sensors[0].time[i]) + ", " + core::format_number(sensors[0].value[i]) + ", " +
+               core::format_number(sensors[1].value[i]) + "\n";
+    }
+    core::write_file(file, csv);
+}
+
+TEST(VehicleLogs, OfEveryKindGiveTheVerdictOfTheCsv) {
     FastRig rig;
     rig.more_damping = 0.1;
-    const core::TemporaryFolder folder;
-    std::string csv_set = "kind = \"time_series\"\n[noise]\ngap = \"20 um\"\n", log_set = csv_set;
-    for (std::uint64_t r = 0; r < 10; ++r) {
-        const FastRig::Run run = rig.run(20 + r, 0.5, 1000);
-        std::string csv = "time [s], gap [m], input_force [N]\n";
-        for (std::size_t i = 0; i < run.time.size(); ++i) {
-            csv += core::format_number(run.time[i]) + ", " + core::format_number(run.gap[i]) + ", " +
-                   core::format_number(run.push[i]) + "\n";
-        }
-        const std::string name = "run-" + std::to_string(r);
-        core::write_file(folder.path() / "csv" / (name + ".csv"), csv);
-        core::write_file(folder.path() / "log" / (name + ".bin"),
-                         test::dataflash_bytes(
-                             {{"RFND", "", "Dist", run.time, run.gap}, {"PUSH", "", "Force", run.time, run.push}}));
-        csv_set += "[[run]]\nfile = \"" + name + ".csv\"\n";
-        log_set += "[[run]]\nfile = \"" + name + ".bin\"\n";
+    const Discovery csv = discover(FastRig::model(), logged_runs(rig, ".csv", "RFND", "", "", write_csv), quick());
+    ASSERT_EQ(csv.verdict, "effect") << csv.sentence;
+    ASSERT_FALSE(csv.effects.empty());
+    ASSERT_FALSE(csv.error.empty());
+    EXPECT_EQ(csv.effects[0].name, "linear_damping");
+    const auto expect_same = [&](const dynamics::Measurements& data, const char* kind) {
+        const Discovery log = discover(FastRig::model(), data, quick());
+        EXPECT_EQ(log.verdict, csv.verdict) << kind;
+        ASSERT_EQ(log.effects.size(), csv.effects.size()) << kind;
+        EXPECT_EQ(log.effects[0].name, csv.effects[0].name) << kind;
+        EXPECT_NEAR(log.effects[0].parameters[0].value, csv.effects[0].parameters[0].value, 1e-6) << kind;
+        EXPECT_NEAR(log.effects[0].probability, csv.effects[0].probability, 1e-6) << kind;
+        ASSERT_FALSE(log.error.empty()) << kind;
+        EXPECT_NEAR(log.error[0].after.rmse, csv.error[0].after.rmse, 1e-9) << kind;
+    };
+    using Sensors = std::vector<test::LoggedSensor>;
+    const auto bytes_of = [](auto&& make) {
+        return [make](const std::filesystem::path& file, const Sensors& sensors) {
+            core::write_file(file, make(sensors));
+        };
+    };
+    const std::string plain =
+        "[log]\nchannel.gap = { message = \"RFND\", field = \"Dist\" }\nchannel.input_force = { message = \"PUSH\", "
+        "field = \"Force\" }\n";
+    expect_same(logged_runs(rig, ".ulg", "RFND", "", plain, bytes_of(test::ulog_bytes)), "ULog");
+    expect_same(logged_runs(rig, ".bin", "RFND", "", plain, bytes_of(test::dataflash_bytes)), "DataFlash");
+    expect_same(logged_runs(rig, ".log", "RFND", "", plain, bytes_of(test::dataflash_text)), "DataFlash text");
+    const std::pair<const char*, const char*> ros_types[] = {{"sensor_msgs/msg/Range", "range"},
+                                                             {"nav_msgs/msg/Odometry", "pose.pose.position.z"},
+                                                             {"geometry_msgs/msg/PoseStamped", "pose.position.z"},
+                                                             {"sensor_msgs/msg/Imu", "linear_acceleration.z"}};
+    for (const auto& [type, field] : ros_types) {
+        const bool imu = std::string(type).ends_with("Imu");  // any number may be the gap, where its unit is said
+        const std::string ros = "[log]\nchannel.gap = { message = \"/gap\", field = \"" + std::string(field) + "\"" +
+                                (imu ? ", unit = \"m\"" : "") +
+                                " }\nchannel.input_force = { message = \"/push\", field = \"data\" }\n";
+        expect_same(logged_runs(rig, ".mcap", "/gap", type, ros,
+                                bytes_of([](const Sensors& sensors) { return test::mcap_bytes(sensors, "zstd"); })),
+                    type);
+        expect_same(logged_runs(rig, ".db3", "/gap", type, ros, test::write_sqlite_bag), type);
     }
-    log_set +=
-        "[log]\nchannel.gap = { message = \"RFND\", field = \"Dist\" }\nchannel.input_force = { message = "
-        "\"PUSH\", field = \"Force\" }\n";
-    core::write_file(folder.path() / "csv/dataset.toml", csv_set);
-    core::write_file(folder.path() / "log/dataset.toml", log_set);
-    const Discovery by_csv = discover(FastRig::model(), dynamics::read_measurements(folder.path() / "csv"), quick());
-    const Discovery by_log = discover(FastRig::model(), dynamics::read_measurements(folder.path() / "log"), quick());
-    ASSERT_EQ(by_csv.verdict, "effect") << by_csv.sentence;
-    ASSERT_FALSE(by_csv.effects.empty());
-    ASSERT_EQ(by_csv.effects.size(), by_log.effects.size());
-    ASSERT_FALSE(by_csv.error.empty());
-    ASSERT_FALSE(by_log.error.empty());
-    EXPECT_EQ(by_csv.effects[0].name, by_log.effects[0].name);
-    EXPECT_NEAR(by_csv.effects[0].parameters[0].value, by_log.effects[0].parameters[0].value, 1e-6);
-    EXPECT_NEAR(by_csv.effects[0].probability, by_log.effects[0].probability, 1e-6);
-    EXPECT_NEAR(by_csv.error[0].after.rmse, by_log.error[0].after.rmse, 1e-9);
+}
+
+/// The slow rig read at instants of its own.
+dynamics::Measurements sampled(double friction, double seconds, const std::function<double(core::Random&)>& step) {
+    dynamics::Measurements all;
+    all.noise["gap"] = 2e-4;
+    for (std::uint64_t r = 0; r < 6; ++r) {
+        core::Random random(90 + r);
+        double h = 0.1 + random.uniform(-0.03, 0.03), w = 0, u = 0, t = 0, change = 0;
+        std::vector<double> time, gap, push;
+        while (t < seconds) {
+            if (t >= change) {
+                u = random.uniform(-0.12, 0.12);
+                change = t + 4;
+            }
+            time.push_back(t);
+            gap.push_back(h + random.normal(0, 2e-4));
+            push.push_back(u);
+            const double until = t + step(random);
+            const int parts = static_cast<int>(std::ceil((until - t) / 1e-3));
+            for (int k = 0; k < parts; ++k) {
+                const double dt = (until - t) / parts;
+                w += dt * (u - 8 * (h - 0.1) - 0.5 * w - friction * std::tanh(w / 2e-4)) / 4;
+                h += dt * w;
+            }
+            t = until;
+        }
+        dynamics::MeasuredRun run;
+        run.name = "run-" + std::to_string(r);
+        run.table.source = run.name;
+        run.table.add_numbers("time", "s", time);
+        run.table.add_numbers("gap", "m", gap);
+        run.table.add_numbers("input_force", "N", push);
+        all.runs.push_back(std::move(run));
+    }
+    return all;
+}
+
+void expect_friction(const dynamics::Measurements& data) {
+    DiscoverOptions options = quick();
+    options.candidates = {"coulomb_friction", "linear_damping", "constant_force", "added_mass"};
+    const Discovery found = discover(SlowRig::model(), data, options);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    ASSERT_FALSE(found.effects.empty());
+    EXPECT_EQ(found.effects[0].name, "coulomb_friction");
+    EXPECT_NEAR(found.effects[0].parameters[0].value, 0.006, 0.001);
+}
+
+TEST(UnevenRuns, SayWhatIsMissing) {
+    expect_friction(sampled(0.006, 40, [](core::Random& random) {
+        return random.uniform() < 0.01 ? random.uniform(0.5, 1.5) : random.uniform(0.01, 0.12);
+    }));
+}
+
+TEST(LongRuns, AtTwoReadingsASecondSayWhatIsMissing) {
+    expect_friction(sampled(0.006, 120, [](core::Random&) { return 0.5; }));
 }
 
 }  // namespace

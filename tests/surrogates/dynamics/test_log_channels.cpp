@@ -131,6 +131,29 @@ TEST_F(LogChannels, ClocksOfTheSenderAreUsedWhereAskedFor) {
     EXPECT_NEAR(data.runs[0].table.numbers("time")[0], -0.002, 1e-9) << "stamped 2 ms before it was received";
 }
 
+TEST_F(LogChannels, ClocksOfAnotherRateAndBeginAreBroughtTogether) {
+    // the range has ticks of 1.0003 ms that began 0.35 s late, the input microseconds
+    std::string csv = "tick,range,t_us,force\n";
+    for (std::size_t i = 0; i < rig_.time.size(); ++i) {
+        csv += core::format_number((rig_.time[i] - 0.35) / 1.0003e-3, 12) + "," + core::format_number(rig_.gap[i]) +
+               "," + core::format_number(1e6 * rig_.time[i], 12) + "," + core::format_number(rig_.push[i]) + "\n";
+    }
+    write("run.csv", csv);
+    const Measurements data = read(
+        mapping("run.csv",
+                R"(field = "range", clock = "tick", clock_unit = "ms", clock_scale = 1.0003, clock_offset = "0.35 s")",
+                R"(field = "force", clock = "t_us", clock_unit = "us")"));
+    const core::Table& table = data.runs[0].table;
+    ASSERT_EQ(table.rows(), rig_.time.size());
+    EXPECT_EQ(table.numbers("gap"), rig_.gap);
+    for (std::size_t i = 0; i < rig_.time.size(); ++i) {
+        ASSERT_NEAR(table.numbers("time")[i], rig_.time[i], 1e-7);
+    }
+    EXPECT_LT(dynamics::predict(Rig::model(), data).channels[0].in_noise, 1.5);
+    EXPECT_THAT(refusal(mapping("run.csv", R"(field = "range", clock = "tick", clock_unit = "mm")", plain_push)),
+                HasSubstr("'mm' is no unit of time"));
+}
+
 TEST_F(LogChannels, SensorsAtTheirOwnRates) {
     // input at another rate between the readings, fast accelerometer, slow pitch
     test::LoggedSensor push{"PUSH", "", "Force", {}, {}}, fast{"ACC", "", "Z", {}, {}},
