@@ -111,7 +111,9 @@ TEST(WatchCommand, CtrlCEndsItWithASummary) {
     core::write_file(folder.path() / "model.toml", rig_model);
     core::write_file(folder.path() / "run.csv", changed_rig(150) + "150.05, 10");
     const ProgramRun run = run_shell(
-        "\"$UNDERBODY\" watch model.toml run.csv --follow > said.txt & sleep 2; kill -INT $!; wait $!; code=$?; "
+        "\"$UNDERBODY\" watch model.toml run.csv --follow > said.txt & until grep -q watching said.txt; do sleep 0.1; "
+        "done; "
+        "sleep 2; kill -INT $!; wait $!; code=$?; "
         "cat said.txt; exit $code",
         folder.path());
     EXPECT_EQ(run.exit_code, 130) << run.errors;

@@ -122,9 +122,9 @@ void measure_delays(std::uint64_t seeds) {
                     WatchedRig rig(i + 1);
                     rig.colour = colour;
                     Watch watch(WatchedRig::model(), {});
-                    const double begin = 600;
+                    const double begin = 300;
                     bool seen = false;
-                    while (!seen && rig.time < begin + 3600) {
+                    while (!seen && rig.time < begin + 1800) {
                         if (rig.time >= begin) {
                             effect(rig, size);
                         }
@@ -137,7 +137,7 @@ void measure_delays(std::uint64_t seeds) {
                 std::sort(found.begin(), found.end());
                 std::printf(
                     "%-15s noise AR %.1f, %g noises (%.3g): median %.0f s, slowest %.0f s; before %td, not "
-                    "within an hour %td of %zu\n",
+                    "within half an hour %td of %zu\n",
                     name, colour, noises, size, found[found.size() / 2], found.back() > 1e8 ? NAN : found.back(),
                     before, never, found.size());
                 std::fflush(stdout);
@@ -177,7 +177,7 @@ void measure_speed() {
 int main(int argc, char** argv) {
     const auto given = [&](int i, double otherwise) { return argc > i ? std::atof(argv[i]) : otherwise; };
     if (argc > 1 && std::strcmp(argv[1], "delays") == 0) {
-        measure_delays(static_cast<std::uint64_t>(given(2, 20)));
+        measure_delays(static_cast<std::uint64_t>(given(2, 10)));
     } else if (argc > 1 && std::strcmp(argv[1], "speed") == 0) {
         measure_speed();
     } else if (argc > 1 && std::strcmp(argv[1], "false-alarms") == 0) {
