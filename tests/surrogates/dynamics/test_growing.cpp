@@ -116,6 +116,28 @@ TEST(CsvStream, ALastLineThatWasCutIsLeftOutAndSaid) {
     EXPECT_EQ(read(complete).time, (std::vector<double>{0, 1, 2})) << "only its end of line was missing";
 }
 
+TEST(CsvStream, DamagedBytesAreReadOrRefusedAndNothingElse) {
+    core::Random random(8);
+    int read_through = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        std::string text = rows(40);
+        for (std::size_t k = 0; k < 1 + random.below(3); ++k) {
+            const bool plain = trial % 2 == 0;
+            text[random.below(text.size())] =
+                plain ? "0123456789,-. \n#"[random.below(16)] : static_cast<char>(random.below(256));
+        }
+        Pieces pieces(text, 100 + static_cast<std::uint64_t>(trial), 50);
+        try {
+            EXPECT_LE(read(pieces).time.size(), 70u);
+            ++read_through;
+        } catch (const core::InputError& error) {
+            EXPECT_FALSE(std::string(error.what()).empty());
+        }
+    }
+    EXPECT_GT(read_through, 20);
+    EXPECT_LT(read_through, 290);
+}
+
 TEST(GrowingStream, WaitsForWhatIsAdded) {
     const core::TemporaryFolder folder;
     const auto file = folder.path() / "run.csv";
