@@ -18,7 +18,8 @@ struct WatchedRig {
     double colour = 0;       ///< autocorrelation of the noise from one reading to the next
     double disturbance = 0;  ///< N sqrt(s), white force
     double wild = 0;         ///< share of readings that are anything within 0.5 m
-    double lost = 0;         ///< share of readings that are lost, one by one and in silences of up to 20 s
+    double lost = 0;       ///< share of readings that are lost, half of them one by one, half in silences of up to 20 s
+    double lost_rows = 0;  ///< share of rows that are lost one by one, with the input that is logged in them
     // What changes:
     double force = 0;         ///< N, constant
     double friction = 0;      ///< N, against the motion
@@ -35,7 +36,8 @@ struct WatchedRig {
     }
 
     double time = 0, input = 0, reading = 0;
-    bool silent = false;  ///< the reading was lost, and with it the input that was logged beside it
+    bool silent = false;  ///< the row was lost: the reading and the input that was logged beside it
+    bool missed = false;  ///< the reading alone was lost
 
     /// To the next reading; the input acts from the reading before on.
     void advance() {
@@ -65,7 +67,11 @@ struct WatchedRig {
             if (random.uniform() < lost * step / 20) {
                 silent_until = time + random.uniform(0, 20);
             }
-            silent = time < silent_until || random.uniform() < 0.5 * lost;
+            silent = time < silent_until;
+            missed = random.uniform() < 0.5 * lost;
+        }
+        if (lost_rows > 0) {
+            silent = time < silent_until || random.uniform() < lost_rows;
         }
         if (random.uniform() < step / 10) {
             target = middle + random.uniform(-0.02, 0.02);
@@ -79,7 +85,10 @@ struct WatchedRig {
         if (silent) {
             return {};
         }
-        const auto alarm = watch.gap(time, reading);
+        std::optional<discovery::WatchAlarm> alarm;
+        if (!missed) {
+            alarm = watch.gap(time, reading);
+        }
         watch.input(time, input);
         return alarm;
     }

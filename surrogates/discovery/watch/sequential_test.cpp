@@ -10,7 +10,7 @@ namespace underbody::discovery {
 namespace {
 
 constexpr double first_steps = 8;
-constexpr double largest = 8;  ///< below every threshold of use: one wild step alone is no change that lasts
+constexpr double largest = 5;  ///< far below every threshold of use: a single wild step is no change that lasts
 
 double bounded(double u) { return std::clamp(u, -largest, largest); }
 

@@ -24,6 +24,8 @@ constexpr std::size_t most_plants = 64;
 constexpr std::size_t most_backwards = 20;  ///< readings in a row that run backwards: the clock began anew
 constexpr double calm = 0.5;                ///< share of a threshold below which what was read may be learned from
 constexpr double longest_learned = 400;     ///< s, of what is learned from
+constexpr double input_memory = 300;        ///< s: how much the input may change at once is remembered
+constexpr double silence = 1;               ///< s without a reading: nothing is known of what was between
 constexpr double input_late = 1.5;          ///< usual steps without an input: another one may have acted
 
 const char* words(std::size_t direction) {
@@ -68,8 +70,8 @@ struct Watch::Parts {
             return;
         }
         if (!input_time.empty()) {
-            const double change = u - input_value.back();
-            input_change += 0.01 * (change * change - input_change);
+            const double forgotten = std::exp((input_time.back() - t) / input_memory);
+            largest_change = std::max(forgotten * largest_change, std::abs(u - input_value.back()));
         }
         if (input_time.size() > most_waiting) {  // inputs alone, no gap
             input_time.erase(input_time.begin(), input_time.begin() + most_waiting / 2);
@@ -77,6 +79,32 @@ struct Watch::Parts {
         }
         input_time.push_back(t);
         input_value.push_back(u);
+    }
+
+    /// Rows of the log are lost, and with them what a controller commanded: it went the way from the last to the next
+    /// command that is known (held, a controller's answer to the motion would look like damping that is missing), and
+    /// how much else is said.
+    void bridge_lost_inputs(double from, WatchStep& step) {
+        const auto after = std::upper_bound(input_time.begin(), input_time.end(), from + 1e-9) - input_time.begin();
+        const auto next = static_cast<std::size_t>(after);
+        if (input_time.empty() || (next < input_time.size() && input_time[next] < step.time - 0.5 * usual_step)) {
+            return;  // logged by itself
+        }
+        const double missed = (step.time - from) / usual_step;
+        step.unknown_for = step.time - from;
+        step.unknown_input = 0.5 * std::abs(plant->terms.actuator.gain) * largest_change * std::sqrt(missed);
+        if (next == 0 || next == input_time.size() || input_time[next] > step.time + 0.5 * usual_step) {
+            return;
+        }
+        const double t0 = input_time[next - 1], u0 = input_value[next - 1];
+        const double slope = (input_value[next] - u0) / (input_time[next] - t0);
+        std::vector<double> times, values;
+        for (double t = t0 + usual_step; t < input_time[next] - 0.5 * usual_step; t += usual_step) {
+            times.push_back(t);
+            values.push_back(u0 + slope * (t - t0));
+        }
+        input_time.insert(input_time.begin() + after, times.begin(), times.end());
+        input_value.insert(input_value.begin() + after, values.begin(), values.end());
     }
 
     /// Mean input that reached the body over the step, out of the last inputs; older ones are forgotten.
@@ -93,13 +121,6 @@ struct Watch::Parts {
         step.command = out[1];
         actuator.mean_over_steps(input_time, input_value, hold, {from, step.time}, out);
         step.input = out[1];
-        const auto before = std::upper_bound(input_time.begin(), input_time.end(), from) - input_time.begin();
-        const bool logged_within = static_cast<std::size_t>(before) < input_time.size() &&
-                                   input_time[static_cast<std::size_t>(before)] < step.time - 1e-9;
-        if (usual_step > 0 && step.time - from > input_late * usual_step && !logged_within) {
-            const double missed = std::min((step.time - from) / usual_step, 100.0);
-            step.unknown_input = std::abs(actuator.gain) * std::sqrt(input_change * missed);
-        }
         const double needed = from - std::max(actuator.delay, 0.0) - 12 * actuator.lag;
         const auto old = std::upper_bound(input_time.begin(), input_time.end(), needed) - input_time.begin() - 1;
         if (old > 64) {
@@ -158,7 +179,8 @@ struct Watch::Parts {
         }
     }
 
-    std::optional<WatchAlarm> flush(double next_begin) {
+    /// Readings up to `next_begin`, averaged.
+    WatchStep make_step(double next_begin) {
         double sum_velocity = 0, velocities = 0;
         while (!pending.empty() && pending.front().first < next_begin) {
             sum_velocity += pending.front().second;
@@ -173,20 +195,47 @@ struct Watch::Parts {
         step.velocity_share = velocities > 0 ? 1 / std::sqrt(velocities) : 1;
         count_in_step = 0;
         sum_time = sum_gap = gaps = 0;
-        const double before = steps.empty() ? step.time : steps.back().time;
-        find_input(before, step);
-        if (!steps.empty()) {
-            const double dt = step.time - before;
-            if (!(dt > 0)) {
-                return {};
-            }
-            usual_step += usual_step == 0 ? dt : std::clamp(dt - usual_step, -0.01 * dt, 0.01 * usual_step);
-        }
+        return step;
+    }
+
+    void keep(const WatchStep& step) {
+        watched += steps.empty() ? 0 : std::min(step.time - steps.back().time, silence);
         steps.push_back(step);
         while (steps.back().time - steps.front().time > options.remember || steps.size() > most_steps) {
             steps.pop_front();
         }
-        watched += std::min(step.time - before, 1.0);
+    }
+
+    /// Readings that are missing: steps without one, each with its own input.
+    void fill(const WatchStep& until) {
+        const double begin = steps.back().time;
+        for (int i = 1; begin + (i + 0.5) * usual_step < until.time; ++i) {
+            WatchStep step;
+            step.time = begin + i * usual_step;
+            step.gap = step.velocity = std::nan("");
+            find_input(steps.back().time, step);
+            keep(step);
+            if (scores) {
+                residuals->take(step);
+            }
+        }
+    }
+
+    std::optional<WatchAlarm> flush(double next_begin) {
+        WatchStep step = make_step(next_begin);
+        if (!steps.empty()) {
+            const double dt = step.time - steps.back().time;
+            if (!(dt > 0)) {
+                return {};
+            }
+            if (usual_step > 0 && dt > input_late * usual_step && dt < silence) {
+                bridge_lost_inputs(steps.back().time, step);
+                fill(step);
+            }
+            usual_step += usual_step == 0 ? dt : std::clamp(dt - usual_step, -0.01 * dt, 0.01 * usual_step);
+        }
+        find_input(steps.empty() ? step.time : steps.back().time, step);
+        keep(step);
         const bool learn_now =
             watched >= next_learn && steps.size() >= steps_to_learn && (!scores || scores->nearest() < calm);
         if (!scores) {
@@ -286,7 +335,7 @@ struct Watch::Parts {
     double next_learn, watched = 0;
 
     std::vector<double> input_time, input_value, raw_time, raw_gap;
-    double input_change = 0;  ///< N^2, mean square of the input's changes from one to the next
+    double largest_change = 0;  ///< N, of the input from one to the next, lately
     std::deque<WatchStep> steps;
     std::size_t count = 0, count_in_step = 0, passed_over = 0, backwards = 0;
     double last_time = 0, step_begin = 0, sum_time = 0, sum_gap = 0, gaps = 0, usual_step = 0;

@@ -79,16 +79,16 @@ void WatchFilter::advance_part(double rest, double input) {
 }
 
 void WatchFilter::advance(const WatchStep& step) {
-    const double dt = step.time - time_;
-    advance_part(dt, step.input);
-    if (step.unknown_input > 0) {
-        dynamics::HeaveSlopes slopes;
-        plant_->acceleration(state_[0], state_[1], {time_, step.input, nullptr, nullptr, 0}, nullptr, slopes);
-        const double push = step.unknown_input / slopes.mass;
-        const Eigen::Vector3d kick(0.5 * dt * dt * push, dt * push, 0);
-        spread_ += kick * kick.transpose();
-    }
+    advance_part(step.time - time_, step.input);
     time_ = step.time;
+}
+
+void WatchFilter::expect_kick(double input, double lasted, double ago) {
+    dynamics::HeaveSlopes slopes;
+    plant_->acceleration(state_[0], state_[1], {time_, 0, nullptr, nullptr, 0}, nullptr, slopes);
+    const double speed = input * lasted / slopes.mass;
+    const Eigen::Vector3d kick(speed * (ago + 0.5 * lasted), speed, 0);
+    spread_ += kick * kick.transpose();
 }
 
 WatchInnovation WatchFilter::innovation(double residual, const Eigen::Vector3d& row, double variance) const {

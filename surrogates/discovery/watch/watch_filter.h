@@ -22,9 +22,11 @@ struct WatchStep {
     double gap_share = 1;
     double velocity = 0;  ///< m/s; NaN: none
     double velocity_share = 1;
-    double input = 0;          ///< N, as it reaches the body, mean since the step before
-    double command = 0;        ///< N, the same before the actuator
-    double unknown_input = 0;  ///< N, one standard deviation: nobody logged the input since the step before
+    double input = 0;    ///< N, as it reaches the body, mean since the step before
+    double command = 0;  ///< N, the same before the actuator
+    double unknown_input =
+        0;                   ///< N: another input of this size may have acted since the step before, and was not logged
+    double unknown_for = 0;  ///< s, for how long
 };
 
 /// What one reading says beside what was expected.
@@ -48,6 +50,9 @@ public:
     void restart(double time, double gap);
     /// To the step's time.
     void advance(const WatchStep& step);
+    /// An input of this deviation (N), that nobody logged, may have acted for `lasted` s, and that ended `ago` s before
+    /// now.
+    void expect_kick(double input, double lasted, double ago);
     /// What a reading says; nothing changes.
     [[nodiscard]] WatchInnovation gap_innovation(const WatchStep& step) const;
     [[nodiscard]] WatchInnovation velocity_innovation(const WatchStep& step) const;

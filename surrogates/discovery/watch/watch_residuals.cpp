@@ -10,11 +10,14 @@ namespace {
 constexpr std::size_t settle_steps = 25;  ///< not judged at the begin and after a silence
 constexpr std::size_t first_steps = 3;    ///< after a begin: the reading it began with may have been wild
 constexpr std::size_t most_restarts = 3;
-constexpr double silence = 1;         ///< s without a reading: the state is found anew
-constexpr double gate = 4.5;          ///< beyond it one reading is wild ...
-constexpr std::size_t most_wild = 4;  ///< ... and so many in a row are no accident
-constexpr double limit = 3;           ///< of what one reading may say
-constexpr double uneven = 1.5;        ///< of the usual step: the colour's past is not known then
+constexpr std::size_t kick_steps = 15;   ///< in which a lost input shows
+constexpr std::size_t kick_settle = 20;  ///< not judged after one that did
+constexpr double kick_shows = 2.5;       ///< deviations of the sum of innovations since
+constexpr double silence = 1;            ///< s without a reading: the state is found anew
+constexpr double gate = 4.5;             ///< beyond it one reading is wild ...
+constexpr std::size_t most_wild = 4;     ///< ... and so many in a row are no accident
+constexpr double limit = 3;              ///< of what one reading may say
+constexpr double uneven = 1.5;           ///< of the usual step: the colour's past is not known then
 constexpr double median_of_normal = 0.6745;
 
 }  // namespace
@@ -68,10 +71,37 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
 void WatchResiduals::restart(const WatchStep& step) {
     filter_.restart(step.time, step.gap);
     settling_ = settle_steps;
+    kick_ = {};
     for (Sensor& sensor : sensors_) {
         sensor.past = {};
         sensor.rejected = 0;
     }
+}
+
+/// Looks whether the state is another than was thought, before the reading is judged.
+WatchInnovation WatchResiduals::gap_innovation(const WatchStep& step) {
+    const WatchInnovation innovation = filter_.gap_innovation(step);
+    const double size = std::abs(innovation.normal) / sensors_[0].colour.scale;
+    const bool just_begun = settling_ + first_steps > settle_steps;
+    if (size > gate && restarts_ < most_restarts &&
+        (just_begun || (settling_ > 0 && sensors_[0].rejected >= most_wild))) {
+        ++restarts_;
+        restart(step);
+        return filter_.gap_innovation(step);
+    }
+    if (kick_.steps > 0) {
+        --kick_.steps;
+        kick_.sum += std::clamp(innovation.normal / sensors_[0].colour.scale, -gate, gate);
+        kick_.count += 1;
+        // Expected always, it would make the filter follow the noise, and scores along the motion would have a mean.
+        if (std::abs(kick_.sum) > kick_shows * std::sqrt(kick_.count)) {
+            kick_.steps = 0;
+            filter_.expect_kick(kick_.input, kick_.lasted, step.time - kick_.end);
+            settling_ = std::max(settling_, kick_settle);
+            return filter_.gap_innovation(step);
+        }
+    }
+    return innovation;
 }
 
 std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep& step) {
@@ -91,24 +121,20 @@ std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep
             }
         }
     }
+    if (step.unknown_input > 0 && time_ && step.time - *time_ <= silence) {
+        kick_ = {step.unknown_input, step.unknown_for, step.time, kick_steps, 0, 0};
+    }
     time_ = step.time;
     filter_.advance(step);
     std::array<std::optional<WatchResidual>, 2> out;
     if (std::isfinite(step.gap)) {
-        WatchInnovation innovation = filter_.gap_innovation(step);
-        const bool just_begun = settling_ + first_steps > settle_steps;
-        if (std::abs(innovation.normal) > gate && restarts_ < most_restarts &&
-            (just_begun || (settling_ > 0 && sensors_[0].rejected >= most_wild))) {
-            ++restarts_;
-            restart(step);
-            innovation = filter_.gap_innovation(step);
-        }
-        out[0] = judge(0, innovation);
+        out[0] = judge(0, gap_innovation(step));
     }
     if (std::isfinite(step.velocity)) {
         out[1] = judge(1, filter_.velocity_innovation(step));
     }
     settling_ -= settling_ > 0 ? 1 : 0;
+    restarts_ = settling_ > 0 ? restarts_ : 0;
     return out;
 }
 

@@ -52,12 +52,19 @@ private:
         std::size_t rejected = 0, unsettled = 0;
     };
     void restart(const WatchStep& step);
+    [[nodiscard]] WatchInnovation gap_innovation(const WatchStep& step);
     std::optional<WatchResidual> judge(std::size_t sensor, const WatchInnovation& innovation);
     WatchFilter filter_;
     std::array<Sensor, 2> sensors_;
     std::optional<double> time_;
     double usual_step_ = 0;
     std::size_t settling_ = 0, restarts_ = 0;
+    struct Kick {
+        double input = 0, lasted = 0, end = 0;
+        std::size_t steps = 0;      ///< in which it may still show
+        double sum = 0, count = 0;  ///< of the innovations since
+    };
+    Kick kick_;
     Likelihood* likelihood_ = nullptr;
 };
 

@@ -7,7 +7,7 @@ namespace underbody::discovery {
 
 namespace {
 
-constexpr double forgotten = 0.05;  ///< of what was read lately, with each block
+constexpr std::size_t most_blocks = 300;  ///< over which what shows is judged
 constexpr double alike = 6;  ///< of -2 log likelihood: directions that differ by less are not told apart (20 to 1)
 constexpr double least_filled = 0.5;     ///< share of a block's readings: with fewer it goes on
 constexpr double nothing_moved = 1e-30;  ///< information along a direction
@@ -52,14 +52,16 @@ std::optional<WatchScores::Passed> WatchScores::end_block(double time, bool judg
             u = scatter_.normal(std::cbrt(squares_ / count_));  // nearly normal (Wilson and Hilferty 1931)
         } else if (information_[j] > nothing_moved) {
             u = directions_[j].normal(score_[j] / std::sqrt(information_[j]));
-            late_score_[j] += score_[j] - forgotten * late_score_[j];
-            late_information_[j] += information_[j] - forgotten * late_information_[j];
         } else {
             continue;
         }
         if (judge && tests_[j].take(u) && (!worst || tests_[j].share() > tests_[*worst].share())) {
             worst = j;
         }
+    }
+    late_.push_back({score_, information_});
+    if (late_.size() > most_blocks) {
+        late_.pop_front();
     }
     judged_ += judge ? time - *begin_ : 0;
     begin_ = time;
@@ -73,15 +75,21 @@ WatchScores::Passed WatchScores::what_shows(std::size_t test) const {
     if (out.scatter) {
         return out;
     }
+    const std::size_t blocks = std::clamp<std::size_t>(tests_[test].steps_since(), 1, late_.size());
+    Block since;
     std::array<double, watch_directions> explained{};  // fall of -2 log likelihood
     for (std::size_t j = 0; j < watch_directions; ++j) {
+        for (std::size_t i = late_.size() - blocks; i < late_.size(); ++i) {
+            since.score[j] += late_[i].score[j];
+            since.information[j] += late_[i].information[j];
+        }
         explained[j] =
-            late_information_[j] > nothing_moved ? late_score_[j] * late_score_[j] / late_information_[j] : 0;
+            since.information[j] > nothing_moved ? since.score[j] * since.score[j] / since.information[j] : 0;
     }
     const double most = *std::max_element(explained.begin(), explained.end());
     for (std::size_t j = 0; j < watch_directions; ++j) {
         if (explained[j] > 0 && explained[j] > most - alike) {
-            const Passed::Direction one{j, late_score_[j] / late_information_[j]};
+            const Passed::Direction one{j, since.score[j] / since.information[j]};
             out.directions.insert(explained[j] == most ? out.directions.begin() : out.directions.end(), one);
         }
     }

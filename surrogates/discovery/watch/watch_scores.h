@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -20,9 +21,9 @@ public:
         double since = 0;      ///< s before now
         struct Direction {
             std::size_t index = 0;
-            double size = 0;  ///< lately
+            double size = 0;  ///< mean since the test began to rise
         };
-        /// The direction that explains most of what was read lately, then those that explain nearly as much.
+        /// The direction that explains most of what was read since, then those that explain nearly as much.
         std::vector<Direction> directions;
     };
     /// `judge` false: the vehicle is known to be the model, the scores learn their scale from it.
@@ -40,7 +41,10 @@ private:
     double block_, least_count_, judged_ = 0;
     std::optional<double> begin_;
     std::array<double, watch_directions> score_{}, information_{};
-    std::array<double, watch_directions> late_score_{}, late_information_{};  ///< of the last twenty blocks or so
+    struct Block {
+        std::array<double, watch_directions> score{}, information{};
+    };
+    std::deque<Block> late_;  ///< the last ones
     double squares_ = 0, count_ = 0;
     std::array<SelfStartingScore, watch_directions> directions_;
     SelfStartingLevel scatter_;

@@ -40,9 +40,14 @@ const std::vector<Kind>& kinds() {
                                             rig.wild = 0.01;
                                             rig.lost = 0.05;
                                         }},
-                                       {"AR 0.7 and gusts", [](WatchedRig& rig) {
+                                       {"AR 0.7 and gusts",
+                                        [](WatchedRig& rig) {
                                             rig.colour = 0.7;
                                             rig.disturbance = 0.002;
+                                        }},
+                                       {"AR 0.9, 2 % of the rows lost", [](WatchedRig& rig) {
+                                            rig.colour = 0.9;
+                                            rig.lost_rows = 0.02;
                                         }}};
     return all;
 }

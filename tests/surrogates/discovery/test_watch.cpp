@@ -128,7 +128,8 @@ Seen watch_change(Change&& change, double colour = 0) {
 TEST(Watch, AConstantForceIsSeenWithItsSideAndTime) {
     const Seen seen = watch_change([](WatchedRig& rig) { rig.force = -0.004; });
     ASSERT_TRUE(seen.alarm);
-    EXPECT_THAT(seen.alarm->shows, HasSubstr("a constant force, down"));
+    EXPECT_THAT(seen.alarm->shows, ::testing::StartsWith("a constant force, down"));
+    EXPECT_NEAR(seen.alarm->force, -0.004, 0.002);
     EXPECT_GT(seen.alarm->time, seen.changed);
     EXPECT_LT(seen.alarm->time, seen.changed + 120);
     EXPECT_NEAR(seen.alarm->since, seen.changed, 60);
