@@ -354,7 +354,7 @@ void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
                        " nose up, heading " + angle_in_degrees(last[dynamics::state_psi]) + ", speed " +
                        core::format_number(last[dynamics::state_u], 5) + " m/s, contact " +
                        dynamics::contact_state_name(motion.contact.back()) + "\n";
-    for (const dynamics::BodyTrajectory::Event& event : motion.events) {
+    for (const dynamics::TrajectoryEvent& event : motion.events) {
         text += "  " + event.kind + " at " + core::format_number(event.time, 6) + " s\n";
     }
     shell.print(text);

@@ -10,15 +10,17 @@
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
 #include "surrogates/dynamics/simulate/feedback.h"
-#include "surrogates/dynamics/simulate/ode.h"
+#include "surrogates/dynamics/simulate/motion_driver.h"
 #include "surrogates/dynamics/simulate/trajectory_parts.h"
 
 namespace underbody::dynamics {
 
 namespace {
 
+constexpr double slowest_bounce = 1e-5;  ///< m/s: slower, the body stays on the ground
+
 /// The heave motion as a sequence of free flights and rests on the ground.
-class Flight {
+class Flight : public MotionDriver {
 public:
     Flight(const HeavePlant& plant, const HeaveRun* run, const TrajectoryOptions& options, Trajectory& out)
         : plant_(plant),
@@ -26,9 +28,18 @@ public:
           options_(options),
           out_(out),
           memory_(plant.terms.history != 0),
-          states_(2 + (memory_ ? history_states : 0) + (plant.loop_has_states() ? 1 : 0)),
           actuator_(plant.terms,
                     [this](double t, const double* y) { return outside(t).input + plant_.loop->command(y[0], y[1]); }) {
+        settings = {.states = 2 + (memory_ ? history_states : 0) + (plant.loop_has_states() ? 1 : 0),
+                    .events = 3,
+                    .duration = options.duration,
+                    .output_step = options.output_step,
+                    .tolerance = options.tolerance,
+                    .max_step = max_step()};
+        if (plant.loop_has_states() && actuator_.delayed()) {
+            // A delay looks back on the motion, which is kept in pieces much shorter than it.
+            settings.longest_advance = actuator_.max_step() / 8;
+        }
     }
 
     void fly(double gap, double velocity, double t0, core::Progress& progress);
@@ -48,36 +59,35 @@ private:
     HeaveMoment moment(double t, const double* y) {
         // The actuator looks at the inputs of another time: it comes before the moment's own, which share a buffer.
         const double felt = !plant_.loop_has_states() ? 0.0
-                            : actuator_.lagged()      ? y[states_ - 1]
+                            : actuator_.lagged()      ? y[settings.states - 1]
                                                       : actuator_.driven(t, y);
         HeaveMoment m = outside(t);
         m.input = plant_.loop_has_states() ? felt : m.input;
         return m;
     }
     [[nodiscard]] const double* memory(const double* y) const { return memory_ ? y + 2 : nullptr; }
-    void rates(double t, const double* y, double* rate);
-    enum class At { start, rest, flight };
-    void accept(double t, const double* y, At at);
-    Ode::Stop go_to(Ode& ode, double from, double goal);
+    void rates(double t, const double* y, double* rate) override;
+    void events(double t, const double* y, double* g) override;
+    void record(double t, const double* y) override;
+    bool after(const Ode::Stop& stop, double t, std::vector<double>& y) override;
+    void accept(double t, const double* y) override;
+    void begin_piece(double& t, std::vector<double>& y, core::Progress& progress) override;
     [[nodiscard]] double input_force(double t, const double* y) {
         const HeaveMoment m = moment(t, y);
         return plant_.loop && !plant_.loop_has_states() ? plant_.closed_input(y[0], y[1], m.input).force : m.input;
     }
-    void record(double t, const double* y);
     void note(double t, const char* kind, const double* y) { out_.events.push_back({t, kind, y[0], y[1]}); }
-    std::unique_ptr<Ode> free_flight();
-    double rest(double t, double t_end, std::vector<double>& y, core::Progress& progress);
+    double rest(double t, std::vector<double>& y, core::Progress& progress);
     [[nodiscard]] double max_step() const;
 
     const HeavePlant& plant_;
     const HeaveRun* run_;
     const TrajectoryOptions& options_;
     Trajectory& out_;
-    bool memory_;
-    std::size_t states_;  ///< gap, velocity, the history force's memory, the force after the actuator's lag
+    bool memory_;  ///< states: gap, velocity, the history force's memory, the force after the actuator's lag
+    bool on_ground_ = false;
     LoopActuator<2> actuator_;
     std::vector<double> buffer_;
-    double next_output_ = 0;
 };
 
 void Flight::rates(double t, const double* y, double* rate) {
@@ -90,39 +100,27 @@ void Flight::rates(double t, const double* y, double* rate) {
         }
     }
     if (plant_.loop_has_states()) {
-        rate[states_ - 1] =
-            actuator_.lagged() ? (actuator_.driven(t, y) - y[states_ - 1]) / plant_.terms.actuator.lag : 0;
+        rate[settings.states - 1] =
+            actuator_.lagged() ? (actuator_.driven(t, y) - y[settings.states - 1]) / plant_.terms.actuator.lag : 0;
     }
 }
 
-/// Tells the actuator of the loop where the motion has come to.
-void Flight::accept(double t, const double* y, At at) {
-    if (!plant_.loop_has_states()) {
-        return;
-    }
-    std::vector<double> rate(states_, 0.0);
-    if (at == At::start) {
-        actuator_.start(t, y, rate.data());
-        return;
-    }
-    if (at == At::flight) {
+void Flight::accept(double t, const double* y) {
+    if (plant_.loop_has_states()) {
+        std::vector<double> rate(settings.states);
         rates(t, y, rate.data());
+        actuator_.accept(t, y, rate.data());
     }
-    actuator_.accept(t, y, rate.data());
 }
 
-/// To `goal` or an event; a delay looks back on the motion, which is kept in pieces much shorter than it.
-Ode::Stop Flight::go_to(Ode& ode, double from, double goal) {
-    const double piece =
-        plant_.loop_has_states() && actuator_.delayed() ? actuator_.max_step() / 8 : std::numeric_limits<double>::max();
-    Ode::Stop stop;
-    do {
-        const double next = std::min(goal, from + piece);
-        stop = options_.output_step > 0 ? ode.advance(next) : ode.one_step(next);
-        accept(stop.t, ode.state(), At::flight);
-        from = stop.t;
-    } while (!stop.event && options_.output_step > 0 && stop.t < goal);
-    return stop;
+void Flight::events(double t, const double* y, double* g) {
+    g[touch] = y[0] - plant_.terms.contact_gap;
+    g[escape] = options_.escape_gap > 0 ? options_.escape_gap - y[0] : 1.0;
+    g[settle] = 1.0;
+    if (options_.stop_at_equilibrium) {
+        const double a = plant_.acceleration(y[0], y[1], moment(t, y), memory(y));
+        g[settle] = unsettled(y[1] * y[1] + a * a, 0, options_.settle_speed);
+    }
 }
 
 void Flight::record(double t, const double* y) {
@@ -155,30 +153,9 @@ double Flight::max_step() const {
     return step;
 }
 
-std::unique_ptr<Ode> Flight::free_flight() {
-    OdeProblem problem;
-    problem.size = states_;
-    problem.rate = [this](double t, const double* y, double* rate) { rates(t, y, rate); };
-    problem.direction = {-1, -1, -1};
-    problem.events = [this](double t, const double* y, double* g) {
-        g[touch] = y[0] - plant_.terms.contact_gap;
-        g[escape] = options_.escape_gap > 0 ? options_.escape_gap - y[0] : 1.0;
-        g[settle] = 1.0;
-        if (options_.stop_at_equilibrium) {
-            const double a = plant_.acceleration(y[0], y[1], moment(t, y), memory(y));
-            const double speed = options_.settle_speed;
-            g[settle] = (y[1] * y[1] + a * a) / (speed * speed) - 1;
-        }
-    };
-    OdeOptions options;
-    options.relative = options_.tolerance;
-    options.absolute.assign(states_, options_.tolerance * 1e-3);
-    options.max_step = max_step();
-    return std::make_unique<Ode>(std::move(problem), options);
-}
-
 /// On the ground until the force lifts the body; the end time when it never does.
-double Flight::rest(double t, double t_end, std::vector<double>& y, core::Progress& progress) {
+double Flight::rest(double t, std::vector<double>& y, core::Progress& progress) {
+    const double t_end = end();
     y[0] = plant_.terms.contact_gap;
     y[1] = 0;
     // While the body lies still, what its actuator gives goes on.
@@ -194,7 +171,19 @@ double Flight::rest(double t, double t_end, std::vector<double>& y, core::Progre
         const std::vector<double> state = lying(from, at);
         return plant_.acceleration(y[0], 0.0, moment(at, state.data()));
     };
-    accept(t, y.data(), At::rest);
+    const std::vector<double> still(settings.states, 0.0);
+    const auto accept_rest = [&] {
+        if (plant_.loop_has_states()) {
+            actuator_.accept(t, y.data(), still.data());
+        }
+    };
+    accept_rest();
+    double row = row_after(t);
+    const auto record_rows = [&](double until) {
+        for (; options_.output_step > 0 && row <= until; row = row_after(row)) {
+            record(row, y.data());
+        }
+    };
     const double output = options_.output_step > 0 ? options_.output_step : std::max((t_end - t) / 200, 1e-3);
     const double look = std::min(output, run_ || !plant_.autonomous() ? 0.01 : output);
     while (t < t_end) {
@@ -210,105 +199,70 @@ double Flight::rest(double t, double t_end, std::vector<double>& y, core::Progre
                 const double middle = (lo + hi) / 2;
                 (force(t, middle) > 0 ? hi : lo) = middle;
             }
+            record_rows(hi);
             y = lying(t, hi);
             return hi;
         }
         y = lying(t, next);
         t = next;
-        accept(t, y.data(), At::rest);
-        while (options_.output_step > 0 && next_output_ <= t + 1e-6 * options_.output_step) {
-            record(next_output_, y.data());
-            next_output_ =
-                out_.time.front() +
-                options_.output_step * std::round((next_output_ - out_.time.front()) / options_.output_step + 1);
-        }
+        accept_rest();
+        record_rows(t + 1e-6 * options_.output_step);
     }
     return t_end;
 }
 
+/// While the body lies on the ground, time goes on until it leaves.
+void Flight::begin_piece(double& t, std::vector<double>& y, core::Progress& progress) {
+    if (!on_ground_) {
+        return;
+    }
+    on_ground_ = false;
+    t = rest(t, y, progress);
+    if (t < end()) {
+        note(t, "lift_off", y.data());
+        y[1] = 1e-12;
+    }
+}
+
+bool Flight::after(const Ode::Stop& stop, double t, std::vector<double>& y) {
+    const bool ends = stop.which[escape] != 0 || stop.which[settle] != 0;
+    if (ends || options_.stop_at_contact || options_.output_step == 0) {
+        record(t, y.data());  // rows at a fixed step stay at that step; the event itself is among the events
+    }
+    const char* kind = stop.which[escape] != 0 ? "escape" : stop.which[settle] != 0 ? "equilibrium" : "contact";
+    note(t, kind, y.data());
+    if (ends || options_.stop_at_contact) {
+        out_.end = kind;
+        return false;
+    }
+    y[0] = plant_.terms.contact_gap;
+    y[1] = -plant_.terms.restitution * y[1];
+    on_ground_ = y[1] < slowest_bounce;
+    y[1] = on_ground_ ? 0 : y[1];
+    return true;
+}
+
 void Flight::fly(double gap, double velocity, double t0, core::Progress& progress) {
-    const double t_end = t0 + options_.duration;
-    const double start = t0;
-    std::vector<double> y(states_, -velocity);
+    std::vector<double> y(settings.states, -velocity);
     y[0] = gap;
     y[1] = velocity;
-    accept(t0, y.data(), At::start);
     if (plant_.loop_has_states()) {
+        const std::vector<double> still(settings.states, 0.0);
+        actuator_.start(t0, y.data(), still.data());
         y.back() = actuator_.driven(t0, y.data());
     }
     record(t0, y.data());
-    next_output_ = t0 + options_.output_step;
-    double t = t0;
     out_.end = "time";
-    const std::unique_ptr<Ode> ode = free_flight();
-    bool on_ground =
-        gap <= plant_.terms.contact_gap && velocity <= 0 && plant_.acceleration(gap, 0, moment(t, y.data())) <= 0;
-    if (on_ground) {
-        note(t, "contact", y.data());
+    on_ground_ =
+        gap <= plant_.terms.contact_gap && velocity <= 0 && plant_.acceleration(gap, 0, moment(t0, y.data())) <= 0;
+    if (on_ground_) {
+        note(t0, "contact", y.data());
         if (options_.stop_at_contact) {
             out_.end = "contact";
             return;
         }
     }
-    while (t < t_end) {
-        if (on_ground) {
-            t = rest(t, t_end, y, progress);
-            on_ground = false;
-            if (t < t_end) {
-                note(t, "lift_off", y.data());
-                y[1] = 1e-12;
-            } else {
-                break;
-            }
-        }
-        ode->start(t, y);
-        accept(t, y.data(), At::flight);
-        Ode::Stop stop;
-        stop.t = t;
-        int count = 0;
-        do {
-            // An output that rounding puts a hair before the end is the end.
-            const bool more = options_.output_step > 0 && next_output_ < t_end - 1e-6 * options_.output_step;
-            const double goal = more ? next_output_ : t_end;
-            stop = go_to(*ode, stop.t, goal);
-            if (++count % 256 == 0) {
-                progress.check();
-                progress.report((stop.t - start) / options_.duration, "simulating");
-            }
-            if (!stop.event) {
-                record(stop.t, ode->state());
-                if (options_.output_step > 0) {
-                    next_output_ =
-                        start + options_.output_step * std::round((stop.t - start) / options_.output_step + 1);
-                }
-            }
-        } while (!stop.event && stop.t < t_end);
-        t = stop.t;
-        y.assign(ode->state(), ode->state() + states_);
-        if (!stop.event) {
-            break;
-        }
-        const bool ends = stop.which[escape] != 0 || stop.which[settle] != 0 || options_.stop_at_contact;
-        if (ends || options_.output_step == 0) {
-            record(t, y.data());  // rows at a fixed step stay at that step; the event itself is among the events
-        }
-        if (stop.which[escape] != 0 || stop.which[settle] != 0) {
-            out_.end = stop.which[escape] != 0 ? "escape" : "equilibrium";
-            note(t, out_.end.c_str(), y.data());
-            return;
-        }
-        note(t, "contact", y.data());
-        if (options_.stop_at_contact) {
-            out_.end = "contact";
-            return;
-        }
-        y[0] = plant_.terms.contact_gap;
-        y[1] = -plant_.terms.restitution * y[1];
-        on_ground = y[1] < 1e-5;
-        if (on_ground) {
-            y[1] = 0;
-        }
-    }
+    run(t0, std::move(y), progress);
 }
 
 }  // namespace
@@ -343,15 +297,9 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
     }
     const double t0 = inputs.time.empty() ? 0.0 : inputs.time.front();
     Flight(plant, run.get(), options, out).fly(gap, heave_velocity, t0, progress);
-    const auto beyond = std::count(out.outside.begin(), out.outside.end(), true);
-    if (beyond > 0) {
-        out.remarks.push_back(
-            {core::Problem::Severity::warning,
-             std::to_string(beyond) + " of " + std::to_string(out.time.size()) +
-                 " outputs lie outside the range of a force table (" + core::format_number(plant.terms.table_lower, 6) +
-                 " to " + core::format_number(plant.terms.table_upper, 6) + " m), where it holds its end value",
-             {}});
-    }
+    remark_outside(out.remarks, out.outside,
+                   " (" + core::format_number(plant.terms.table_lower, 6) + " to " +
+                       core::format_number(plant.terms.table_upper, 6) + " m)");
     if (run && !out.time.empty() && out.time.back() > inputs.time.back() + 1e-9) {
         out.remarks.push_back(
             {core::Problem::Severity::warning,
@@ -369,11 +317,7 @@ core::Table Trajectory::table() const {
     table.add_numbers("lift_force", "N", lift_force);
     table.add_numbers("heave_drag", "N", heave_drag);
     table.add_numbers("input_force", "N", input_force);
-    std::vector<double> flags;
-    for (const bool flag : outside) {
-        flags.push_back(flag ? 1 : 0);
-    }
-    table.add_numbers("outside_table", "1", flags);
+    add_outside(table, outside);
     return table;
 }
 
@@ -401,23 +345,9 @@ core::Figure trajectory_figure(const Trajectory& trajectory, const std::vector<H
 }
 
 void to_json(nlohmann::json& json, const Trajectory& trajectory) {
-    json = {{"end", trajectory.end},
-            {"time", trajectory.time},
-            {"gap", trajectory.gap},
-            {"heave_velocity", trajectory.heave_velocity},
-            {"lift_force", trajectory.lift_force},
-            {"heave_drag", trajectory.heave_drag},
-            {"input_force", trajectory.input_force}};
-    json["events"] = nlohmann::json::array();
-    for (const TrajectoryEvent& event : trajectory.events) {
-        json["events"].push_back(
-            {{"time", event.time}, {"kind", event.kind}, {"gap", event.gap}, {"heave_velocity", event.velocity}});
-    }
-    json["outside_table"] = std::count(trajectory.outside.begin(), trajectory.outside.end(), true);
-    json["remarks"] = nlohmann::json::array();
-    for (const core::Problem& remark : trajectory.remarks) {
-        json["remarks"].push_back(remark.message);
-    }
+    write_table(json, trajectory.end, trajectory.table());
+    write_events(json, trajectory.events, true);
+    write_remarks(json, trajectory.outside, trajectory.remarks);
 }
 
 }  // namespace underbody::dynamics

@@ -110,11 +110,8 @@ struct BodyTrajectory {
     std::vector<RigidBody::TableLoads> loads;
     std::vector<ContactState> contact;
     std::vector<bool> outside;  ///< a table was asked beyond its range there
-    struct Event {
-        double time = 0;
-        std::string kind;  ///< "impact nose edge", "free", "flat", ...: the contact state from then on; "escape"
-    };
-    std::vector<Event> events;
+    /// "impact nose edge", "free", "flat", ...: the contact state from then on; "escape". Without gap and velocity.
+    std::vector<TrajectoryEvent> events;
     std::vector<std::string> jets;
     std::string end = "time";  ///< "time", "contact", "escape", "equilibrium"
     core::Problems remarks;

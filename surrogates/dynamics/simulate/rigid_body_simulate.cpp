@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
-#include "surrogates/dynamics/simulate/ode.h"
+#include "surrogates/dynamics/simulate/jet_drive.h"
 #include "surrogates/dynamics/simulate/rigid_body.h"
 #include "surrogates/dynamics/simulate/trajectory_parts.h"
 
@@ -13,31 +13,25 @@ namespace {
 
 constexpr double touching_gap = 1e-9;    ///< m
 constexpr double touching_speed = 1e-7;  ///< m/s
+constexpr double shortest_piece = 1e-7;  ///< s
+constexpr int most_stuck = 200;
 
 /// Motion in pieces of one contact state each. States: the ten of the body, the thrusts of jets with a lag, the memory
 /// of the history force.
-class BodyFlight {
+class BodyFlight : public MotionDriver {
 public:
     BodyFlight(const RigidBody& body, const JetCommand& command, const BodyOptions& options, const InputSignals& inputs,
                BodyTrajectory& out)
-        : body_(body), command_(command), options_(options), inputs_(body.vertical(), inputs), out_(out) {
-        for (std::size_t i = 0; i < body.jets().size(); ++i) {
-            out_.jets.push_back(body.jets()[i].name);
-            if (body.jets()[i].lag > 0) {
-                lagged_.push_back(i);
-            }
-        }
-        memory_at_ = 10 + lagged_.size();
-        states_ = memory_at_ + (body.remembers() ? history_states : 0);
+        : body_(body),
+          options_(options),
+          inputs_(body.vertical(), inputs),
+          jets_(body.jets(), command, options.command_step, body_states),
+          out_(out),
+          memory_at_(body_states + jets_.states()) {
+        out_.jets = jets_.names();
+        settings = body_settings(options, inputs_, memory_at_ + (body.remembers() ? history_states : 0));
     }
 
-    /// Takes the controller's next sample.
-    void sample(double t, const BodyState& y) {
-        sampled_.clear();
-        if (options_.command_step > 0 && command_) {
-            sampled_ = commanded(t, y);
-        }
-    }
     void fly(const BodyState& start, double t0, core::Progress& progress);
 
 private:
@@ -51,29 +45,15 @@ private:
     Surroundings around(double t, const double* y) {
         return inputs_.at(t, body_.remembers() ? y + memory_at_ : nullptr);
     }
-    std::vector<double> commanded(double t, const BodyState& y) const {
-        if (!sampled_.empty()) {
-            return sampled_;
-        }
-        std::vector<double> thrust = command_ ? command_(t, y) : std::vector<double>{};
-        thrust.resize(body_.jets().size(), 0.0);
-        for (std::size_t i = 0; i < thrust.size(); ++i) {
-            thrust[i] = std::clamp(thrust[i], body_.jets()[i].minimum, body_.jets()[i].maximum);
-        }
-        return thrust;
+    std::vector<double> thrusts(double t, const double* y) const { return jets_.thrusts(t, body_of(y), y); }
+    void rates(double t, const double* y, double* d) override;
+    void events(double t, const double* y, double* g) override;
+    void record(double t, const double* y) override;
+    bool after(const Ode::Stop& stop, double t, std::vector<double>& y) override;
+    void sample(double t, const std::vector<double>& y) override {
+        stuck_ = 0;
+        jets_.sample(t, body_of(y.data()));
     }
-    std::vector<double> thrusts(double t, const double* y) const {
-        std::vector<double> thrust = commanded(t, body_of(y));
-        for (std::size_t k = 0; k < lagged_.size(); ++k) {
-            thrust[lagged_[k]] = y[10 + k];
-        }
-        return thrust;
-    }
-    void rates(double t, const double* y, double* d);
-    void record(double t, const double* y);
-    Ode make_ode();
-    Ode::Stop follow(Ode& ode, double& t, double t0);
-    bool after(const Ode::Stop& stop, double t, std::vector<double>& y);
     /// Edges on the ground that do not leave it.
     ContactState touching(const BodyState& y) const {
         const std::array<double, 2> gaps = body_.edge_gaps(y), speeds = body_.edge_speeds(y);
@@ -86,15 +66,15 @@ private:
     /// Impacts if an edge strikes, then the contact state from here on.
     void land(double t, std::vector<double>& y);
 
+    static constexpr std::size_t body_states = std::tuple_size_v<BodyState>;
     const RigidBody& body_;
-    const JetCommand& command_;
     const BodyOptions& options_;
     RecordedInputs inputs_;
+    JetDrive jets_;
     BodyTrajectory& out_;
-    std::vector<std::size_t> lagged_;
-    std::size_t memory_at_ = 10, states_ = 10;
-    std::vector<double> sampled_;  ///< thrusts that a digital controller holds; empty: continuous
+    std::size_t memory_at_;
     ContactState bearing_ = ContactState::free;
+    int stuck_ = 0;  ///< pieces in a row that were shorter than `shortest_piece`
 };
 
 void BodyFlight::record(double t, const double* y) {
@@ -140,14 +120,8 @@ void BodyFlight::land(double t, std::vector<double>& y) {
 
 void BodyFlight::rates(double t, const double* y, double* d) {
     const BodyState state = body_of(y);
-    const std::vector<double> wanted = commanded(t, state);
-    std::vector<double> thrust = wanted;
-    for (std::size_t k = 0; k < lagged_.size(); ++k) {
-        thrust[lagged_[k]] = y[10 + k];
-        d[10 + k] = (wanted[lagged_[k]] - y[10 + k]) / body_.jets()[lagged_[k]].lag;
-    }
     BodyState rate{};
-    body_.rate(state, thrust, bearing_, rate, around(t, y));
+    body_.rate(state, jets_.rates(t, state, y, d), bearing_, rate, around(t, y));
     std::copy(rate.begin(), rate.end(), d);
     if (body_.remembers()) {
         const HistoryKernel& kernel = history_kernel();
@@ -158,62 +132,29 @@ void BodyFlight::rates(double t, const double* y, double* d) {
     }
 }
 
-Ode BodyFlight::make_ode() {
-    OdeProblem problem;
-    problem.size = states_;
-    problem.rate = [this](double t, const double* y, double* d) { rates(t, y, d); };
-    problem.direction = {-1, -1, -1, -1};
-    problem.events = [this](double t, const double* y, double* g) {
-        const BodyState state = body_of(y);
-        const std::array<double, 2> gaps = body_.edge_gaps(state);
-        const std::array<double, 2> normal = body_.normal_forces(state, thrusts(t, y), bearing_, around(t, y));
-        for (std::size_t e = 0; e < 2; ++e) {
-            // A bearing edge waits for its force to vanish, a free one for its gap.
-            g[e] = (static_cast<int>(bearing_) >> e & 1) ? normal[e] : gaps[e];
-        }
-        g[escape] = options_.escape_gap > 0 ? options_.escape_gap - body_.gap_at_base_centre(state) : 1.0;
-        g[settle] = 1.0;
-        if (options_.stop_at_equilibrium) {
-            std::vector<double> d(states_);
-            rates(t, y, d.data());
-            constexpr double size = 0.1;  // m, turns rad/s into the speed of the body's ends
-            double sum = d[state_z] * d[state_z];
-            for (const BodyStateIndex i : {state_u, state_v, state_w}) {
-                sum += d[i] * d[i];
+void BodyFlight::events(double t, const double* y, double* g) {
+    const BodyState state = body_of(y);
+    const std::array<double, 2> gaps = body_.edge_gaps(state);
+    const std::array<double, 2> normal = body_.normal_forces(state, thrusts(t, y), bearing_, around(t, y));
+    for (std::size_t e = 0; e < 2; ++e) {
+        // A bearing edge waits for its force to vanish, a free one for its gap.
+        g[e] = (static_cast<int>(bearing_) >> e & 1) ? normal[e] : gaps[e];
+    }
+    g[escape] = options_.escape_gap > 0 ? options_.escape_gap - body_.gap_at_base_centre(state) : 1.0;
+    g[settle] = 1.0;
+    if (options_.stop_at_equilibrium) {
+        std::vector<double> d(settings.states);
+        rates(t, y, d.data());
+        const auto sum = [&](std::initializer_list<BodyStateIndex> which) {
+            double squares = 0;
+            for (const BodyStateIndex i : which) {
+                squares += d[i] * d[i];
             }
-            for (const BodyStateIndex i : {state_q, state_r, state_theta}) {
-                sum += size * size * d[i] * d[i];
-            }
-            g[settle] = sum / (options_.settle_speed * options_.settle_speed) - 1;
-        }
-    };
-    OdeOptions options;
-    options.relative = options_.tolerance;
-    options.absolute.assign(problem.size, options_.tolerance * 1e-2);
-    const double corner = inputs_.max_step();
-    options.max_step = corner > 0 ? std::min(corner, 0.1) : 0.1;
-    return Ode(std::move(problem), options);
-}
-
-/// Rows until the next event, the controller's next sample or the end.
-Ode::Stop BodyFlight::follow(Ode& ode, double& t, double t0) {
-    const auto after_now = [&](double step) { return t0 + step * (std::floor((t - t0) / step * (1 + 1e-12)) + 1); };
-    const double step = options_.output_step, sampling = sampled_.empty() ? 0 : options_.command_step;
-    const double end = std::min(t0 + options_.duration, sampling > 0 ? after_now(sampling) : 1e300);
-    Ode::Stop stop;
-    do {
-        const double next = step > 0 ? after_now(step) : end;
-        const double goal = next < end - 1e-6 * step ? next : end;
-        stop = step > 0 ? ode.advance(goal) : ode.one_step(end);
-        t = stop.t;
-        // The end of a sample is a row only where a row falls on it.
-        const bool row =
-            step == 0 || goal == next || t >= t0 + options_.duration || std::abs(goal - next) <= 1e-6 * step;
-        if (!stop.event && row) {
-            record(t, ode.state());
-        }
-    } while (!stop.event && t < end);
-    return stop;
+            return squares;
+        };
+        g[settle] = unsettled(sum({state_z, state_u, state_v, state_w}), sum({state_q, state_r, state_theta}),
+                              options_.settle_speed);
+    }
 }
 
 /// What an event does to the motion; false when it ends it.
@@ -237,89 +178,49 @@ bool BodyFlight::after(const Ode::Stop& stop, double t, std::vector<double>& y) 
     if (options_.output_step == 0) {
         record(t, y.data());
     }
+    stuck_ = t - piece_began() < shortest_piece ? stuck_ + 1 : 0;
+    if (stuck_ > most_stuck) {
+        refuse_chatter(t);
+    }
     return true;
 }
 
 void BodyFlight::fly(const BodyState& start, double t0, core::Progress& progress) {
     std::vector<double> y(start.begin(), start.end());
-    const std::vector<double> first = commanded(t0, start);
-    for (const std::size_t jet : lagged_) {
-        y.push_back(first[jet]);
-    }
-    y.resize(states_, RigidBody::world_velocity(start)[2]);
-    sample(t0, start);
+    jets_.start(t0, start, y);
+    y.resize(settings.states, RigidBody::world_velocity(start)[2]);
+    jets_.sample(t0, start);
+    settings.sampling = jets_.sampled() ? options_.command_step : 0;
     land(t0, y);
     record(t0, y.data());
-    double t = t0;
-    for (int stuck = 0; t < t0 + options_.duration;) {
-        progress.check();
-        progress.report((t - t0) / options_.duration, "simulating");
-        Ode ode = make_ode();
-        ode.start(t, y);
-        const double began = t;
-        const Ode::Stop stop = follow(ode, t, t0);
-        y.assign(ode.state(), ode.state() + states_);
-        if (stop.event ? !after(stop, t, y) : t >= t0 + options_.duration) {
-            return;
-        }
-        if (!stop.event) {
-            sample(t, body_of(y.data()));
-        }
-        stuck = stop.event && t - began < 1e-7 ? stuck + 1 : 0;
-        if (stuck > 200) {
-            throw core::Error("contact", "the contact chatters at t = " + core::format_number(t, 6) + " s", {},
-                              "a little restitution or friction less settles it");
-        }
-    }
+    run(t0, std::move(y), progress);
 }
 
 }  // namespace
 
 BodyTrajectory simulate_body(const RigidBody& body, const BodyState& start, const JetCommand& command,
                              const BodyOptions& options, core::Progress& progress, const InputSignals& inputs) {
-    for (const double part : start) {
-        if (!std::isfinite(part)) {
-            throw core::InputError("range", "the start of the motion is not a number that makes sense");
-        }
-    }
+    refuse_odd_start(start);
     if (std::abs(start[state_theta]) > 1.5) {
         throw core::InputError("range", "the start stands on its nose or tail: pitch " +
                                             core::format_number(57.29577951308232 * start[state_theta], 4) + " deg");
     }
-    const std::array<double, 2> gaps = body.edge_gaps(start);
-    if (std::min(gaps[0], gaps[1]) < -1e-9) {
-        throw core::InputError("range",
-                               "the start lies in the ground: gaps of nose and tail edge " +
-                                   core::format_number(gaps[0], 4) + " m, " + core::format_number(gaps[1], 4) + " m",
-                               {}, "start higher or flatter, or set [contact] gap in the model");
-    }
+    refuse_start_in_ground(body.edge_gaps(start));
     if (!(options.duration > 0) || options.output_step < 0) {
         throw core::UsageError("range", "duration must be positive, the output step not negative");
     }
     BodyTrajectory out;
     BodyFlight(body, command, options, inputs, out)
         .fly(start, inputs.time.empty() ? 0.0 : inputs.time.front(), progress);
-    const auto beyond = std::count(out.outside.begin(), out.outside.end(), true);
-    if (beyond > 0) {
-        out.remarks.push_back({core::Problem::Severity::warning,
-                               std::to_string(beyond) + " of " + std::to_string(out.time.size()) +
-                                   " outputs lie outside the range of a force table, where it holds its end value",
-                               {}});
-    }
+    remark_outside(out.remarks, out.outside);
     return out;
 }
 
 core::Table BodyTrajectory::table() const {
     core::Table table;
     table.add_numbers("time", "s", time);
-    const char* units[] = {"m/s", "m/s", "m/s", "rad/s", "rad/s", "rad", "rad", "m", "m", "m"};
-    for (std::size_t i = 0; i < 10; ++i) {
-        std::vector<double> column;
-        for (const BodyState& y : state) {
-            column.push_back(y[i]);
-        }
-        table.add_numbers(body_state_names()[i], units[i], column);
-    }
+    constexpr const char* units[] = {"m/s", "m/s", "m/s", "rad/s", "rad/s", "rad", "rad", "m", "m", "m"};
+    add_states(table, state, body_state_names(), units);
     table.add_numbers("p", "rad/s", roll_rate);
     table.add_numbers("gap", "m", gap);
     std::vector<double> nose, tail;
@@ -332,18 +233,17 @@ core::Table BodyTrajectory::table() const {
     table.add_numbers("nose_edge_force", "N", nose);
     table.add_numbers("tail_edge_force", "N", tail);
     table.add_text("contact", names);
-    std::vector<double> lift, drag, moment, flags;
-    for (std::size_t i = 0; i < loads.size(); ++i) {
-        lift.push_back(loads[i].lift);
-        drag.push_back(loads[i].drag);
-        moment.push_back(loads[i].moment);
-        flags.push_back(outside[i] ? 1 : 0);
+    std::vector<double> lift, drag, moment;
+    for (const RigidBody::TableLoads& load : loads) {
+        lift.push_back(load.lift);
+        drag.push_back(load.drag);
+        moment.push_back(load.moment);
     }
     table.add_numbers("lift_force", "N", lift);
     table.add_numbers("drag_force", "N", drag);
     table.add_numbers("pitch_moment", "N m", moment);
     add_thrusts(table, jets, thrust);
-    table.add_numbers("outside_table", "1", flags);
+    add_outside(table, outside);
     return table;
 }
 
@@ -368,20 +268,9 @@ core::Figure trajectory_figure(const BodyTrajectory& trajectory) {
 }
 
 void to_json(nlohmann::json& json, const BodyTrajectory& trajectory) {
-    json = {{"end", trajectory.end}};
-    const core::Table table = trajectory.table();
-    for (const core::Column& column : table.columns()) {
-        json[column.name] = column.is_text() ? nlohmann::json(column.text) : nlohmann::json(column.numbers);
-    }
-    json["events"] = nlohmann::json::array();
-    for (const BodyTrajectory::Event& event : trajectory.events) {
-        json["events"].push_back({{"time", event.time}, {"kind", event.kind}});
-    }
-    json["outside_table"] = std::count(trajectory.outside.begin(), trajectory.outside.end(), true);
-    json["remarks"] = nlohmann::json::array();
-    for (const core::Problem& remark : trajectory.remarks) {
-        json["remarks"].push_back(remark.message);
-    }
+    write_table(json, trajectory.end, trajectory.table());
+    write_events(json, trajectory.events, false);
+    write_remarks(json, trajectory.outside, trajectory.remarks);
 }
 
 }  // namespace underbody::dynamics

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
-#include "surrogates/dynamics/simulate/ode.h"
+#include "surrogates/dynamics/simulate/jet_drive.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
 #include "surrogates/dynamics/simulate/trajectory_parts.h"
 
@@ -12,20 +12,20 @@ namespace underbody::dynamics {
 namespace {
 
 /// The states of the surface motion, then the thrusts of the jets that lag.
-class SurfaceRun {
+class SurfaceRun : public MotionDriver {
 public:
     SurfaceRun(const SurfaceMotion& motion, const JetCommand& command, const BodyOptions& options,
                const InputSignals& inputs, SurfaceTrajectory& out)
-        : motion_(motion), command_(command), options_(options), inputs_(motion.vertical(), inputs), out_(out) {
-        for (std::size_t i = 0; i < motion.jets().size(); ++i) {
-            out_.jets.push_back(motion.jets()[i].name);
-            if (motion.jets()[i].lag > 0) {
-                lagged_.push_back(i);
-            }
-        }
+        : motion_(motion),
+          options_(options),
+          inputs_(motion.vertical(), inputs),
+          jets_(motion.jets(), command, options.command_step, surface_states),
+          out_(out) {
+        out_.jets = jets_.names();
+        settings = body_settings(options, inputs_, surface_states + jets_.states());
     }
 
-    void run(const SurfaceState& start, double t0, core::Progress& progress);
+    void slide(const SurfaceState& start, double t0, core::Progress& progress);
 
 private:
     enum Event { lift_off, nose, tail, settle };
@@ -35,10 +35,7 @@ private:
         std::copy(y, y + state.size(), state.begin());
         return state;
     }
-    std::vector<double> commanded(double t, const double* y) const {
-        if (!sampled_.empty()) {
-            return sampled_;
-        }
+    static BodyState body_of(const double* y) {
         BodyState body{};
         body[state_u] = y[0];
         body[state_v] = y[1];
@@ -46,42 +43,27 @@ private:
         body[state_psi] = y[3];
         body[state_x] = y[4];
         body[state_y] = y[5];
-        std::vector<double> thrust = command_ ? command_(t, body) : std::vector<double>{};
-        thrust.resize(motion_.jets().size(), 0.0);
-        for (std::size_t i = 0; i < thrust.size(); ++i) {
-            thrust[i] = std::clamp(thrust[i], motion_.jets()[i].minimum, motion_.jets()[i].maximum);
-        }
-        return thrust;
+        return body;
     }
-    std::vector<double> thrusts(double t, const double* y) const {
-        std::vector<double> thrust = commanded(t, y);
-        for (std::size_t k = 0; k < lagged_.size(); ++k) {
-            thrust[lagged_[k]] = y[6 + k];
-        }
-        return thrust;
-    }
-    void rates(double t, const double* y, double* d);
-    void events(double t, const double* y, double* g);
-    void record(double t, const double* y);
+    std::vector<double> thrusts(double t, const double* y) const { return jets_.thrusts(t, body_of(y), y); }
+    void rates(double t, const double* y, double* d) override;
+    void events(double t, const double* y, double* g) override;
+    void record(double t, const double* y) override;
+    bool after(const Ode::Stop& stop, double t, std::vector<double>& y) override;
+    void sample(double t, const std::vector<double>& y) override { jets_.sample(t, body_of(y.data())); }
+    void end_by(std::ptrdiff_t event, double t);
 
+    static constexpr std::size_t surface_states = std::tuple_size_v<SurfaceState>;
     const SurfaceMotion& motion_;
-    const JetCommand& command_;
     const BodyOptions& options_;
     RecordedInputs inputs_;
+    JetDrive jets_;
     SurfaceTrajectory& out_;
-    std::vector<std::size_t> lagged_;
-    std::vector<double> sampled_;  ///< thrusts that a digital controller holds; empty: continuous
 };
 
 void SurfaceRun::rates(double t, const double* y, double* d) {
-    const std::vector<double> wanted = commanded(t, y);
-    std::vector<double> thrust = wanted;
-    for (std::size_t k = 0; k < lagged_.size(); ++k) {
-        thrust[lagged_[k]] = y[6 + k];
-        d[6 + k] = (wanted[lagged_[k]] - y[6 + k]) / motion_.jets()[lagged_[k]].lag;
-    }
     SurfaceState rate{};
-    motion_.rate(state_of(y), thrust, rate, inputs_.at(t));
+    motion_.rate(state_of(y), jets_.rates(t, body_of(y), y, d), rate, inputs_.at(t));
     std::copy(rate.begin(), rate.end(), d);
 }
 
@@ -93,12 +75,9 @@ void SurfaceRun::events(double t, const double* y, double* g) {
     g[tail] = finite(c.forward - motion_.tail());
     g[settle] = 1;
     if (options_.stop_at_equilibrium) {
-        std::vector<double> d(6 + lagged_.size());
+        std::vector<double> d(settings.states);
         rates(t, y, d.data());
-        constexpr double size = 0.1;  // m, turns rad/s into the speed of the body's ends
-        g[settle] = (d[0] * d[0] + d[1] * d[1] + size * size * (d[2] * d[2] + d[3] * d[3])) /
-                        (options_.settle_speed * options_.settle_speed) -
-                    1;
+        g[settle] = unsettled(d[0] * d[0] + d[1] * d[1], d[2] * d[2] + d[3] * d[3], options_.settle_speed);
     }
 }
 
@@ -110,101 +89,56 @@ void SurfaceRun::record(double t, const double* y) {
     out_.contact.push_back(motion_.contact(state, out_.thrust.back(), inputs_.at(t)));
 }
 
-void SurfaceRun::run(const SurfaceState& start, double t0, core::Progress& progress) {
+void SurfaceRun::end_by(std::ptrdiff_t event, double t) {
+    static const char* const names[] = {"lift_off", "tips on the nose edge", "tips on the tail edge", "equilibrium"};
+    out_.end = names[event];
+    out_.events.push_back({t, out_.end, 0, 0});
+}
+
+/// Every event ends the motion.
+bool SurfaceRun::after(const Ode::Stop& stop, double t, std::vector<double>& y) {
+    record(t, y.data());
+    const auto which = std::find_if(stop.which.begin(), stop.which.end(), [](int w) { return w != 0; });
+    end_by(which - stop.which.begin(), t);
+    return false;
+}
+
+void SurfaceRun::slide(const SurfaceState& start, double t0, core::Progress& progress) {
     std::vector<double> y(start.begin(), start.end());
-    const std::vector<double> first = commanded(t0, y.data());
-    for (const std::size_t jet : lagged_) {
-        y.push_back(first[jet]);
-    }
+    jets_.start(t0, body_of(y.data()), y);
     record(t0, y.data());
-    const auto ends = [&](double t, const char* how) {
-        out_.end = how;
-        out_.events.push_back({t, how, 0, 0});
-    };
     double g[4];
     events(t0, y.data(), g);
-    static const char* const names[] = {"lift_off", "tips on the nose edge", "tips on the tail edge", "equilibrium"};
     for (const Event event : {lift_off, nose, tail}) {
         if (g[event] < 0) {
-            return ends(t0, names[event]);
+            return end_by(event, t0);
         }
     }
-    OdeProblem problem;
-    problem.size = y.size();
-    problem.rate = [this](double t, const double* s, double* d) { rates(t, s, d); };
-    problem.direction = {-1, -1, -1, -1};
-    problem.events = [this](double t, const double* s, double* values) { events(t, s, values); };
-    OdeOptions options;
-    options.relative = options_.tolerance;
-    options.absolute.assign(y.size(), options_.tolerance * 1e-2);
-    const double corner = inputs_.max_step();
-    options.max_step = corner > 0 ? std::min(corner, 0.1) : 0.1;
-    Ode ode(std::move(problem), options);
-    ode.start(t0, y);
-    const double end = t0 + options_.duration, step = options_.output_step, sampling = options_.command_step;
-    const auto sample = [&](double t, const double* s) {
-        sampled_.clear();
-        sampled_ = commanded(t, s);
-    };
-    if (sampling > 0 && command_) {
-        sample(t0, y.data());
-    }
-    for (double t = t0; t < end;) {
-        progress.check();
-        progress.report((t - t0) / options_.duration, "simulating");
-        const auto after_now = [&](double width) {
-            return width > 0 ? t0 + width * (std::floor((t - t0) / width * (1 + 1e-12)) + 1) : 1e300;
-        };
-        const double row = after_now(step), tick = sampled_.empty() ? 1e300 : after_now(sampling);
-        double goal = std::min({row, tick, end});
-        goal = end - goal < 1e-6 * step ? end : goal;
-        const Ode::Stop stop = step > 0 ? ode.advance(goal) : ode.one_step(goal);
-        t = stop.t;
-        if (step == 0 || stop.event || t >= end || std::abs(t - row) <= 1e-6 * step) {
-            record(t, ode.state());
-        }
-        if (!stop.event && tick < 1e299 && t >= tick - 1e-9 * sampling) {
-            y.assign(ode.state(), ode.state() + y.size());
-            sample(t, y.data());
-            ode.start(t, y);
-        }
-        if (stop.event) {
-            const auto which = std::find_if(stop.which.begin(), stop.which.end(), [](int w) { return w != 0; });
-            return ends(t, names[which - stop.which.begin()]);
-        }
-    }
+    sample(t0, y);
+    settings.sampling = jets_.sampled() ? options_.command_step : 0;
+    run(t0, std::move(y), progress);
 }
 
 }  // namespace
 
 SurfaceTrajectory simulate_surface(const SurfaceMotion& motion, const SurfaceState& start, const JetCommand& command,
                                    const BodyOptions& options, core::Progress& progress, const InputSignals& inputs) {
-    for (const double part : start) {
-        if (!std::isfinite(part)) {
-            throw core::InputError("range", "the start of the motion is not a number that makes sense");
-        }
-    }
+    refuse_odd_start(start);
     if (!(options.duration > 0) || options.output_step < 0) {
         throw core::UsageError("range", "duration must be positive, the output step not negative");
     }
     SurfaceTrajectory out;
     SurfaceRun(motion, command, options, inputs, out)
-        .run(start, inputs.time.empty() ? 0.0 : inputs.time.front(), progress);
+        .slide(start, inputs.time.empty() ? 0.0 : inputs.time.front(), progress);
     return out;
 }
 
 core::Table SurfaceTrajectory::table() const {
     core::Table table;
     table.add_numbers("time", "s", time);
-    const char* names[] = {"u", "v", "r", "psi", "X", "Y"};
-    const char* units[] = {"m/s", "m/s", "rad/s", "rad", "m", "m"};
-    for (std::size_t i = 0; i < 6; ++i) {
-        std::vector<double> column;
-        for (const SurfaceState& y : state) {
-            column.push_back(y[i]);
-        }
-        table.add_numbers(names[i], units[i], column);
-    }
+    static const std::vector<std::string> names = {"u", "v", "r", "psi", "X", "Y"};
+    constexpr const char* units[] = {"m/s", "m/s", "rad/s", "rad", "m", "m"};
+    add_states(table, state, names, units);
     std::vector<double> normal, forward, fx, fy;
     for (const SurfaceMotion::Contact& c : contact) {
         normal.push_back(c.normal);
@@ -236,15 +170,8 @@ core::Figure trajectory_figure(const SurfaceTrajectory& trajectory) {
 }
 
 void to_json(nlohmann::json& json, const SurfaceTrajectory& trajectory) {
-    json = {{"end", trajectory.end}};
-    const core::Table table = trajectory.table();
-    for (const core::Column& column : table.columns()) {
-        json[column.name] = column.numbers;
-    }
-    json["events"] = nlohmann::json::array();
-    for (const TrajectoryEvent& event : trajectory.events) {
-        json["events"].push_back({{"time", event.time}, {"kind", event.kind}});
-    }
+    write_table(json, trajectory.end, trajectory.table());
+    write_events(json, trajectory.events, false);
 }
 
 }  // namespace underbody::dynamics

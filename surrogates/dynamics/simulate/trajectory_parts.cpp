@@ -1,5 +1,11 @@
 #include "surrogates/dynamics/simulate/trajectory_parts.h"
 
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/text.h"
+
 namespace underbody::dynamics {
 
 void add_events(core::Figure& figure, const std::vector<TrajectoryEvent>& events,
@@ -28,6 +34,68 @@ void add_thrusts(core::Table& table, const std::vector<std::string>& jets,
             column.push_back(one[j]);
         }
         table.add_numbers(jets[j], "N", column);
+    }
+}
+
+void add_outside(core::Table& table, const std::vector<bool>& outside) {
+    table.add_numbers("outside_table", "1", std::vector<double>(outside.begin(), outside.end()));
+}
+
+void write_table(nlohmann::json& json, const std::string& end, const core::Table& table) {
+    json = {{"end", end}};
+    for (const core::Column& column : table.columns()) {
+        json[column.name] = column.is_text() ? nlohmann::json(column.text) : nlohmann::json(column.numbers);
+    }
+}
+
+double unsettled(double speeds, double turns, double settle_speed) {
+    constexpr double size = 0.1;  // m, turns rad/s into the speed of the body's ends
+    return (speeds + size * size * turns) / (settle_speed * settle_speed) - 1;
+}
+
+void write_events(nlohmann::json& json, const std::vector<TrajectoryEvent>& events, bool with_state) {
+    json["events"] = nlohmann::json::array();
+    for (const TrajectoryEvent& event : events) {
+        nlohmann::json one = {{"time", event.time}, {"kind", event.kind}};
+        if (with_state) {
+            one["gap"] = event.gap;
+            one["heave_velocity"] = event.velocity;
+        }
+        json["events"].push_back(std::move(one));
+    }
+}
+
+void write_remarks(nlohmann::json& json, const std::vector<bool>& outside, const core::Problems& remarks) {
+    json["outside_table"] = std::count(outside.begin(), outside.end(), true);
+    json["remarks"] = nlohmann::json::array();
+    for (const core::Problem& remark : remarks) {
+        json["remarks"].push_back(remark.message);
+    }
+}
+
+void remark_outside(core::Problems& remarks, const std::vector<bool>& outside, const std::string& range) {
+    const auto beyond = std::count(outside.begin(), outside.end(), true);
+    if (beyond > 0) {
+        remarks.push_back({core::Problem::Severity::warning,
+                           std::to_string(beyond) + " of " + std::to_string(outside.size()) +
+                               " outputs lie outside the range of a force table" + range +
+                               ", where it holds its end value",
+                           {}});
+    }
+}
+
+void refuse_odd_start(std::span<const double> start) {
+    if (!std::all_of(start.begin(), start.end(), [](double part) { return std::isfinite(part); })) {
+        throw core::InputError("range", "the start of the motion is not a number that makes sense");
+    }
+}
+
+void refuse_start_in_ground(const std::array<double, 2>& gaps) {
+    if (std::min(gaps[0], gaps[1]) < -1e-9) {
+        throw core::InputError("range",
+                               "the start lies in the ground: gaps of nose and tail edge " +
+                                   core::format_number(gaps[0], 4) + " m, " + core::format_number(gaps[1], 4) + " m",
+                               {}, "start higher or flatter, or set [contact] gap in the model");
     }
 }
 
