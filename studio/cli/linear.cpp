@@ -35,7 +35,7 @@ struct LinearArguments {
     std::string friction_offset;
 };
 
-nlohmann::json matrix_json(const dynamics::Dense& m) {
+nlohmann::json matrix_json(const dynamics::Matrix& m) {
     nlohmann::json rows = nlohmann::json::array();
     for (std::size_t i = 0; i < m.rows(); ++i) {
         nlohmann::json row = nlohmann::json::array();

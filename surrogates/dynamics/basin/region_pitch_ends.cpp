@@ -17,12 +17,12 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
     classes_.push_back({e.name, EndKind::attractor, e.gap, 0});
     const LinearSystem system = plant_.linearised(e.gap, e.pitch);
     double worst = -1e300;
-    for (const Eigen1& mode : eigen(system.a)) {
+    for (const EigenPair& mode : eigen(system.a)) {
         worst = std::max(worst, mode.value.real());
     }
     const HeaveTerms& terms = plant_.vertical().terms;
     if (worst < -1e-4 && terms.waves.empty() && terms.history == 0 && !plant_.vertical().loop_has_states()) {
-        Dense weights(4, 4);
+        Matrix weights(4, 4);
         for (std::size_t i = 0; i < 4; ++i) {
             weights(i, i) = 1 / (sizes_[i] * sizes_[i]);
         }

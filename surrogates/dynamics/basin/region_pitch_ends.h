@@ -16,7 +16,7 @@ struct Capture {
     std::size_t class_index = 0;
     double gap = 0, pitch = 0;
     bool holds = false;
-    Dense p;
+    Matrix p;
     double level = 0;
     [[nodiscard]] double value(const PitchState& y) const {
         const double x[4] = {y[0] - gap, y[1], y[2] - pitch, y[3]};

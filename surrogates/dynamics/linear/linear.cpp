@@ -13,7 +13,7 @@ LinearSystem linearise(const std::function<void(const double* x, const double* u
                        const std::vector<std::string>& states, const std::vector<std::string>& inputs,
                        const std::vector<double>& state_scale, const std::vector<double>& input_scale, double step) {
     const std::size_t n = x.size(), m = u.size();
-    LinearSystem system{Dense(n, n), Dense(n, m), states, inputs, x, u};
+    LinearSystem system{Matrix(n, n), Matrix(n, m), states, inputs, x, u};
     std::vector<double> plus(n), minus(n);
     for (std::size_t j = 0; j < n + m; ++j) {
         std::vector<double> xs = x, us = u;
@@ -36,7 +36,7 @@ namespace {
 
 /// Share of each state in a mode: |left right|; where eigenvalues coincide without as many eigenvectors (several zeros
 /// of position and heading) left and right are orthogonal, and the right one alone tells.
-std::vector<double> participation_of(const Eigen1& e) {
+std::vector<double> participation_of(const EigenPair& e) {
     std::vector<double> share(e.right.size());
     double sum = 0, lefts = 0;
     for (std::size_t i = 0; i < share.size(); ++i) {
@@ -61,7 +61,7 @@ std::vector<double> participation_of(const Eigen1& e) {
 
 std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::string>& groups) {
     std::vector<Mode> found;
-    for (const Eigen1& e : eigen(system.a)) {
+    for (const EigenPair& e : eigen(system.a)) {
         if (e.value.imag() < 0) {
             continue;
         }
@@ -96,7 +96,7 @@ Controllability controllability(const LinearSystem& system, double tolerance) {
     const std::size_t n = system.a.rows(), m = system.b.columns();
     Controllability result;
     if (m == 0) {  // no input moves anything
-        for (const Eigen1& e : eigen(system.a)) {
+        for (const EigenPair& e : eigen(system.a)) {
             result.uncontrollable.emplace_back();
             for (const auto& part : e.left) {
                 result.uncontrollable.back().push_back(part.real());
@@ -104,7 +104,7 @@ Controllability controllability(const LinearSystem& system, double tolerance) {
         }
         return result;
     }
-    Dense all(n, n * m), power = system.b;
+    Matrix all(n, n * m), power = system.b;
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t i = 0; i < n; ++i) {
             for (std::size_t j = 0; j < m; ++j) {
@@ -116,7 +116,7 @@ Controllability controllability(const LinearSystem& system, double tolerance) {
     const std::vector<double> s = singular_values(all);
     result.weakness = s.front() > 0 ? s.back() / s.front() : 0;
     result.rank = rank(all, tolerance);
-    for (const Eigen1& e : eigen(system.a)) {
+    for (const EigenPair& e : eigen(system.a)) {
         double reach = 0, size = 0;
         for (std::size_t j = 0; j < m; ++j) {
             std::complex<double> product = 0;
@@ -141,13 +141,13 @@ std::vector<std::complex<double>> zeros(const LinearSystem& system, std::size_t 
     // Zeros are the poles under infinite feedback: eigenvalues of A - b (c A)/(c b) when c b is not zero, going on
     // through c A^k b when it is; those of the relative degree stay at the origin and are taken out.
     const std::size_t n = system.a.rows();
-    Dense b(n, 1), c(1, n);
+    Matrix b(n, 1), c(1, n);
     for (std::size_t i = 0; i < n; ++i) {
         b(i, 0) = system.b(i, input);
     }
     c(0, state) = 1;
     int degree = 1;
-    Dense row = c;
+    Matrix row = c;
     while (degree <= static_cast<int>(n) &&
            std::abs((row * b)(0, 0)) < 1e-13 * (row.largest() * b.largest() + 1e-300)) {
         row = row * system.a;
@@ -156,9 +156,9 @@ std::vector<std::complex<double>> zeros(const LinearSystem& system, std::size_t 
     if (degree > static_cast<int>(n)) {
         return {};
     }
-    const Dense closed = system.a - (1 / (row * b)(0, 0)) * (b * (row * system.a));
+    const Matrix closed = system.a - (1 / (row * b)(0, 0)) * (b * (row * system.a));
     std::vector<std::complex<double>> found;
-    for (const Eigen1& e : eigen(closed)) {
+    for (const EigenPair& e : eigen(closed)) {
         found.push_back(e.value);
     }
     std::sort(found.begin(), found.end(), [](auto l, auto r) { return std::abs(l) < std::abs(r); });
@@ -167,11 +167,11 @@ std::vector<std::complex<double>> zeros(const LinearSystem& system, std::size_t 
     return found;
 }
 
-Regulator lqr(const LinearSystem& system, const Dense& q, const Dense& r) {
-    const Dense x = riccati(system.a, system.b, q, r);
+Regulator lqr(const LinearSystem& system, const Matrix& q, const Matrix& r) {
+    const Matrix x = riccati(system.a, system.b, q, r);
     Regulator regulator;
     regulator.gain = solve(r, system.b.transposed() * x);
-    for (const Eigen1& e : eigen(system.a - system.b * regulator.gain)) {
+    for (const EigenPair& e : eigen(system.a - system.b * regulator.gain)) {
         regulator.poles.push_back(e.value);
     }
     return regulator;
@@ -190,11 +190,11 @@ LinearSystem surface_system(const SurfaceCoefficients& c, double speed, double f
     LinearSystem system;
     system.states = {"u", "v", "r", "psi"};
     system.inputs = {"X", "Y", "N"};
-    system.a = Dense{{-2 * c.drag_x * speed / c.mass_x, 0, 0, 0},
-                     {0, -friction_force / (speed * c.mass_y), -c.mass_x * speed / c.mass_y, 0},
-                     {0, c.munk * speed / c.inertia_r, 0, 0},
-                     {0, 0, 1, 0}};
-    system.b = Dense{{1 / c.mass_x, 0, 0}, {0, 1 / c.mass_y, 0}, {0, 0, 1 / c.inertia_r}, {0, 0, 0}};
+    system.a = Matrix{{-2 * c.drag_x * speed / c.mass_x, 0, 0, 0},
+                      {0, -friction_force / (speed * c.mass_y), -c.mass_x * speed / c.mass_y, 0},
+                      {0, c.munk * speed / c.inertia_r, 0, 0},
+                      {0, 0, 1, 0}};
+    system.b = Matrix{{1 / c.mass_x, 0, 0}, {0, 1 / c.mass_y, 0}, {0, 0, 1 / c.inertia_r}, {0, 0, 0}};
     system.state_trim = {speed, 0, 0, 0};
     system.input_trim = {c.drag_x * speed * speed + friction_force, 0, 0};
     return system;
@@ -207,8 +207,8 @@ YawTransfer yaw_transfer(const SurfaceCoefficients& c, double speed, double fric
     transfer.turn = -(jets.turn_y * cg + jets.turn_x * sg) * cb / c.inertia_r;
     const double a = friction_force / (speed * c.mass_y);
     transfer.zero = -a - c.munk * speed / c.inertia_r * transfer.side / transfer.turn;
-    const Dense matrix{{-a, -c.mass_x * speed / c.mass_y}, {c.munk * speed / c.inertia_r, 0}};
-    for (const Eigen1& e : eigen(matrix)) {
+    const Matrix matrix{{-a, -c.mass_x * speed / c.mass_y}, {c.munk * speed / c.inertia_r, 0}};
+    for (const EigenPair& e : eigen(matrix)) {
         transfer.poles.push_back(e.value);
     }
     return transfer;

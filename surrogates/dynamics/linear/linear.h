@@ -1,21 +1,22 @@
 // Linear analysis about a trim: system matrices, named modes, controllability, poles and zeros, LQR, PD bounds.
 #pragma once
 
+#include <complex>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "core/figure.h"
-#include "surrogates/dynamics/model/dense.h"
 #include "surrogates/dynamics/model/jets.h"
+#include "surrogates/dynamics/model/matrix.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::dynamics {
 
 /// dx/dt = A dx + B du about a trim.
 struct LinearSystem {
-    Dense a, b;
+    Matrix a, b;
     std::vector<std::string> states, inputs;
     std::vector<double> state_trim, input_trim;
 };
@@ -51,10 +52,10 @@ std::vector<std::complex<double>> zeros(const LinearSystem& system, std::size_t 
 
 /// u = -K x of least cost integral x'Qx + u'Ru.
 struct Regulator {
-    Dense gain;
+    Matrix gain;
     std::vector<std::complex<double>> poles;  ///< of A - B K
 };
-Regulator lqr(const LinearSystem& system, const Dense& q, const Dense& r);
+Regulator lqr(const LinearSystem& system, const Matrix& q, const Matrix& r);
 
 // ---- Surface motion, states u, v, r, psi about a steady run at speed U (docs/physics.md section 3.5). ----
 

@@ -139,8 +139,8 @@ LinearSystem heave_system(const HeavePlant& plant, double gap, double* stiffness
         *stiffness = k;
     }
     LinearSystem system;
-    system.a = Dense{{-damping / mass, -k / mass}, {1, 0}};
-    system.b = Dense{{1 / mass}, {0}};
+    system.a = Matrix{{-damping / mass, -k / mass}, {1, 0}};
+    system.b = Matrix{{1 / mass}, {0}};
     system.states = {"heave_velocity", "gap"};
     system.inputs = {"input_force"};
     return system;

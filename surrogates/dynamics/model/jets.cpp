@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surrogates/dynamics/model/dense.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::dynamics {
 
@@ -170,7 +170,7 @@ private:
     /// From here to the minimum over these thrusts, by Cholesky: a handful of unknowns, thousands of times a second.
     std::vector<double> newton_step(const std::vector<std::size_t>& which) const {
         const std::size_t n = which.size();
-        Dense l(n, n);
+        Matrix l(n, n);
         std::vector<double> x(n);
         for (std::size_t i = 0; i < n; ++i) {
             x[i] = gradient(which[i]);
@@ -233,7 +233,7 @@ private:
 
     const std::vector<std::array<double, 6>>& columns_;
     std::span<const Jet> jets_;
-    Dense normal_;
+    Matrix normal_;
     std::vector<double> right_, thrust_;
     std::vector<bool> free_;
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "surrogates/dynamics/model/dense.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::dynamics {
 
@@ -132,11 +132,11 @@ void check_inertia(const Vehicle& v, const core::TomlTable& vehicle) {
         }
         return;
     }
-    const Dense tensor{{v.roll_inertia, -v.inertia_product_xy, -v.inertia_product_xz},
-                       {-v.inertia_product_xy, v.pitch_inertia, -v.inertia_product_yz},
-                       {-v.inertia_product_xz, -v.inertia_product_yz, v.yaw_inertia}};
+    const Matrix tensor{{v.roll_inertia, -v.inertia_product_xy, -v.inertia_product_xz},
+                        {-v.inertia_product_xy, v.pitch_inertia, -v.inertia_product_yz},
+                        {-v.inertia_product_xz, -v.inertia_product_yz, v.yaw_inertia}};
     std::vector<double> principal;
-    for (const Eigen1& one : eigen(tensor)) {
+    for (const EigenPair& one : eigen(tensor)) {
         principal.push_back(one.value.real());
     }
     std::sort(principal.begin(), principal.end());

@@ -27,16 +27,16 @@ HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_wei
     const double stiffness = -(plant.static_force(gap + step) - plant.static_force(gap - step)) / (2 * step);
     const double damping = (plant.resistance(gap, speed) - plant.resistance(gap, -speed)) / (2 * speed);
     LinearSystem system;
-    system.a = Dense{{-damping / mass, -stiffness / mass}, {1, 0}};
-    system.b = Dense{{1 / mass}, {0}};
-    const Regulator k = lqr(system, Dense::diagonal({velocity_weight, gap_weight}), Dense::diagonal({input_weight}));
+    system.a = Matrix{{-damping / mass, -stiffness / mass}, {1, 0}};
+    system.b = Matrix{{1 / mass}, {0}};
+    const Regulator k = lqr(system, Matrix::diagonal({velocity_weight, gap_weight}), Matrix::diagonal({input_weight}));
     return {k.gain(0, 1), k.gain(0, 0), gap, 0};
 }
 
 PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const PitchWeights& weights) {
     const LinearSystem system = plant.linearised(gap, pitch);
-    const Regulator regulator = lqr(system, Dense::diagonal({weights.state.begin(), weights.state.end()}),
-                                    Dense::diagonal({weights.force, weights.moment}));
+    const Regulator regulator = lqr(system, Matrix::diagonal({weights.state.begin(), weights.state.end()}),
+                                    Matrix::diagonal({weights.force, weights.moment}));
     PitchFeedback feedback;
     for (std::size_t i = 0; i < 4; ++i) {
         feedback.force_gain[i] = regulator.gain(0, i);
@@ -48,13 +48,13 @@ PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const
 
 std::vector<std::complex<double>> closed_poles(const HeavePitch& plant, const PitchFeedback& feedback) {
     const LinearSystem system = plant.linearised(feedback.reference[0], feedback.reference[2]);
-    Dense gain(2, 4);
+    Matrix gain(2, 4);
     for (std::size_t i = 0; i < 4; ++i) {
         gain(0, i) = feedback.force_gain[i];
         gain(1, i) = feedback.moment_gain[i];
     }
     std::vector<std::complex<double>> poles;
-    for (const Eigen1& one : eigen(system.a - system.b * gain)) {
+    for (const EigenPair& one : eigen(system.a - system.b * gain)) {
         poles.push_back(one.value);
     }
     return poles;

@@ -328,7 +328,7 @@ std::vector<HeaveEquilibrium> HeavePitch::equilibria() const {
     for (HeaveEquilibrium& e : found) {
         const LinearSystem system = linearised(e.gap, e.pitch);
         double worst = -1e300, slowest = 1e300, damping = 0;
-        for (const Eigen1& mode : eigen(system.a)) {
+        for (const EigenPair& mode : eigen(system.a)) {
             worst = std::max(worst, mode.value.real());
             if (mode.value.imag() > 0 && std::abs(mode.value) < slowest) {
                 slowest = std::abs(mode.value);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surrogates/estimator/model/decompositions.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::estimator {
 
@@ -139,7 +139,7 @@ Normalised normalise(const Moments& m, const Layout& layout, const LearnOptions&
             out.c(i, j) = 0.5 * (second(a, b) + second(b, a)) / (out.sigma[a] * out.sigma[b]);
         }
     }
-    auto spectrum = internal::symmetric_eigen(out.c);
+    auto spectrum = dynamics::symmetric_eigen(out.c);
     out.lambda = std::move(spectrum.values);
     out.t = std::move(spectrum.vectors);
     for (std::size_t j = 0; j < k; ++j) {  // a sign that does not depend on the library: the largest entry is positive

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "surrogates/estimator/model/decompositions.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::estimator {
 
@@ -83,7 +83,7 @@ AugmentedModel learn_dmd(const SnapshotPairs& pairs, std::size_t order) {
             cross(i, j) = m.covariance(ne + i, j) / sigma[j];
         }
     }
-    const auto spectrum = internal::symmetric_eigen(own);
+    const auto spectrum = dynamics::symmetric_eigen(own);
     AugmentedModel model;
     model.layout = layout;
     model.samples = pairs.count;

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "core/error.h"
-#include "surrogates/estimator/model/decompositions.h"
 
 namespace underbody::estimator {
 
@@ -29,6 +28,16 @@ double norm(const Vector& v) {
 }
 
 }  // namespace
+
+double spectral_abscissa(const Matrix& a) { return eigenvalues(a).front().real(); }
+
+double spectral_radius(const Matrix& a) {
+    double radius = 0;
+    for (const auto& pole : eigenvalues(a)) {
+        radius = std::max(radius, std::abs(pole));
+    }
+    return radius;
+}
 
 std::string direction_text(const Vector& direction, const std::vector<std::string>& names) {
     std::string text;
@@ -69,13 +78,13 @@ Observability observability(const Matrix& a, const Matrix& c, const Vector& scal
             cs(i, j) /= size;
         }
     }
-    as = (1 / std::max(internal::norm_f(as), 1e-6)) * as;  // rates below 1e-6 1/s (eleven days) count as none
+    as = (1 / std::max(dynamics::frobenius_norm(as), 1e-6)) * as;  // rates below 1e-6 1/s (eleven days) count as none
     Matrix o(p * n, n);
     o.set_block(0, 0, cs);
     for (std::size_t k = 1; k < n; ++k) {
         o.set_block(k * p, 0, o.block((k - 1) * p, 0, p, n) * as);
     }
-    const auto d = internal::singular_value_decomposition(o);
+    const auto d = dynamics::singular_value_decomposition(o);
     Observability result;
     result.singular_values = d.s;
     const double cut = tolerance * std::max(d.s.front(), 1e-300);
@@ -91,7 +100,7 @@ Observability observability(const Matrix& a, const Matrix& c, const Vector& scal
             basis(i, j) *= s[i];
         }
     }
-    Matrix q = internal::singular_value_decomposition(basis).u.block(0, 0, n, basis.columns());
+    Matrix q = dynamics::singular_value_decomposition(basis).u.block(0, 0, n, basis.columns());
     for (std::size_t j = 0; j < q.columns(); ++j) {  // the largest entry is positive
         const Vector column = q.column_of(j);
         const auto at = std::max_element(column.begin(), column.end(),
@@ -159,7 +168,7 @@ Matrix place_single_output(const Matrix& a, const Matrix& c, const Poles& poles,
         p = p * a + coefficient * Matrix::identity(n);
     }
     last(n - 1, 0) = 1;
-    return p * internal::solve(o, last);
+    return p * dynamics::solve(o, last);
 }
 
 namespace {
@@ -184,7 +193,7 @@ Matrix spread_eigenvectors(const std::vector<Matrix>& spaces) {
                     others(i, k < j ? k : k - 1) = x(i, k);
                 }
             }
-            const Vector away = internal::singular_value_decomposition(others).u.column_of(n - 1);
+            const Vector away = dynamics::singular_value_decomposition(others).u.column_of(n - 1);
             Vector v = spaces[j] * (spaces[j].transposed() * away);
             const double size = norm(v);
             if (size > 1e-12) {
@@ -218,12 +227,12 @@ Matrix place(const Matrix& a, const Matrix& c, const Vector& poles, const std::v
     }
     // The dual problem: eigenvectors of A' - C' L' lie in S_j = ker(U1' (A' - p_j)), C' = U0 Z.
     const Matrix at = a.transposed(), b = c.transposed();
-    const auto d = internal::singular_value_decomposition(b);
+    const auto d = dynamics::singular_value_decomposition(b);
     const Matrix u0 = d.u.block(0, 0, n, p), u1 = d.u.block(0, p, n, n - p), z = u0.transposed() * b;
     std::vector<Matrix> spaces;
     for (std::size_t j = 0; j < n; ++j) {
         const Matrix t = u1.transposed() * (at - poles[j] * Matrix::identity(n));
-        spaces.push_back(internal::singular_value_decomposition(t).v.block(0, n - p, n, p));
+        spaces.push_back(dynamics::singular_value_decomposition(t).v.block(0, n - p, n, p));
     }
     const char* refusal = "these poles cannot be placed: a pole repeats more often than there are measurements";
     const Matrix x = spread_eigenvectors(spaces);
@@ -232,8 +241,9 @@ Matrix place(const Matrix& a, const Matrix& c, const Vector& poles, const std::v
         throw core::InputError("poles", refusal);
     }
     const Matrix target = x * Matrix::diagonal(poles) * inverse(x);
-    const Matrix gain = internal::solve(z, u0.transposed() * (at - target));
-    if (!gain.finite() || internal::norm_f(at - b * gain - target) > 1e-6 * (1 + internal::norm_f(target))) {
+    const Matrix gain = dynamics::solve(z, u0.transposed() * (at - target));
+    if (!gain.finite() ||
+        dynamics::frobenius_norm(at - b * gain - target) > 1e-6 * (1 + dynamics::frobenius_norm(target))) {
         throw core::InputError("poles", refusal);
     }
     return gain.transposed();

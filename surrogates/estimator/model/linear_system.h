@@ -2,32 +2,27 @@
 // Continuous dx = A x + B u, y = C x unless a name says discrete. All matrices small (at most a few tens of rows).
 #pragma once
 
-#include <complex>
 #include <string>
 #include <vector>
 
+#include "surrogates/dynamics/model/matrix_algebra.h"
 #include "surrogates/estimator/model/matrix.h"
 
 namespace underbody::estimator {
 
-using Poles = std::vector<std::complex<double>>;
+using dynamics::eigenvalues;
+using dynamics::exponential;
+using dynamics::inverse;
+using dynamics::logarithm;
+using dynamics::lyapunov;
+using dynamics::Poles;
+using dynamics::pseudo_inverse;
+using dynamics::singular_values;
+using dynamics::solve;
 
-/// Eigenvalues, by descending real part, then descending imaginary part. Throws core::InputError on NaN.
-Poles eigenvalues(const Matrix& a);
 /// Largest real part ("spectral abscissa"): negative for a Hurwitz matrix.
 double spectral_abscissa(const Matrix& a);
 double spectral_radius(const Matrix& a);
-/// Singular values, descending.
-Vector singular_values(const Matrix& a);
-/// Moore-Penrose inverse; singular values at or below `tolerance` (absolute) count as zero.
-Matrix pseudo_inverse(const Matrix& a, double tolerance);
-/// Solution of A x = b for a square regular matrix.
-Vector solve(const Matrix& a, const Vector& b);
-Matrix inverse(const Matrix& a);
-/// exp(A).
-Matrix exponential(const Matrix& a);
-/// Principal logarithm. Throws core::InputError when an eigenvalue is zero or negative real.
-Matrix logarithm(const Matrix& a);
 
 /// Rank of the observability matrix [C; CA; ...] and what cannot be seen.
 struct Observability {
@@ -71,8 +66,6 @@ DiscreteFirstOrderHold discretise_first_order_hold(const Matrix& a, const Matrix
 /// Process noise of spectral density Q (dx = A x + white noise) over one step (Van Loan 1978).
 Matrix discrete_noise(const Matrix& a, const Matrix& q, double step);
 
-/// P with A' P + P A + Q = 0. Throws core::InputError when A is not Hurwitz.
-Matrix lyapunov(const Matrix& a, const Matrix& q);
 /// P with P = Phi P Phi' + Q (discrete). Throws core::InputError when Phi has an eigenvalue on or outside the unit
 /// circle.
 Matrix discrete_lyapunov(const Matrix& phi, const Matrix& q);

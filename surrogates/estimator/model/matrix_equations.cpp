@@ -1,35 +1,41 @@
-// Equations of Lyapunov and Riccati.
+// Systems in steps of time: exact discretisation, the discrete equations of Lyapunov and Riccati.
 #include <cmath>
 
 #include "core/error.h"
-#include "surrogates/dynamics/model/dense.h"
-#include "surrogates/estimator/model/decompositions.h"
 #include "surrogates/estimator/model/linear_system.h"
 
 namespace underbody::estimator {
 
-Matrix lyapunov(const Matrix& a, const Matrix& q) {
-    if (spectral_abscissa(a) >= 0) {
-        throw core::InputError("unstable",
-                               "the Lyapunov equation needs a matrix whose eigenvalues all lie in the left half plane");
-    }
-    const auto dense = [](const Matrix& m) {
-        dynamics::Dense d(m.rows(), m.columns());
-        for (std::size_t i = 0; i < m.rows(); ++i) {
-            for (std::size_t j = 0; j < m.columns(); ++j) {
-                d(i, j) = m(i, j);
-            }
-        }
-        return d;
-    };
-    const dynamics::Dense p = dynamics::lyapunov(dense(a), dense(q));
-    Matrix out(p.rows(), p.columns());
-    for (std::size_t i = 0; i < p.rows(); ++i) {
-        for (std::size_t j = 0; j < p.columns(); ++j) {
-            out(i, j) = p(i, j);
-        }
-    }
-    return out;
+Discrete discretise(const Matrix& a, const Matrix& b, double step) {
+    const std::size_t n = a.rows(), m = b.columns();
+    Matrix big(n + m, n + m);
+    big.set_block(0, 0, step * a);
+    big.set_block(0, n, step * b);
+    const Matrix e = exponential(big);
+    return {e.block(0, 0, n, n), e.block(0, n, n, m)};
+}
+
+DiscreteFirstOrderHold discretise_first_order_hold(const Matrix& a, const Matrix& b, double step) {
+    const std::size_t n = a.rows(), m = b.columns();
+    Matrix big(n + 2 * m, n + 2 * m);
+    big.set_block(0, 0, step * a);
+    big.set_block(0, n, step * b);
+    big.set_block(n, n + m, Matrix::identity(m));
+    const Matrix e = exponential(big);
+    const Matrix gamma1 = e.block(0, n + m, n, m);
+    return {e.block(0, 0, n, n), e.block(0, n, n, m) - gamma1, gamma1};
+}
+
+Matrix discrete_noise(const Matrix& a, const Matrix& q, double step) {
+    const std::size_t n = a.rows();
+    Matrix big(2 * n, 2 * n);
+    big.set_block(0, 0, -step * a);
+    big.set_block(0, n, step * q);
+    big.set_block(n, n, step * a.transposed());
+    const Matrix e = exponential(big);
+    const Matrix phi = e.block(n, n, n, n).transposed();
+    const Matrix noise = phi * e.block(0, n, n, n);
+    return 0.5 * (noise + noise.transposed());
 }
 
 Matrix discrete_lyapunov(const Matrix& phi, const Matrix& q) {
@@ -58,16 +64,16 @@ Matrix discrete_riccati(const Matrix& phi, const Matrix& c, const Matrix& q, con
         }
     }
     // Structured doubling (Chu, Fan, Lin and Wang 2004) on the dual control problem.
-    Matrix a = phi.transposed(), g = c.transposed() * internal::solve(r, c), h = q;
+    Matrix a = phi.transposed(), g = c.transposed() * dynamics::solve(r, c), h = q;
     const Matrix one = Matrix::identity(phi.rows());
     for (int i = 0; i < 100 && h.finite() && g.finite(); ++i) {
-        const Matrix w = one + g * h, wa = internal::solve(w, a), wg = internal::solve(w, g);
+        const Matrix w = one + g * h, wa = dynamics::solve(w, a), wg = dynamics::solve(w, g);
         const Matrix next = h + a.transposed() * h * wa;
         g = g + a * wg * a.transposed();
         a = a * wa;
-        const double change = internal::norm_f(next - h);
+        const double change = dynamics::frobenius_norm(next - h);
         h = 0.5 * (next + next.transposed());
-        if (change <= 1e-15 * internal::norm_f(h)) {
+        if (change <= 1e-15 * dynamics::frobenius_norm(h)) {
             return h;
         }
     }

@@ -1,5 +1,6 @@
 #include "surrogates/estimator/model/moments.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -12,12 +13,6 @@
 #include "core/file.h"
 #include "core/parallel.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define UNDERBODY_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
-#else
-#define UNDERBODY_WIDE_VECTORS
-#endif
-
 namespace underbody::estimator {
 
 namespace {
@@ -26,114 +21,40 @@ constexpr std::size_t most_channels = 64;
 constexpr std::size_t tile = 256;          // samples that stay in the first-level cache
 constexpr std::size_t chunk = 256 * tile;  // samples of one parallel block: fixes the order of summation
 
-using Lane = double __attribute__((vector_size(32)));
-
-// products[i][j] += sum over a tile of x_i x_j (j <= i); columns of `x` are `tile` long, zero-padded, 32-byte aligned.
-UNDERBODY_WIDE_VECTORS void add_products(const double* x, std::size_t channels, double* products) {
-    constexpr std::size_t lanes = tile / 4;
-    for (std::size_t i = 0; i < channels; ++i) {
-        const auto* a = reinterpret_cast<const Lane*>(x + i * tile);
-        std::size_t j = 0;
-        for (; j + 3 <= i; j += 4) {  // four products share the loads of a
-            const auto* b0 = reinterpret_cast<const Lane*>(x + j * tile);
-            const auto* b1 = b0 + lanes;
-            const auto* b2 = b1 + lanes;
-            const auto* b3 = b2 + lanes;
-            Lane s0{}, s1{}, s2{}, s3{};
-            for (std::size_t k = 0; k < lanes; ++k) {
-                s0 += a[k] * b0[k];
-                s1 += a[k] * b1[k];
-                s2 += a[k] * b2[k];
-                s3 += a[k] * b3[k];
-            }
-            double* p = products + i * channels + j;
-            p[0] += (s0[0] + s0[1]) + (s0[2] + s0[3]);
-            p[1] += (s1[0] + s1[1]) + (s1[2] + s1[3]);
-            p[2] += (s2[0] + s2[1]) + (s2[2] + s2[3]);
-            p[3] += (s3[0] + s3[1]) + (s3[2] + s3[3]);
-        }
-        for (; j <= i; ++j) {
-            const auto* b = reinterpret_cast<const Lane*>(x + j * tile);
-            Lane s{}, t{};
-            for (std::size_t k = 0; k < lanes; k += 2) {
-                s += a[k] * b[k];
-                t += a[k + 1] * b[k + 1];
-            }
-            s += t;
-            products[i * channels + j] += (s[0] + s[1]) + (s[2] + s[3]);
-        }
-    }
-}
-
-// Copies a tile of samples, less the shift, into columns; adds the sums, widens the ranges. The rest of the columns is
-// zero, which lies within the range of what is shifted by a mean.
-UNDERBODY_WIDE_VECTORS void load_tile(const SampleView& samples, std::size_t first, std::size_t count,
-                                      const double* shift, double* columns, double* sums, double* lowest,
-                                      double* highest) {
-    if (samples.sample_stride == 1) {
-        for (std::size_t c = 0; c < samples.channels; ++c) {
-            const double* from = samples.data + c * samples.channel_stride + first;
-            for (std::size_t k = 0; k < count; ++k) {
-                columns[c * tile + k] = from[k] - shift[c];
-            }
-        }
-    } else {
-        for (std::size_t k = 0; k < count; ++k) {
-            const double* from = samples.data + (first + k) * samples.sample_stride;
-            for (std::size_t c = 0; c < samples.channels; ++c) {
-                columns[c * tile + k] = from[c * samples.channel_stride] - shift[c];
-            }
-        }
-    }
-    for (std::size_t c = 0; c < samples.channels; ++c) {
-        std::fill(columns + c * tile + count, columns + (c + 1) * tile, 0.0);
-        const auto* x = reinterpret_cast<const Lane*>(columns + c * tile);
-        Lane s{}, t{}, low{}, high{};
-        for (std::size_t k = 0; k < tile / 4; k += 2) {
-            s += x[k];
-            t += x[k + 1];
-            low = x[k] < low ? x[k] : low;
-            low = x[k + 1] < low ? x[k + 1] : low;
-            high = x[k] > high ? x[k] : high;
-            high = x[k + 1] > high ? x[k + 1] : high;
-        }
-        s += t;
-        sums[c] += (s[0] + s[1]) + (s[2] + s[3]);
-        lowest[c] = std::min({lowest[c], low[0], low[1], low[2], low[3]});
-        highest[c] = std::max({highest[c], high[0], high[1], high[2], high[3]});
-    }
-}
-
 Moments moments_of_chunk(const SampleView& samples, std::size_t begin, std::size_t end) {
-    const std::size_t n = samples.channels;
-    alignas(32) static thread_local std::array<double, most_channels * tile> columns;
-    std::array<double, most_channels> shift{}, sums{}, lowest{}, highest{};
-    std::vector<double> products(n * n, 0.0);
-    // The mean of the first tile is near enough to the chunk's to leave no cancellation.
-    const std::size_t head = std::min(tile, end - begin);
-    load_tile(samples, begin, head, shift.data(), columns.data(), sums.data(), lowest.data(), highest.data());
-    for (std::size_t c = 0; c < n; ++c) {
-        shift[c] = sums[c] / static_cast<double>(head);
-        sums[c] = lowest[c] = highest[c] = 0;
-    }
+    using Eigen::Dynamic;
+    using Eigen::Index;
+    const auto n = static_cast<Index>(samples.channels);
+    const auto values = [&](std::size_t first) {
+        const auto count = static_cast<Index>(std::min(tile, end - first));
+        const Eigen::Stride<Dynamic, Dynamic> strides(static_cast<Index>(samples.channel_stride),
+                                                      static_cast<Index>(samples.sample_stride));
+        return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::Stride<Dynamic, Dynamic>>(
+            samples.data + first * samples.sample_stride, count, n, strides);
+    };
+    // The mean of the first tile is near enough to the chunk's to leave no cancellation; then zero lies in the range.
+    const Eigen::RowVectorXd shift = values(begin).colwise().mean();
+    Eigen::RowVectorXd sums = Eigen::RowVectorXd::Zero(n), lowest = sums, highest = sums;
+    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n, n), x;
     for (std::size_t first = begin; first < end; first += tile) {
-        load_tile(samples, first, std::min(tile, end - first), shift.data(), columns.data(), sums.data(), lowest.data(),
-                  highest.data());
-        add_products(columns.data(), n, products.data());
+        x = values(first).rowwise() - shift;
+        sums += x.colwise().sum();
+        lowest = lowest.cwiseMin(x.colwise().minCoeff());
+        highest = highest.cwiseMax(x.colwise().maxCoeff());
+        products.selfadjointView<Eigen::Lower>().rankUpdate(x.transpose());
     }
     Moments m;
     m.count = end - begin;
     const auto count = static_cast<double>(m.count);
-    m.mean.resize(n);
-    m.covariance = Matrix(n, n);
-    for (std::size_t i = 0; i < n; ++i) {
+    m.covariance = Matrix(samples.channels, samples.channels);
+    for (Index i = 0; i < n; ++i) {
         m.lowest.push_back(shift[i] + lowest[i]);
         m.highest.push_back(shift[i] + highest[i]);
-        m.mean[i] = shift[i] + sums[i] / count;
-        for (std::size_t j = 0; j <= i; ++j) {
-            const double c = (products[i * n + j] - sums[i] * sums[j] / count) / count;
-            m.covariance(i, j) = c;
-            m.covariance(j, i) = c;
+        m.mean.push_back(shift[i] + sums[i] / count);
+        for (Index j = 0; j <= i; ++j) {
+            const double c = (products(i, j) - sums[i] * sums[j] / count) / count;
+            const auto row = static_cast<std::size_t>(i), column = static_cast<std::size_t>(j);
+            m.covariance(row, column) = m.covariance(column, row) = c;
         }
     }
     return m;

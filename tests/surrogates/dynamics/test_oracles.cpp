@@ -128,13 +128,13 @@ TEST(Oracles, InwardJetsGiveAMinimumPhaseZeroAndStraightOnesLoseAState) {
         const YawTransfer straight = yaw_transfer(c, .35, friction, l);
         const LinearSystem full = surface_system(c, .35, friction);
         LinearSystem system;
-        system.a = Dense(3, 3);
+        system.a = Matrix(3, 3);
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) {
                 system.a(i, j) = full.a(i + 1, j + 1);
             }
         }
-        system.b = Dense{{straight.side}, {straight.turn}, {0}};
+        system.b = Matrix{{straight.side}, {straight.turn}, {0}};
         system.states = {"v", "r", "psi"};
         const Controllability found = controllability(system);
         EXPECT_EQ(found.rank, friction == 0 ? 2 : 3);
@@ -145,10 +145,10 @@ TEST(Oracles, InwardJetsGiveAMinimumPhaseZeroAndStraightOnesLoseAState) {
         // The zero out of the pencil is the formula's.
         l.gamma = 0.3;
         const YawTransfer inward = yaw_transfer(c, .35, friction, l);
-        system.b = Dense{{inward.side}, {inward.turn}, {0}};
+        system.b = Matrix{{inward.side}, {inward.turn}, {0}};
         LinearSystem two = system;
-        two.a = Dense{{system.a(0, 0), system.a(0, 1)}, {system.a(1, 0), system.a(1, 1)}};
-        two.b = Dense{{inward.side}, {inward.turn}};
+        two.a = Matrix{{system.a(0, 0), system.a(0, 1)}, {system.a(1, 0), system.a(1, 1)}};
+        two.b = Matrix{{inward.side}, {inward.turn}};
         const auto found_zeros = zeros(two, 0, 1);
         ASSERT_EQ(found_zeros.size(), 1U);
         EXPECT_NEAR(found_zeros[0].real(), inward.zero, 1e-9);
@@ -165,8 +165,8 @@ TEST(Oracles, HeadingGainsAreStableExactlyWithinTheirBounds) {
                 s.a(2, 2) -= k1 / c.inertia_r;
                 s.a(2, 3) -= k2 / c.inertia_r;
                 double worst = -1e300;
-                for (const Eigen1& e :
-                     eigen(Dense{{s.a(1, 1), s.a(1, 2), 0}, {s.a(2, 1), s.a(2, 2), s.a(2, 3)}, {0, 1, 0}})) {
+                for (const EigenPair& e :
+                     eigen(Matrix{{s.a(1, 1), s.a(1, 2), 0}, {s.a(2, 1), s.a(2, 2), s.a(2, 3)}, {0, 1, 0}})) {
                     worst = std::max(worst, e.value.real());
                 }
                 EXPECT_EQ(bounds.stable(k1, k2, c.inertia_r), worst < 0) << friction << " " << k1 << " " << k2;
@@ -191,16 +191,16 @@ TEST(Oracles, WorldVelocityKeepsItsSize) {  // O19
 
 TEST(Oracles, RegulatorOfTheVerticalChannel) {  // O20
     LinearSystem s;
-    s.a = Dense{{0, 0}, {1, 0}};
-    s.b = Dense{{.2529}, {0}};
-    const Regulator k = lqr(s, Dense::diagonal({1, 100}), Dense::diagonal({1}));
+    s.a = Matrix{{0, 0}, {1, 0}};
+    s.b = Matrix{{.2529}, {0}};
+    const Regulator k = lqr(s, Matrix::diagonal({1, 100}), Matrix::diagonal({1}));
     EXPECT_NEAR(k.gain(0, 0), 8.9488905, 1e-7);
     EXPECT_NEAR(k.gain(0, 1), 10, 1e-9);
     for (const auto& pole : k.poles) {
         EXPECT_LT(pole.real(), 0);
     }
-    s.b = Dense{{0}, {0}};
-    EXPECT_THROW(lqr(s, Dense::diagonal({1, 100}), Dense::diagonal({1})), core::Error);
+    s.b = Matrix{{0}, {0}};
+    EXPECT_THROW(lqr(s, Matrix::diagonal({1, 100}), Matrix::diagonal({1})), core::Error);
 }
 
 TEST(Oracles, SliderFilms) {  // O21 ... O28
