@@ -8,7 +8,6 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
-#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/simulate/dormand_prince.h"
 #include "surrogates/dynamics/simulate/feedback.h"
@@ -172,14 +171,7 @@ std::string rule_text(const std::string& rule) {
 }
 
 void add_remarks(StabilityRegion& region, const Model& model, const Conditions& held) {
-    region.remarks = model.remarks;
-    for (core::Problem& remark : effects_without_motion(model)) {
-        region.remarks.push_back(std::move(remark));
-    }
-    for (core::Problem& remark : held_outside(model, held.over(model.conditions))) {
-        region.remarks.push_back(std::move(remark));
-    }
-    add_outside_remark(region);
+    add_model_remarks(region, model, held);
     if (region.rule.starts_with("nothing takes")) {
         region.remarks.push_back(
             {core::Problem::Severity::warning, "the model has no resistance in heave: it never settles", {}});
@@ -205,12 +197,7 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
         setup.ends->of(gap_first ? x : y, gap_first ? y : x, out, progress);
     };
     const std::vector<End> ends = region_grid(options, batch);
-    const std::vector<double> sums = region_fractions(options, batch, ends, setup.ends->classes().size());
-    StabilityRegion region;
-    region.axes = options.axes;
-    region.columns = options.columns;
-    region.rows = options.rows;
-    region.duration = options.duration;
+    StabilityRegion region = region_map(options, batch, ends, setup.ends->classes());
     region.contact_gap = setup.contact_gap;
     region.escape_gap = setup.escape_gap;
     region.table_lower = setup.plant.terms.table_lower;
@@ -219,11 +206,6 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
     region.model = model.name;
     region.held = setup.plant.held();
     region.rule = rule_text(setup.ends->rule());
-    for (const End& end : ends) {
-        region.index.push_back(end.index);
-        region.time.push_back(static_cast<float>(end.time));
-    }
-    keep_seen_classes(region, setup.ends->classes(), sums);
     region.outside_fraction = outside_share(region);
     if (setup.ends->rule() == "settled") {
         add_traced_boundaries(region, options, batch, ends);

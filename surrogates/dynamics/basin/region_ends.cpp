@@ -222,71 +222,53 @@ struct HeaveEnds::Impl {
             d[1] = heave_acceleration<false>(*terms, y[0], y[1], load, {}, unused);
         }
     };
+    /// Gap, velocity, with `Loop` the force after the lag of the loop's actuator, with `Memory` that of the water.
+    template <bool Memory, bool Loop>
     struct FullRate {
+        static constexpr std::size_t memory = Loop ? 3 : 2;
+        static constexpr std::size_t size = memory + (Memory ? history_states : 0);
         const HeavePlant* plant;
-        double input;
-        void operator()(double t, const double* y, double* d) const {
-            HeaveMoment moment;
-            moment.t = t;
-            moment.input = input;
-            d[0] = y[1];
-            d[1] = plant->acceleration(y[0], y[1], moment);
-        }
-    };
-    struct HistoryRate {
-        const HeavePlant* plant;
-        double input;
-        void operator()(double t, const double* y, double* d) const {
-            HeaveMoment moment;
-            moment.t = t;
-            moment.input = input;
-            d[0] = y[1];
-            d[1] = plant->acceleration(y[0], y[1], moment, y + 2);
-            const HistoryKernel& kernel = history_kernel();
-            for (std::size_t i = 0; i < history_states; ++i) {
-                d[2 + i] = -kernel.rate[i] * (y[2 + i] + y[1]);
-            }
-        }
-    };
-
-    /// The loop with the states of its actuator: gap, velocity, force after the lag, and the memory of the water.
-    template <std::size_t N>
-    struct LoopRate {
-        const HeavePlant* plant;
+        double given;  ///< N, the input that is held
         const LoopActuator<2>* actuator;
         void operator()(double t, const double* y, double* d) const {
-            const double driven = actuator->driven(t, y);
             HeaveMoment moment;
             moment.t = t;
-            moment.input = actuator->lagged() ? y[2] : driven;
+            moment.input = given;
+            if constexpr (Loop) {
+                const double driven = actuator->driven(t, y);
+                moment.input = actuator->lagged() ? y[2] : driven;
+                d[2] = actuator->lagged() ? (driven - y[2]) / plant->terms.actuator.lag : 0;
+            }
             d[0] = y[1];
-            d[1] = plant->acceleration(y[0], y[1], moment, N > 3 ? y + 3 : nullptr);
-            d[2] = actuator->lagged() ? (driven - y[2]) / plant->terms.actuator.lag : 0;
-            if constexpr (N > 3) {
+            d[1] = plant->acceleration(y[0], y[1], moment, Memory ? y + memory : nullptr);
+            if constexpr (Memory) {
                 const HistoryKernel& kernel = history_kernel();
                 for (std::size_t i = 0; i < history_states; ++i) {
-                    d[3 + i] = -kernel.rate[i] * (y[3 + i] + y[1]);
+                    d[memory + i] = -kernel.rate[i] * (y[memory + i] + y[1]);
                 }
             }
         }
     };
-    template <std::size_t N>
-    [[nodiscard]] End through_actuator(double h, double w) const {
+    template <bool Memory, bool Loop>
+    [[nodiscard]] End through(double h, double w) const {
+        using Law = FullRate<Memory, Loop>;
         const double given = plant.held_input();
         LoopActuator<2> actuator(
             plant.terms, [this, given](double, const double* y) { return given + plant.loop->command(y[0], y[1]); });
-        std::array<double, N> y{};
+        std::array<double, Law::size> y{};
         y.fill(-w);
         y[0] = h;
         y[1] = w;
-        const double still[2] = {w, 0};
-        actuator.start(0, y.data(), still);
-        y[2] = actuator.driven(0, y.data());
-        const LoopRate<N> rate{&plant, &actuator};
-        std::array<double, N> begin{};
-        rate(0, y.data(), begin.data());
-        actuator.accept(0, y.data(), begin.data());
-        return go<N>(rate, y, &actuator);
+        const Law rate{&plant, given, &actuator};
+        if constexpr (Loop) {
+            const double still[2] = {w, 0};
+            actuator.start(0, y.data(), still);
+            y[2] = actuator.driven(0, y.data());
+            std::array<double, Law::size> begin{};
+            rate(0, y.data(), begin.data());
+            actuator.accept(0, y.data(), begin.data());
+        }
+        return go<Law::size>(rate, y, Loop ? &actuator : nullptr);
     }
 
     [[nodiscard]] End of(double h, double w) const {
@@ -303,18 +285,10 @@ struct HeaveEnds::Impl {
             }
             return go<2>(StaticRate{&plant.terms, &force, rest_resistance}, {h, w});
         }
-        const double input = plant.held_input();
         if (plant.loop_has_states()) {
-            return plant.terms.history != 0 ? through_actuator<3 + history_states>(h, w) : through_actuator<3>(h, w);
+            return plant.terms.history != 0 ? through<true, true>(h, w) : through<false, true>(h, w);
         }
-        if (plant.terms.history != 0) {
-            std::array<double, 2 + history_states> y{};
-            y.fill(-w);
-            y[0] = h;
-            y[1] = w;
-            return go<2 + history_states>(HistoryRate{&plant, input}, y);
-        }
-        return go<2>(FullRate{&plant, input}, {h, w});
+        return plant.terms.history != 0 ? through<true, false>(h, w) : through<false, false>(h, w);
     }
 
     /// The extent of the motion over a part of the time.

@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
+#include "surrogates/dynamics/plant/environment.h"
 
 namespace underbody::dynamics {
 
@@ -52,6 +53,9 @@ std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch) {
     return ends;
 }
 
+namespace {
+
+/// Fractions of the area: cells beside another class count by a finer grid of starts within them.
 std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& batch, const std::vector<End>& ends,
                                      std::size_t classes) {
     constexpr std::size_t fine = 4;
@@ -93,22 +97,33 @@ std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& 
     return sums;
 }
 
-void keep_seen_classes(StabilityRegion& region, const std::vector<EndClass>& all, const std::vector<double>& sums) {
-    std::vector<bool> occurs(all.size(), false);
-    for (const int index : region.index) {
-        occurs[static_cast<std::size_t>(index)] = true;
+}  // namespace
+
+StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batch, const std::vector<End>& ends,
+                           const std::vector<EndClass>& classes) {
+    StabilityRegion region;
+    region.axes = options.axes;
+    region.columns = options.columns;
+    region.rows = options.rows;
+    region.duration = options.duration;
+    const std::vector<double> sums = region_fractions(options, batch, ends, classes.size());
+    std::vector<bool> occurs(classes.size(), false);
+    for (const End& end : ends) {
+        occurs[static_cast<std::size_t>(end.index)] = true;
     }
-    std::vector<int> renamed(all.size(), -1);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (occurs[i] || sums[i] > 0 || all[i].kind == EndKind::attractor) {
+    std::vector<int> renamed(classes.size(), -1);
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        if (occurs[i] || sums[i] > 0 || classes[i].kind == EndKind::attractor) {
             renamed[i] = static_cast<int>(region.classes.size());
-            region.classes.push_back(all[i]);
+            region.classes.push_back(classes[i]);
             region.classes.back().fraction = sums[i];
         }
     }
-    for (int& index : region.index) {
-        index = renamed[static_cast<std::size_t>(index)];
+    for (const End& end : ends) {
+        region.index.push_back(renamed[static_cast<std::size_t>(end.index)]);
+        region.time.push_back(static_cast<float>(end.time));
     }
+    return region;
 }
 
 namespace {
@@ -228,6 +243,8 @@ double outside_share(const StabilityRegion& region) {
     return inside > 1 - 1e-12 ? 0 : 1 - inside;
 }
 
+namespace {
+
 void add_outside_remark(StabilityRegion& region) {
     if (region.outside_fraction == 0) {
         return;
@@ -248,6 +265,13 @@ void add_outside_remark(StabilityRegion& region) {
                                   " % of the starts lie outside the range of a force table (" + range +
                                   "), where it holds its end value",
                               {}});
+}
+
+}  // namespace
+
+void add_model_remarks(StabilityRegion& region, const Model& model, const Conditions& held) {
+    region.remarks = motion_remarks(model, held);
+    add_outside_remark(region);
 }
 
 bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts) {

@@ -22,18 +22,18 @@ using RegionBatch = std::function<void(std::span<const double> x, std::span<cons
 void check_region_options(const RegionOptions& options);
 /// One start at the centre of each cell.
 std::vector<End> region_grid(const RegionOptions& options, const RegionBatch& batch);
-/// Fractions of the area: cells beside another class count by a finer grid of starts within them.
-std::vector<double> region_fractions(const RegionOptions& options, const RegionBatch& batch,
-                                     const std::vector<End>& ends, std::size_t classes);
-/// Keeps attractors and the classes that occur; renumbers the cells.
-void keep_seen_classes(StabilityRegion& region, const std::vector<EndClass>& all, const std::vector<double>& sums);
+/// A map of these ends with the fractions of the area (cells beside another class count by a finer grid of starts
+/// within them). Keeps attractors and the classes that occur; renumbers the cells.
+StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batch, const std::vector<End>& ends,
+                           const std::vector<EndClass>& classes);
 /// Lines that part the classes of neighbouring starts, found by bisection between them (with options.refine) and
 /// joined within each square of four starts. `ends`: classes of the grid before they are renumbered.
 void add_traced_boundaries(StabilityRegion& region, const RegionOptions& options, const RegionBatch& batch,
                            const std::vector<End>& ends);
-/// Share of the map's area where a force table is asked beyond its range, and the warning that says so.
+/// Share of the map's area where a force table is asked beyond its range.
 double outside_share(const StabilityRegion& region);
-void add_outside_remark(StabilityRegion& region);
+/// Those of a motion, and how much of the map lies beyond a force table.
+void add_model_remarks(StabilityRegion& region, const Model& model, const Conditions& held);
 
 /// True when the motion asked for is that of heave and pitch together.
 bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts = nullptr);

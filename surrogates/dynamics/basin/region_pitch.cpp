@@ -6,7 +6,6 @@
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/basin/region_pitch_ends.h"
-#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/simulate/feedback.h"
 
 namespace underbody::dynamics {
@@ -89,13 +88,6 @@ StabilityRegion pitch_region(const Model& model, const RegionOptions& options, c
         throw core::InputError("missing", "the region holds the gap, but nothing says at what", {},
                                "give it: --conditions gap=20mm");
     }
-    StabilityRegion region;
-    region.contact_gap = plant.contact_gap();
-    region.table_lower = plant.table_lower();
-    region.table_upper = plant.table_upper();
-    region.pitch_lower = plant.pitch_lower();
-    region.pitch_upper = plant.pitch_upper();
-    region.escape_gap = setup.escape;
     const PitchEnds ends(plant, options, setup.escape, setup.sizes);
     progress.report(0.02, "finding where starts end");
     const RegionBatch batch = [&](std::span<const double> x, std::span<const double> y, std::span<End> out) {
@@ -112,31 +104,21 @@ StabilityRegion pitch_region(const Model& model, const RegionOptions& options, c
             progress);
     };
     const std::vector<End> found = region_grid(options, batch);
-    const std::vector<double> sums = region_fractions(options, batch, found, ends.classes().size());
-    region.axes = options.axes;
-    region.columns = options.columns;
-    region.rows = options.rows;
-    region.duration = options.duration;
+    StabilityRegion region = region_map(options, batch, found, ends.classes());
+    region.contact_gap = plant.contact_gap();
+    region.table_lower = plant.table_lower();
+    region.table_upper = plant.table_upper();
+    region.pitch_lower = plant.pitch_lower();
+    region.pitch_upper = plant.pitch_upper();
+    region.escape_gap = setup.escape;
     region.equilibria = ends.equilibria();
     region.model = model.name;
     region.held = options.held.over(model.conditions);
     region.rule = rule_of(options);
     add_traced_boundaries(region, options, batch, found);
-    for (const End& end : found) {
-        region.index.push_back(end.index);
-        region.time.push_back(static_cast<float>(end.time));
-    }
-    keep_seen_classes(region, ends.classes(), sums);
     region.outside_fraction = outside_share(region);
     add_flow(plant, options, setup.middle, region);
-    region.remarks = model.remarks;
-    for (core::Problem& remark : effects_without_motion(model)) {
-        region.remarks.push_back(std::move(remark));
-    }
-    for (core::Problem& remark : held_outside(model, options.held.over(model.conditions))) {
-        region.remarks.push_back(std::move(remark));
-    }
-    add_outside_remark(region);
+    add_model_remarks(region, model, options.held);
     return region;
 }
 

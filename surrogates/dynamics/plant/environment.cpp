@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 
 namespace underbody::dynamics {
@@ -67,6 +68,15 @@ core::Problems effects_without_motion(const Model& model) {
                  "effect " + use.name + " belongs to the rig of a static measurement; it leaves the motion as it is",
                  {}});
         }
+    }
+    return remarks;
+}
+
+core::Problems motion_remarks(const Model& model, const Conditions& held) {
+    core::Problems remarks = model.remarks;
+    for (const core::Problems& more :
+         {effects_without_motion(model), held_outside(model, held.over(model.conditions))}) {
+        remarks.insert(remarks.end(), more.begin(), more.end());
     }
     return remarks;
 }

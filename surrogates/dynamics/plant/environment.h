@@ -40,5 +40,7 @@ std::vector<Channel> varying_channels(const InputSignals& inputs);
 
 /// Effects of the model that change what instruments of a static set read, and so leave a motion as it is.
 core::Problems effects_without_motion(const Model& model);
+/// Remarks of the model, on such effects, and on conditions held beyond a table.
+core::Problems motion_remarks(const Model& model, const Conditions& held);
 
 }  // namespace underbody::dynamics

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
-#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
@@ -288,13 +287,7 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
     }
     const std::unique_ptr<HeaveRun> run = inputs.signals.empty() ? nullptr : std::make_unique<HeaveRun>(plant, inputs);
     Trajectory out;
-    out.remarks = model.remarks;
-    for (core::Problem& remark : effects_without_motion(model)) {
-        out.remarks.push_back(std::move(remark));
-    }
-    for (core::Problem& remark : held_outside(model, inputs.held.over(model.conditions))) {
-        out.remarks.push_back(std::move(remark));
-    }
+    out.remarks = motion_remarks(model, inputs.held);
     const double t0 = inputs.time.empty() ? 0.0 : inputs.time.front();
     Flight(plant, run.get(), options, out).fly(gap, heave_velocity, t0, progress);
     remark_outside(out.remarks, out.outside,

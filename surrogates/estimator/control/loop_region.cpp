@@ -253,29 +253,19 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
     for (const Outcome& o : first) {
         ends.push_back(end_of(o));
     }
-    const auto sums = dynamics::region_fractions(
+    dynamics::StabilityRegion region = dynamics::region_map(
         grid,
         [&](std::span<const double> x, std::span<const double> y, std::span<End> out) {
             const auto outcomes = outcomes_of(x, y);
             std::transform(outcomes.begin(), outcomes.end(), out.begin(), end_of);
         },
-        ends, classes.size());
-    dynamics::StabilityRegion region;
-    region.axes = grid.axes;
-    region.columns = grid.columns;
-    region.rows = grid.rows;
-    region.duration = loop.duration;
+        ends, classes);
     region.contact_gap = plant.contact_gap;
     region.escape_gap = judge.far;
     region.table_lower = plant.lower;
     region.table_upper = plant.upper;
     region.rule = rule_of(estimator, law, loop);
     region.remarks = plant.remarks;
-    for (const End& end : ends) {
-        region.index.push_back(end.index);
-        region.time.push_back(static_cast<float>(end.time));
-    }
-    dynamics::keep_seen_classes(region, classes, sums);
     // Loops are dear: lines midway between starts, without further runs.
     grid.refine = false;
     dynamics::add_traced_boundaries(region, grid, {}, ends);
