@@ -99,7 +99,7 @@ std::optional<WallShape> box_around(const Walls& walls, Wanted&& wanted) {
 }
 
 /// Larger by so much cannot be a matter of rounding or of a rim.
-constexpr double clearly = 1.05;
+constexpr double excess_factor = 1.05;
 
 Vector seen_from(const Vector& place, const SurfaceArrays& surface, Index node) {
     const double* x = surface.points().data() + 3 * node;
@@ -163,7 +163,7 @@ bool touch(const WallShape& a, const WallShape& b) {
     return !few.empty() && std::any_of(many.begin(), many.end(), [&](const double* node) { return places.has(node); });
 }
 
-bool looks_one_way(const Group& group) {
+bool faces_one_way(const Group& group) {
     constexpr double one_sided = 0.95;  // a ground may be uneven; the open half of a hull is rounder
     return norm(group.shape.area_vector) >= one_sided * group.shape.area;
 }
@@ -177,10 +177,10 @@ bool meet(const Group& group, const Group& other, const std::vector<WallShape>& 
 
 /// Two sides of a closed box that are as large look as if they balanced each other, the ceiling over a floor: but
 /// nothing between them does. A flat hull over its base does, and meets it.
-bool only_seems_to_balance(const Group& group, const Group& other, const std::vector<WallShape>& walls) {
+bool balances_by_size_only(const Group& group, const Group& other, const std::vector<WallShape>& walls) {
     const double own = norm(group.shape.area_vector);
     const double theirs = norm(other.shape.area_vector);
-    if (theirs <= own / clearly || !looks_one_way(other)) {
+    if (theirs <= own / excess_factor || !faces_one_way(other)) {
         return false;
     }
     const bool across = std::abs(dot(group.shape.area_vector, other.shape.area_vector)) < 0.95 * own * theirs;
@@ -189,12 +189,12 @@ bool only_seems_to_balance(const Group& group, const Group& other, const std::ve
 
 bool too_large_to_be_balanced(const Group& group, const std::vector<Group>& groups,
                               const std::vector<WallShape>& walls) {
-    if (!looks_one_way(group)) {
+    if (!faces_one_way(group)) {
         return false;
     }
     const auto rest = box_around(
-        groups, [&](const Group& other) { return &other != &group && !only_seems_to_balance(group, other, walls); });
-    return rest && norm(group.shape.area_vector) > clearly * shadow(*rest, group.shape.area_vector);
+        groups, [&](const Group& other) { return &other != &group && !balances_by_size_only(group, other, walls); });
+    return rest && norm(group.shape.area_vector) > excess_factor * shadow(*rest, group.shape.area_vector);
 }
 
 /// Walls that hang together: those that have nodes in common, whatever they are called.
@@ -347,7 +347,7 @@ bool is_no_wall(ZoneKind kind) {
 
 }  // namespace
 
-ZoneKind kind_said_by_name(const std::string& name) {
+ZoneKind kind_from_name(const std::string& name) {
     const std::vector<std::string> words = words_of(name);
     const auto has = [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); };
     const auto ends = [&](const char* word) { return !words.empty() && words.back() == word; };
@@ -366,12 +366,12 @@ ZoneKind kind_said_by_name(const std::string& name) {
                                                                   : ZoneKind::unknown;
 }
 
-ZoneKind kind_or_said(const Zone& zone) {
-    return zone.kind == ZoneKind::unknown ? kind_said_by_name(zone.name) : zone.kind;
+ZoneKind effective_kind(const Zone& zone) {
+    return zone.kind == ZoneKind::unknown ? kind_from_name(zone.name) : zone.kind;
 }
 
-std::vector<const Zone*> possible_walls(const Field& field, std::vector<const Zone*>& said_otherwise) {
-    said_otherwise.clear();
+std::vector<const Zone*> possible_walls(const Field& field, std::vector<const Zone*>& excluded_by_kind) {
+    excluded_by_kind.clear();
     std::vector<const Zone*> surfaces;
     std::vector<const Zone*> walls;
     for (const auto& zone : field.zones) {
@@ -387,10 +387,10 @@ std::vector<const Zone*> possible_walls(const Field& field, std::vector<const Zo
         return walls;
     }
     for (const Zone* zone : surfaces) {
-        (is_no_wall(kind_or_said(*zone)) ? said_otherwise : walls).push_back(zone);
+        (is_no_wall(effective_kind(*zone)) ? excluded_by_kind : walls).push_back(zone);
     }
     if (walls.empty()) {
-        std::swap(walls, said_otherwise);
+        std::swap(walls, excluded_by_kind);
     }
     return walls;
 }

@@ -14,15 +14,15 @@ namespace underbody::postproc {
 
 /// What a name plainly says of a zone whose kind the file does not tell ("inlet-2", "pressure_outlet", "symmetry top",
 /// "Block/farField"); `unknown` for what may be a wall ("inlet duct", "hull").
-ZoneKind kind_said_by_name(const std::string& name);
+ZoneKind kind_from_name(const std::string& name);
 
 /// The kind that the file gives a zone, or else the one that its name says.
-ZoneKind kind_or_said(const Zone& zone);
+ZoneKind effective_kind(const Zone& zone);
 
 /// Zones that may be the body when nobody names any: the walls, where the file tells which zones these are; else all
-/// surfaces (and lines, the walls of plane cases) but those that are an inlet or the like by `kind_or_said`, which come
-/// out in `said_otherwise`. All, when that would leave none.
-std::vector<const Zone*> possible_walls(const Field& field, std::vector<const Zone*>& said_otherwise);
+/// surfaces (and lines, the walls of plane cases) but those that are an inlet or the like by `effective_kind`, which
+/// come out in `excluded_by_kind`. All, when that would leave none.
+std::vector<const Zone*> possible_walls(const Field& field, std::vector<const Zone*>& excluded_by_kind);
 
 /// What the shape of a wall tells.
 struct WallShape {

@@ -123,8 +123,8 @@ private:
     /// Those that fit the patterns. A pattern with * or ? means walls where it fits any; a name means whatever bears
     /// it.
     std::vector<const Zone*> named_zones() {
-        std::vector<const Zone*> said_otherwise;
-        const std::vector<const Zone*> walls = possible_walls(field_, said_otherwise);
+        std::vector<const Zone*> excluded_by_kind;
+        const std::vector<const Zone*> walls = possible_walls(field_, excluded_by_kind);
         std::vector<std::string> names;
         std::vector<const Zone*> chosen;
         for (const auto& zone : field_.zones) {
@@ -140,7 +140,7 @@ private:
                 const bool fit = fits(&zone);
                 any = any || fit;
                 if (fit && walls_alone && std::find(walls.begin(), walls.end(), &zone) == walls.end()) {
-                    passed_over(zone, pattern);
+                    note_left_out(zone, pattern);
                 } else if (fit && std::find(chosen.begin(), chosen.end(), &zone) == chosen.end()) {
                     chosen.push_back(&zone);
                 }
@@ -158,28 +158,28 @@ private:
     }
 
     /// A surface that a pattern fits though it is no wall.
-    void passed_over(const Zone& zone, const std::string& pattern) {
+    void note_left_out(const Zone& zone, const std::string& pattern) {
         const bool known = std::any_of(result_.left_out.begin(), result_.left_out.end(),
                                        [&](const LeftOutZone& other) { return other.name == zone.name; });
         if (zone.surface != nullptr && zone.volume == nullptr && !known) {
             result_.left_out.push_back({zone.name,
-                                        "'" + pattern + "' takes walls, and this is " + to_string(kind_or_said(zone)) +
-                                            ": its own name takes it",
+                                        "'" + pattern + "' takes walls, and this is " +
+                                            to_string(effective_kind(zone)) + ": its own name takes it",
                                         LeftOutZone::By::name});
         }
     }
 
     /// Those of the body, when nobody names any.
     std::vector<const Zone*> unnamed_zones() {
-        std::vector<const Zone*> said_otherwise;
-        std::vector<const Zone*> zones = possible_walls(field_, said_otherwise);
+        std::vector<const Zone*> excluded_by_kind;
+        std::vector<const Zone*> zones = possible_walls(field_, excluded_by_kind);
         std::erase_if(zones, [&](const Zone* zone) { return zone->kind == ZoneKind::line && field_.dimension != 2; });
-        for (const Zone* zone : zones.empty() ? std::vector<const Zone*>{} : said_otherwise) {
+        for (const Zone* zone : zones.empty() ? std::vector<const Zone*>{} : excluded_by_kind) {
             result_.left_out.push_back(
                 {zone->name,
                  std::string(zone->kind == ZoneKind::unknown ? "its name says that it is no wall: "
                                                              : "it is no wall: ") +
-                     to_string(kind_or_said(*zone)),
+                     to_string(effective_kind(*zone)),
                  LeftOutZone::By::name});
         }
         return zones;

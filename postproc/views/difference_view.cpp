@@ -202,7 +202,7 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
     const std::string unit = info == nullptr ? "Pa" : info->unit;
     if (!on_base.empty()) {
         std::string cut;  // the ends below are those of the colours about zero
-        scene.range = telling_range(on_base, cut, unit);
+        scene.range = robust_colour_range(on_base, cut, unit);
     }
     for (const auto& [key, given] : options.ranges) {  // the last counts
         scene.range = given;

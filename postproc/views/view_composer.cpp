@@ -247,7 +247,8 @@ void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {
     composed.caption += composed.of_range + mirror_said_;
 }
 
-std::pair<double, double> telling_range(std::vector<double> values, std::string& extremes, const std::string& unit) {
+std::pair<double, double> robust_colour_range(std::vector<double> values, std::string& extremes,
+                                              const std::string& unit) {
     if (values.empty()) {
         return range_of({});
     }

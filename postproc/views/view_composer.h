@@ -23,7 +23,8 @@ struct ComposedView {
 /// The range that holds 98 % of the values where a few extremes (an edge, a stagnation point) would swallow the
 /// colours; `extremes` names the end that was cut then, in `unit`. Of no values the range is empty (its end lies before
 /// its begin).
-std::pair<double, double> telling_range(std::vector<double> values, std::string& extremes, const std::string& unit);
+std::pair<double, double> robust_colour_range(std::vector<double> values, std::string& extremes,
+                                              const std::string& unit);
 
 /// What people call an array, and its unit: "wall shear", "Pa".
 std::string view_label(const std::string& array);

@@ -50,8 +50,8 @@ namespace {
 
 /// As for `loads`: a pattern with * or ? means walls where it fits any; a name means whatever bears it.
 std::vector<const Zone*> named_surfaces(const Field& field, const std::vector<std::string>& patterns) {
-    std::vector<const Zone*> said_otherwise;
-    const std::vector<const Zone*> walls = possible_walls(field, said_otherwise);
+    std::vector<const Zone*> excluded_by_kind;
+    const std::vector<const Zone*> walls = possible_walls(field, excluded_by_kind);
     std::vector<const Zone*> surfaces;
     std::vector<std::string> names;
     for (const auto& zone : field.zones) {
@@ -102,9 +102,9 @@ void leave_out_other_walls(std::vector<const Zone*>& zones, const std::string& b
 
 std::vector<const Zone*> surfaces_of_body(const Field& field, const std::vector<std::string>& patterns,
                                           const std::string& base, bool half) {
-    std::vector<const Zone*> said_otherwise;
+    std::vector<const Zone*> excluded_by_kind;
     std::vector<const Zone*> zones =
-        patterns.empty() ? possible_walls(field, said_otherwise) : named_surfaces(field, patterns);
+        patterns.empty() ? possible_walls(field, excluded_by_kind) : named_surfaces(field, patterns);
     std::erase_if(zones, [](const Zone* zone) { return zone->surface->GetNumberOfPolys() == 0; });
     if (patterns.empty() && zones.size() > 1) {
         leave_out_other_walls(zones, base, field.dimension, half);

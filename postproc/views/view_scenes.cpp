@@ -111,7 +111,7 @@ ComposedView ViewComposer::surface_view(const std::string& array, bool base_rang
     if (!base_range || of_base.empty()) {
         of_base.insert(of_base.end(), of_rest.begin(), of_rest.end());
     }
-    composed.scene.range = telling_range(std::move(of_base), composed.of_range, view_unit(array));
+    composed.scene.range = robust_colour_range(std::move(of_base), composed.of_range, view_unit(array));
     return composed;
 }
 

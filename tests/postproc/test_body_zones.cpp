@@ -347,11 +347,11 @@ TEST(ZoneNames, SayWhatIsPlainlyNoWall) {
         {"farField", ZoneKind::farfield},   {"far_field", ZoneKind::farfield},
         {"FREESTREAM", ZoneKind::farfield}, {"cyclic1", ZoneKind::periodic}};
     for (const auto& [name, kind] : said) {
-        EXPECT_EQ(kind_said_by_name(name), kind) << name;
+        EXPECT_EQ(kind_from_name(name), kind) << name;
     }
     for (const char* name : {"hull", "inlet-duct", "outlet flange", "opening_door", "interiors-panel", "asymmetry", "",
                              "7", "wall", "ground", "inlet/hull"}) {
-        EXPECT_EQ(kind_said_by_name(name), ZoneKind::unknown) << name;
+        EXPECT_EQ(kind_from_name(name), ZoneKind::unknown) << name;
     }
 }
 
@@ -371,9 +371,9 @@ TEST(ZoneNames, ChooseTheBodyOnlyWhereTheFileDoesNotSayWhatIsAWall) {
                            [](const Zone* zone) { return zone->name; });
             return names;
         };
-        std::vector<const Zone*> said_otherwise;
-        const auto names = names_of(possible_walls(field, said_otherwise));
-        otherwise = names_of(said_otherwise);
+        std::vector<const Zone*> excluded_by_kind;
+        const auto names = names_of(possible_walls(field, excluded_by_kind));
+        otherwise = names_of(excluded_by_kind);
         return names;
     };
     std::vector<std::string> otherwise;

@@ -296,7 +296,7 @@ TEST(TellingRange, NamesTheEndThatWasCut) {
         values.front() = low;
         values.back() = high;
         std::string text;
-        telling_range(values, text, "Pa");
+        robust_colour_range(values, text, "Pa");
         return text;
     };
     EXPECT_EQ(said(0, 1), "");

@@ -46,8 +46,8 @@ void add_remark(ForceTable::Impl& table, const std::string& text,
 /// Many points of a full grid with errors. Interpolation that misses points left out by no more than their errors
 /// stays; else a process of their averages is tried at the points themselves, each of which is one of many that made
 /// it.
-std::shared_ptr<const ForceTable::Impl> of_many(const SetPoints& points,
-                                                const std::shared_ptr<ForceTable::Impl>& interpolated) {
+std::shared_ptr<const ForceTable::Impl> table_of_many_points(const SetPoints& points,
+                                                             const std::shared_ptr<ForceTable::Impl>& interpolated) {
     const auto known = interpolation_misses(points, 5000);
     const double of_interpolation = root_mean_square(known, known);
     const double stated = root_mean_square(points.sigma, known);
@@ -147,7 +147,7 @@ std::shared_ptr<const ForceTable::Impl> better_of(const SetPoints& points, const
         return interpolated;
     }
     if (points.x.size() > many) {
-        return of_many(points, interpolated);
+        return table_of_many_points(points, interpolated);
     }
     const auto known = fits.misses();
     const double of_interpolation = root_mean_square(known, known);

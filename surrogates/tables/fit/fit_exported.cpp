@@ -96,8 +96,8 @@ Support read_support(const nlohmann::json& json, std::size_t axes) {
     return {std::move(lines), std::move(cells)};
 }
 
-std::shared_ptr<const ForceTable::Impl> taken_back(const nlohmann::json& facts, const core::Table& table,
-                                                   const std::string& quantity, const FitOptions& options) {
+std::shared_ptr<const ForceTable::Impl> table_of_export(const nlohmann::json& facts, const core::Table& table,
+                                                        const std::string& quantity, const FitOptions& options) {
     FitOptions named = options;
     named.axes = facts.value("axes", std::vector<std::string>{});
     for (const auto& name : named.axes) {
@@ -184,7 +184,7 @@ std::shared_ptr<const ForceTable::Impl> fit_exported(const core::Table& table, c
                                                      const FitOptions& options) {
     const nlohmann::json facts = facts_of(table, quantity);
     try {
-        return facts.is_null() ? nullptr : taken_back(facts, table, quantity, options);
+        return facts.is_null() ? nullptr : table_of_export(facts, table, quantity, options);
     } catch (const nlohmann::json::exception& error) {
         throw core::InputError(
             "parse", std::string("the line of an exported table that describes it is damaged: ") + error.what(),
