@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region.h"
@@ -21,7 +22,7 @@ Shown shown(const std::string& axis) {
     if (axis == "heave_velocity") {
         return {"heave velocity", "mm/s", 1e3};
     }
-    const double degrees = 180 / 3.14159265358979323846;
+    const double degrees = 180 / std::numbers::pi;
     return axis == "pitch"        ? Shown{"pitch", "deg", degrees}
            : axis == "pitch_rate" ? Shown{"pitch rate", "deg/s", degrees}
                                   : Shown{axis, "", 1};

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
@@ -255,7 +256,7 @@ void add_outside_remark(StabilityRegion& region) {
         const double lower = gap ? region.table_lower : region.pitch_lower,
                      upper = gap ? region.table_upper : region.pitch_upper;
         if ((gap || axis.name == "pitch") && (axis.lower < lower || axis.upper > upper)) {
-            const double scale = gap ? 1 : 57.29577951308232;
+            const double scale = gap ? 1 : 180 / std::numbers::pi;
             range += (range.empty() ? "" : "; ") + axis.name + " " + core::format_number(scale * lower, 6) + " to " +
                      core::format_number(scale * upper, 6) + (gap ? " m" : " deg");
         }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 #include "surrogates/dynamics/simulate/dormand_prince.h"
 #include "surrogates/dynamics/simulate/heave_pitch_contact.h"
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/text.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::dynamics {
 
@@ -233,7 +235,7 @@ bool HeadingBounds::stable(double k1_torque, double k2_torque, double inertia_r)
 GammaChart gamma_chart(const SurfaceCoefficients& c, const EvieJets& jets, double speed, double sideslip,
                        double friction_force, double friction_offset) {
     GammaChart chart;
-    constexpr double right_angle = 1.5707963267948966;
+    constexpr double right_angle = std::numbers::pi / 2;
     chart.best_gamma = std::atan2(jets.turn_x, jets.turn_y);
     chart.needed = needed_yaw_torque(c.munk, speed, sideslip, friction_force, friction_offset);
     chart.least_gamma = std::nan("");
@@ -255,7 +257,7 @@ GammaChart gamma_chart(const SurfaceCoefficients& c, const EvieJets& jets, doubl
 core::Figure gamma_figure(const GammaChart& chart) {
     core::Figure figure;
     figure.title = "Jet angle: yaw torque against thrust lost";
-    constexpr double degrees = 57.29577951308232;
+    constexpr double degrees = 180 / std::numbers::pi;
     figure.x = {"jet angle gamma", "deg"};
     figure.y = {"yaw torque of a pair", "N m"};
     core::FigureCurve torque{"yaw torque at full thrust", {}, chart.torque, core::palette(0)};

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
@@ -322,7 +323,7 @@ const HistoryKernel& history_kernel() {
     static const HistoryKernel kernel = [] {
         HistoryKernel k{};
         const double spacing = std::log(4.0);
-        const double root_pi = std::sqrt(3.14159265358979323846);
+        const double root_pi = std::sqrt(std::numbers::pi);
         double rate = 0.003 / 16;
         for (std::size_t i = 0; i < history_states; ++i, rate *= 4) {
             k.rate[i] = rate;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surrogates/dynamics/model/matrix_algebra.h"
+
 namespace underbody::dynamics {
 
 void close_loop(HeavePlant& plant, const HeaveFeedback& feedback) {

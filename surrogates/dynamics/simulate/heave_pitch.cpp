@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::dynamics {
 

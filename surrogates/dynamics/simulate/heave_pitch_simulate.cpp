@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
@@ -238,7 +239,7 @@ core::Figure trajectory_figure(const PitchTrajectory& trajectory) {
         pitch{"pitch (nose up), 0.1 deg", trajectory.time, {}, core::palette(1)};
     for (const PitchState& y : trajectory.state) {
         gap.y.push_back(1e3 * y[0]);
-        pitch.y.push_back(572.9577951308232 * y[2]);
+        pitch.y.push_back(1800 / std::numbers::pi * y[2]);
     }
     figure.curves = {gap, pitch};
     add_events(figure, trajectory.events, {"contact", "contact change", "lift_off", "escape", "equilibrium"});

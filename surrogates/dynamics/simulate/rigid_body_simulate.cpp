@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/jet_drive.h"
@@ -11,9 +12,10 @@ namespace underbody::dynamics {
 
 namespace {
 
-constexpr double touching_gap = 1e-9;    ///< m
-constexpr double touching_speed = 1e-7;  ///< m/s
-constexpr double shortest_piece = 1e-7;  ///< s
+constexpr double degrees = 180 / std::numbers::pi;  ///< a radian
+constexpr double touching_gap = 1e-9;               ///< m
+constexpr double touching_speed = 1e-7;             ///< m/s
+constexpr double shortest_piece = 1e-7;             ///< s
 constexpr int most_stuck = 200;
 
 /// Motion in pieces of one contact state each. States: the ten of the body, the thrusts of jets with a lag, the memory
@@ -203,7 +205,7 @@ BodyTrajectory simulate_body(const RigidBody& body, const BodyState& start, cons
     refuse_odd_start(start);
     if (std::abs(start[state_theta]) > 1.5) {
         throw core::InputError("range", "the start stands on its nose or tail: pitch " +
-                                            core::format_number(57.29577951308232 * start[state_theta], 4) + " deg");
+                                            core::format_number(degrees * start[state_theta], 4) + " deg");
     }
     refuse_start_in_ground(body.edge_gaps(start));
     if (!(options.duration > 0) || options.output_step < 0) {
@@ -260,8 +262,8 @@ core::Figure trajectory_figure(const BodyTrajectory& trajectory) {
     add_states(figure, trajectory.time, trajectory.state,
                {{"speed forward, cm/s", state_u, 100},
                 {"speed to starboard, cm/s", state_v, 100},
-                {"pitch (nose up), deg", state_theta, 57.29577951308232},
-                {"heading, deg", state_psi, 57.29577951308232}});
+                {"pitch (nose up), deg", state_theta, degrees},
+                {"heading, deg", state_psi, degrees}});
     figure.caption =
         "Gap at the centre of the base, speeds along the body, pitch and heading; ends by " + trajectory.end + ".";
     return figure;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/jet_drive.h"
@@ -162,8 +163,8 @@ core::Figure trajectory_figure(const SurfaceTrajectory& trajectory) {
     add_states(figure, trajectory.time, trajectory.state,
                {{"speed forward, cm/s", 0, 100},
                 {"speed to starboard, cm/s", 1, 100},
-                {"yaw rate, deg/s", 2, 57.29577951308232},
-                {"heading, deg", 3, 57.29577951308232}});
+                {"yaw rate, deg/s", 2, 180 / std::numbers::pi},
+                {"heading, deg", 3, 180 / std::numbers::pi}});
     figure.caption =
         "Speeds along the body, yaw and heading of a run flat on the ground; ends by " + trajectory.end + ".";
     return figure;

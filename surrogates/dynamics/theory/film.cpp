@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 
@@ -10,7 +11,7 @@ namespace underbody::dynamics {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Gauss-Legendre, eight points, on [-1, 1].
 constexpr std::array<std::array<double, 2>, 8> gauss{{{-0.9602898564975363, 0.1012285362903763},

@@ -1,5 +1,6 @@
 // Closed forms of thin films and jets (docs/physics.md sections 4 and 5), with what they leave out.
 #include <cmath>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/theory/film.h"
@@ -14,7 +15,7 @@ using Inputs = std::vector<ClosedForm::Input>;
 using Result = ClosedForm::Result;
 using Values = ClosedForm::Values;
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 const ClosedForm::Input viscosity{"viscosity", "Pa s", "dynamic viscosity of the water", 1.0e-3};
 const ClosedForm::Input density{"density", "kg/m^3", "of the water", 998.0};

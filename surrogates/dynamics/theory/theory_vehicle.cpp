@@ -1,6 +1,7 @@
 // Closed forms of the vehicle (docs/physics.md sections 2, 3, 4 and 6): coefficients, springs, scaling, drag, jets, the
 // run on the ground.
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -20,7 +21,7 @@ using core::ClosedForm;
 using Result = ClosedForm::Result;
 using Values = ClosedForm::Values;
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double degree = std::numbers::pi / 180;
 constexpr std::nullopt_t needed = std::nullopt;
 
 std::string number(double value) { return core::format_number(value, 3); }
@@ -57,7 +58,7 @@ Result spring(const Values& v) {
     const double given = v("angular_frequency") > 0 ? v("angular_frequency") : frequency;
     return {
         {{"angular_frequency", "rad/s", frequency, "sqrt(k/M)"},
-         {"frequency", "Hz", frequency / 6.283185307179586, ""},
+         {"frequency", "Hz", frequency / (2 * std::numbers::pi), ""},
          {"survivable_kick", "m/s", survivable_kick(given, gap),
           "downward speed at the gap that just touches: omega h, of the frequency given or found"},
          {"mass_of_frequency", "kg", k / (given * given), "virtual mass that gives the frequency with this stiffness"},

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -18,7 +19,7 @@ namespace underbody::dynamics {
 namespace {
 
 constexpr double chord = 0.2032, virtual_mass = 1 / 0.2529;
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 std::string n(double value, int digits = 4) { return core::format_number(value, digits); }
 

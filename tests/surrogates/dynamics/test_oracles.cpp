@@ -8,6 +8,7 @@
 #include "surrogates/dynamics/linear/linear.h"
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/model/jets.h"
+#include "surrogates/dynamics/model/matrix_algebra.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/simulate/rigid_body.h"
 #include "surrogates/dynamics/theory/film.h"

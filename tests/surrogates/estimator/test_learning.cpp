@@ -94,7 +94,7 @@ TEST(EquivalentDrag, HasTheFactorsOfGaussianAndSinusoidalMotion) {
 TEST(UniformVelocity, CorrelatesWithItsSquareAndCubeAsTheClosedFormsSay) {
     const double third = 1. / 3, quarter = 1. / 4, fifth = 1. / 5, sixth = 1. / 6;  // E x^2, E x|x|x, E x^4, E x^5 sgn
     EXPECT_NEAR(quarter / std::sqrt(third * fifth), 0.96824584, 1e-8);
-    const Vector c = solve(Matrix{{third, quarter}, {quarter, fifth}}, {fifth, sixth});
+    const Vector c = solve(Matrix{{third, quarter}, {quarter, fifth}}, Vector{fifth, sixth});
     expect_near(c, {-0.4, 4. / 3}, 1e-12, "x^3 on (x, x|x|)");
 }
 
