@@ -196,8 +196,8 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
     const RegionBatch batch = [&](std::span<const double> x, std::span<const double> y, std::span<End> out) {
         setup.ends->of(gap_first ? x : y, gap_first ? y : x, out, progress);
     };
-    const std::vector<End> ends = region_grid(options, batch);
-    StabilityRegion region = region_map(options, batch, ends, setup.ends->classes());
+    const std::vector<End> ends = region_grid(options, batch, progress);
+    StabilityRegion region = region_map(options, batch, ends, setup.ends->classes(), progress);
     region.contact_gap = setup.contact_gap;
     region.escape_gap = setup.escape_gap;
     region.table_lower = setup.plant.terms.table_lower;
@@ -208,7 +208,7 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
     region.rule = rule_text(setup.ends->rule());
     region.outside_fraction = outside_share(region);
     if (setup.ends->rule() == "settled") {
-        add_traced_boundaries(region, options, batch, ends);
+        add_traced_boundaries(region, options, batch, ends, progress);
     } else {
         add_boundaries(setup, options, gap_first, region);
     }

@@ -38,18 +38,25 @@ void check_region_options(const RegionOptions& options) {
     }
 }
 
-std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch) {
-    std::vector<double> x(o.columns * o.rows), y(x.size());
+std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch, const core::Progress& progress) {
+    std::vector<double> x, y;
+    x.reserve(o.columns * o.rows);
+    y.reserve(o.columns * o.rows);
     for (std::size_t j = 0; j < o.rows; ++j) {
+        progress.check();
         for (std::size_t i = 0; i < o.columns; ++i) {
-            x[j * o.columns + i] = o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) *
-                                                         (static_cast<double>(i) + 0.5) /
-                                                         static_cast<double>(o.columns);
-            y[j * o.columns + i] = o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) *
-                                                         (static_cast<double>(j) + 0.5) / static_cast<double>(o.rows);
+            x.push_back(o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (static_cast<double>(i) + 0.5) /
+                                              static_cast<double>(o.columns));
+            y.push_back(o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) * (static_cast<double>(j) + 0.5) /
+                                              static_cast<double>(o.rows));
         }
     }
-    std::vector<End> ends(x.size());
+    std::vector<End> ends;
+    ends.reserve(x.size());
+    for (std::size_t j = 0; j < o.rows; ++j) {
+        progress.check();
+        ends.resize((j + 1) * o.columns);
+    }
     batch(x, y, ends);
     return ends;
 }
@@ -58,12 +65,13 @@ namespace {
 
 /// Fractions of the area: cells beside another class count by a finer grid of starts within them.
 std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& batch, const std::vector<End>& ends,
-                                     std::size_t classes) {
+                                     std::size_t classes, const core::Progress& progress) {
     constexpr std::size_t fine = 4;
     const std::size_t columns = o.columns, rows = o.rows;
     std::vector<double> sums(classes, 0.0);
     std::vector<std::size_t> edge;
     for (std::size_t j = 0; j < rows; ++j) {
+        progress.check();
         for (std::size_t i = 0; i < columns; ++i) {
             const int own = ends[j * columns + i].index;
             const auto other = [&](std::size_t ii, std::size_t jj) { return ends[jj * columns + ii].index != own; };
@@ -80,6 +88,9 @@ std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& 
     const double dx = (o.axes[0].upper - o.axes[0].lower) / static_cast<double>(columns);
     const double dy = (o.axes[1].upper - o.axes[1].lower) / static_cast<double>(rows);
     for (std::size_t k = 0; k < edge.size(); ++k) {
+        if (k % 4096 == 0) {
+            progress.check();
+        }
         for (std::size_t f = 0; f < fine * fine; ++f) {
             x[k * fine * fine + f] = o.axes[0].lower + dx * (static_cast<double>(edge[k] % columns) +
                                                              (static_cast<double>(f % fine) + 0.5) / fine);
@@ -101,13 +112,13 @@ std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& 
 }  // namespace
 
 StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batch, const std::vector<End>& ends,
-                           const std::vector<EndClass>& classes) {
+                           const std::vector<EndClass>& classes, const core::Progress& progress) {
     StabilityRegion region;
     region.axes = options.axes;
     region.columns = options.columns;
     region.rows = options.rows;
     region.duration = options.duration;
-    const std::vector<double> sums = region_fractions(options, batch, ends, classes.size());
+    const std::vector<double> sums = region_fractions(options, batch, ends, classes.size(), progress);
     std::vector<bool> occurs(classes.size(), false);
     for (const End& end : ends) {
         occurs[static_cast<std::size_t>(end.index)] = true;
@@ -120,6 +131,9 @@ StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batc
             region.classes.back().fraction = sums[i];
         }
     }
+    progress.check();
+    region.index.reserve(ends.size());
+    region.time.reserve(ends.size());
     for (const End& end : ends) {
         region.index.push_back(renamed[static_cast<std::size_t>(end.index)]);
         region.time.push_back(static_cast<float>(end.time));
@@ -161,7 +175,7 @@ void bisect(std::vector<Crossing>& crossings, const RegionOptions& o, const Regi
 }  // namespace
 
 void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, const RegionBatch& batch,
-                           const std::vector<End>& ends) {
+                           const std::vector<End>& ends, const core::Progress& progress) {
     const std::size_t columns = o.columns, rows = o.rows;
     const auto x_of = [&](std::size_t k) {
         return o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (static_cast<double>(k % columns) + 0.5) /
@@ -173,13 +187,18 @@ void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, cons
     };
     // Crossing k of start s: 2 s toward the next column, 2 s + 1 toward the next row.
     std::vector<Crossing> crossings;
-    std::vector<std::ptrdiff_t> of(2 * columns * rows, -1);
+    std::vector<std::ptrdiff_t> of;
+    of.reserve(2 * columns * rows);
     for (std::size_t s = 0; s < columns * rows; ++s) {
+        if (s % 65536 == 0) {
+            progress.check();
+        }
         for (const std::size_t way : {0, 1}) {
             const bool inside = way == 0 ? s % columns + 1 < columns : s / columns + 1 < rows;
             const std::size_t next = s + (way == 0 ? 1 : columns);
-            if (inside && ends[s].index != ends[next].index) {
-                of[2 * s + way] = static_cast<std::ptrdiff_t>(crossings.size());
+            const bool crosses = inside && ends[s].index != ends[next].index;
+            of.push_back(crosses ? static_cast<std::ptrdiff_t>(crossings.size()) : -1);
+            if (crosses) {
                 crossings.push_back({s, next});
             }
         }
@@ -188,6 +207,7 @@ void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, cons
     RegionBoundary line;
     line.name = "between classes";
     for (std::size_t j = 0; j + 1 < rows; ++j) {
+        progress.check();
         for (std::size_t i = 0; i + 1 < columns; ++i) {
             const std::size_t s = j * columns + i;
             std::vector<std::array<double, 2>> points;

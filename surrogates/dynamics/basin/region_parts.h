@@ -20,16 +20,18 @@ using RegionBatch = std::function<void(std::span<const double> x, std::span<cons
 
 /// Throws core::InputError for axes, sizes or a duration that cannot be.
 void check_region_options(const RegionOptions& options);
-/// One start at the centre of each cell.
-std::vector<End> region_grid(const RegionOptions& options, const RegionBatch& batch);
+/// One start at the centre of each cell. This and the next two ask `progress` row by row whether to go on.
+std::vector<End> region_grid(const RegionOptions& options, const RegionBatch& batch,
+                             const core::Progress& progress = core::Progress::none());
 /// A map of these ends with the fractions of the area (cells beside another class count by a finer grid of starts
 /// within them). Keeps attractors and the classes that occur; renumbers the cells.
 StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batch, const std::vector<End>& ends,
-                           const std::vector<EndClass>& classes);
+                           const std::vector<EndClass>& classes,
+                           const core::Progress& progress = core::Progress::none());
 /// Lines that part the classes of neighbouring starts, found by bisection between them (with options.refine) and
 /// joined within each square of four starts. `ends`: classes of the grid before they are renumbered.
 void add_traced_boundaries(StabilityRegion& region, const RegionOptions& options, const RegionBatch& batch,
-                           const std::vector<End>& ends);
+                           const std::vector<End>& ends, const core::Progress& progress = core::Progress::none());
 /// Share of the map's area where a force table is asked beyond its range.
 double outside_share(const StabilityRegion& region);
 /// Those of a motion, and how much of the map lies beyond a force table.

@@ -103,8 +103,8 @@ StabilityRegion pitch_region(const Model& model, const RegionOptions& options, c
             },
             progress);
     };
-    const std::vector<End> found = region_grid(options, batch);
-    StabilityRegion region = region_map(options, batch, found, ends.classes());
+    const std::vector<End> found = region_grid(options, batch, progress);
+    StabilityRegion region = region_map(options, batch, found, ends.classes(), progress);
     region.contact_gap = plant.contact_gap();
     region.table_lower = plant.table_lower();
     region.table_upper = plant.table_upper();
@@ -115,7 +115,7 @@ StabilityRegion pitch_region(const Model& model, const RegionOptions& options, c
     region.model = model.name;
     region.held = options.held.over(model.conditions);
     region.rule = rule_of(options);
-    add_traced_boundaries(region, options, batch, found);
+    add_traced_boundaries(region, options, batch, found, progress);
     region.outside_fraction = outside_share(region);
     add_flow(plant, options, setup.middle, region);
     add_model_remarks(region, model, options.held);

@@ -176,17 +176,20 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
         progress.check();
         progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing the sensors' noise");
         std::vector<unsigned char> held(count, 0);
-        dynamics::region_grid(ready.grid, [&](std::span<const double> x, std::span<const double> y, std::span<End>) {
-            core::parallel_for(
-                count,
-                [&](std::size_t i) {
-                    const Outcome end =
-                        ready.swapped ? ready.judge.of(y[i], x[i], draw) : ready.judge.of(x[i], y[i], draw);
-                    held[i] = end.kind == EndKind::attractor &&
-                              std::abs(end.gap - law.reference_gap) <= ready.judge.tolerance;
-                },
-                progress);
-        });
+        dynamics::region_grid(
+            ready.grid,
+            [&](std::span<const double> x, std::span<const double> y, std::span<End>) {
+                core::parallel_for(
+                    count,
+                    [&](std::size_t i) {
+                        const Outcome end =
+                            ready.swapped ? ready.judge.of(y[i], x[i], draw) : ready.judge.of(x[i], y[i], draw);
+                        held[i] = end.kind == EndKind::attractor &&
+                                  std::abs(end.gap - law.reference_gap) <= ready.judge.tolerance;
+                    },
+                    progress);
+            },
+            progress);
         std::size_t good = 0;
         for (std::size_t i = 0; i < count; ++i) {
             map.safe[i] += held[i] != 0 ? 1.0F : 0.0F;
@@ -227,7 +230,8 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
     // First the grid, to find the resting places; they are the classes of the refinement too.
     std::vector<Outcome> first;
     dynamics::region_grid(
-        grid, [&](std::span<const double> x, std::span<const double> y, std::span<End>) { first = outcomes_of(x, y); });
+        grid, [&](std::span<const double> x, std::span<const double> y, std::span<End>) { first = outcomes_of(x, y); },
+        progress);
     const std::vector<double> places = resting_places(first, law.reference_gap, tolerance);
     std::vector<EndClass> classes{{"held", EndKind::attractor, law.reference_gap, 0}};
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -259,7 +263,7 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
             const auto outcomes = outcomes_of(x, y);
             std::transform(outcomes.begin(), outcomes.end(), out.begin(), end_of);
         },
-        ends, classes);
+        ends, classes, progress);
     region.contact_gap = plant.contact_gap;
     region.escape_gap = judge.far;
     region.table_lower = plant.lower;
@@ -268,7 +272,7 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
     region.remarks = plant.remarks;
     // Loops are dear: lines midway between starts, without further runs.
     grid.refine = false;
-    dynamics::add_traced_boundaries(region, grid, {}, ends);
+    dynamics::add_traced_boundaries(region, grid, {}, ends, progress);
     return region;
 }
 
