@@ -20,7 +20,9 @@ std::string trimmed_name(const std::string& name) { return std::string(core::tri
 
 void FieldOptions::add_to(CLI::App& command, bool with_zones) {
     if (with_zones) {
-        command.add_option("--zones", zones, "zones to take: names, * and ? allowed; several with commas")
+        command
+            .add_option("--zones", zones,
+                        "zones to take: names, * and ? allowed; several with commas in one word (hull,base)")
             ->delimiter(',')
             ->transform(trimmed_name);
     }
@@ -159,9 +161,16 @@ void add_manifest(const std::string& path, Batch& batch) {
 
 }  // namespace
 
-Batch find_files(const std::vector<std::string>& arguments, const std::string& manifest) {
+Batch find_files(const std::vector<std::string>& arguments, const std::string& manifest,
+                 const std::vector<std::string>& zones) {
     Batch batch;
     for (const auto& argument : arguments) {
+        // No file, and named as zones are: a list of zones that was parted by spaces.
+        if (!zones.empty() && !fs::exists(argument) && argument.find_first_of("./\\") == std::string::npos) {
+            throw core::UsageError(
+                "file", "there is no file '" + argument + "'", {},
+                "were it a zone: several zones are one word, --zones '" + zones.back() + "," + argument + "'");
+        }
         if (!fs::exists(argument) && core::NamePattern::is_pattern(argument)) {
             add_pattern(argument, batch);
         } else {

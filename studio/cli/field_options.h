@@ -46,6 +46,8 @@ struct Batch {
 
 /// Files, shell patterns and name patterns ('{variant}-h{gap:mm}.csv'); `manifest` is a table with a column `file`
 /// whose other columns are conditions (rows are added to the files named, paths are relative to the manifest).
-Batch find_files(const std::vector<std::string>& arguments, const std::string& manifest);
+/// `zones`: those that --zones named, for the hint when one of several stands among the files.
+Batch find_files(const std::vector<std::string>& arguments, const std::string& manifest,
+                 const std::vector<std::string>& zones);
 
 }  // namespace underbody::studio

@@ -151,7 +151,7 @@ void add_import_command(CLI::App& app, Shell& shell) {
         "  underbody import 'run-*.csv' --out all.vtp      writes all-run-1.vtp, all-run-2.vtp ...\n"
         "  underbody import a/body.csv b/body.csv --out all.vtp      writes all-a-body.vtp, all-b-body.vtp");
     shell.on(command, [&shell, options] {
-        const Batch batch = find_files(options->files, "");
+        const Batch batch = find_files(options->files, "", options->field.zones);
         shell.show(batch.problems);
         const auto outputs = outputs_for(options->out, batch.files);
         check_outputs(outputs, batch.files);

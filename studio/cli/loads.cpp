@@ -519,7 +519,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
 }
 
 int run_loads(Shell& shell, const LoadsArguments& given) {
-    const Batch batch = find_files(given.files, given.manifest);
+    const Batch batch = find_files(given.files, given.manifest, given.field.zones);
     shell.show(batch.problems);
     if (batch.files.empty()) {
         throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");

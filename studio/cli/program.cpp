@@ -19,6 +19,19 @@ void mention_common_options(CLI::App& app) {
     }
 }
 
+/// An option that may be given several times takes one word each time. Else it would take the words behind it too, a
+/// file among them: --zones hull body.csv.
+void one_word_an_option(CLI::App& app) {
+    for (auto* option : app.get_options()) {
+        if (!option->get_positional() && option->get_items_expected_max() > 1) {
+            option->allow_extra_args(false);
+        }
+    }
+    for (auto* command : app.get_subcommands([](CLI::App*) { return true; })) {
+        one_word_an_option(*command);
+    }
+}
+
 }  // namespace
 
 std::string version() { return UNDERBODY_VERSION; }
@@ -48,6 +61,7 @@ void add_commands(CLI::App& app, Shell& shell, const std::string& only) {
     UNDERBODY_COMMANDS(UNDERBODY_ADD)
 #undef UNDERBODY_ADD
     mention_common_options(app);
+    one_word_an_option(app);
 }
 
 }  // namespace underbody::studio

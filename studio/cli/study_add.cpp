@@ -175,7 +175,7 @@ void add_study_add(CLI::App* study, std::shared_ptr<StudyArguments> arguments, S
                         "half models: normal axis of their plane (y), written to [frame]");
     command
         ->add_option("--zones", arguments->zones,
-                     "zones that are the body: names, * and ? allowed; several with commas")
+                     "zones that are the body: names, * and ? allowed; several with commas in one word")
         ->delimiter(',');
     command->add_option("--design-points", arguments->design_points,
                         "Workbench's table of design points (CSV): the conditions of the files; {design_point} in "

@@ -247,7 +247,7 @@ void check_difference(const ViewsArguments& given, std::size_t files) {
 
 int run_views(Shell& shell, const ViewsArguments& given) {
     postproc::ViewOptions options = view_options(given);
-    Batch batch = find_files(given.files, "");
+    Batch batch = find_files(given.files, "", given.field.zones);
     shell.show(batch.problems);
     if (given.difference.empty()) {
         name_once(batch);

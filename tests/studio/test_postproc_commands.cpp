@@ -241,6 +241,34 @@ TEST_F(PostprocCommands, LoadsTakeZonesByTheirNames) {
     EXPECT_THAT(wrong.errors, testing::HasSubstr("did you mean 'base'?"));
 }
 
+TEST_F(PostprocCommands, AListOfAnOptionEndsAtItsWordInEveryCommand) {
+    // The file stands behind the zones: a list of zones is one word, or the option again.
+    for (const std::vector<std::string>& zones :
+         {std::vector<std::string>{"--zones", "base,hull"}, {"--zones", "base", "--zones", "hull"}}) {
+        std::vector<std::string> words = {"loads"};
+        words.insert(words.end(), zones.begin(), zones.end());
+        words.insert(words.end(), {"a-h5.csv", "--json"});
+        const auto loads = run(words);
+        ASSERT_EQ(loads.exit_code, 0) << loads.errors;
+        EXPECT_EQ(nlohmann::json::parse(loads.output)["zones"].size(), 2U);
+    }
+    EXPECT_EQ(run({"import", "--zones", "base", "a-h5.csv", "--out", "base.vtp"}).exit_code, 0);
+    EXPECT_EQ(run({"views", "--zones", "base", "a-h5.csv", "--list"}).exit_code, 0);
+    EXPECT_EQ(run({"info", "--unit", "pressure=Pa", "a-h5.csv"}).exit_code, 0);
+    EXPECT_EQ(run({"probe", "--point", "0,0,0", "a-h5.csv"}).exit_code, 0);
+    // The other spelling says the way out.
+    for (const char* command : {"loads", "import", "views"}) {
+        std::vector<std::string> words = {command, "a-h5.csv", "--zones", "base", "hull"};
+        if (std::string(command) != "loads") {
+            words.insert(words.end(), {"--out", "elsewhere"});
+        }
+        const auto two = run(words);
+        EXPECT_EQ(two.exit_code, 2) << command;
+        EXPECT_THAT(two.errors, testing::HasSubstr("there is no file 'hull'")) << command;
+        EXPECT_THAT(two.errors, testing::HasSubstr("--zones 'base,hull'")) << command;
+    }
+}
+
 TEST_F(PostprocCommands, LoadsRefuseLengthsAndFlowsThatAreNone) {
     for (const char* option : {"--length", "--width", "--height", "--density", "--speed"}) {
         const auto refused = run({"loads", "a-h5.csv", option, "0"});
