@@ -10,6 +10,7 @@
 #include "core/random.h"
 #include "core/table.h"
 #include "tests/support/support.h"
+#include "tests/surrogates/discovery/make_data.h"
 
 namespace underbody::test {
 
@@ -173,7 +174,54 @@ TEST_F(ModelForces, ADelayedActuatorChangesTheMapOfALoop) {
     EXPECT_LT(held("slow.toml"), held("model.toml") - 0.1);
 }
 
+/// The logs of a simulated rig that its model knows whole, as CSV: input_force times `factor`, `late` seconds behind.
+void write_rig(const std::filesystem::path& folder, double factor, double late) {
+    heave_model(folder);
+    const auto data = heave_runs([](double, double, double) { return 0.0; }, 6, 25, 81);
+    std::string set = "kind = \"time_series\"\n[noise]\ngap = \"0.2 mm\"\n";
+    for (const auto& run : data.runs) {
+        const std::vector<double>& time = run.table.numbers("time");
+        std::vector<double> input = run.values("input_force");
+        const auto behind = static_cast<std::size_t>(late * 25 + 0.5);
+        for (std::size_t i = input.size(); i-- > 0;) {
+            input[i] = factor * input[i >= behind ? i - behind : 0];
+        }
+        core::Table logged;
+        logged.add_numbers("time", "s", time);
+        logged.add_numbers("gap", "m", run.values("gap"));
+        logged.add_numbers("input_force", "N", input);
+        core::write_csv(folder / (run.name + ".csv"), logged);
+        set += "[[run]]\nfile = \"" + run.name + ".csv\"\n";
+    }
+    core::write_file(folder / "dataset.toml", set);
+}
+
 TEST_F(ModelForces, WhatDiscoverFindsWrongWithTheLogsPredictReadsToo) {
+    struct Mistake {
+        const char* name;
+        double factor, late;
+        const char* read_as;
+    };
+    for (const Mistake& mistake : {Mistake{"sign", -1, 0, "input_force times -1"},
+                                   {"unit", 1000, 0, "input_force times 0.001"},
+                                   {"clock", 1, 0.4, "s earlier than logged"}}) {
+        const std::string name = mistake.name;
+        write_rig(folder_.path() / name, mistake.factor, mistake.late);
+        const nlohmann::json found =
+            json({"discover", name + "/model.toml", "--data", name, "--out", name + "-found", "--placebo", "0",
+                  "--candidates", "linear_damping,constant_force,added_mass"});
+        EXPECT_EQ(found["verdict"], "none") << name;
+        EXPECT_TRUE(found.contains("records_mended")) << name;
+        const nlohmann::json predicted = json({"predict", name + "-found/model.toml", "--data", name});
+        EXPECT_THAT(predicted["logs_read_as"].get<std::string>(), HasSubstr(mistake.read_as)) << name;
+        EXPECT_EQ(predicted["input_between"]["from"], "declared") << name;
+        EXPECT_LT(predicted["channels"]["gap"]["in_noise"].get<double>(), 1.4) << name;
+        const nlohmann::json before = json({"predict", name + "/model.toml", "--data", name});
+        EXPECT_GT(before["channels"]["gap"]["in_noise"].get<double>(), 5) << name;
+    }
+}
+
+TEST_F(ModelForces, ATurnedInputBesideAnEffectIsReadSoByPredictToo) {
     UNDERBODY_NEEDS_SHARED("examples/loop/example-00/model.toml");
     const std::filesystem::path rig = folder_.path() / "rig";
     std::filesystem::copy(shared_folder() / "examples/loop/example-00", rig, std::filesystem::copy_options::recursive);

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_loop.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/predict.h"
 
 namespace underbody::discovery {
 
@@ -23,6 +24,7 @@ HeaveLoop::HeaveLoop(const dynamics::Model& model, const dynamics::Measurements&
 Discovery HeaveLoop::run() {
     split();
     experiment_.emplace(model_, records_, train_, data_.declared_noise("gap"), data_.declared_noise("heave_velocity"));
+    experiment_->set_hold(records_read_.input_between != dynamics::RecordReading::Between::linear);
     progress_.report(0.02, "noise");
     fit_null();
     drop_accidents();
@@ -264,11 +266,16 @@ void HeaveLoop::fit_singles() {
     best_single_ = best_hypothesis(fitted_, 1);
 }
 
-/// Is the recorded input held from sample to sample, or linear between? Half a sample of delay hangs on it.
+/// Is the recorded input held from sample to sample, or linear between? Half a sample of delay hangs on it. Asked of
+/// the data only where the model does not say.
 void HeaveLoop::try_hold() {
-    if (!records_.input_recorded) {
+    using Between = dynamics::RecordReading::Between;
+    if (!records_.input_recorded || records_read_.input_between != Between::unsaid) {
         return;
     }
+    const auto linear_by = [&](double held, double linear) {
+        return dynamics::between_samples(records_read_.input_between, held, linear) == Between::linear;
+    };
     const FittedHypothesis& best = fitted_[best_single_];
     std::vector<double> innovations;
     experiment_->set_hold(false);
@@ -279,8 +286,8 @@ void HeaveLoop::try_hold() {
                                         experiment_->evaluate({}, nullptr, noises_[best_single_], innovations));
     // What half a sample of delay does to a controlled body looks like damping: where a linear input leaves nothing to
     // that name, there is no effect.
-    const bool explains_without_effect = null_cost_ - null_linear > 10 && null_linear < best.cost;
-    if (explains_without_effect || (best.cost - linear > 10 && null_cost_ - null_linear > -10)) {
+    const bool explains_without_effect = linear_by(null_cost_, null_linear) && null_linear < best.cost;
+    if (explains_without_effect || (linear_by(best.cost, linear) && !linear_by(null_linear, null_cost_))) {
         null_by_record_.clear();
         fit_null();
         fit_singles();
@@ -429,7 +436,8 @@ HeaveLoop::InputReading HeaveLoop::better_input() {
     for (const double seconds : {0.02, 0.04, 0.06, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0}) {
         attempt(seconds, 1);
     }
-    for (double step = 0.02; step > 0.004 && best.early > 0; step /= 2) {
+    // From the best of these half-way toward its neighbours and on: they lie up to twice as far apart.
+    for (double step = std::max(0.02, best.early / 4); step > 0.002 && best.early > 0; step /= 2) {
         const double middle = best.early;
         attempt(middle - step, 1);
         attempt(middle + step, 1);
@@ -448,7 +456,9 @@ void HeaveLoop::check_input() {
         return;
     }
     const bool hold = experiment_->hold();
-    experiment_->set_hold(true);  // whether it is held between samples was asked of an input that may be wrong
+    if (records_read_.input_between == dynamics::RecordReading::Between::unsaid) {
+        experiment_->set_hold(true);  // whether it is held between samples was asked of an input that may be wrong
+    }
     const auto [early, factor] = better_input();
     if (early == 0 && factor == 1) {
         experiment_->set_hold(hold);

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "core/text.h"
@@ -261,18 +262,40 @@ using RunRows = std::vector<std::vector<RunPredictor::Row>>;
 struct SeriesPrediction {
     std::vector<std::unique_ptr<RunPredictor>> predictors;
     RunRows rows;
-    /// Squares of the gap's errors in units of its noise.
-    [[nodiscard]] double squares(const std::vector<double>& noise) const {
-        double sum = 0;
+    /// The gap's errors in units of its noise, one window after the other; 0 where nothing was measured.
+    [[nodiscard]] std::vector<double> errors(const std::vector<double>& noise) const {
+        std::vector<double> errors;
         for (std::size_t r = 0; r < rows.size(); ++r) {
             for (const RunPredictor::Row& row : rows[r]) {
                 const double error = (row.gap - predictors[r]->gap()[row.sample]) / noise[r];
-                sum += std::isnan(predictors[r]->gap()[row.sample]) ? 0 : error * error;
+                errors.push_back(std::isfinite(error) ? error : 0);
             }
         }
-        return sum;
+        return errors;
     }
 };
+
+double sum_of_squares(const std::vector<double>& values) {
+    return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+/// How many independent errors hold as much as these: the errors of a model that is wrong are as smooth as the motion,
+/// and a second of them says no more than one. By the sum of their autocorrelation, up to its first zero.
+double independent_count(const std::vector<double>& errors) {
+    const double all = sum_of_squares(errors);
+    const std::size_t most = std::min<std::size_t>(errors.size() / 2, 2000);
+    double sum = 1;
+    for (std::size_t lag = 1; lag < most && all > 0; ++lag) {
+        const double rho =
+            std::inner_product(errors.begin() + static_cast<std::ptrdiff_t>(lag), errors.end(), errors.begin(), 0.0) /
+            all;
+        if (rho <= 0) {
+            break;
+        }
+        sum += 2 * rho;
+    }
+    return static_cast<double>(errors.size()) / sum;
+}
 
 SeriesPrediction predict_runs(const Model& model, const RecordReading& records, const Measurements& data,
                               const PredictOptions& options, core::Progress& progress) {
@@ -314,8 +337,14 @@ std::optional<SeriesPrediction> predict_as_read(const Model& model, const Measur
     RecordReading other = reading.records;
     other.input_between = Between::linear;
     SeriesPrediction linear = predict_runs(model, other, data, options, progress);
-    const double by_held = held.squares(noise), by_linear = linear.squares(noise);
-    if (by_linear < 0.98 * by_held && by_held - by_linear > 10) {
+    const std::vector<double> errors = held.errors(noise);
+    const double size = static_cast<double>(errors.size()), count = independent_count(errors);
+    const double of_held = sum_of_squares(errors), of_linear = sum_of_squares(linear.errors(noise));
+    // A model that lacks something is met better by one reading or the other for reasons of its own: that tells of the
+    // input only where most of what is more than noise goes with it.
+    const bool tells = of_linear - size < 0.5 * (of_held - size);
+    const double by_held = tells ? count * std::log(of_held) : 0, by_linear = tells ? count * std::log(of_linear) : 0;
+    if (between_samples(Between::unsaid, by_held, by_linear) == Between::linear) {
         reading.between = "linear";
         reading.records = other;
         return linear;
@@ -441,6 +470,12 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
 }
 
 }  // namespace
+
+RecordReading::Between between_samples(RecordReading::Between declared, double held, double linear) {
+    using Between = RecordReading::Between;
+    constexpr double clearly = 10;  // a factor of 150 in likelihood
+    return declared != Between::unsaid ? declared : held - linear > clearly ? Between::linear : Between::held;
+}
 
 InputReading input_reading(const Model& model, const Measurements& data, const PredictOptions& options,
                            core::Progress& progress) {

@@ -44,9 +44,14 @@ struct Prediction {
     core::Problems remarks;
 };
 
+/// What a recorded input did between its samples: as declared; where nothing is declared, held (as a digital controller
+/// does), unless the measured motion says otherwise: `held` and `linear` are -2 log likelihood of what was measured
+/// with the input read so. The one rule of predictions, the estimator and discovery.
+RecordReading::Between between_samples(RecordReading::Between declared, double held, double linear);
+
 /// How the logs of a data set are read: as the model's [records] say, and where they do not say whether input_force is
-/// held or linear between its samples, as the measured motion fits clearly better; held where that tells nothing. What
-/// predict() and the estimator take.
+/// held or linear between its samples, by between_samples() of the predicted windows. What predict() and the estimator
+/// take.
 struct InputReading {
     RecordReading records;
     std::string between;  ///< "held" or "linear"; empty: no input varies

@@ -12,6 +12,7 @@
 #include "surrogates/discovery/heave/heave_record.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "tests/support/log_writers.h"
+#include "tests/surrogates/discovery/make_data.h"
 
 namespace underbody::discovery {
 namespace {
@@ -329,6 +330,64 @@ TEST(UnevenRuns, SayWhatIsMissing) {
 
 TEST(LongRuns, AtTwoReadingsASecondSayWhatIsMissing) {
     expect_friction(sampled(0.006, 120, [](core::Random&) { return 0.5; }));
+}
+
+using Between = dynamics::RecordReading::Between;
+
+TEST(InputBetweenSamples, DiscoveryPredictionAndEstimatorReadTheLogsAlike) {
+    const core::TemporaryFolder folder;
+    const dynamics::Model model = test::heave_model(folder.path());
+    const auto nothing = [](double, double, double) { return 0.0; };
+    const auto damped = [](double, double, double w) { return -0.5 * w; };
+    for (const bool continuous : {false, true}) {
+        for (const bool known : {true, false}) {
+            test::HeaveRig rig;
+            rig.seconds = 20;
+            rig.continuous = continuous;
+            const auto data =
+                known ? test::heave_runs(nothing, 6, 12.5, 71, rig) : test::heave_runs(damped, 6, 12.5, 72, rig);
+            const std::string who =
+                std::string(continuous ? "linear" : "held") + (known ? "" : ", damping that the model lacks");
+            const Between truth = continuous ? Between::linear : Between::held;
+            const Discovery found = discover(model, data, quick());
+            EXPECT_EQ(found.verdict, known ? "none" : "effect") << who << ": " << found.sentence;
+            const Between read = found.model.records.input_between;
+            const std::string before = dynamics::input_reading(model, data).between;
+            if (known) {
+                EXPECT_EQ(read, truth) << who;
+                EXPECT_EQ(before, continuous ? "linear" : "held") << who;
+            } else {  // half a sample hides behind the damping, but never the other way round
+                EXPECT_TRUE(read == truth || read == Between::held) << who;
+                EXPECT_EQ(before, "held") << who;
+            }
+            dynamics::Model unsaid = found.model;  // the effect known, the reading to be worked out
+            unsaid.records.input_between = Between::unsaid;
+            EXPECT_EQ(dynamics::input_reading(unsaid, data).between, read == Between::linear ? "linear" : "held")
+                << who;
+            const dynamics::Prediction predicted = dynamics::predict(found.model, data);
+            EXPECT_EQ(predicted.input_between_from, "declared") << who;
+            EXPECT_EQ(predicted.input_between, read == Between::linear ? "linear" : "held") << who;
+            EXPECT_LT(predicted.channels[0].in_noise, 1.6) << who;
+        }
+    }
+}
+
+TEST(InputBetweenSamples, WhatTheModelDeclaresIsNotAskedOfTheData) {
+    const core::TemporaryFolder folder;
+    dynamics::Model model = test::heave_model(folder.path());
+    const auto data = test::heave_runs([](double, double, double) { return 0.0; }, 4, 5, 73);
+    for (const Between declared : {Between::held, Between::linear}) {
+        model.records.input_between = declared;
+        EXPECT_EQ(discover(model, data, quick()).model.records.input_between, declared);
+        EXPECT_EQ(dynamics::input_reading(model, data).from, "declared");
+    }
+}
+
+TEST(InputBetweenSamples, OneRule) {
+    EXPECT_EQ(dynamics::between_samples(Between::unsaid, 100, 91), Between::held);
+    EXPECT_EQ(dynamics::between_samples(Between::unsaid, 100, 89), Between::linear);
+    EXPECT_EQ(dynamics::between_samples(Between::held, 100, 0), Between::held);
+    EXPECT_EQ(dynamics::between_samples(Between::linear, 0, 100), Between::linear);
 }
 
 }  // namespace
