@@ -12,6 +12,7 @@
 #include "postproc/loads/deviation.h"
 #include "postproc/loads/loads_case.h"
 #include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/points/settled.h"
 
 namespace underbody::cases {
 
@@ -239,8 +240,8 @@ private:
             }
             MovedTable moved = compared(fitted(*a, spec), fitted(*b, *other), a->points);
             moved.table = spec.name;
-            moved.unsettled_a = not_settled(a->points).size();
-            moved.unsettled_b = not_settled(b->points).size();
+            moved.unsettled_a = tables::not_settled(a->points).size();
+            moved.unsettled_b = tables::not_settled(b->points).size();
             result_.tables.push_back(std::move(moved));
             compare_equilibria("table/" + spec.name, a->equilibria, b->equilibria, result_.equilibria);
         }

@@ -67,8 +67,9 @@ std::string Key::about(const IdOf& id_of) const {
     for (const auto& [room, version] : code_) {
         about["code"][room] = version;
     }
-    for (const auto& [label, value] : options_) {
-        about["options"][label] = value;
+    for (const auto& [label, value] : options_) {  // of several parts of one kind, such as the meshes of a study, all
+        auto& told = about["options"][label];
+        told = told.is_null() ? value : told.get<std::string>() + "; " + value;
     }
     for (const auto& [kind, name] : from_) {
         about["from"].push_back({{"kind", kind}, {"name", name}, {"id", id_of(kind, name)}});

@@ -16,18 +16,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The speed that the points of a table hold and its axes do not have, m/s.
-std::optional<double> made_at(const TableSpec& table) {
-    const bool axis = std::find(table.axes.begin(), table.axes.end(), "speed") != table.axes.end();
-    const auto speed = table.where.number("speed");
-    return speed && *speed > 0 && !axis ? speed : std::nullopt;
-}
-
 /// Where the model's speed is not the one of a table, its force in the map is not the one of the report.
-void remark_on_speeds(dynamics::Model& model, const Study& study, const RegionSpec& spec) {
+void remark_on_speeds(dynamics::Model& model, const Study& study, const RegionSpec& spec, const StudyResults& results) {
     for (const auto& name : spec.forces) {
         const TableSpec& table = *study.find_table(name);
-        const auto speed = made_at(table);
+        const auto speed = speed_of(table, table_points(table, results));
         const double held = model.conditions.get(dynamics::Channel::speed, speed.value_or(0));
         if (speed && std::abs(held - *speed) > 1e-9 * *speed) {
             model.remarks.push_back(
@@ -41,8 +34,36 @@ void remark_on_speeds(dynamics::Model& model, const Study& study, const RegionSp
     }
 }
 
+/// Where a table's own equilibria are of another weight or mass than the model's, the report has two answers to one
+/// question.
+void remark_on_weights(dynamics::Model& model, const Study& study, const RegionSpec& spec) {
+    const auto told = [&](const std::string& table, const char* what, double of_table, double of_model,
+                          const char* unit) {
+        const double size = std::max(std::abs(of_table), std::abs(of_model));
+        if (!std::isfinite(of_model) || std::abs(of_table - of_model) <= 1e-6 * size) {
+            return;
+        }
+        model.remarks.push_back({core::Problem::Severity::warning,
+                                 "the equilibria of the table '" + table + "' are for a " + what + " of " +
+                                     core::format_number(of_table, 6) + " " + unit + ", the model's " + what + " is " +
+                                     core::format_number(of_model, 6) + " " + unit +
+                                     ": the map's attractors are not the table's equilibria",
+                                 {model.name, {}, {}, {}}});
+    };
+    for (const auto& name : spec.forces) {
+        const TableSpec& table = *study.find_table(name);
+        if (table.quantity == "lift_force" && table.net_weight) {
+            told(name, "net weight", *table.net_weight, model.vehicle.net_weight, "N");
+            if (table.virtual_mass > 0 && !model.vehicle.added_mass_heave_table) {
+                told(name, "mass with added mass", table.virtual_mass, model.heave_mass(), "kg");
+            }
+        }
+    }
+}
+
 /// The model's text with one [[force]] for each table of the study, whose files are named by `place`.
-std::string composed_text(const Study& study, const RegionSpec& spec, const std::string& place) {
+std::string composed_text(const Study& study, const RegionSpec& spec, const StudyResults& results,
+                          const std::string& place) {
     std::string text = core::read_file(spec.model);
     for (std::size_t i = 0; i < spec.forces.size(); ++i) {
         const TableSpec& table = *study.find_table(spec.forces[i]);
@@ -54,7 +75,7 @@ std::string composed_text(const Study& study, const RegionSpec& spec, const std:
             text += (&axis == &table.axes.front() ? "" : ", ") + core::toml_string(axis);
         }
         text += "]\nfit = " + core::toml_string(table.fit) + "\n";
-        if (const auto speed = made_at(table); speed && table.speed_exponent != 0) {
+        if (const auto speed = speed_of(table, table_points(table, results)); speed && table.speed_exponent != 0) {
             text += "scale.speed = { reference = \"" + core::format_number(*speed) +
                     " m/s\", exponent = " + core::format_number(table.speed_exponent) + " }\n";
         }
@@ -72,9 +93,10 @@ dynamics::Model composed_model(const Study& study, const RegionSpec& spec, const
         core::write_csv(scratch / (table.quantity + "-" + std::to_string(i + 1) + ".csv"), points);
     }
     dynamics::Model model =
-        dynamics::read_model_text(composed_text(study, spec, scratch.string() + "/"), spec.model.string(),
+        dynamics::read_model_text(composed_text(study, spec, results, scratch.string() + "/"), spec.model.string(),
                                   spec.model.has_parent_path() ? spec.model.parent_path() : fs::path("."));
-    remark_on_speeds(model, study, spec);
+    remark_on_speeds(model, study, spec, results);
+    remark_on_weights(model, study, spec);
     return model;
 }
 

@@ -12,6 +12,7 @@
 #include "core/html.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/tables/points/settled.h"
 
 namespace underbody::cases {
 
@@ -147,7 +148,7 @@ private:
                 page_.warning(note.message);
             }
         }
-        if (const auto names = not_settled(engine_.results.loads); !names.empty()) {
+        if (const auto names = tables::not_settled(engine_.results.loads); !names.empty()) {
             std::string list;
             for (const auto& name : names) {
                 list += (list.empty() ? "" : ", ") + name;
@@ -288,6 +289,9 @@ private:
                 page_.table({"end of the motion", "kind", "share of the starts"}, rows,
                             std::to_string(spec.columns) + " x " + std::to_string(spec.rows) + " starts, " +
                                 core::format_number(spec.duration, 3) + " s of motion each.");
+                if (!region->remarks.empty()) {
+                    page_.list(region->remarks);
+                }
                 page_.link("models/" + spec.name + "/model.toml",
                            "The model as a file for underbody simulate and region");
                 way_back("region/" + spec.name);

@@ -1,4 +1,5 @@
 // Stability maps: the declared model with the study's force tables, and where each start ends.
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
@@ -44,9 +45,10 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
     for (const auto& name : spec.forces) {
         const TableSpec& table = *engine.study.find_table(name);
         key.add("force", table.quantity)
-            .add("speed", table.where.number("speed").value_or(0))
             .add("fit", table.fit)
             .add("speed_exponent", table.speed_exponent)
+            .add("net_weight", table.net_weight.value_or(NAN))  // a remark says where the model's is another
+            .add("virtual_mass", table.virtual_mass)
             .through("table", name);
         for (const auto& axis : table.axes) {
             key.add("axis", axis);

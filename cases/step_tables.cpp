@@ -59,15 +59,6 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     document["points"] = core::write_csv(points);
     document["remarks"] =
         nlohmann::json::array({"Fitted by " + table.kind() + " through " + std::to_string(points.rows()) + " points."});
-    if (const auto names = not_settled(points); !names.empty()) {
-        std::string list;
-        for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 5); ++i) {
-            list += (i > 0 ? ", " : "") + names[i];
-        }
-        document["remarks"].push_back(std::to_string(names.size()) +
-                                      " of the points are of solutions that have not settled: " + list +
-                                      (names.size() > 5 ? ", ..." : ""));
-    }
     for (const auto& remark : table.remarks()) {
         document["remarks"].push_back(remark.message);
     }

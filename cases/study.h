@@ -86,7 +86,7 @@ struct TableSpec {
     std::string fit = "automatic";  ///< how the table is fitted (tables::fit_kind), here, in its exports and in the
                                     ///< maps of [[region]]
     double speed_exponent =
-        2;  ///< of the force in a [[region]], when `where` holds the speed: (speed / that speed)^exponent
+        2;  ///< of the force in a [[region]], when all its cases have one speed: (speed / that speed)^exponent
     double relative_sigma = 0;         ///< of the value, added in squares
     std::string mesh_uncertainty;      ///< name of the [[mesh_uncertainty]] whose standard uncertainty the points carry
     std::optional<double> net_weight;  ///< N: equilibria are found for it
@@ -298,17 +298,15 @@ StudyResults stored_loads(const Study& study, const RunOptions& options);
 /// How a [[table]] is fitted, wherever it is.
 tables::FitOptions fit_options(const TableSpec& spec);
 
-/// The points of a [[table]], one row a case of `results.loads` that fits `where`: its axes, its quantity, `case` and
-/// `settled`; and `QUANTITY_sigma` where an error is known of any point: the standard uncertainty of the mesh study
-/// that the table names, the relative error that it states and the case's own scatter from iteration to iteration
-/// (postproc::Settled), added in squares; empty (NaN) for a point of which none is known. Throws core::InputError
-/// (missing): there are no loads, no case fits, a case lacks an axis or the quantity, the mesh study failed or does not
-/// cover the quantity.
+/// The points of a [[table]], one row a case of `results.loads` that fits `where`: its axes, its quantity, the
+/// conditions that all of them share, `case` and `settled`; and `QUANTITY_sigma` where an error is known of any point:
+/// the standard uncertainty of the mesh study that the table names, the relative error that it states and the case's
+/// own scatter from iteration to iteration (postproc::Settled), added in squares; empty (NaN) for a point of which none
+/// is known. Throws core::InputError (missing): there are no loads, no case fits, a case lacks an axis or the quantity,
+/// the mesh study failed or does not cover the quantity.
 core::Table table_points(const TableSpec& spec, const StudyResults& results);
-
-/// Names of the rows whose text column `settled` says "not settled": cases of StudyResults::loads, or points of a
-/// table.
-std::vector<std::string> not_settled(const core::Table& loads);
+/// The speed that all these points have, m/s; nothing where it is an axis, differs or is not known.
+std::optional<double> speed_of(const TableSpec& spec, const core::Table& points);
 
 void to_json(nlohmann::json& json, const StudyResults& results);
 

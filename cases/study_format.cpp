@@ -164,7 +164,7 @@ std::vector<FileTable> results() {
           {"fit", "automatic | interpolation | gaussian_process | spline", "\"automatic\"", "automatic",
            "how values between the points are found, here, in its exports and in maps"},
           {"speed_exponent", "1", "2", "2",
-           "of the force in a [[region]] where `where` holds the speed: (speed / that speed)^exponent"},
+           "of the force in a [[region]] where all its cases have one speed: (speed / that speed)^exponent"},
           {"relative_sigma", "1", "0.02", "0", "standard deviation of each value as a share of it, added in squares"},
           {"mesh_uncertainty", "text", "\"5 mm\"", "none",
            "name of the [[mesh_uncertainty]] whose error all points carry"},

@@ -4,6 +4,7 @@
 
 #include "cases/study.h"
 #include "core/units.h"
+#include "surrogates/tables/points/set_points.h"
 
 namespace underbody::cases {
 
@@ -55,7 +56,40 @@ bool row_fits(const core::Table& loads, std::size_t row, const Conditions& where
     return mine.satisfies(where);
 }
 
+/// What is the same in all these cases: the speed, the pitch, the variant. An exported table says it in its head, and a
+/// model scales its force from that speed.
+void add_held(const TableSpec& spec, const core::Table& chosen, core::Table& points) {
+    for (const auto& name : tables::axis_names()) {
+        const auto* column = chosen.find(name);
+        if (column == nullptr || column->is_text() || points.find(name) != nullptr || name == spec.quantity) {
+            continue;
+        }
+        const auto& numbers = column->numbers;
+        if (std::isfinite(numbers.front()) &&
+            std::all_of(numbers.begin(), numbers.end(), [&](double v) { return v == numbers.front(); })) {
+            points.add_numbers(name, column->unit, numbers, column->written_unit);
+        }
+    }
+    for (const char* name : {"variant", "mesh"}) {
+        const auto* column = chosen.find(name);
+        if (column != nullptr && column->is_text() && !column->text.front().empty() &&
+            std::all_of(column->text.begin(), column->text.end(),
+                        [&](const std::string& text) { return text == column->text.front(); })) {
+            points.add_text(name, column->text);
+        }
+    }
+}
+
 }  // namespace
+
+std::optional<double> speed_of(const TableSpec& spec, const core::Table& points) {
+    const auto* speed = points.find("speed");
+    const bool axis = std::find(spec.axes.begin(), spec.axes.end(), "speed") != spec.axes.end();
+    if (axis || speed == nullptr || speed->is_text() || !(speed->numbers.front() > 0)) {
+        return {};
+    }
+    return speed->numbers.front();
+}
 
 tables::FitOptions fit_options(const TableSpec& spec) {
     tables::FitOptions options;
@@ -102,22 +136,12 @@ core::Table table_points(const TableSpec& spec, const StudyResults& results) {
         }
         points.add_numbers(spec.quantity + "_sigma", unit, std::move(sigma));
     }
+    add_held(spec, chosen, points);
     points.add_text("case", chosen.text("case"));
     if (chosen.find("settled") != nullptr) {
         points.add_text("settled", chosen.text("settled"));
     }
     return points;
-}
-
-std::vector<std::string> not_settled(const core::Table& loads) {
-    std::vector<std::string> names;
-    const auto* settled = loads.find("settled");
-    for (std::size_t row = 0; settled != nullptr && settled->is_text() && row < loads.rows(); ++row) {
-        if (settled->text[row] == "not settled") {
-            names.push_back(loads.text("case")[row]);
-        }
-    }
-    return names;
 }
 
 }  // namespace underbody::cases

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
 #include "cases/engine.h"
-#include "cases/export_files.h"
+#include "cases/why_names.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
@@ -20,73 +21,7 @@ namespace underbody::cases {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const Fact* Origin::fact(const std::string& fact_name) const {
-    const auto found = std::find_if(facts.begin(), facts.end(), [&](const Fact& one) { return one.name == fact_name; });
-    return found == facts.end() ? nullptr : &*found;
-}
-
 namespace {
-
-using Name = std::pair<std::string, std::string>;  ///< kind and name, as a person knows them
-
-std::string shown(const Name& name) { return name.first + "/" + name.second; }
-
-/// The file beside the report that holds a result; empty: none does.
-std::string file_of(const Name& name) {
-    const auto& [kind, of] = name;
-    if (kind == "model") {
-        return "models/" + of + "/model.toml";
-    }
-    const auto as = of.rfind(" as ");
-    return kind != "export" || as == std::string::npos ? ""
-                                                       : "exports/" + export_file(of.substr(0, as), of.substr(as + 4));
-}
-
-/// "'cube-h2'", "report/exports/lift.h" without what says nothing of the result.
-std::string bare(std::string what) {
-    std::erase(what, '\'');
-    for (const std::string_view folder : {"./", "report/"}) {
-        if (what.starts_with(folder)) {
-            what.erase(0, folder.size());
-        }
-    }
-    return what;
-}
-
-bool is_called(const Name& name, const std::string& what) {
-    const std::string file = file_of(name);
-    const bool in_file = !file.empty() && (what == file || what == fs::path(file).filename().string());
-    return shown(name) == what || name.second == what || in_file;
-}
-
-/// What the head of an exported file says of its making.
-struct Head {
-    Name result;
-    std::string id;       ///< of the result
-    std::string content;  ///< hash of the file that it was made from
-};
-
-/// The text behind the first `word`, as much as a line of a head may hold.
-std::string behind(const std::string& bytes, const std::string& word) {
-    const auto at = bytes.find(word);
-    return at == std::string::npos ? "" : bytes.substr(at + word.size(), 300);
-}
-
-Head head_of(const fs::path& file) {
-    Head head;
-    const std::string bytes = core::read_file(file);
-    std::smatch found;
-    static const std::regex result("^([a-z]+)/([^\n]{1,200}?) ([0-9a-f]{16})");
-    if (const std::string line = behind(bytes, "Result: "); std::regex_search(line, found, result)) {
-        head.result = {found[1], found[2]};
-        head.id = found[3];
-    }
-    static const std::regex content("^([0-9a-f]{16,})\\)");
-    if (const std::string line = behind(bytes, "(content "); std::regex_search(line, found, content)) {
-        head.content = found[1];
-    }
-    return head;
-}
 
 class Walk {
 public:
@@ -99,23 +34,36 @@ public:
     }
 
     Way from(const std::string& what) {
-        for (const fs::path& file : {fs::path(what), engine_.report_folder() / bare(what)}) {
+        const fs::path beside = engine_.report_folder();
+        for (const fs::path& file : {fs::path(what), beside / bare(what), beside / "exports" / bare(what)}) {
             std::error_code ignored;
-            if (fs::is_regular_file(file, ignored) && from_file(file)) {
+            if (fs::is_regular_file(file, ignored) && (from_file(file) || from_model_folder(file))) {
                 return std::move(way_);
             }
         }
-        if (!what.empty() && !find_true(bare(what)) &&
-            (std::isdigit(static_cast<unsigned char>(what.front())) != 0 || what.front() == '-') && from_number(what)) {
+        const std::string asked = bare(what);
+        if (!asked.empty() && !find_true(asked) && from_number(asked)) {
             return std::move(way_);
         }
         std::string quantity;
-        std::string name = bare(what);
+        std::string name = asked;
         if (const auto of = name.find(" of "); of != std::string::npos && !find_true(name)) {
-            quantity = name.substr(0, of);
-            name.erase(0, of + 4);
+            // "gap of A of region/glide": what stands behind the last "of" that is a result
+            std::size_t cut = of;
+            for (auto next = of; next != std::string::npos; next = name.find(" of ", next + 1)) {
+                cut = find_true(name.substr(next + 4)) ? next : cut;
+            }
+            quantity = name.substr(0, cut);
+            name.erase(0, cut + 4);
+        } else if (!find_true(name) && from_fact(name)) {
+            return std::move(way_);
         }
-        walk(*result_called(name));
+        const auto& called = *result_called(name);
+        const json about = called.first.first == "export" && shown(called.first) != name
+                               ? about_of(called.second).value("from", json::array())
+                               : json::array();
+        const auto source = about.empty() ? true_.end() : true_.find({about[0].at("kind"), about[0].at("name")});
+        walk(source == true_.end() ? called : *source);  // a file says what its table says
         if (!quantity.empty()) {
             ask(quantity);
         }
@@ -224,51 +172,176 @@ private:
                                "it is of another study, or so old that the store has forgotten it");
     }
 
-    /// A number as a report prints it: that of one result, as far as its digits go.
+    using Hit = std::pair<Known::const_iterator, Fact>;
+
+    /// The first fact of each result that is asked for. Pictures and files say nothing themselves.
+    std::vector<Hit> hits(const std::function<bool(const Fact&)>& asked) {
+        std::vector<Hit> found;
+        for (auto one = true_.begin(); one != true_.end(); ++one) {
+            const std::string& kind = one->first.first;
+            if (kind == "figure" || kind.ends_with("picture") || kind == "export" || kind == "model") {
+                continue;
+            }
+            const auto facts = facts_of(kind, engine_.store()->value(one->second.id).value_or(""), study_.folder());
+            if (const auto fact = std::find_if(facts.begin(), facts.end(), asked); fact != facts.end()) {
+                found.emplace_back(one, *fact);
+            }
+        }
+        return found;
+    }
+
+    static std::string listed(const std::vector<Hit>& found) {
+        constexpr std::size_t most = 12;
+        std::string list;
+        for (std::size_t i = 0; i < std::min(found.size(), most); ++i) {
+            const Fact& fact = found[i].second;
+            list += (i == 0 ? "\"" : "; \"") + fact.name + " of " + shown(found[i].first->first) + "\"" +
+                    (fact.number ? " (" + fact.value + ")" : "");
+        }
+        return list + (found.size() > most ? "; ..." : "");
+    }
+
+    /// All that a result was made of, by name.
+    std::set<Name> made_of(const Known::value_type& result) {
+        std::set<Name> all;
+        std::deque<Known::value_type> next = {result};
+        while (!next.empty()) {
+            const json about = next.front().second.id != 0 ? about_of(next.front().second) : json::object();
+            next.pop_front();
+            for (const auto& source : about.value("from", json::array())) {
+                const Name name{source.at("kind"), source.at("name")};
+                if (const auto now = true_.find(name); all.insert(name).second && now != true_.end()) {
+                    next.push_back(*now);
+                }
+            }
+        }
+        return all;
+    }
+
+    /// One number may stand in several results, when those rest on the one where it was found first.
+    const Hit* first_of_one_number(const std::vector<Hit>& found) {
+        for (const Hit& first : found) {
+            const bool one = std::all_of(found.begin(), found.end(), [&](const Hit& other) {
+                const double size = std::abs(first.second.number.value_or(NAN));
+                return &other == &first ||
+                       (std::abs(other.second.number.value_or(NAN) - first.second.number.value_or(NAN)) <=
+                            1e-7 * size &&
+                        other.second.unit == first.second.unit && made_of(*other.first).contains(first.first->first));
+            });
+            if (one) {
+                return &first;
+            }
+        }
+        return nullptr;
+    }
+
+    void answer(const Hit& hit, const std::vector<Hit>& found) {
+        for (const Hit& other : found) {
+            if (&other != &hit) {
+                way_.notes.push_back("the same number is the " + other.second.name + " of " +
+                                     shown(other.first->first) + ", which rests on it");
+            }
+        }
+        way_.asked = hit.second;
+        walk(*hit.first);
+    }
+
+    /// A number as a report prints it, as far as its digits go, in its unit; without one, as the numbers are told
+    /// (mm, deg, N ...). Where no number is such, a sentence that says it. False: it is no number.
     bool from_number(const std::string& what) {
+        static const std::regex form("([-+]?[0-9]+\\.?([0-9]*)([eE][-+]?[0-9]+)?)( *[^0-9.].*)?");
+        std::smatch parts;
+        if (!std::regex_match(what, parts, form)) {
+            return false;
+        }
         core::Quantity asked;
         try {
             asked = core::parse_quantity(what);
         } catch (const core::InputError&) {
             return false;
         }
-        const std::string digits = what.substr(0, what.find_first_not_of("0123456789.-+"));
-        const auto point = digits.find('.');
-        const double half = 0.5 * std::pow(10, point == std::string::npos ? 0
-                                                                          : 1.0 + static_cast<double>(point) -
-                                                                                static_cast<double>(digits.size()));
-        const std::string unit = asked.unit.empty() ? "1" : asked.unit;
-        std::vector<std::pair<Known::const_iterator, Fact>> found;
-        for (auto one = true_.begin(); one != true_.end(); ++one) {
-            const std::string kind = one->first.first;
-            if (kind == "figure" || kind.ends_with("picture") || kind == "export" || kind == "model") {
-                continue;
+        const int power = parts[3].matched ? std::stoi(parts[3].str().substr(1)) : 0;
+        const double half = 0.5 * std::pow(10, power - static_cast<int>(parts[2].length()));
+        const auto near = [&](double value) { return std::abs(value - asked.value) <= half * (1 + 1e-9); };
+        auto found = hits([&](const Fact& fact) {
+            if (!fact.number || !std::isfinite(*fact.number)) {
+                return false;
             }
-            for (const auto& fact :
-                 facts_of(kind, engine_.store()->value(one->second.id).value_or(""), study_.folder())) {
-                if (fact.number && std::isfinite(*fact.number) && core::same_dimension(unit, fact.unit) &&
-                    std::abs(core::convert(*fact.number, fact.unit, unit) - asked.value) <= half * (1 + 1e-9)) {
-                    found.emplace_back(one, fact);
-                    break;  // one of its numbers is enough to name the result
-                }
+            if (asked.unit.empty()) {
+                return near(core::parse_number(fact.value.substr(0, fact.value.find(' '))).value_or(NAN));
+            }
+            return core::same_dimension(asked.unit, fact.unit) &&
+                   near(core::convert(*fact.number, fact.unit, asked.unit));
+        });
+        if (found.empty()) {
+            const std::string digits = parts[1];
+            found = hits([&](const Fact& fact) { return !fact.number && says(fact.value, digits); });
+            if (found.size() == 1) {
+                answer(found.front(), {});
+                return true;
             }
         }
+        if (found.empty()) {
+            throw core::InputError("missing", "the study has no result with the number " + what + " that is still true",
+                                   place(),
+                                   "a number is asked for as it is printed, with its unit (\"3.5 mm\"), or by its name "
+                                   "(\"stable gap of table/lift\"); study list names the cases");
+        }
+        const Hit* first = found.front().second.number ? first_of_one_number(found) : nullptr;
+        if (first == nullptr) {
+            throw core::InputError(
+                "name", std::to_string(found.size()) + " numbers of the study are " + what + ": " + listed(found),
+                place(), "ask for one of them by its name");
+        }
+        answer(*first, found);
+        return true;
+    }
+
+    /// `digits` stand in `text` as a number of their own.
+    static bool says(const std::string& text, const std::string& digits) {
+        const auto part_of_number = [](char c) {
+            return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-';
+        };
+        for (auto at = text.find(digits); at != std::string::npos; at = text.find(digits, at + 1)) {
+            const std::size_t end = at + digits.size();
+            const bool ends = end >= text.size() || std::isdigit(static_cast<unsigned char>(text[end])) == 0;
+            if ((at == 0 || !part_of_number(text[at - 1])) && ends) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// A number by its name alone. False: no result has one of that name.
+    bool from_fact(const std::string& name) {
+        const auto found = hits([&](const Fact& fact) { return fact.number && fact.name == name; });
         if (found.empty()) {
             return false;
         }
         if (found.size() > 1) {
-            std::string list;
-            for (std::size_t i = 0; i < std::min<std::size_t>(found.size(), 12); ++i) {
-                list += (i == 0 ? "" : "; ") + found[i].second.name + " of " + shown(found[i].first->first) + " (" +
-                        found[i].second.value + ")";
-            }
             throw core::InputError("name",
-                                   std::to_string(found.size()) + " numbers of the study are " + what + ": " + list +
-                                       (found.size() > 12 ? "; ..." : ""),
-                                   place(), "name one of them");
+                                   std::to_string(found.size()) + " results say a '" + name + "': " + listed(found),
+                                   place(), "ask for one of them by its whole name");
         }
-        way_.asked = found.front().second;
-        walk(*found.front().first);
+        answer(found.front(), {});
+        return true;
+    }
+
+    /// A table or another file beside an exported model.
+    bool from_model_folder(const fs::path& file) {
+        auto part = std::find(file.begin(), file.end(), fs::path("models"));
+        if (part == file.end() || ++part == file.end()) {
+            if (file.extension() == ".html") {
+                throw core::InputError("name", "'" + file.string() + "' is a report of many numbers", place(),
+                                       "ask for one of them as it is printed there, such as \"3.5 mm\"");
+            }
+            return false;
+        }
+        const auto model = true_.find({"model", part->string()});
+        if (model == true_.end()) {
+            return false;
+        }
+        walk(*model);
         return true;
     }
 
@@ -360,46 +433,6 @@ private:
 
 Way way_back(const Study& study, const RunOptions& options, const std::string& what) {
     return Walk(study, options).from(what);
-}
-
-void to_json(json& all, const Fact& fact) {
-    all = {{"name", fact.name}, {"value", fact.value}};
-    if (fact.number && std::isfinite(*fact.number)) {
-        all["number"] = *fact.number;
-        all["unit"] = fact.unit;
-    }
-}
-
-void to_json(json& all, const Origin& origin) {
-    const auto object = [](const std::vector<std::pair<std::string, std::string>>& pairs) {
-        json result = json::object();
-        for (const auto& [key, value] : pairs) {
-            result[key] = value;
-        }
-        return result;
-    };
-    all = {{"kind", origin.kind},
-           {"name", origin.name},
-           {"id", origin.id},
-           {"state", to_string(origin.state)},
-           {"made", origin.made}};
-    all["facts"] = origin.facts;
-    all["options"] = object(origin.options);
-    all["code"] = object(origin.code);
-    all["files"] = json::array();
-    for (const auto& file : origin.files) {
-        const char* kind = file.kind == core::Input::Kind::content ? "content"
-                           : file.kind == core::Input::Kind::names ? "names"
-                                                                   : "presence";
-        all["files"].push_back({{"path", file.path}, {"kind", kind}, {"state", file.state}});
-        if (!file.pattern.empty()) {
-            all["files"].back()["pattern"] = file.pattern;
-        }
-    }
-    all["from"] = json::array();
-    for (const auto& [kind, name] : origin.from) {
-        all["from"].push_back({{"kind", kind}, {"name", name}});
-    }
 }
 
 }  // namespace underbody::cases

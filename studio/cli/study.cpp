@@ -13,6 +13,7 @@
 #include "studio/cli/study_parts.h"
 #include "studio/cli/study_set.h"
 #include "studio/figures/render.h"
+#include "surrogates/tables/points/settled.h"
 
 namespace underbody::studio {
 
@@ -99,12 +100,12 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
         nlohmann::json json;
         to_json(json, results);
         json["notes"] = json_of_notes(study, results.notes);
-        json["not_settled"] = cases::not_settled(results.loads);
+        json["not_settled"] = tables::not_settled(results.loads);
         shell.print_json(json);
     }
     show_notes(shell, study);
     print_warnings(shell, results);
-    if (const auto names = cases::not_settled(results.loads); !names.empty()) {
+    if (const auto names = tables::not_settled(results.loads); !names.empty()) {
         shell.print(std::to_string(names.size()) + " of " + std::to_string(results.loads.rows()) +
                     " solutions have not settled, the first '" + names.front() + "'");
     }

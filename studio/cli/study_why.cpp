@@ -1,9 +1,12 @@
 // underbody study why: from a number back to all that made it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cases/why.h"
+#include "core/text.h"
 #include "studio/cli/study_parts.h"
 
 namespace underbody::studio {
@@ -40,6 +43,26 @@ Lines files_of(const cases::Origin& origin, bool all) {
     return read;
 }
 
+/// Options with their units, hashes as such; what the title says already and what was not given is left out.
+Lines options_of(const cases::Origin& origin) {
+    static const std::map<std::string, std::string> units = {
+        {"density", "kg/m^3"},  {"length", "m"}, {"width", "m"},   {"height", "m"},  {"net_weight", "N"},
+        {"virtual_mass", "kg"}, {"gap", "m"},    {"pitch", "rad"}, {"speed", "m/s"}, {"for", "s"}};
+    static const std::regex hash("[0-9a-f]{32}");
+    Lines lines;
+    for (const auto& [label, value] : origin.options) {
+        if (label == "kind" || value == "nan" || value.empty()) {
+            continue;
+        }
+        const auto unit = units.find(label.substr(label.rfind('.') + 1));
+        const bool number = core::parse_number(value).has_value();
+        lines.emplace_back(label, std::regex_match(value, hash)   ? "hash " + value.substr(0, 12)
+                                  : number && unit != units.end() ? value + " " + unit->second
+                                                                  : value);
+    }
+    return lines;
+}
+
 /// All that a result says.
 std::string whole(const cases::Origin& origin, bool verbose) {
     Lines facts, from;
@@ -49,7 +72,7 @@ std::string whole(const cases::Origin& origin, bool verbose) {
     for (const auto& [kind, name] : origin.from) {
         from.emplace_back(kind + " '" + name + "'", "");
     }
-    return title_of(origin) + "\n" + block("says", facts) + block("made with", origin.options) +
+    return title_of(origin) + "\n" + block("says", facts) + block("made with", options_of(origin)) +
            block("read, with the hash of the content", files_of(origin, verbose)) + block("made of", from) +
            block("by code (hash of the sources)", origin.code);
 }
@@ -131,8 +154,8 @@ void add_study_why(CLI::App* study, std::shared_ptr<StudyArguments> arguments, S
     command
         ->add_option(
             "result", arguments->what,
-            "of the report, a table or an exported file: table/lift, \"lift_force of cube-h2\", \"3.5 mm\" (as "
-            "printed), exports/lift.h, or a copy of it elsewhere")
+            "of the report, a table or an exported file: table/lift, \"lift_force of cube-h2\", \"stable gap\", \"3.5 "
+            "mm\" (as printed), exports/lift.h, or a copy of it elsewhere")
         ->required();
     shell.on(command, [arguments, &shell] { return why(shell, *arguments); });
 }

@@ -8,6 +8,7 @@
 #include "cases/study.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "surrogates/tables/points/settled.h"
 #include "tests/support/small_study.h"
 
 namespace underbody::cases {
@@ -75,7 +76,7 @@ TEST_F(TimeMeans, OfARunThatDriftsHaveNotSettledAndATimeIsNeeded) {
     }
     study("mean = true\n");
     const StudyResults results = run();
-    EXPECT_THAT(not_settled(results.loads), testing::ElementsAre(HasSubstr("wing-h2")));
+    EXPECT_THAT(tables::not_settled(results.loads), testing::ElementsAre(HasSubstr("wing-h2")));
     // Without it each instant is a case of its own.
     study("");
     EXPECT_EQ(run().loads.rows(), 80U);

@@ -16,6 +16,7 @@ namespace underbody::cases {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 namespace fs = std::filesystem;
 
 class Why : public testing::Test {
@@ -65,8 +66,11 @@ TEST_F(Why, WalksFromATableToTheFacesAndFilesOfItsLoads) {
     EXPECT_NEAR(table.fact("stable gap")->number.value(), 0.0035, 1e-9);
     EXPECT_EQ(table.fact("stable gap")->unit, "m");
     EXPECT_EQ(table.fact("stable gap")->value, "3.5 mm");
-    EXPECT_EQ(table.fact("points")->value, "gap [mm], lift_force [N], case, settled");
-    ASSERT_NE(table.fact("point 6"), nullptr);
+    EXPECT_EQ(table.fact("points")->value, "6");
+    ASSERT_NE(table.fact("lift_force at gap 2 mm"), nullptr);
+    EXPECT_EQ(table.fact("lift_force at gap 2 mm")->value, "0.5 N, cube-h2, settled: unknown");
+    EXPECT_NEAR(table.fact("lift_force at gap 2 mm")->number.value(), 0.5, 1e-9);
+    ASSERT_NE(table.fact("lift_force at gap 6 mm"), nullptr);
     EXPECT_EQ(table.from.size(), 6U);
     for (int gap = 1; gap <= 6; ++gap) {
         const Origin* loads = find(way, "loads", "cube-h" + std::to_string(gap));
@@ -108,11 +112,78 @@ TEST_F(Why, EveryResultOfAReportHasItsWayBackToFiles) {
     EXPECT_EQ(printed.origins.front().name, "cube-h2");
 }
 
+TEST_F(Why, OneNumberOfSeveralResultsIsThatOfTheOneTheyRestOn) {
+    const Way gap = why("3.5 mm");  // of the table, and of the map that rests on it
+    ASSERT_TRUE(gap.asked);
+    EXPECT_EQ(gap.asked->name, "stable gap");
+    EXPECT_EQ(gap.origins.front().kind, "table");
+    EXPECT_THAT(gap.notes, testing::Contains(HasSubstr("region/map, which rests on it")));
+    // Without a unit: as it is printed.
+    EXPECT_EQ(why("3.5").asked->name, "stable gap");
+    EXPECT_EQ(why("0.5").origins.front().name, "cube-h2");
+    // A frequency in hertz wherever it is told: 100 N/m on 4 kg.
+    const Way map = why("region/map");
+    const Fact* frequency = map.origins.front().fact("frequency at the stable gap");
+    ASSERT_NE(frequency, nullptr);
+    EXPECT_NEAR(frequency->number.value(), 5 / (2 * 3.14159265358979), 1e-3);
+    EXPECT_NEAR(frequency->number.value(),
+                why("table/lift").origins.front().fact("frequency at the stable gap")->number.value(), 1e-6);
+}
+
+TEST_F(Why, FilesBesideTheReportAndNamesOfNumbersAreUnderstood) {
+    EXPECT_EQ(why("lift.h").origins.front().kind, "table") << "as exports/lift.h";
+    EXPECT_EQ(why("exports/lift.h").origins.front().kind, "table");
+    const fs::path model = folder / "report" / "models" / "map";
+    ASSERT_TRUE(fs::exists(model / "model.toml"));
+    for (const auto& entry : fs::directory_iterator(model)) {
+        EXPECT_EQ(why(entry.path().string()).origins.front().kind, "model") << entry.path();
+    }
+    EXPECT_EQ(why("kick velocity at the stable gap").origins.front().kind, "table");
+    EXPECT_THAT(refusal((folder / "report" / "index.html").string()), HasSubstr("report of many numbers"));
+    EXPECT_EQ(why("largest difference").origins.front().kind, "verify");
+}
+
+TEST_F(Why, WhatAllCasesOfATableShareGoesWithIt) {
+    const fs::path header = folder / "report" / "exports" / "lift.h", model = folder / "report" / "models" / "map";
+    for (const bool in_where : {true, false}) {
+        EXPECT_THAT(core::read_file(header), HasSubstr("Holds for speed = 0.5 m/s"));
+        EXPECT_THAT(core::read_file(header), HasSubstr("Of variant cube"));
+        EXPECT_THAT(core::read_file(model / "model.toml"), HasSubstr("scale.speed = { reference = \"0.5 m/s\""));
+        if (in_where) {  // the cases say their speed, whether or not the table asks for it
+            std::string text = core::read_file(folder / "study.toml");
+            const std::string asked = ", speed = 0.5 }";
+            ASSERT_NE(text.find(asked), std::string::npos);
+            text.replace(text.find(asked), asked.size(), " }");
+            core::write_file(folder / "study.toml", text);
+            run();
+        }
+    }
+}
+
+TEST_F(Why, TheMapSaysWhereItsModelIsNotTheOneOfTheTable) {
+    EXPECT_THAT(core::read_file(folder / "report" / "index.html"), Not(HasSubstr("for a net weight of")));
+    std::string text = core::read_file(folder / "glide.toml");
+    text.replace(text.find("0.35 N"), 6, "0.25 N");
+    core::write_file(folder / "glide.toml", text);
+    run();
+    const Way map = why("region/map");
+    const Fact* remark = nullptr;
+    for (const auto& fact : map.origins.front().facts) {
+        remark = fact.value.find("not the table") != std::string::npos ? &fact : remark;
+    }
+    ASSERT_NE(remark, nullptr);
+    EXPECT_THAT(remark->value, HasSubstr("for a net weight of 0.35 N, the model's net weight is 0.25 N"));
+    EXPECT_THAT(core::read_file(folder / "report" / "index.html"), HasSubstr("for a net weight of 0.35 N"));
+}
+
 TEST_F(Why, SaysWhatIsNotThereAndWhatIsNear) {
     EXPECT_THAT(refusal("table/lfit"), HasSubstr("did you mean 'table/lift'"));
     EXPECT_THAT(refusal("lift_fore of cube-h2"), HasSubstr("did you mean 'lift_force'"));
-    const std::string several = refusal("3.5 mm");  // of the table and of the map
-    EXPECT_THAT(several, testing::AllOf(HasSubstr("stable gap of table/lift"), HasSubstr("of region/map")));
+    const std::string several = refusal("0 N m");  // of every case: none rests on another
+    EXPECT_THAT(several, testing::AllOf(HasSubstr("\"pitch_moment of loads/cube-h1\""), HasSubstr("loads/cube-h2")));
+    EXPECT_THAT(refusal("stable gap"), testing::AllOf(HasSubstr("\"stable gap of table/lift\" (3.5 mm)"),
+                                                      HasSubstr("\"stable gap of region/map\"")));
+    EXPECT_THAT(refusal("3.7 mm"), HasSubstr("with its unit"));
     EXPECT_THAT(refusal("map"), testing::AllOf(HasSubstr("model/map"), HasSubstr("region/map")));
     EXPECT_THAT(refusal("77.7 N"), HasSubstr("no result"));
     const core::TemporaryFolder other;

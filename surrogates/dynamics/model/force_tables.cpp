@@ -387,6 +387,11 @@ private:
         f.quantity = quantities_[q];
         f.unit = core::find_quantity(f.quantity)->unit;
         f.kind = "force of a model";
+        for (const core::Problem& remark : model_.remarks) {  // of its tables: what their numbers are worth
+            if (remark.severity != core::Problem::Severity::note) {
+                f.remarks.push_back(remark);
+            }
+        }
         f.source = model_.name;
         for (const ModelAxis& axis : axes_) {
             f.axes.push_back(sampled_axis(axis, f.quantity));

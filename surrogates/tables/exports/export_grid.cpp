@@ -13,6 +13,7 @@
 #include "surrogates/tables/fit/hull.h"
 #include "surrogates/tables/fit/line.h"
 #include "surrogates/tables/points/select.h"
+#include "surrogates/tables/points/settled.h"
 
 namespace underbody::tables {
 
@@ -105,7 +106,7 @@ std::vector<std::string> other_constants(const ForceTable& table) {
                                            [&](const auto& c) { return c.first == column.name; });
         const bool force = std::find(forces.begin(), forces.end(), column.name) != forces.end() ||
                            column.name.ends_with("_sigma") || column.name.starts_with(table.quantity());
-        if (axis || condition || force || points.rows() == 0) {
+        if (axis || condition || force || points.rows() == 0 || column.name == "settled") {
             continue;
         }
         if (column.is_text()) {
@@ -166,6 +167,19 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
     }
     for (const auto& line : other_constants(tables.front())) {
         lines.push_back(line);
+    }
+    for (const ForceTable& table : tables) {
+        std::vector<std::string> worth = settled_lines(table.points());
+        for (const auto& remark : table.remarks()) {
+            if (remark.severity != core::Problem::Severity::note) {
+                worth.push_back("WARNING: " + remark.message);
+            }
+        }
+        for (auto& line : worth) {
+            if (std::find(lines.begin(), lines.end(), line) == lines.end()) {
+                lines.push_back(std::move(line));
+            }
+        }
     }
     if (!grid.support.empty()) {
         lines.push_back(

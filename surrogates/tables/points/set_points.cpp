@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/points/columns.h"
+#include "surrogates/tables/points/settled.h"
 
 namespace underbody::tables {
 
@@ -411,6 +412,9 @@ SetPoints set_points(const core::Table& table, const std::string& quantity, cons
             })) {
             points.remarks.push_back(std::move(unused));
         }
+    }
+    for (auto& unsettled : unsettled_points(points.table)) {
+        points.remarks.push_back(std::move(unsettled));
     }
     points.x.assign(points.table.rows(), std::vector<double>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {

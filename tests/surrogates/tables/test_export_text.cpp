@@ -178,5 +178,28 @@ TEST(ExportsOfText, OfJsonEvaluateByTheirOwnWords) {
     }
 }
 
+TEST(ExportText, TheHeadSaysInWordsWhetherTheSolutionsHadSettled) {
+    const auto head = [](const std::string& first, const std::string& others) {
+        std::string text = "gap [mm], lift_force [N], case, settled\n";
+        for (int i = 0; i < 5; ++i) {
+            text += std::to_string(1 + i) + "," + std::to_string(0.5 - 0.1 * i) + ",case-" + std::to_string(i) + "," +
+                    (i == 0 ? first : others) + "\n";
+        }
+        const auto table = ForceTable::fit(test::csv(text), "lift_force");
+        const core::TemporaryFolder folder;
+        export_table(table, "c", folder.path() / "t.h");
+        return core::read_file(folder.path() / "t.h");
+    };
+    EXPECT_THAT(head("settled", "settled"), HasSubstr("Every solution behind the points had settled"));
+    EXPECT_THAT(head("unknown", "unknown"),
+                HasSubstr("Whether the solutions behind the points had settled is not known"));
+    EXPECT_THAT(head("unknown", "settled"), HasSubstr("Whether 1 of the 5 solutions behind the points had settled"));
+    const std::string moving = head("not settled", "settled");
+    EXPECT_THAT(moving, HasSubstr("WARNING: 1 of the 5 points are of solutions that have not settled: case-0"));
+    for (const std::string& one : {head("unknown", "unknown"), head("settled", "settled"), moving}) {
+        EXPECT_EQ(one.find("Of settled"), std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace underbody
