@@ -74,11 +74,27 @@ std::string FileStates::state_of(const core::Input& input) {
         case core::Input::Kind::names:
             break;
     }
-    core::Hasher hasher;
-    for (const auto& name : core::names_in_folder(input.path, input.pattern)) {
-        hasher.add(name);
+    return names_state_of(input.path, input.pattern);
+}
+
+std::string FileStates::names_state_of(const fs::path& folder, const std::string& pattern) {
+    const std::int64_t now = core::now_in_nanoseconds();
+    const core::FileStamp stamp = core::stamp_of(folder);
+    const bool kept = now - std::max(stamp.modified, stamp.changed) > settled;
+    const std::lock_guard lock(mutex_);
+    Listing& listing = listings_[folder];
+    if (!kept || stamp.kind != core::FileStamp::Kind::folder || listing.stamp != stamp) {
+        listing = {kept ? stamp : core::FileStamp{}, core::names_in_folder(folder, "*"), {}};
     }
-    return hasher.digest();
+    const auto [state, fresh] = listing.states.try_emplace(pattern);
+    if (fresh) {
+        core::Hasher hasher;
+        for (const auto& name : core::names_that_fit(listing.names, pattern)) {
+            hasher.add(name);
+        }
+        state->second = hasher.digest();
+    }
+    return state->second;
 }
 
 bool FileStates::still(const StoredInput& input) {

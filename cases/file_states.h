@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "cases/store.h"
 #include "core/inputs.h"
@@ -29,13 +31,23 @@ public:
     [[nodiscard]] Store::FileHashes learned() const;
 
 private:
+    /// The names in a folder, read once as long as its stamp stays, and the states of the patterns asked for: thousands
+    /// of cases lie in one folder, and each asks for what lies beside it.
+    struct Listing {
+        core::FileStamp stamp;
+        std::vector<std::string> names;
+        std::map<std::string, std::string> states;  ///< by pattern
+    };
+
     std::string content_of(const std::filesystem::path& path, const std::string& stored);
+    std::string names_state_of(const std::filesystem::path& folder, const std::string& pattern);
 
     std::filesystem::path folder_;
     std::filesystem::path whole_folder_;
     mutable std::mutex mutex_;
     Store::FileHashes known_;
     Store::FileHashes learned_;
+    std::map<std::filesystem::path, Listing> listings_;
 };
 
 }  // namespace underbody::cases

@@ -65,6 +65,19 @@ std::vector<std::string> names_in_folder(const fs::path& folder, const std::stri
     return names;
 }
 
+std::vector<std::string> names_that_fit(const std::vector<std::string>& sorted, const std::string& pattern) {
+    const std::string beginning = pattern.substr(0, pattern.find_first_of("*?[\\"));
+    std::vector<std::string> names;
+    for (auto name = std::lower_bound(sorted.begin(), sorted.end(), beginning);
+         name != sorted.end() && name->starts_with(beginning); ++name) {
+        const std::string own = name->ends_with('/') ? name->substr(0, name->size() - 1) : *name;
+        if (::fnmatch(pattern.c_str(), own.c_str(), 0) == 0) {
+            names.push_back(*name);
+        }
+    }
+    return names;
+}
+
 void InputRecord::add(Input input) {
     const std::string kind(1, "cpn"[static_cast<int>(input.kind)]);
     std::pair<std::string, std::string> key(input.path.string(), kind + input.pattern);

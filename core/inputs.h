@@ -45,6 +45,8 @@ struct Input {
 
 /// Names in the folder that fit the pattern, sorted, folders with '/' behind; empty when there is no such folder.
 std::vector<std::string> names_in_folder(const std::filesystem::path& folder, const std::string& pattern);
+/// Those that fit, of names that names_in_folder gave: looks only among those with the pattern's fixed beginning.
+std::vector<std::string> names_that_fit(const std::vector<std::string>& sorted, const std::string& pattern);
 
 /// The inputs of one piece of work, each once, with the state in which it met them. Safe to use from many threads.
 class InputRecord {

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <fstream>
 #include <set>
+#include <thread>
 
 #include "cases/file_states.h"
 #include "core/file.h"
@@ -226,6 +229,52 @@ TEST(Inputs, AreNotedInParallelLoopsAndInNestedScopesButNotInAScratchFolder) {
     EXPECT_EQ(inner.contents.size(), 40U);
     EXPECT_EQ(outer.contents, inner.contents);
     EXPECT_THAT(outer.contents, Not(Contains("own/scratch")));
+}
+
+TEST(Inputs, NamesThatFitAreThoseThatTheFolderGives) {
+    const core::TemporaryFolder folder;
+    core::Random random(5);
+    for (int i = 0; i < 200; ++i) {
+        std::string name;
+        for (std::size_t k = 0; k <= random.below(4); ++k) {
+            name += "ab.-1"[random.below(5)];
+        }
+        if (name != "." && name != "..") {
+            if (random.below(5) == 0) {
+                fs::create_directories(folder.path() / name);
+            } else if (!fs::exists(folder.path() / name)) {
+                std::ofstream(folder.path() / name) << "x";
+            }
+        }
+    }
+    const auto all = core::names_in_folder(folder.path(), "*");
+    ASSERT_GT(all.size(), 20U);
+    for (const std::string pattern :
+         {"*", "a*", "ab*", "[!.]*", "*.1", "a?b", ".*", "b", "[-+.0-9]*", "\\a*", "", "zz*"}) {
+        EXPECT_EQ(core::names_that_fit(all, pattern), core::names_in_folder(folder.path(), pattern)) << pattern;
+    }
+}
+
+TEST(Inputs, ANameThatAppearsInAFolderAlreadyListedIsSeen) {
+    const core::TemporaryFolder folder;
+    const auto touch = [&](const char* name) { std::ofstream(folder.path() / name) << "x"; };
+    touch("a.dat");
+    cases::FileStates states(folder.path(), {});
+    const core::Input beside{core::Input::Kind::names, folder.path(), "a*"};
+    const std::string young = states.state_of(beside);
+    touch("a.out");
+    const std::string two = states.state_of(beside);
+    EXPECT_NE(two, young);
+    std::this_thread::sleep_for(std::chrono::milliseconds(3300));  // old enough to be kept
+    EXPECT_EQ(states.state_of(beside), two);
+    EXPECT_EQ(states.state_of(beside), two);
+    touch("b.dat");
+    EXPECT_EQ(states.state_of(beside), two);  // another case's
+    touch("a.trn");
+    EXPECT_NE(states.state_of(beside), two);
+    fs::remove_all(folder.path());
+    EXPECT_EQ(states.state_of(beside), states.state_of({core::Input::Kind::names, folder.path(), "nothing*"}));
+    fs::create_directories(folder.path());
 }
 
 TEST(Inputs, AFileThatChangesWhileItIsReadIsNoLongerTrue) {
