@@ -17,7 +17,7 @@ TEST(ControllerOnAVehicle, CompilesAgainstTheInterfacesItNames) {
     core::TemporaryFolder folder;
     const auto model = test::source_folder() / "cases" / "evie" / "heave" / "model.toml";
     const auto run = test::run_underbody(
-        {"control", model.string(), "--hold", "20mm", "--from", "gap=0.25", "--limit", "50mN", "--export-c", "hold.h"},
+        {"control", model.string(), "--hold", "20mm", "--from", "gap=0.25", "--limit", "150mN", "--export-c", "hold.h"},
         folder.path());
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     std::istringstream page(core::read_file(test::source_folder() / "docs" / "guide" / "controller-on-a-vehicle.md"));

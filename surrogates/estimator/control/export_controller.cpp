@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/error.h"
@@ -103,8 +104,15 @@ private:
         out_ +=
             " * What the actuator makes of the commands (delay, dead zone, gain, lag as the model declares them) "
             "is followed inside;\n * where its force is measured, give its mean over the sample before: " +
-            name_ + "_step_with(&state, gap" + rest + ", acted). */\n";
+            name_ + "_step_with(&state, gap" + rest + ", acted).\n";
+        out_ +=
+            " * A reading that is no finite number is left out: the command before is given again, and state.rejected "
+            "counts "
+            "how\n * many readings in a row were. Before the first good reading the command is 0. */\n";
     }
+
+    /// The largest double: a comparison with it holds for finite numbers alone.
+    [[nodiscard]] static std::string largest() { return number(std::numeric_limits<double>::max()); }
 
     [[nodiscard]] std::string sensors() const { return options_.velocity_measured ? ", double heave_velocity" : ""; }
 
@@ -113,13 +121,20 @@ private:
         if (filter_ != nullptr) {
             out_ += "    " + name_ + "_observer_state observer;\n";
         }
-        out_ += "    double felt[" + count(shares_[0].size()) +
-                "]; /* commands as the actuator takes them, the last first */\n" +
-                "    double lag[2];\n    double acted; /* mean force since the sample before */\n    int started;\n} " +
-                name_ + "_state;\n\n";
-        out_ += "static inline void " + name_ + "_start(" + name_ + "_state *c) {\n    int i;\n    for (i = 0; i < " +
-                count(shares_[0].size()) + "; ++i) {\n        c->felt[i] = 0.0;\n    }\n" +
-                "    c->lag[0] = 0.0;\n    c->lag[1] = 0.0;\n    c->acted = 0.0;\n    c->started = 0;\n}\n\n";
+        out_ +=
+            "    double felt[" + count(shares_[0].size()) +
+            "]; /* commands as the actuator takes them, the last first */\n" +
+            "    double lag[2];\n    double acted; /* mean force since the sample before */\n    double command; /* "
+            "the last one given */\n    int started;\n    int rejected; /* readings in a row that were no finite "
+            "numbers */\n} " +
+            name_ + "_state;\n\n";
+        out_ +=
+            "static inline void " + name_ + "_start(" + name_ + "_state *c) {\n    int i;\n    for (i = 0; i < " +
+            count(shares_[0].size()) + "; ++i) {\n        c->felt[i] = 0.0;\n    }\n" +
+            "    c->lag[0] = 0.0;\n    c->lag[1] = 0.0;\n    c->acted = 0.0;\n    c->command = 0.0;\n    c->started = "
+            "0;\n    c->rejected = 0;\n}\n\n";
+        out_ += "static inline int " + name_ + "_finite(double x) {\n    return ((x >= -" + largest() +
+                ") && (x <= " + largest() + ")) ? 1 : 0;\n}\n\n";
         out_ += "static inline void " + name_ + "_follow(" + name_ + "_state *c, double command);\n\n";
     }
 
@@ -133,7 +148,13 @@ private:
         out_ += "static inline double " + name_ + "_step_with(" + name_ + "_state *c, double gap" + sensors() +
                 ", double acted) {\n    double h = gap;\n";
         out_ += options_.velocity_measured ? "    double w = heave_velocity;\n" : "    double w = 0.0;\n";
-        out_ += "    double u;\n";
+        out_ += "    double u;\n    if ((" + name_ + "_finite(gap) == 0)";
+        out_ += options_.velocity_measured ? " || (" + name_ + "_finite(heave_velocity) == 0)" : "";
+        out_ += ") {\n        if (c->rejected < 32767) {\n            c->rejected += 1;\n        }\n        " + name_ +
+                "_follow(c, c->command);\n        return c->command;\n    }\n    c->rejected = 0;\n";
+        if (filter_ != nullptr) {
+            out_ += "    if (" + name_ + "_finite(acted) == 0) {\n        acted = c->acted;\n    }\n";
+        }
         std::string total;
         if (filter_ != nullptr) {
             observe();
@@ -152,7 +173,7 @@ private:
                     ";\n    } else if (u < -" + number(law_.limit) + ") {\n        u = -" + number(law_.limit) +
                     ";\n    }\n";
         }
-        out_ += "    " + name_ + "_follow(c, u);\n    return u;\n}\n\n";
+        out_ += "    c->command = u;\n    " + name_ + "_follow(c, u);\n    return u;\n}\n\n";
         out_ += "static inline double " + name_ + "_step(" + name_ + "_state *c, double gap" + sensors() +
                 ") {\n    return " + name_ + "_step_with(c, gap" +
                 (options_.velocity_measured ? ", heave_velocity" : "") + ", c->acted);\n}\n\n";

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "core/file.h"
 #include "surrogates/estimator/control/closed_loop.h"
@@ -149,6 +150,37 @@ TEST_P(ControllerAsC, HoldsWithoutAVelocitySensor) {
     for (const std::string name : {"kalman", "full"}) {
         ASSERT_NO_FATAL_FAILURE(
             closes_the_loop_alike(plant, law, design_loop_estimator(name, plant, design), o, GetParam()));
+    }
+}
+
+TEST_P(ControllerAsC, LeavesOutReadingsThatAreNoFiniteNumbers) {
+    const SeparatedPlant plant = reference_plant();
+    ControlLaw law = hold_at(0.02, plant.virtual_mass, -1, -2);
+    law.limit = 0.03;
+    const double nothing = std::nan(""), endless = std::numeric_limits<double>::infinity();
+    for (const std::string name : {"disturbance", "kalman", "none"}) {
+        const LoopOptions o = loop_options();
+        core::TemporaryFolder folder;
+        const Compiled c(export_controller_c(plant, law, design_loop_estimator(name, plant, {}), o, "controller"),
+                         folder.path(), true, GetParam());
+        ASSERT_NE(c.step, nullptr);
+        c.begin();
+        EXPECT_EQ(c.step(nothing, 0), 0) << "before the first reading nothing is commanded";
+        const double first = c.step(0.12, 0.03);
+        ASSERT_NE(first, 0);
+        for (const auto& [gap, velocity] :
+             {std::pair{nothing, 0.0}, {0.12, nothing}, {endless, 0.0}, {0.12, -endless}}) {
+            EXPECT_EQ(c.step(gap, velocity), first) << name << ", " << gap << ", " << velocity;
+        }
+        EXPECT_TRUE(std::isfinite(c.step_with(0.12, 0.03, nothing)));
+        double gap = o.gap, velocity = o.velocity;
+        c.begin();
+        for (int k = 0; k < 4000; ++k) {  // one reading in twenty is lost, and the gap is held all the same
+            const double command = c.step(k % 20 == 7 ? nothing : gap, velocity);
+            ASSERT_TRUE(std::isfinite(command)) << name << ", sample " << k;
+            plant.advance(gap, velocity, c.acted(), o.step, k * o.step);
+        }
+        EXPECT_NEAR(gap, 0.02, 2e-3) << name;
     }
 }
 
