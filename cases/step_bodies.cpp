@@ -55,11 +55,13 @@ std::string draw_body(Engine& engine, const BodySpec& spec) {
 
 void run_bodies(Engine& engine) {
     for (const auto& spec : engine.study.bodies) {
+        const std::string shape = engine.path_in_study(spec.shape);
         Key key("body", {"geometry"});
+        key.add("shape", shape);
         key.add("density", engine.study.reference.number("density").value_or(geometry::default_water_density));
         if (const auto made = engine.make("body", spec.name, key, [&] { return compute_body(engine, spec); })) {
             engine.add_document("body/" + spec.name, engine.value(*made));
-            engine.picture("body picture", spec.name, Key("body picture", {"geometry", "postproc"}),
+            engine.picture("body picture", spec.name, Key("body picture", {"geometry", "postproc"}).add("shape", shape),
                            [&] { return draw_body(engine, spec); });
         }
     }

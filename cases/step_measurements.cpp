@@ -66,9 +66,15 @@ core::Figure figure_of(const std::vector<discovery::Residual>& residuals, std::s
     throw core::InputError("missing", "the residual has fewer figures than it had");
 }
 
+Key measurement_key(const std::string& kind, const Engine& engine, const MeasurementSpec& spec) {
+    Key key(kind, rooms);
+    key.add("model", engine.path_in_study(spec.model)).add("data", engine.path_in_study(spec.data));
+    return key;
+}
+
 /// Residual force of the declared model: numbers, sentences and figures.
 void run_residual(Engine& engine, const MeasurementSpec& spec) {
-    const Key key("residual", rooms);
+    const Key key = measurement_key("residual", engine, spec);
     Shared<std::vector<discovery::Residual>> residuals(engine.states(), [&] {
         return discovery::measured_residual(named_in_study(engine, dynamics::read_model(spec.model), spec.model),
                                             named_in_study(engine, dynamics::read_measurements(spec.data)),
@@ -90,7 +96,7 @@ void run_residual(Engine& engine, const MeasurementSpec& spec) {
 }
 
 void run_discovery(Engine& engine, const MeasurementSpec& spec) {
-    Key key("discovery", rooms);
+    Key key = measurement_key("discovery", engine, spec);
     const bool drawn = engine.options.renderer || engine.mode == Engine::Mode::look;
     key.add("figures", drawn ? "drawn" : "none");
     const auto made = engine.make("discovery", spec.name, key, [&] { return compute_discovery(engine, spec); });

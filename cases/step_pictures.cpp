@@ -26,6 +26,7 @@ postproc::ViewOptions view_options(const Study& study, const PictureSpec& spec, 
 
 Key picture_key(const std::string& kind, const Engine& engine, const PictureSpec& spec, const Case& entry) {
     Key key(kind, {"postproc"});
+    key.add("file", engine.path_in_study(entry.file));
     key.add("forward", engine.study.forward).add("up", engine.study.up).add("symmetry", engine.study.symmetry);
     key.add("conditions", entry.conditions).add("picture", spec.name);
     for (const auto& zone : entry.zones) {

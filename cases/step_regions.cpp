@@ -39,9 +39,10 @@ void write_model_files(Engine& engine, const RegionSpec& spec, const Key& key) {
     }
 }
 
-/// The model's own files are noted when it is read; the study's tables are no files.
+/// What the model's files hold is noted when it is read; the study's tables are no files.
 Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& spec) {
     Key key(kind, {"surrogates/tables", "surrogates/dynamics"});
+    key.add("model", engine.path_in_study(spec.model));
     for (const auto& name : spec.forces) {
         const TableSpec& table = *engine.study.find_table(name);
         key.add("force", table.quantity)

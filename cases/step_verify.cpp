@@ -170,6 +170,7 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
 void run_verifications(Engine& engine) {
     for (const auto& spec : engine.study.verifications) {
         Key key("verify", {});
+        key.add("table", engine.path_in_study(spec.table));
         key.add("loads", digest_of(engine.results.loads)).add("tolerance", spec.tolerance).add("where", spec.where);
         key.add("length", engine.study.reference.number("length").value_or(1));
         for (const auto& quantity : spec.quantities) {

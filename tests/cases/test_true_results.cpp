@@ -134,6 +134,37 @@ TEST_F(TrueResults, OneByteOfAnyFileMakesExactlyWhatRestsOnItNew) {
     }
 }
 
+TEST_F(TrueResults, AnotherFileInStudyTomlMakesWhatRestsOnItNew) {
+    write_large_study();
+    ASSERT_EQ(run().failed, 0U);
+    // The old files stay as they are: only the study's word for them changes.
+    put("forces2.csv", get("forces.csv") + " ");
+    put("glide2.toml", get("glide.toml") + "\n");
+    put("static2.toml", get("static.toml") + "\n");
+    put("shapes/body2.toml", get("shapes/body.toml") + "\n");
+    fs::copy(folder / "rig", folder / "rig2", fs::copy_options::recursive);
+    const struct {
+        std::string old, by;
+        std::set<std::string> made;
+    } changes[] = {
+        {"\"forces.csv\"", "\"forces2.csv\"", {"verify solver"}},
+        {"\"glide.toml\"", "\"glide2.toml\"", {"region map", "model map"}},
+        {"\"static.toml\"", "\"static2.toml\"", {"residual rig"}},
+        {"\"rig\"\n", "\"rig2\"\n", {"residual rig"}},
+        {"shapes/body.toml", "shapes/body2.toml", {"body hull"}},
+    };
+    for (const auto& change : changes) {
+        const std::string whole = get("study.toml");
+        // the last place: a name of a step may be the same word
+        const auto at = whole.rfind(change.old);
+        ASSERT_NE(at, std::string::npos) << change.old;
+        put("study.toml", whole.substr(0, at) + change.by + whole.substr(at + change.old.size()));
+        EXPECT_EQ(computed(), change.made) << change.by;
+        put("study.toml", whole);
+        EXPECT_THAT(computed(), IsEmpty()) << change.by << ", put back";
+    }
+}
+
 TEST_F(TrueResults, OneOptionMakesExactlyWhatRestsOnItNew) {
     write_large_study();
     ASSERT_EQ(run().failed, 0U);
