@@ -174,6 +174,9 @@ private:
                      "which side of zone '" + zones_[members[0]].name +
                          "' the fluid is on cannot be told from its shape: the node order of the file was used",
                      {}});
+                facing_.guessed = true;
+                facing_.how = "a guess: zone '" + zones_[members[0]].name +
+                              "' has no inside; the node order of the file was used";
                 enclosed = 1;
             }
             sign = enclosed > 0 ? 1.0 : -1.0;

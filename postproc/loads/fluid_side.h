@@ -20,6 +20,7 @@ struct FacingZone {
 struct Facing {
     std::vector<double> signs;  ///< +1: as in the file, -1: turned
     std::string how;            ///< for people
+    bool guessed = false;       ///< the side of some zone cannot be told from these zones alone
     core::Problems problems;
 };
 

@@ -202,20 +202,63 @@ private:
                                       : "node order of the file turned, as asked for";
             return;
         }
-        std::vector<FacingZone> zones;
-        for (const auto& part : parts_) {
-            zones.push_back({part.name, part.surface.get(), part.sums, part.zone->normals_into_fluid});
+        const Facing facing = facing_of(parts_);
+        if (facing.guessed && settle_with_other_walls()) {
+            return;
         }
-        const Facing facing = settle_facing(zones,
-                                            revolved_                                   ? 1
-                                            : mirror_.axis < 0 && field_.dimension == 2 ? 2
-                                                                                        : mirror_.axis,
-                                            half_reference_, field_.dimension);
         result_.orientation = facing.how;
         result_.problems.insert(result_.problems.end(), facing.problems.begin(), facing.problems.end());
         for (std::size_t i = 0; i < parts_.size(); ++i) {
             parts_[i].sign = facing.signs[i];
         }
+    }
+
+    [[nodiscard]] Facing facing_of(const std::vector<Part>& parts) const {
+        std::vector<FacingZone> zones;
+        for (const auto& part : parts) {
+            zones.push_back({part.name, part.surface.get(), part.sums, part.zone->normals_into_fluid});
+        }
+        return settle_facing(zones,
+                             revolved_                                   ? 1
+                             : mirror_.axis < 0 && field_.dimension == 2 ? 2
+                                                                         : mirror_.axis,
+                             half_reference_, field_.dimension);
+    }
+
+    /// A flat base alone has no inside: the body's walls that were not asked for say on which side the fluid is.
+    /// False when they do not either.
+    bool settle_with_other_walls() {
+        if (options_.zones.empty()) {
+            return false;
+        }
+        LoadsOptions all = options_;
+        all.zones.clear();
+        std::vector<Part> body;
+        try {
+            LoadsResult not_used;
+            body = zones_to_sum(field_, all, not_used);
+        } catch (const InputError&) {
+            return false;  // the file's other walls cannot be taken for a body
+        }
+        for (auto& part : body) {
+            part.sums = integrate_faces(*part.surface, part.values, half_reference_, progress_);
+        }
+        const Facing facing = facing_of(body);
+        std::vector<double> signs;
+        for (const auto& part : parts_) {
+            const auto same = std::find_if(body.begin(), body.end(), [&](const Part& other) {
+                return other.zone == part.zone && other.name == part.name;
+            });
+            if (facing.guessed || same == body.end()) {
+                return false;
+            }
+            signs.push_back(facing.signs[static_cast<std::size_t>(same - body.begin())]);
+        }
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            parts_[i].sign = signs[i];
+        }
+        result_.orientation = facing.how + ", told with the body's walls that are not summed";
+        return true;
     }
 
     /// Both halves (or all the way round the axis), and the moment moved from there to the reference point.

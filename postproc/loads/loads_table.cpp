@@ -34,6 +34,9 @@ std::string si_unit_of(const std::string& name, const std::string& written) {
     if (const auto* known = core::find_quantity(name)) {
         return known->unit;
     }
+    if (name == "first_time" || name == "last_time") {
+        return "s";
+    }
     return written.empty() ? "1" : core::si_unit(written);
 }
 
@@ -52,6 +55,9 @@ bool is_column(const std::string& name) {
            std::any_of(all_columns().begin(), all_columns().end(),
                        [&](const LoadsColumn& c) { return c.name == name; });
 }
+
+/// What means_in_time says of a mean.
+constexpr std::array<std::string_view, 4> of_a_mean = {"samples", "first_time", "last_time", "correlation_time"};
 
 /// Forces per metre and forces have no column in common.
 void refuse_mixed_depths(const std::vector<LoadsCase>& cases) {
@@ -80,7 +86,8 @@ bool is_result(std::string name) {
             }
         }
     }
-    return name != "file" && is_column(name);
+    return name != "file" &&
+           (is_column(name) || std::find(of_a_mean.begin(), of_a_mean.end(), name) != of_a_mean.end());
 }
 
 std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases, core::Problems& notes) {

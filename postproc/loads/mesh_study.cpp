@@ -169,8 +169,14 @@ LoadsCase study_of(std::vector<const LoadsCase*> group, const std::string& colum
                                                            {norm(finest->loads.total.force), finest->loads.length}));
             mesh = result.meshes.back().second.standard_uncertainty;
         }
-        const double sigma = combined(std::vector<double>{mesh, scatter_of(*finest, names[i].name)});
-        if (sigma > 0) {  // nought is no standard deviation: of what symmetry makes nought, say
+        const auto known = std::find_if(result.sigmas.begin(), result.sigmas.end(),
+                                        [&](const auto& entry) { return entry.first == names[i].name; });
+        const bool in_time = known != result.sigmas.end();  // the error of a mean, in place of the iterations' scatter
+        const double sigma =
+            combined(std::vector<double>{mesh, in_time ? known->second : scatter_of(*finest, names[i].name)});
+        if (in_time) {
+            known->second = sigma;
+        } else if (sigma > 0) {  // nought is no standard deviation: of what symmetry makes nought, say
             result.sigmas.emplace_back(names[i].name, sigma);
         }
     }
@@ -224,6 +230,16 @@ std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const s
         }
     }
     note_what_is_apart(groups, column, notes);
+    const auto alone = std::count_if(groups.begin(), groups.end(), [](const Group& g) { return g.cases.size() == 1; });
+    if (alone > 0 && static_cast<std::size_t>(alone) < groups.size()) {
+        const auto one = std::find_if(groups.begin(), groups.end(), [](const Group& g) { return g.cases.size() == 1; });
+        notes.push_back(
+            {core::Problem::Severity::warning,
+             std::to_string(alone) + " of " + std::to_string(groups.size()) +
+                 " cases have one mesh alone: their errors are without that of the mesh, and a table made of "
+                 "all takes them for far more exact than the others",
+             {one->cases.front()->file, {}, {}, {}}});
+    }
     std::vector<LoadsCase> result;
     for (const auto& group : groups) {
         result.push_back(study_of(group.cases, column));

@@ -18,11 +18,11 @@ std::optional<double> time_of(const LoadsCase& one) {
                                         : std::nullopt;
 }
 
-/// What tells runs apart: all conditions but the time.
+/// What tells runs apart: all conditions but the time; loads that a manifest states are of one time too.
 std::string run_of(const LoadsCase& one) {
     std::vector<std::string> parts;
     for (const auto& [name, value] : one.numbers) {
-        if (name != "time") {
+        if (name != "time" && !is_result(name)) {
             parts.push_back(name + "=" + core::format_number(value, 9));
         }
     }
@@ -110,6 +110,17 @@ LoadsCase mean_of(Run run, core::Problems& notes) {
     result.loads.time.reset();
     result.comparisons.clear();
     result.scatters.clear();
+    std::erase_if(result.numbers, [](const auto& entry) { return is_result(entry.first); });  // stated of one instant
+    for (const LoadsCase* one : run) {
+        result.loads.closure = std::max(result.loads.closure, one->loads.closure);
+        for (const core::Problem& problem : one->loads.problems) {
+            const auto& known = result.loads.problems;
+            if (std::none_of(known.begin(), known.end(),
+                             [&](const core::Problem& p) { return p.message == problem.message; })) {
+                result.loads.problems.push_back(problem);
+            }
+        }
+    }
     std::vector<TimeHistory> histories;
     for (const auto& column : table_row(result.loads)) {
         if (column.unit != "N" && column.unit != "N m") {
@@ -206,6 +217,11 @@ std::vector<LoadsCase> means_in_time(const std::vector<LoadsCase>& cases, core::
         runs[place->second].push_back(&one);
     }
     std::vector<LoadsCase> result;
+    if (cases.size() > 1 && runs.size() == cases.size()) {
+        notes.push_back({core::Problem::Severity::warning,
+                         "no two cases differ in their time alone: there is nothing to take a mean of",
+                         {cases.front().file, {}, {}, {}}});
+    }
     for (auto& run : runs) {
         result.push_back(run.size() > 1 ? mean_of(run, notes) : *run.front());
     }

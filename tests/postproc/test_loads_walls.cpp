@@ -292,6 +292,23 @@ TEST(Loads, SayThatAPlateAloneHasNoSide) {
     EXPECT_NEAR(std::abs(result.named.lift_force), 7, 1e-12);
 }
 
+TEST(Loads, OfABaseAloneAreThoseItHasInTheWholeBody) {
+    for (const bool base_turned : {false, true}) {
+        for (const bool side_turned : {false, true}) {
+            const Field field = box(base_turned, side_turned);
+            const auto whole = loads(field);
+            LoadsOptions options;
+            options.zones = {"base"};
+            const auto alone = loads(field, options);
+            const auto& base = *std::find_if(whole.zones.begin(), whole.zones.end(),
+                                             [](const ZoneLoads& zone) { return zone.name == "base"; });
+            ASSERT_GT(std::abs(base.pressure.force[2]), 0.1);
+            EXPECT_NEAR(alone.named.lift_force, base.pressure.force[2] + base.viscous.force[2], 1e-12);
+            EXPECT_THAT(alone.orientation, HasSubstr("not summed"));
+        }
+    }
+}
+
 TEST(Loads, TellAGroundFromThePlaneOfAHalfModel) {
     // A body over a ground at z = 0, in one zone: open along z, and no half of anything.
     std::vector<Vector> points = {{0, 0, 0.1}, {2, 0, 0.1}, {2, 1, 0.1}, {0, 1, 0.1}, {0, 0, 0.6}, {2, 0, 0.6},

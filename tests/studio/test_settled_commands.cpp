@@ -120,6 +120,54 @@ TEST_F(SettledCommands, ARunInTimeBecomesItsMeanWithAnErrorThatKnowsItsCorrelati
     EXPECT_LT(table.numbers("lift_force_sigma")[0], 0.1);
 }
 
+TEST_F(SettledCommands, TheErrorOfAMeanAndThatOfTheMeshBothReachTheTable) {
+    for (const int cells : {1000, 8000}) {
+        for (int i = 0; i < 32; ++i) {
+            const double lift = 0.4 + 40.0 / cells + 0.05 * std::sin(2 * M_PI * i / 8);
+            core::write_file(folder.path() / ("w-c" + std::to_string(cells) + "-t" + std::to_string(i) + ".csv"),
+                             cube_field(0.003, lift / 1e-3));
+        }
+    }
+    const std::vector<std::string> mean = {"loads", "w-c{cells}-t{time:s}.csv", "--mean", "--out"};
+    const auto with = [&](const std::string& file, const std::vector<std::string>& more) {
+        auto words = mean;
+        words.push_back(file);
+        words.insert(words.end(), more.begin(), more.end());
+        const auto done = run(words);
+        EXPECT_EQ(done.exit_code, 0) << done.errors;
+        return core::read_csv(folder.path() / file);
+    };
+    const core::Table alone = with("time.csv", {});
+    ASSERT_EQ(alone.rows(), 2U);
+    const core::Table both = with("both.csv", {"--mesh-study", "cells"});
+    ASSERT_EQ(both.rows(), 1U) << "the times of a mean are no conditions that tell meshes apart";
+    EXPECT_EQ(both.find("first_time")->unit, "s");
+    const double in_time = alone.numbers("lift_force_sigma")[1], sigma = both.numbers("lift_force_sigma")[0];
+    EXPECT_GT(sigma, 1.2 * in_time);
+    const auto json = nlohmann::json::parse(
+        run({"--json", "loads", "w-c{cells}-t{time:s}.csv", "--mean", "--mesh-study", "cells"}).output);
+    const auto& one = json.at("files").at(0);
+    EXPECT_NEAR(one.at("sigma").at("lift_force").get<double>(), sigma, 1e-6 * sigma);
+    const double mesh = one.at("mesh_uncertainty").at("lift_force").at("standard_uncertainty").get<double>();
+    EXPECT_NEAR(std::hypot(mesh, in_time), sigma, 1e-3 * sigma);
+}
+
+TEST_F(SettledCommands, LoadsThatAManifestStatesDoNotTellRunsApart) {
+    std::string manifest = "file, time [s], lift_force [N]\n";
+    for (int i = 0; i < 16; ++i) {
+        const double lift = 0.4 + 0.1 * std::sin(2 * M_PI * i / 8);
+        const std::string file = "m-" + std::to_string(i) + ".csv";
+        core::write_file(folder.path() / file, cube_field(0.003, lift / 1e-3));
+        manifest += file + ", " + std::to_string(i) + ", " + core::format_number(lift) + "\n";
+    }
+    core::write_file(folder.path() / "list.csv", manifest);
+    const auto mean = run({"loads", "--manifest", "list.csv", "--mean", "--out", "m.csv"});
+    ASSERT_EQ(mean.exit_code, 0) << mean.errors;
+    EXPECT_EQ(core::read_csv(folder.path() / "m.csv").rows(), 1U);
+    const auto none = run({"loads", "m-{gap:mm}.csv", "--mean"});
+    EXPECT_THAT(none.errors, HasSubstr("nothing to take a mean of"));
+}
+
 TEST_F(SettledCommands, DesignPointsOfWorkbenchBecomeConditions) {
     for (int i = 0; i < 4; ++i) {
         core::write_file(
