@@ -119,6 +119,8 @@ Value compute_loads(Engine& engine, const Case& entry) {
                             "the solution has not settled: " + settled.why,
                             {engine.path_in_study(entry.file), {}, {}, {}}});
     }
+    std::copy_if(notes.begin(), notes.end(), std::back_inserter(problems),
+                 [](const core::Problem& note) { return note.severity != core::Problem::Severity::note; });
     // What the loads scatter by from iteration to iteration is an error of theirs.
     auto columns = postproc::table_columns(result);
     for (const auto& load : settled.loads) {
@@ -190,7 +192,14 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
         }
         const auto* quantity = core::find_quantity(name);
         const std::string unit = quantity != nullptr ? quantity->unit : "1";
-        table.add_numbers(name, unit, std::move(values), name == "gap" ? "mm" : name == "pitch" ? "deg" : unit);
+        // A load that a manifest states stands beside the one that is computed, as in a table of `loads`.
+        const bool computed =
+            !name.ends_with("_sigma") && std::any_of(done.begin(), done.end(), [&](const CaseLoads* one) {
+                return std::any_of(one->values.begin(), one->values.end(),
+                                   [&](const LoadValue& value) { return value.name == name; });
+            });
+        const std::string column = computed ? name + "_stated" : name;
+        table.add_numbers(column, unit, std::move(values), name == "gap" ? "mm" : name == "pitch" ? "deg" : unit);
     }
     if (done.empty()) {
         return table;
