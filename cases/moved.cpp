@@ -55,8 +55,9 @@ void judge(Moved& one) {
         one.shift = std::isnan(one.a) && std::isnan(one.b) ? Shift::same : Shift::only_one;
     } else if (difference <= rounding * std::max(one.size, std::max(std::abs(one.a), std::abs(one.b)) * 1e-3)) {
         one.shift = Shift::same;
-    } else if (std::isnan(one.sigma())) {
-        one.shift = Shift::unjudged;
+    } else if (std::isnan(one.sigma()) ||
+               ((std::isnan(one.sigma_a) || std::isnan(one.sigma_b)) && difference > beyond_sigmas * one.sigma())) {
+        one.shift = Shift::unjudged;  // one side's error alone can say "within", never "beyond"
     } else {
         one.shift = difference > beyond_sigmas * one.sigma() ? Shift::beyond : Shift::within;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace underbody::cases {
 
@@ -25,6 +26,11 @@ const MeshResult::Quantity* MeshResult::find(const std::string& quantity) const 
     return find_result(quantities, quantity);
 }
 
+double frequency_in_hertz(const json& equilibrium) {
+    const double frequency = number(equilibrium.at("frequency"));
+    return equilibrium.value("frequency_unit", "Hz") == "rad/s" ? frequency / (2 * std::numbers::pi) : frequency;
+}
+
 TableResult table_result(const std::string& name, const json& document) {
     TableResult table;
     table.name = name;
@@ -36,7 +42,7 @@ TableResult table_result(const std::string& name, const json& document) {
         for (const auto& point : document.at("equilibria")) {
             EquilibriumResult one = equilibrium(point);
             one.sigma = number(point.at("sigma"));
-            one.frequency = number(point.at("frequency"));
+            one.frequency = frequency_in_hertz(point);
             one.kick_velocity = number(point.at("kick_velocity"));
             table.equilibria.push_back(one);
         }
@@ -81,7 +87,7 @@ RegionResult region_result(const std::string& name, const json& document) {
     }
     for (const auto& point : document.at("equilibria")) {
         region.equilibria.push_back(equilibrium(point));
-        region.equilibria.back().frequency = number(point.at("frequency"));
+        region.equilibria.back().frequency = frequency_in_hertz(point);
     }
     region.remarks = texts(document.at("remarks"));
     return region;

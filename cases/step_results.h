@@ -77,6 +77,9 @@ struct VerifyResult {
     double tolerance = 0;
 };
 
+/// Of an equilibrium's document, whose `frequency_unit` says in what it is given (without one: Hz). NaN: not known.
+double frequency_in_hertz(const nlohmann::json& equilibrium);
+
 // Out of the documents of the steps. A missing key throws nlohmann::json::out_of_range, a wrong type type_error:
 // defects.
 TableResult table_result(const std::string& name, const nlohmann::json& document);

@@ -22,8 +22,9 @@ public:
 
 namespace {
 
-constexpr int version = 2;       ///< of the tables; 0.1.0 had one table, `results`, and no number
-constexpr int patience = 20000;  ///< ms that another process may keep the store locked
+constexpr int version = 2;                            ///< of the tables; 0.1.0 had one table, `results`, and no number
+constexpr std::size_t largest_value = 2'000'000'000;  ///< bytes: SQLite's own limit is 2^31 - 1
+constexpr int patience = 20000;                       ///< ms that another process may keep the store locked
 
 [[noreturn]] void failed(const fs::path& file, const SQLite::Exception& error) {
     throw core::SystemError("store", std::string("the store of results cannot be used: ") + error.what(),
@@ -333,6 +334,12 @@ std::int64_t Store::put(const StoredResult& result, const std::string& about, co
         const std::int64_t id = database_->getLastInsertRowid();
         SQLite::Statement bytes(*database_, "INSERT INTO result_value (id, bytes) VALUES (?, ?)");
         bytes.bind(1, id);
+        if (value.size() > largest_value) {
+            throw core::InputError("range",
+                                   "the result is " + core::format_number(static_cast<double>(value.size()) / 1e9, 3) +
+                                       " GB: the store keeps none above 2 GB",
+                                   {file_.string(), {}, {}, {}});
+        }
         bytes.bind(2, value.data(), static_cast<int>(value.size()));
         bytes.exec();
         const std::string old =

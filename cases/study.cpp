@@ -641,6 +641,12 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
         spec.where = read_where(table, "where");
         spec.quantities = required_strings(table, "quantities");
         spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
+        if (!(spec.tolerance > 0)) {
+            throw core::InputError("range",
+                                   table.path_of("tolerance") + " = " + core::format_number(spec.tolerance, 4) +
+                                       ": a share of the force greater than nought",
+                                   table.place("tolerance"), "0.01 is one per cent");
+        }
         study.verifications.push_back(std::move(spec));
     }
     std::set<std::string> comparisons;

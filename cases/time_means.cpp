@@ -40,7 +40,14 @@ CaseLoads mean_of(const Study& study, Run run) {
         files.push_back(one->file);
     }
     CaseLoads mean = *run.front();
-    postproc::check_times(times, files, run.front()->warnings);
+    try {
+        postproc::check_times(times, files, mean.warnings);
+    } catch (const core::InputError& error) {
+        mean.state = StepState::failed;
+        mean.error = error.message();
+        mean.values.clear();
+        return mean;
+    }
     std::erase_if(mean.values, [](const LoadValue& value) { return value.name.ends_with("_sigma"); });
     std::vector<postproc::TimeHistory> histories;
     for (auto& value : mean.values) {

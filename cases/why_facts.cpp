@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <numeric>
 
+#include "cases/step_results.h"
 #include "cases/sweep_parts.h"
 #include "cases/why.h"
 #include "core/table.h"
@@ -139,15 +139,14 @@ void of_body(const json& document, Facts& facts) {
     }
 }
 
-/// `hertz`: of the unit in which its frequency is kept.
-void of_equilibrium(const json& point, Facts& facts, double hertz) {
+void of_equilibrium(const json& point, Facts& facts) {
     const std::string name = facts.numbered(point.value("stable", false) ? "stable gap" : "unstable gap");
     facts.member(point, "gap", name, "m");
     facts.member(point, "sigma", "standard deviation of the " + name, "m");
     facts.member(point, "stiffness", "stiffness at the " + name, "N/m");
     if (point.value("stable", false)) {
-        if (const auto found = point.find("frequency"); found != point.end() && found->is_number()) {
-            facts.number("frequency at the " + name, found->get<double>() * hertz, "Hz");
+        if (point.contains("frequency") && point.at("frequency").is_number()) {
+            facts.number("frequency at the " + name, frequency_in_hertz(point), "Hz");
         }
         facts.member(point, "kick_velocity", "kick velocity at the " + name, "m/s", "mm/s");
     }
@@ -205,7 +204,7 @@ void of_points(const std::string& text, const std::string& quantity, Facts& fact
 void of_table(const json& document, Facts& facts) {
     facts.text("fit", in_words(document.at("kind")));
     for (const auto& point : document.value("equilibria", json::array())) {
-        of_equilibrium(point, facts, 1);
+        of_equilibrium(point, facts);
     }
     for (const auto& remark : document.value("remarks", json::array())) {
         facts.text("remark", in_words(remark));
@@ -221,7 +220,7 @@ void of_region(const json& document, Facts& facts) {
         facts.member(entry, "gap", "gap of " + in_words(entry.at("name")), "m");
     }
     for (const auto& point : document.value("equilibria", json::array())) {
-        of_equilibrium(point, facts, 0.5 / std::numbers::pi);  // a map keeps them in rad/s
+        of_equilibrium(point, facts);
     }
     for (const auto& remark : document.value("remarks", json::array())) {
         facts.text("remark", in_words(remark));

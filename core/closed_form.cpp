@@ -68,6 +68,24 @@ double ClosedForm::Values::operator()(const std::string& name) const {
     throw std::out_of_range("ClosedForm: no input '" + name + "'");
 }
 
+namespace {
+
+/// A length, density, viscosity or mass has no other side of nought; nought itself only where it stands for "none".
+void check_size(const ClosedForm::Input& input, double value) {
+    static const std::vector<std::string> sizes = {"m", "kg", "kg/m^3", "Pa s", "m^2/s"};
+    if (std::find(sizes.begin(), sizes.end(), input.unit) == sizes.end()) {
+        return;
+    }
+    const bool may_be_nought = input.unit == "kg" || input.usual == 0.0;
+    if (value < 0 || (value == 0 && !may_be_nought)) {
+        throw UsageError("range", input.name + " = " + format_number(value, 6) + " " + input.unit + " is " +
+                                      (value == 0 ? "nought" : "negative") +
+                                      (input.meaning.empty() ? "" : ": it is " + input.meaning));
+    }
+}
+
+}  // namespace
+
 ClosedForm::Values closed_form_values(const ClosedForm& form, const std::vector<std::string>& given) {
     std::vector<std::pair<std::string, double>> read;
     for (const auto& list : given) {
@@ -90,6 +108,9 @@ ClosedForm::Values closed_form_values(const ClosedForm& form, const std::vector<
             throw UsageError(
                 "missing", form.name + " needs " + input.name + ": " + input.meaning, {},
                 "add " + input.name + "=..." + (input.unit == "1" ? "" : " in " + input.unit + " or a unit like it"));
+        }
+        if (found != read.end()) {
+            check_size(input, found->second);
         }
         values.set(input.name, found == read.end() ? *input.usual : found->second);
     }

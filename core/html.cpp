@@ -113,6 +113,7 @@ void HtmlPage::link(const std::string& target, const std::string& text) {
 std::string HtmlPage::text() const {
     std::string page =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+        "<meta name=\"generator\" content=\"Underbody\">"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
         escape_html(title_) + "</title>\n<style>\n" + std::string(report_style) +
         "</style></head>\n<body><main>\n<header><h1>" + escape_html(title_) + "</h1><p class=\"subtitle\">" +

@@ -32,6 +32,13 @@ std::string beginning_of(const fs::path& path) {
     return ending == ".png" ? "\x89PNG" : ending == ".pdf" ? "%PDF" : "";
 }
 
+/// A report that was copied without its attributes still says what made it.
+bool says_who_made_it(const fs::path& path) {
+    std::string head(400, '\0');
+    std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+    return head.find("<meta name=\"generator\" content=\"Underbody\">") != std::string::npos;
+}
+
 }  // namespace
 
 bool may_replace(const fs::path& path) {
@@ -45,7 +52,7 @@ bool may_replace(const fs::path& path) {
         return std::string(kept.data(), static_cast<std::size_t>(size)) == stamp_of(status);
     }
     if (errno != ENOTSUP) {
-        return false;
+        return lower_case(path.extension().string()) == ".html" && says_who_made_it(path);
     }
     const std::string wanted = beginning_of(path);
     std::string found(wanted.size(), '\0');

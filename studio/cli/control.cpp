@@ -165,6 +165,11 @@ int run_control(const ControlArguments& a, Shell& shell) {
         }
         (v.name == "gap" ? o.gap : o.velocity) = v.value;
     }
+    if (!(law.reference_gap > plant.contact_gap)) {
+        throw core::UsageError("range", "--hold " + a.hold +
+                                            " is no gap that can be held: the vehicle touches the ground at " +
+                                            core::format_number(1e3 * plant.contact_gap, 4) + " mm");
+    }
     if (o.gap < plant.contact_gap) {
         throw core::InputError("range", "the start lies inside the ground");
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 
 #include "core/text.h"
@@ -83,6 +84,8 @@ nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vect
                                  {"real", mode.value.real()},
                                  {"imaginary", mode.value.imag()},
                                  {"frequency", mode.frequency},
+                                 {"frequency_unit", "rad/s"},
+                                 {"frequency_in_hertz", mode.frequency / (2 * std::numbers::pi)},
                                  {"damping_ratio", mode.damping_ratio},
                                  {"stable", mode.stable},
                                  {"neutral", neutral(mode)}});

@@ -112,6 +112,15 @@ void print_classes(Shell& shell, const std::vector<dynamics::EndClass>& classes)
     shell.print(text);
 }
 
+/// The remarks about one map of several, each with the map's name.
+void show_remarks(Shell& shell, const dynamics::StabilityRegion& region, const std::string& name) {
+    core::Problems named = region.remarks;
+    for (core::Problem& remark : named) {
+        remark.message = name + ": " + remark.message;
+    }
+    shell.show(named);
+}
+
 int run_starts(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
                Shell& shell) {
     const core::Table starts = core::read_csv(std::filesystem::path(a.starts));
@@ -174,7 +183,6 @@ int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dyna
         throw core::UsageError("range", "--sweep takes one range, such as jet_voltage=4V:12V");
     }
     const dynamics::RegionSweep sweep = dynamics::swept_regions(model, options, ranges[0], a.steps, shell.progress());
-    shell.show(sweep.regions.front().remarks);
     dynamics::Channel channel{};
     dynamics::find_channel(sweep.name, channel);
     const bool angle = std::string(dynamics::channel_unit(channel)).starts_with("rad");
@@ -189,6 +197,7 @@ int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dyna
         dynamics::to_json(one, sweep.regions[i]);
         one["value"] = sweep.value[i];
         json["regions"].push_back(one);
+        show_remarks(shell, sweep.regions[i], names.back());
         shell.print((i > 0 ? "\n" : "") + names.back());
         print_classes(shell, sweep.regions[i].classes);
     }
@@ -209,7 +218,10 @@ int run_variants(const RegionArguments& a, const dynamics::Model& model, const d
     std::vector<dynamics::StabilityRegion> regions{dynamics::stability_region(model, options, shell.progress())};
     std::vector<std::string> names{a.model};
     for (const std::string& variant : a.variants) {
-        regions.push_back(dynamics::stability_region(dynamics::read_model(variant), options, shell.progress()));
+        const dynamics::Model other = dynamics::read_model(variant);
+        dynamics::RegionOptions own = options;
+        close_loop(a, other, own);  // gains that --lqr finds are those of this model
+        regions.push_back(dynamics::stability_region(other, own, shell.progress()));
         names.push_back(variant);
     }
     if (!a.out.empty()) {
@@ -221,6 +233,7 @@ int run_variants(const RegionArguments& a, const dynamics::Model& model, const d
         dynamics::to_json(one, regions[i]);
         one["name"] = names[i];
         json["variants"].push_back(one);
+        show_remarks(shell, regions[i], names[i]);
         shell.print((i > 0 ? "\n" : "") + names[i]);
         print_classes(shell, regions[i].classes);
     }

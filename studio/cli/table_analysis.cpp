@@ -240,7 +240,8 @@ void show_comparison(Shell& shell, const tables::ForceTable& table, const tables
         }
         shell.print(
             d.second + " less " + d.first + ": at most " + five_digits(d.largest, 3) + " +- " +
-            five_digits(d.sigma, 2) + " " + table.unit() + ", at " + shown(table, c.axis, unit, d.at, 4) +
+            (d.sigma > 0 ? five_digits(d.sigma, 2) : std::string("(no error known)")) + " " + table.unit() + ", at " +
+            shown(table, c.axis, unit, d.at, 4) +
             (where.empty() ? "; nowhere beyond twice the joint error" : "; beyond twice the joint error at " + where));
     }
 }

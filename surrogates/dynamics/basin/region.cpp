@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/parallel.h"
 #include "core/text.h"
@@ -365,6 +366,8 @@ void to_json(nlohmann::json& json, const StabilityRegion& region) {
                                       {"stable", e.stable},
                                       {"stiffness", e.stiffness},
                                       {"frequency", e.frequency},
+                                      {"frequency_unit", "rad/s"},
+                                      {"frequency_in_hertz", e.frequency / (2 * std::numbers::pi)},
                                       {"damping_ratio", e.damping_ratio},
                                       {"growth", e.growth}});
     }

@@ -109,7 +109,7 @@ Difference difference(const std::string& a_name, Slice a, const std::string& b_n
             d.at = x;
             d.sigma = joint;
         }
-        const bool beyond = std::abs(gap) > 2 * joint && gap != 0;
+        const bool beyond = joint > 0 && std::abs(gap) > 2 * joint;  // without an error nothing can be said
         if (beyond && !open) {
             d.beyond_error.emplace_back(x, x);
         } else if (beyond) {

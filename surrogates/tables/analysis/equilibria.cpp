@@ -238,6 +238,14 @@ void to_json(nlohmann::json& json, const Equilibria& equilibria) {
                           {"range", {equilibria.lower, equilibria.upper}},
                           {"force_at_ends", {equilibria.force_at_lower, equilibria.force_at_upper}},
                           {"frequency_unit", "Hz"}};
+    if (!(equilibria.virtual_mass > 0)) {  // nobody said how heavy it is: not known, which is not nought
+        for (auto& one : json["equilibria"]) {
+            for (const char* name : {"frequency", "angular_frequency", "growth_rate", "damping_ratio", "kick_velocity",
+                                     "contact_velocity"}) {
+                one[name] = nullptr;
+            }
+        }
+    }
     json["held"] = nlohmann::json::object();
     for (const auto& [name, value] : equilibria.held) {
         json["held"][name] = value;
