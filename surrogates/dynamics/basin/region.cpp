@@ -134,6 +134,21 @@ void add_boundaries(const HeaveRegionSetup& setup, const RegionOptions& o, bool 
     }
 }
 
+/// A range that is too short calls motions lost that come back.
+void remark_on_escapes(const HeaveRegionSetup& setup, const RegionOptions& options, StabilityRegion& region) {
+    const bool escapes = std::any_of(region.classes.begin(), region.classes.end(), [](const EndClass& end) {
+        return end.kind == EndKind::escape && end.fraction > 0;
+    });
+    if (escapes && std::isnan(options.escape_gap) && setup.plant.static_force(setup.escape_gap) < 0) {
+        region.remarks.push_back(
+            {core::Problem::Severity::warning,
+             "escape is counted where a motion passes " + core::format_number(1e3 * setup.escape_gap, 5) +
+                 " mm, the upper end of tables and map, but the force there pulls the vehicle back: many of "
+                 "these motions return. A larger escape gap, or a map to larger gaps, follows them",
+             {}});
+    }
+}
+
 void add_flow(const HeaveRegionSetup& setup, const RegionOptions& o, bool gap_first, StabilityRegion& region) {
     constexpr int across = 22, up = 14;
     const HeavePlant& plant = setup.plant;
@@ -215,6 +230,7 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
     }
     add_flow(setup, options, gap_first, region);
     add_remarks(region, model, options.held);
+    remark_on_escapes(setup, options, region);
     return region;
 }
 
