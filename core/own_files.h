@@ -2,8 +2,8 @@
 //
 // A file written whole (`write_file`, `PendingFile`) carries an extended attribute `user.underbody` with its size and
 // time of change; a file that lacks it, or was changed since, is somebody else's (but for a report whose head says that
-// this program made it: copies lose their attributes). Where the file system keeps no attributes nothing can be known of
-// text files; pictures are then told by their first bytes.
+// this program made it: copies lose their attributes). Where the file system keeps no attributes nothing can be known
+// of text files; pictures are then told by their first bytes.
 #pragma once
 
 #include <filesystem>
