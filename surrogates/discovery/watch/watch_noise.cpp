@@ -9,9 +9,9 @@ namespace underbody::discovery {
 
 namespace {
 
-constexpr double widest = 2.5;       ///< robust deviations: what is further away counts as if it were there
-constexpr double least_share = 0.1;  ///< a colour whose share of the variance is smaller is none
-constexpr std::size_t enough = 100;  ///< readings from which a colour can be told
+constexpr double widest = 2.5;             ///< robust deviations: what is further away counts as if it were there
+constexpr double least_correlation = 0.1;  ///< of neighbouring readings: with less the noise is called white
+constexpr std::size_t enough = 100;        ///< readings from which a colour can be told
 
 /// Variance of numbers some of which are wild: their squares limited about the median's scale, as if normal.
 double robust_variance(const std::vector<double>& values) {
@@ -180,8 +180,9 @@ WatchNoise learn_noise(const Plant& plant, const Steps& steps, const HeaveNoise&
     for (std::size_t s = 0; s < 2; ++s) {
         out.colours[s] = colour_of(likelihood.normals[s]);
     }
-    const double share = out.noise.slow * out.noise.slow;
-    if (share > least_share * out.noise.gap * out.noise.gap) {
+    const double usual = (steps.back().time - steps.front().time) / static_cast<double>(steps.size() - 1);
+    const double slow = out.noise.slow * out.noise.slow, all = slow + out.noise.gap * out.noise.gap;
+    if (slow * std::exp(-usual / out.noise.slow_time) > least_correlation * all) {
         out.correlation_time = out.noise.slow_time;
     }
     if (!out.colours[0].white()) {
@@ -189,7 +190,6 @@ WatchNoise learn_noise(const Plant& plant, const Steps& steps, const HeaveNoise&
         for (const double phi : out.colours[0].phi) {
             sum += phi;
         }
-        const double usual = (steps.back().time - steps.front().time) / static_cast<double>(steps.size() - 1);
         out.correlation_time = std::max(out.correlation_time, usual / std::max(1 - sum, 0.02));
     }
     return out;
