@@ -27,7 +27,7 @@ StaticLoop::StaticLoop(const dynamics::Model& model, const dynamics::Measurement
 Discovery StaticLoop::run() {
     refuse_outside_tables(experiment_, data_);
     split();
-    experiment_.estimate_noise();
+    estimate_noise();
     progress_.report(0.1, "fitting the effects of the catalogue");
     fit_singles();
     try_two();
@@ -49,6 +49,13 @@ Discovery StaticLoop::run() {
         run_placebo();
     }
     return std::move(result_);
+}
+
+void StaticLoop::estimate_noise() {
+    experiment_.estimate_noise();
+    if (test_experiment_) {
+        test_experiment_->set_noise(experiment_.noise());
+    }
 }
 
 void StaticLoop::split() {
@@ -198,7 +205,7 @@ void StaticLoop::leave_accidents_out() {
          std::to_string(bad.size()) + (bad.size() == 1 ? " reading lies" : " readings lie") +
              " more than six standard deviations from everything else and was left out of every fit: " + where,
          {}});
-    experiment_.estimate_noise();
+    estimate_noise();
     fit_singles();
 }
 

@@ -37,35 +37,39 @@ BlockErrors StaticLoop::held_out_errors(const std::vector<dynamics::EffectUse>& 
     return errors;
 }
 
-/// Beside the held-out set points the others, each predicted with the numbers that the rest of them give: a quarter of
-/// the set points alone misses effects of the size of the noise.
-bool StaticLoop::falls(const BlockErrors& declared, const BlockErrors& named, const Hypothesis& hypothesis) const {
+BlockErrors StaticLoop::unseen_errors(const FittedHypothesis* one) const {
     constexpr std::size_t folds = 4;
-    const PairedFall held_out = paired_fall(declared, named, calibration_.fall_tail);
-    if (held_out.falls() || held_out.mean <= 0) {
-        return held_out.falls();
-    }
-    BlockErrors before = declared;
-    BlockErrors after = named;
-    const std::size_t first = before.blocks.size();
-    before.blocks.resize(first + experiment_.set_points());
-    after.blocks.resize(first + experiment_.set_points());
+    BlockErrors errors = held_out_errors(one != nullptr ? one->hypothesis.with(one->fit.parameters)
+                                                        : std::vector<dynamics::EffectUse>{});
+    const std::size_t first = errors.blocks.size();
+    errors.blocks.resize(first + experiment_.set_points());
     for (std::size_t fold = 0; fold < folds; ++fold) {
+        const auto left_out = [&](std::size_t i) { return experiment_.observations()[i].set_point % folds == fold; };
         std::vector<std::size_t> inside;
-        std::copy_if(train_.begin(), train_.end(), std::back_inserter(inside),
-                     [&](std::size_t i) { return experiment_.observations()[i].set_point % folds != fold; });
-        const FittedHypothesis fit = experiment_.fit(hypothesis, inside);
-        const std::vector<dynamics::EffectUse> uses = hypothesis.with(fit.fit.parameters);
+        std::remove_copy_if(train_.begin(), train_.end(), std::back_inserter(inside), left_out);
+        const std::vector<dynamics::EffectUse> uses =
+            one != nullptr ? one->hypothesis.with(experiment_.fit(one->hypothesis, inside).fit.parameters)
+                           : std::vector<dynamics::EffectUse>{};
         for (const std::size_t i : train_) {
-            const Observation& one = experiment_.observations()[i];
-            if (one.set_point % folds == fold) {
-                const double sigma = experiment_.sigma(one);
-                before.blocks[first + one.set_point].push_back((one.value - experiment_.predict(one, {})) / sigma);
-                after.blocks[first + one.set_point].push_back((one.value - experiment_.predict(one, uses)) / sigma);
+            const Observation& seen = experiment_.observations()[i];
+            if (left_out(i)) {
+                errors.blocks[first + seen.set_point].push_back((seen.value - experiment_.predict(seen, uses)) /
+                                                                experiment_.sigma(seen));
             }
         }
     }
-    return paired_fall(before, after, calibration_.fall_tail).falls();
+    return errors;
+}
+
+/// A quarter of the set points alone misses effects of the size of the noise.
+bool StaticLoop::falls(const FittedHypothesis* before, const FittedHypothesis& after) const {
+    const PairedFall held_out =
+        paired_fall(held_out_errors(before != nullptr ? before->hypothesis.with(before->fit.parameters)
+                                                      : std::vector<dynamics::EffectUse>{}),
+                    held_out_errors(after.hypothesis.with(after.fit.parameters)), calibration_.fall_tail);
+    return held_out.falls() ||
+           (held_out.mean > 0 &&
+            paired_fall(unseen_errors(before), unseen_errors(&after), calibration_.fall_tail).falls());
 }
 
 /// The twins of a static set have readings of one standard deviation about the model as found.
@@ -97,7 +101,7 @@ void StaticLoop::guard() {
         const FittedHypothesis& chosen = fitted_[attribution_.chosen];
         uses_ = found_effect(chosen, 1).uses;
         const BlockErrors named = held_out_errors(uses_);
-        if (!falls(declared, named, chosen.hypothesis)) {
+        if (!falls(nullptr, chosen)) {
             uses_.clear();
             result_.verdict = "none";
             cap_probabilities(attribution_, 0.5);

@@ -23,6 +23,7 @@ public:
 private:
     // static_discovery.cpp: what is held out, every effect alone, accidents, colour
     void split();
+    void estimate_noise();
     void fit_singles();
     /// A change over the gap at a length that was not measured is no such change: it would pass for a gain.
     void keep_lengths_inside(std::vector<Hypothesis>& candidates) const;
@@ -43,8 +44,6 @@ private:
     /// The best five singles, each with every other; without those that undo each other.
     [[nodiscard]] std::vector<FittedHypothesis> pairs_of_leaders() const;
     [[nodiscard]] bool earns_its_place(const FittedHypothesis& pair) const;
-    /// Whether what it leaves on held-out set points is noise.
-    [[nodiscard]] bool says_all(const FittedHypothesis& one);
     /// What one of two effects leaves would pass for accidents and coloured noise: the best pair beside the singles,
     /// for left_over() alone.
     void try_two();
@@ -65,8 +64,11 @@ private:
     [[nodiscard]] std::vector<std::size_t> held_out_readings() const;
     /// In units of the noise, by set point, all measured quantities together.
     [[nodiscard]] BlockErrors held_out_errors(const std::vector<dynamics::EffectUse>& uses) const;
-    /// Whether the error of set points that nothing was fitted to falls with a named effect.
-    [[nodiscard]] bool falls(const BlockErrors& declared, const BlockErrors& named, const Hypothesis& hypothesis) const;
+    /// The same of one explanation (nullptr: the model as declared), then that of the other set points, each with the
+    /// numbers that the rest of them give.
+    [[nodiscard]] BlockErrors unseen_errors(const FittedHypothesis* one) const;
+    /// Whether the error of set points that nothing was fitted to falls from one explanation to another.
+    [[nodiscard]] bool falls(const FittedHypothesis* before, const FittedHypothesis& after) const;
     [[nodiscard]] bool rest_is_noise(const BlockErrors& errors) const;
     /// Puts a smooth correction in the place of uses_ where the held-out error falls with it; false: leaves them.
     bool correct(const BlockErrors& before);

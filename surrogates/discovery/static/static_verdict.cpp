@@ -92,20 +92,17 @@ std::vector<FittedHypothesis> StaticLoop::pairs_of_leaders() const {
 }
 
 bool StaticLoop::earns_its_place(const FittedHypothesis& pair) const {
-    const double gain = fitted_[best_hypothesis(fitted_, 1)].score() - pair.score();
-    return gain > calibration_.pair_gain && gain > calibration_.pair_share * std::max(pair.explained, 1e-12);
-}
-
-bool StaticLoop::says_all(const FittedHypothesis& one) {
-    if (test_experiment_) {
-        test_experiment_->set_noise(experiment_.noise());
-    }
-    return rest_is_noise(held_out_errors(one.hypothesis.with(one.fit.parameters)));
+    const FittedHypothesis& single = fitted_[best_hypothesis(fitted_, 1)];
+    const double gain = single.score() - pair.score();
+    // beside a strong effect a second one is a small share and still real: then other set points must show it
+    return gain > calibration_.pair_gain &&
+           (gain > calibration_.pair_share * std::max(pair.explained, 1e-12) || falls(&single, pair));
 }
 
 void StaticLoop::try_two() {
     const std::size_t single = best_hypothesis(fitted_, 1);
-    if (single >= fitted_.size() || fitted_.size() > singles_ || says_all(fitted_[single])) {
+    if (single >= fitted_.size() || fitted_.size() > singles_ ||
+        StaticStructure(experiment_, train_).best(fitted_[single].fit.residuals).p > calibration_.unknown_p) {
         return;
     }
     std::vector<FittedHypothesis> found = pairs_of_leaders();
@@ -116,7 +113,7 @@ void StaticLoop::try_two() {
 }
 
 void StaticLoop::fit_pairs() {
-    if (best_single_ >= fitted_.size() || (rest_.p > calibration_.unknown_p && says_all(fitted_[best_single_]))) {
+    if (best_single_ >= fitted_.size() || rest_.p > calibration_.unknown_p) {
         return;
     }
     const std::vector<FittedHypothesis> found = pairs_of_leaders();
@@ -189,9 +186,6 @@ void StaticLoop::decide() {
     result_.model = model_;
     for (const auto& [quantity, figure] : experiment_.noise()) {
         result_.noise[quantity] = {figure.value, figure.unit, figure.from, figure.estimated};
-    }
-    if (test_experiment_) {
-        test_experiment_->set_noise(experiment_.noise());
     }
     guard();
     for (const dynamics::EffectUse& use : uses_) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/file.h"
 #include "core/random.h"
@@ -293,6 +294,20 @@ TEST(Guards, AWrongNameThatLeavesARestIsNotGiven) {
     const Discovery found = found_in(hard("thrust-by-gap"), others);
     EXPECT_NE(found.verdict, "effect") << found.sentence;
     EXPECT_NE(found.verdict, "none") << found.sentence;
+}
+
+TEST(Guards, AScaleAndAnOffsetAtOnceAreBothNamed) {
+    UNDERBODY_NEEDS_SHARED("examples/loop-hard");
+    for (const char* rig : {"bench-scale-offset-1", "bench-scale-offset-2"}) {
+        const Discovery found = found_in(hard(rig));
+        ASSERT_EQ(found.verdict, "effect") << found.sentence;
+        std::set<std::string> names;
+        for (const FoundEffect& effect : found.effects) {
+            names.insert(effect.name);
+        }
+        EXPECT_EQ(names, (std::set<std::string>{"gap_offset", "sensor_gain"})) << rig << ": " << found.sentence;
+        EXPECT_LT(found.error.at(0).after.rmse, 1.2 * found.error.at(0).noise) << rig;
+    }
 }
 
 TEST(Guards, AThrusterThatTheGroundWeakensIsNamed) {
