@@ -4,16 +4,12 @@
 #include <cmath>
 #include <set>
 
-#include "cases/sweep.h"
+#include "cases/design_file.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/own_files.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "postproc/field/field.h"
-#include "postproc/loads/loads.h"
-#include "postproc/loads/settled.h"
-#include "postproc/loads/stated_loads.h"
 #include "surrogates/tables/search/sampling.h"
 
 namespace underbody::cases {
@@ -26,13 +22,6 @@ namespace {
 std::string numbered(std::size_t index) {
     const std::string digits = std::to_string(index + 1);
     return "design-" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits;
-}
-
-/// One field of a CSV line.
-std::string one_field(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == ',' || c == '\n' || c == '"'; }, ';');
-    return text;
 }
 
 const std::vector<double>& numbers_of(const core::Table& table, const SearchVariable& v) {
@@ -141,7 +130,7 @@ Design Design::open(const Study& study) {
     }
     std::size_t unsettled = 0;
     for (const DesignRun& run : design.runs_) {
-        unsettled += run.state == "not settled" ? 1 : 0;
+        unsettled += run.state == not_settled_state ? 1 : 0;
     }
     if (unsettled > 0) {
         design.notes.push_back({core::Problem::Severity::warning,
@@ -265,109 +254,6 @@ core::Table Design::results_table() const {
     }
     table.add_text("state", states);
     return table;
-}
-
-namespace {
-
-/// Equal but for the rounding of a file.
-bool same_point(const std::vector<SearchVariable>& variables, const std::vector<double>& a,
-                const std::vector<double>& b) {
-    for (std::size_t v = 0; v < variables.size(); ++v) {
-        if (std::abs(a[v] - b[v]) > 1e-7 * (variables[v].upper - variables[v].lower)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/// The loads of a solved case, SI, with what they scatter by.
-void take_loads(const Study& study, const SweepCase& one, DesignRun& run, core::Progress& progress) {
-    postproc::ReadOptions reading;
-    reading.surfaces_only = true;
-    const fs::path file = one.folder / solved_marker;
-    const postproc::Field field = postproc::read_field(file, reading, progress);
-    postproc::LoadsOptions options;
-    options.forward = postproc::axis_from(study.forward);
-    options.up = postproc::axis_from(study.up);
-    options.symmetry = study.symmetry;
-    options.reference = study.moments_about;
-    options.references.density = study.reference.number("density");
-    const postproc::LoadsResult result = postproc::loads(field, options, progress);
-    core::Problems notes;
-    const postproc::Settled settled = postproc::settled_by(result, postproc::stated_beside(file, result), file, notes);
-    for (const auto& column : postproc::table_columns(result)) {
-        run.loads[column.name] = column.value;
-    }
-    for (const auto& load : settled.loads) {
-        run.sigmas[load.quantity] = load.sigma;
-    }
-    run.state = settled.verdict == postproc::SettledVerdict::not_settled ? "not settled" : "solved";
-}
-
-}  // namespace
-
-void Design::solve(const Study& study, int jobs, core::Progress& progress) {
-    const std::vector<SearchVariable> all = spec_.all_variables();
-    for (const FidelitySpec& fidelity : spec_.fidelities) {
-        SweepSpec sweep;
-        sweep.folder = fs::relative(spec_.folder / "runs" / fidelity.name, study.folder()).string();
-        for (const PlannedDesign& design : plan_) {
-            if (design.fidelity == fidelity.name && design.state == "planned") {
-                sweep.bodies.push_back({design.name, spec_.folder / "shapes" / (design.name + ".toml")});
-            }
-        }
-        if (sweep.bodies.empty()) {
-            continue;
-        }
-        sweep.gaps = spec_.gaps;
-        sweep.pitches = spec_.pitches;
-        sweep.speeds = spec_.speeds;
-        sweep.mesher = "snappy";  // what a fidelity says is of its cells
-        sweep.cell = fidelity.cell;
-        sweep.surface_level = fidelity.surface_level;
-        sweep.layers = fidelity.layers;
-        sweep.iterations = fidelity.iterations;
-        Study with_sweep = study;
-        with_sweep.sweep = sweep;
-        SweepOptions options;
-        options.jobs = jobs;
-        std::map<std::string, std::string> failed;
-        for (const SweepOutcome& outcome : sweep_locally(with_sweep, options, progress)) {
-            if (!outcome.error.empty()) {
-                failed[outcome.name] = outcome.error;
-            }
-        }
-        for (const SweepCase& one : sweep_cases(with_sweep, progress)) {
-            const std::string variant = one.shape.stem().string();
-            const auto planned =
-                std::find_if(plan_.begin(), plan_.end(), [&](const PlannedDesign& d) { return d.name == variant; });
-            DesignRun run{variant, planned->at, fidelity.name, {}, {}, ""};
-            for (std::size_t v = spec_.variables.size(); v < all.size(); ++v) {
-                run.at.push_back(one.conditions.number(all[v].name).value_or(0));
-            }
-            if (one.state == SweepState::solved || one.state == SweepState::present) {
-                try {
-                    take_loads(study, one, run, progress);
-                } catch (const core::Cancelled&) {
-                    throw;
-                } catch (const core::Error& error) {
-                    run.state = one_field(error.message());
-                }
-            } else {
-                const auto why = failed.find(one.name);
-                run.state = one_field(why != failed.end() ? why->second : "not solved: " + one.reason);
-            }
-            const auto same = std::find_if(runs_.begin(), runs_.end(), [&](const DesignRun& r) {
-                return r.design == run.design && r.fidelity == run.fidelity && same_point(all, r.at, run.at);
-            });
-            if (same != runs_.end()) {
-                *same = run;
-            } else {
-                runs_.push_back(run);
-            }
-            write();  // what was computed stays when the next case is interrupted
-        }
-    }
 }
 
 std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& progress) const {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cases/design_spec.h"
-#include "cases/sweep.h"
+#include "cases/study.h"
 #include "core/html.h"
 #include "core/progress.h"
 #include "core/table.h"
@@ -57,7 +57,9 @@ public:
     /// Adds designs that a search chose.
     void add(const std::vector<tables::Candidate>& candidates, const std::string& why);
     /// Solves what is planned and has no result with OpenFOAM here, `jobs` at a time, and reads loads into results.csv.
-    /// A case that fails is kept as failed with its reason and the others go on.
+    /// A case that fails is kept as failed with its reason and the others go on; one whose loads have not settled is
+    /// kept as "not settled". results.csv is written after each case. Rows that are there without a case in
+    /// runs/FIDELITY stay as they are.
     void solve(const Study& study, int jobs, core::Progress& progress = core::Progress::none());
 
     /// A surrogate a quantity. Throws core::InputError when there are too few runs.

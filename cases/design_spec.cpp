@@ -191,10 +191,11 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
     for (const TomlTable& table : design.tables("fidelity")) {
         FidelitySpec f;
         f.name = table.string("name");
-        f.cell = table.quantity_or("cell", "1", f.cell);
-        f.surface_level = static_cast<int>(table.integer_or("surface_level", f.surface_level));
-        f.layers = static_cast<int>(table.integer_or("layers", f.layers));
-        f.iterations = static_cast<int>(table.integer_or("iterations", f.iterations));
+        const auto& densities = geometry::density_names();
+        if (std::find(densities.begin(), densities.end(), f.name) != densities.end()) {
+            f.mesh.density = f.name;
+        }
+        f.mesh = read_case_mesh(table, f.mesh);
         f.cost = table.quantity_or("cost", "s", 1);
         if (!names.insert(f.name).second) {
             throw core::InputError("name", table.path_of("name") + ": there are two fidelities " + f.name,
@@ -203,7 +204,7 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
         spec.fidelities.push_back(f);
     }
     if (spec.fidelities.empty()) {
-        spec.fidelities = {{"medium", 0.125, 3, 3, 400, 1}};
+        spec.fidelities = {{"medium", {}, 1}};
     }
     for (const TomlTable& table : design.tables("objective")) {
         spec.objectives.push_back(objective_from(table, spec));
@@ -245,7 +246,7 @@ std::vector<FileTable> design_tables() {
         keys.insert(keys.end(), more.begin(), more.end());
         return keys;
     };
-    return {
+    std::vector<FileTable> tables = {
         {"design",
          "shapes to be tried: a plan, surrogates of what was computed, what to compute next, the best",
          {{"shape", "file", "\"shapes/evie.toml\"", "", "SHAPE.toml that is varied"},
@@ -273,10 +274,6 @@ std::vector<FileTable> design_tables() {
         {"design.fidelity[]",
          "a mesh; the cheapest first, the last is what counts",
          {{"name", "text", "\"coarse\"", "", "its folder below runs"},
-          {"cell", "1", "0.125", "0.125", "as in [sweep]"},
-          {"surface_level", "whole number", "3", "3", "as in [sweep]"},
-          {"layers", "whole number", "3", "3", "as in [sweep]"},
-          {"iterations", "whole number", "400", "400", "as in [sweep]"},
           {"cost", "s", "\"120 s\"", "1 s", "core-seconds of a case, to weigh what pays"}}},
         {"design.objective[]", "what is wanted; several make a front",
          response({{"sense", "minimise | maximise", "\"maximise\"", "", "which way"},
@@ -289,6 +286,11 @@ std::vector<FileTable> design_tables() {
         {"design.volume",
          "what must hold of the body's volume: known without a run",
          {{"at_least", "m^3", "\"1 L\"", "0", "lower limit"}, {"at_most", "m^3", "\"4 L\"", "none", "upper limit"}}}};
+    const auto of_mesh = case_mesh_keys("the name, where it is one of these, else medium");
+    const auto fidelity = std::find_if(tables.begin(), tables.end(),
+                                       [](const FileTable& table) { return table.path == "design.fidelity[]"; });
+    fidelity->keys.insert(fidelity->keys.end(), of_mesh.begin(), of_mesh.end());
+    return tables;
 }
 
 geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cases/case_mesh.h"
 #include "core/file_format.h"
 #include "core/toml.h"
 #include "geometry/body/variants.h"
@@ -17,10 +18,7 @@ namespace underbody::cases {
 /// [[design.fidelity]]: a mesh, the cheapest first.
 struct FidelitySpec {
     std::string name;
-    double cell = 0.125;    ///< as in [sweep]
-    int surface_level = 3;  ///< as in [sweep]
-    int layers = 3;
-    int iterations = 400;
+    CaseMesh mesh;    ///< as in [sweep]; blocks of the density of that name, where there is one
     double cost = 1;  ///< core-seconds of a case
 };
 

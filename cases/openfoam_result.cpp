@@ -143,6 +143,14 @@ bool says_end(const std::string& tail) {
     return end != std::string::npos && (time == std::string::npos || end > time);
 }
 
+/// OpenFOAM removes the file that ends a run as the run ends; its log keeps that it was there.
+bool ended_by_file(const std::string& tail) {
+    const auto asked = tail.rfind("USER REQUESTED ABORT");
+    const auto last = tail.rfind("\nTime = ");
+    const auto before = last == std::string::npos || last == 0 ? last : tail.rfind("\nTime = ", last - 1);
+    return asked != std::string::npos && (before == std::string::npos || asked > before);
+}
+
 /// What is wrong with the forces that should reach `time`; empty when nothing is, or none are written.
 std::string fault_of_forces(const fs::path& folder, const std::string& control, double time, bool& diverged) {
     std::vector<postproc::ForceHistory> histories;
@@ -336,7 +344,7 @@ SolveEnd solve_end(const fs::path& folder) {
     const std::string control = control_of(folder);
     const fs::path log = log_of(folder, control);
     const std::string words = log.empty() ? "" : tail_of(log, 1 << 14);
-    end.settled = fs::exists(folder / settled_file, ignored);
+    end.settled = fs::exists(folder / settled_file, ignored) || ended_by_file(words);
     end.converged = end.settled || words.find("solution converged") != std::string::npos;
     const auto wanted = core::parse_number(entry_in(control, "endTime"));
     const std::string time = core::format_number(end.time);

@@ -26,7 +26,8 @@ std::vector<TimeFolder> times_of(const std::filesystem::path& case_folder);
 /// every field is whole. Fields that the case has at time 0 have to be there for cases that Underbody wrote.
 std::string missing_in(const TimeFolder& time);
 
-/// In a case with a function object that waits for it: ends the run and has its last iteration written.
+/// In a case with a function object that waits for it: ends the run and has its last iteration written. OpenFOAM 1912
+/// removes it then.
 inline constexpr const char* settled_file = "settled";
 
 /// How a solve ended.

@@ -509,27 +509,11 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     }
     sweep.conditions = read_where(table, "conditions");
     sweep.kinematic_viscosity = table.quantity_or("kinematic_viscosity", "m^2/s", sweep.kinematic_viscosity);
-    // A study that sets the cells of snappyHexMesh has it, as it had when there was no other.
-    const bool of_snappy = table.has("cell") || table.has("surface_level") || table.has("layers");
-    sweep.mesher = table.choice("mesher", geometry::mesher_names(), of_snappy ? "snappy" : "blocks");
-    if (of_snappy && sweep.mesher == "blocks") {
-        throw core::InputError("choice", "cell, surface_level and layers are snappyHexMesh's: blocks have none",
-                               table.place("mesher"),
-                               "mesher = \"snappy\", or mesh_density = \"fine\" and none of them");
-    }
-    if (!sweep.jet_flows.empty() && sweep.mesher == "snappy") {
+    sweep.mesh = read_case_mesh(table);
+    if (!sweep.jet_flows.empty() && sweep.mesh.mesher == "snappy") {
         throw core::InputError("choice", "a jet needs a mesh of blocks", table.place("jet_flow"),
                                "mesher = \"blocks\", without cell, surface_level and layers");
     }
-    if (table.has("mesh_density") && sweep.mesher == "snappy") {
-        throw core::InputError("choice", "mesh_density is that of the blocks: snappyHexMesh has cell and surface_level",
-                               table.place("mesh_density"), "mesher = \"blocks\", or cell = 0.125");
-    }
-    sweep.density = table.choice("mesh_density", geometry::density_names(), sweep.density);
-    sweep.cell = table.quantity_or("cell", "1", sweep.cell);
-    sweep.surface_level = static_cast<int>(table.integer_or("surface_level", sweep.surface_level));
-    sweep.layers = static_cast<int>(table.integer_or("layers", sweep.layers));
-    sweep.iterations = static_cast<int>(table.integer_or("iterations", sweep.iterations));
     sweep.slurm = read_slurm(table.table_or_empty("slurm"));
     if (sweep.bodies.empty() || sweep.gaps.empty() || sweep.pitches.empty() || sweep.speeds.empty()) {
         throw core::InputError("missing", "a sweep needs a [[body]], a gap and a speed", table.place(),

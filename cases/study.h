@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cases/case_mesh.h"
 #include "cases/design_spec.h"
 #include "cases/step_results.h"
 #include "core/error.h"
@@ -151,12 +152,7 @@ struct SweepSpec {
     std::vector<double> jet_flows;  ///< m^3/s through the nozzle; empty: no jet
     Conditions conditions;          ///< further conditions of these cases (mesh = "coarse")
     double kinematic_viscosity = 1e-6;
-    std::string mesher = "blocks";   ///< or "snappy"
-    std::string density = "medium";  ///< of the blocks: coarse, medium, fine
-    double cell = 0.125;             ///< of the background mesh, in body lengths
-    int surface_level = 3;           ///< halvings of the cell at the body
-    int layers = 3;
-    int iterations = 0;  ///< at most; 0: as the mesher needs
+    CaseMesh mesh;
     SlurmSpec slurm;
 };
 

@@ -108,38 +108,32 @@ std::vector<FileTable> inputs() {
 
 std::vector<FileTable> sweep() {
     const SweepSpec usual;
-    return {{"sweep",
-             "cases to be computed: every body at every gap, pitch and speed",
-             {{"gap", "m or list of m", "[\"2 mm\", \"5 mm\"]", "", "gaps"},
-              {"bodies", "list of texts", "[\"ellipse\"]", "all [[body]]", "names of [[body]]"},
-              {"pitch", "rad or list of rad", "[\"0 deg\"]", "0", "pitch angles, positive nose up"},
-              {"speed", "m/s or list of m/s", "\"0.5 m/s\"", "reference.speed", "speeds"},
-              {"jet_flow", "m^3/s or list of m^3/s", "[\"0 mL/s\", \"50 mL/s\"]", "no jet",
-               "through the nozzle of the body; blocks only"},
-              {"folder", "text", "\"runs\"", "runs", "folder of the cases, relative to this file"},
-              {"kinematic_viscosity", "m^2/s", "\"1.0e-6 m^2/s\"",
-               core::format_number(usual.kinematic_viscosity) + " m^2/s", "of the water"},
-              {"mesher", "blocks, snappy", "\"blocks\"", "blocks; snappy where cell, surface_level or layers are set",
-               "blocks of hexahedra with many cells in any gap, or snappyHexMesh"},
-              {"mesh_density", "coarse, medium, fine", "\"medium\"", usual.density, "of the blocks"},
-              {"cell", "1", "0.125", core::format_number(usual.cell),
-               "cell of snappyHexMesh's background mesh, in body lengths"},
-              {"surface_level", "whole number", "3", std::to_string(usual.surface_level),
-               "halvings of that cell at the body"},
-              {"layers", "whole number", "3", std::to_string(usual.layers), "layers of cells on the walls"},
-              {"iterations", "whole number", "400", "0 (blocks 800, snappy 400)",
-               "of the solver at most; with blocks it ends when the loads have settled"}}},
-            {"sweep.slurm",
-             "what Slurm is asked for; options of the command line count over it",
-             {{"partition", "text", "\"short\"", "the site's", "partition, as sbatch takes it"},
-              {"time", "text", "\"02:00:00\"", "the site's", "limit of a case"},
-              {"memory", "text", "\"4G\"", "the site's", "memory of a case"},
-              {"account", "text", "\"ground-effect\"", "the site's", "account, as sbatch takes it"},
-              {"throttle", "whole number", "8", "0 (no limit)", "cases at a time"},
-              {"max_array", "whole number", "1000", "0 (what scontrol says, else 1000)",
-               "cases in one job array; more make several"},
-              {"options", "list of texts", "[\"--nice=100\"]", "none", "further options of sbatch"}}},
-            conditions("sweep.conditions", "further conditions of these cases", "conditions = { mesh = \"coarse\" }")};
+    std::vector<FileTable> tables = {
+        {"sweep",
+         "cases to be computed: every body at every gap, pitch and speed",
+         {{"gap", "m or list of m", "[\"2 mm\", \"5 mm\"]", "", "gaps"},
+          {"bodies", "list of texts", "[\"ellipse\"]", "all [[body]]", "names of [[body]]"},
+          {"pitch", "rad or list of rad", "[\"0 deg\"]", "0", "pitch angles, positive nose up"},
+          {"speed", "m/s or list of m/s", "\"0.5 m/s\"", "reference.speed", "speeds"},
+          {"jet_flow", "m^3/s or list of m^3/s", "[\"0 mL/s\", \"50 mL/s\"]", "no jet",
+           "through the nozzle of the body; blocks only"},
+          {"folder", "text", "\"runs\"", "runs", "folder of the cases, relative to this file"},
+          {"kinematic_viscosity", "m^2/s", "\"1.0e-6 m^2/s\"",
+           core::format_number(usual.kinematic_viscosity) + " m^2/s", "of the water"}}},
+        {"sweep.slurm",
+         "what Slurm is asked for; options of the command line count over it",
+         {{"partition", "text", "\"short\"", "the site's", "partition, as sbatch takes it"},
+          {"time", "text", "\"02:00:00\"", "the site's", "limit of a case"},
+          {"memory", "text", "\"4G\"", "the site's", "memory of a case"},
+          {"account", "text", "\"ground-effect\"", "the site's", "account, as sbatch takes it"},
+          {"throttle", "whole number", "8", "0 (no limit)", "cases at a time"},
+          {"max_array", "whole number", "1000", "0 (what scontrol says, else 1000)",
+           "cases in one job array; more make several"},
+          {"options", "list of texts", "[\"--nice=100\"]", "none", "further options of sbatch"}}},
+        conditions("sweep.conditions", "further conditions of these cases", "conditions = { mesh = \"coarse\" }")};
+    const auto of_mesh = case_mesh_keys(usual.mesh.density);
+    tables.front().keys.insert(tables.front().keys.end(), of_mesh.begin(), of_mesh.end());
+    return tables;
 }
 
 std::vector<FileTable> results() {

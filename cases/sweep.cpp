@@ -223,6 +223,9 @@ private:
         job.over = true;
         job.run.reset();
         job.lock.reset();
+        if (options_.ended) {
+            options_.ended(job.wanted, job.outcome.error);
+        }
     }
 
     void finish(Job& job) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,6 +61,9 @@ struct SweepOptions {
     std::optional<std::string> only;  ///< this case alone, by name
     StaleCases stale = StaleCases::redo;
     std::string submission;  ///< of the Slurm job whose task this is: its own cases are not somebody else's
+    std::function<bool(const SweepCase&)> wanted;  ///< these cases alone; empty: all
+    /// Called when a case is over that was begun here: its error, empty when it is solved.
+    std::function<void(const SweepCase&, const std::string& error)> ended;
 };
 
 struct SweepOutcome {

@@ -63,16 +63,8 @@ geometry::FlowOptions flow_of(const Study& study, const Conditions& conditions) 
     flow.density = study.reference.number("density").value_or(flow.density);
     flow.kinematic_viscosity = spec.kinematic_viscosity;
     flow.half = !study.symmetry.empty();
-    const auto index_in = [](const std::vector<std::string>& names, const std::string& name) {
-        return std::find(names.begin(), names.end(), name) - names.begin();
-    };
     flow.jet_flow = conditions.number("jet_flow").value_or(0);
-    flow.mesher = static_cast<geometry::CaseMesher>(index_in(geometry::mesher_names(), spec.mesher));
-    flow.mesh_density = static_cast<geometry::MeshDensity>(index_in(geometry::density_names(), spec.density));
-    flow.cell = spec.cell;
-    flow.surface_level = spec.surface_level;
-    flow.layers = spec.layers;
-    flow.iterations = spec.iterations;
+    spec.mesh.put_into(flow);
     return flow;
 }
 
@@ -427,7 +419,7 @@ std::vector<SweepCase> wanted_cases(const Study& study, const SweepOptions& opti
     std::vector<SweepCase> wanted;
     Examiner examiner(study, progress, options.submission);
     for (auto& one : cases) {
-        if (options.only && one.name != *options.only) {
+        if ((options.only && one.name != *options.only) || (options.wanted && !options.wanted(one))) {
             continue;
         }
         examiner.examine(one);

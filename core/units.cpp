@@ -310,6 +310,8 @@ const std::vector<QuantityName>& quantity_names() {
         {"drag_force", "N", "force against the motion, positive when it slows", "drag"},
         {"side_force", "N", "lateral force, positive to starboard", "side force"},
         {"pitch_moment", "N m", "pitch moment, positive nose up", "pitch moment"},
+        {"pitch_moment_at_buoyancy", "N m", "pitch moment about the body's centre of buoyancy, positive nose up",
+         "pitch moment about the centre of buoyancy"},
         {"roll_moment", "N m", "roll moment, positive starboard down", "roll moment"},
         {"yaw_moment", "N m", "yaw moment, positive bow to starboard", "yaw moment"},
         {"jet_voltage", "V", "voltage of the jet pump", "V"},

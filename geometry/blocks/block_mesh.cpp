@@ -37,6 +37,9 @@ constexpr double friction = 0.005;
 BlockCounts counts_for(MeshDensity density) {
     BlockCounts c;
     switch (density) {
+        case MeshDensity::draft:
+            c = {{7, 7, 1.2e-3, 0}, 9, 8, 8, 17, 9, 2, 1.3e-4, 1.6e-4};
+            break;
         case MeshDensity::coarse:
             c = {{10, 9, 0.8e-3, 0}, 13, 10, 10, 22, 13, 3, 1.0e-4, 1.2e-4};
             break;
@@ -528,7 +531,7 @@ private:
 }  // namespace
 
 const std::vector<std::string>& density_names() {
-    static const std::vector<std::string> names = {"coarse", "medium", "fine"};
+    static const std::vector<std::string> names = {"draft", "coarse", "medium", "fine"};
     return names;
 }
 

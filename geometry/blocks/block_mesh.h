@@ -18,13 +18,15 @@
 
 namespace underbody::geometry {
 
-enum class MeshDensity { coarse, medium, fine };
+/// Draft is for the many first cases of a search: its loads differ from the coarse ones by up to a tenth of the
+/// resultant.
+enum class MeshDensity { draft, coarse, medium, fine };
 const std::vector<std::string>& density_names();
 std::string name_of(MeshDensity density);
 
 struct BlockMeshOptions {
     Placement placement;
-    MeshDensity density = MeshDensity::medium;  ///< of EVIE's half: about 57,000, 138,000 and 374,000 cells
+    MeshDensity density = MeshDensity::medium;  ///< of EVIE's half: about 22,000, 57,000, 138,000, 374,000 cells
     bool half = true;                           ///< only y > 0; a rolled body needs both halves
     double speed = 0.5;                         ///< m/s; with the viscosity it says how thin the first cell is
     double kinematic_viscosity = 1e-6;          ///< m^2/s

@@ -227,7 +227,7 @@ void add_body_domain(CLI::App* body, Shell& shell, BodyActions& actions) {
                      "of OpenFOAM: blocks (hexahedra, many cells in any gap; default for a SHAPE.toml) or snappy "
                      "(snappyHexMesh; default for a surface, or with --cell, --surface-level, --layers)")
         ->check(CLI::IsMember(geometry::mesher_names()));
-    command->add_option("--mesh-density", o->density, "blocks: coarse, medium or fine")
+    command->add_option("--mesh-density", o->density, "blocks: draft, coarse, medium or fine")
         ->check(CLI::IsMember(geometry::density_names()))
         ->capture_default_str();
     command->add_option("--jet-flow", o->jet, "blocks: through the nozzle of the whole body, 50mL/s")
