@@ -119,6 +119,7 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     card_->verticalHeader()->setDefaultSectionSize(21);
     card_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     card_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+    card_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
     card_->setMinimumHeight(250);
     side.addWidget(card_, 2);
     state_label_ = new QLabel;

@@ -83,6 +83,7 @@ ExplorePanel::ExplorePanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     lower->addWidget(table_);
     lower->addWidget(scatter_);
     halves->addWidget(lower);
+    halves->setSizes({260, 340});
     connect(scatter_, &PlotView::hovered, this, &Panel::remark);
     const auto axes = [this] { desk_.act({"axes", x_->currentText().toStdString(), y_->currentText().toStdString()}); };
     connect(x_, QOverload<int>::of(&QComboBox::activated), this, axes);

@@ -23,6 +23,8 @@
 #include "core/text.h"
 #include "postproc/field/field.h"
 #include "postproc/loads/body_zones.h"
+#include "postproc/loads/loads.h"
+#include "postproc/views/views.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
 
@@ -46,7 +48,80 @@ bool is_body(const postproc::Field& field, const postproc::Zone& zone, const std
 const std::vector<std::pair<const char*, const char*>> quantities = {
     {"lift_force", "lift (N)"}, {"drag_force", "drag (N)"}, {"pitch_moment", "pitch moment (N m)"}};
 
+struct DrawnDifference {
+    QImage image;
+    QString said;  ///< the caption, or why there is no picture
+};
+
+/// Each less the first, with the widest range of all where none is given.
+std::vector<DrawnDifference> differences_to(const postproc::Field& first,
+                                            const std::vector<std::shared_ptr<const postproc::Field>>& fields,
+                                            const std::string& array, postproc::ViewOptions options,
+                                            core::Progress& progress) {
+    std::vector<DrawnDifference> drawn(fields.size());
+    const auto draw = [&](std::size_t k) -> std::optional<std::pair<double, double>> {
+        try {
+            const auto view = postproc::difference_view(first, *fields[k], array, options, progress);
+            drawn[k] = {
+                QImage::fromData(reinterpret_cast<const uchar*>(view.png.data()), static_cast<int>(view.png.size())),
+                qt(view.caption)};
+            return view.range;
+        } catch (const core::InputError& error) {
+            drawn[k] = {{}, qt(error.message())};
+            return {};
+        }
+    };
+    double widest = 0;
+    std::vector<bool> there(fields.size());
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+        const auto range = draw(k);
+        there[k] = range.has_value();
+        widest = std::max(widest, range ? std::max(std::abs(range->first), std::abs(range->second)) : 0);
+    }
+    if (options.ranges.empty() && fields.size() > 1) {
+        options.ranges = {{"difference", {-widest, widest}}};
+        for (std::size_t k = 0; k < fields.size(); ++k) {
+            if (there[k]) {
+                draw(k);
+            }
+        }
+    }
+    return drawn;
+}
+
 }  // namespace
+
+/// A picture as large as its room allows, or a sentence in its place.
+class FittedPicture : public QWidget {
+public:
+    using QWidget::QWidget;
+    void show_text(const QString& text) {
+        image = {};
+        text_ = text;
+        update();
+    }
+    void show_image(const QImage& drawn) {
+        image = drawn;
+        update();
+    }
+    QImage image;
+
+protected:
+    void paintEvent(QPaintEvent*) override {
+        QPainter painter(this);
+        if (image.isNull()) {
+            painter.drawText(rect().adjusted(12, 12, -12, -12), Qt::AlignCenter | Qt::TextWordWrap, text_);
+            return;
+        }
+        painter.setRenderHint(QPainter::SmoothPixmapTransform);
+        QRect room(QPoint(0, 0), image.size().scaled(size(), Qt::KeepAspectRatio));
+        room.moveCenter(rect().center());
+        painter.drawImage(room, image);
+    }
+
+private:
+    QString text_;
+};
 
 FieldsPanel::FieldsPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     setObjectName("compare");
@@ -112,7 +187,11 @@ void FieldsPanel::build_controls(QWidget& side) {
         "edge do not take all the colours");
     edges_ = new QCheckBox("mesh &lines");
     mirror_ = new QCheckBox("&mirror half model");
-    for (auto* box : {whole_range_, edges_, mirror_}) {
+    difference_ = new QCheckBox("&difference to the first");
+    difference_->setToolTip(
+        "The cells after the first show their case less the first, seen from below, as `underbody views difference` "
+        "draws it");
+    for (auto* box : {whole_range_, edges_, mirror_, difference_}) {
         left->addWidget(box);
     }
     left->addWidget(new QLabel("Zones"));
@@ -160,6 +239,7 @@ void FieldsPanel::build_controls(QWidget& side) {
     connect(whole_range_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("whole_range", on); });
     connect(edges_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("edges", on); });
     connect(mirror_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("mirror", on); });
+    connect(difference_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("difference", on); });
     connect(zones_, &QListWidget::itemChanged, this, [this](QListWidgetItem* item) {
         const bool on = item->checkState() == Qt::Checked;
         desk_.act({"fields", "zone." + item->text().toStdString() + (on ? "=on" : "=off")});
@@ -216,6 +296,7 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
         column->setContentsMargins(0, 0, 0, 0);
         cell->title = new QLabel;
         cell->title->setTextInteractionFlags(Qt::TextSelectableByMouse);
+        cell->title->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a long name widens no window
         column->addWidget(cell->title);
         cell->scene = std::make_unique<Scene>(cell->box);
         cell->scene->widget()->setMinimumSize(120, 100);
@@ -231,6 +312,9 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
             cell->scene->share_camera(*cells_.front()->scene);
         }
         column->addWidget(cell->scene->widget(), 1);
+        cell->difference = new FittedPicture(cell->box);
+        cell->difference->hide();
+        column->addWidget(cell->difference, 1);
         cells_.push_back(std::move(cell));
     }
     const int columns = sources.size() <= 1 ? 1 : sources.size() <= 4 ? 2 : 3;
@@ -242,6 +326,7 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
         } else {
             cells_[i]->ready = false;
             cells_[i]->source = {};
+            cells_[i]->field.reset();
         }
     }
 }
@@ -281,11 +366,11 @@ void FieldsPanel::read(std::size_t index) {
                     auto field =
                         std::make_shared<const postproc::Field>(postproc::read_field(source.file, options, progress));
                     const auto prepared = Scene::prepare(field, mirror);
-                    return [this, index, source, prepared] { taken(index, source, prepared); };
+                    return [this, index, source, field, prepared] { taken(index, source, field, prepared); };
                 });
 }
 
-void FieldsPanel::taken(std::size_t index, const Source& source,
+void FieldsPanel::taken(std::size_t index, const Source& source, const std::shared_ptr<const postproc::Field>& field,
                         const std::shared_ptr<const Scene::Prepared>& prepared) {
     if (index >= cells_.size() || cells_[index]->source.id != source.id) {
         return;
@@ -293,12 +378,14 @@ void FieldsPanel::taken(std::size_t index, const Source& source,
     Cell& cell = *cells_[index];
     const bool first = first_ready() == nullptr;
     cell.scene->show(prepared, first);
+    cell.field = field;
     cell.ready = true;
+    differences_of_.clear();
     for (const auto& found : cell.scene->field()->problems) {
         Q_EMIT problem(found);
     }
-    if (first) {
-        camera_.clear();
+    if (first || session().folder.empty()) {
+        camera_.clear();  // files from outside may be of any size
     }
     recolour();
 }
@@ -325,9 +412,14 @@ void FieldsPanel::fill_controls() {
         if (!cell->ready) {
             continue;
         }
-        for (const auto& zone : cell->scene->field()->zones) {
+        const auto& field = *cell->scene->field();
+        // Where no zone looks like a body (an inlet alone, a blade without walls) all are shown.
+        const bool any = std::any_of(field.zones.begin(), field.zones.end(), [&](const auto& zone) {
+            return zone.surface && is_body(field, zone, cell->source.zones);
+        });
+        for (const auto& zone : field.zones) {
             if (zone.surface && zone.surface->GetNumberOfCells() > 0) {
-                const bool body = is_body(*cell->scene->field(), zone, cell->source.zones);
+                const bool body = !any || is_body(field, zone, cell->source.zones);
                 const auto typed = state().fields.zones.find(zone.name);
                 auto& entry = zones[zone.name];
                 entry.first = typed != state().fields.zones.end() ? typed->second : entry.first || body;
@@ -356,6 +448,7 @@ void FieldsPanel::fill_controls() {
     array_->setCurrentIndex(kept >= 0 ? kept : 0);
     whole_range_->setChecked(state().fields.whole_range);
     edges_->setChecked(state().fields.edges);
+    difference_->setChecked(state().fields.difference);
     mirror_->setEnabled(!session().study.symmetry.empty());
     mirror_->setChecked(state().fields.mirror.value_or(true) && !session().study.symmetry.empty());
     if (!range_->hasFocus()) {
@@ -380,6 +473,13 @@ void FieldsPanel::recolour() {
             seen.push_back(!items.isEmpty() && items.front()->checkState() == Qt::Checked);
         }
         scene.set_visible(seen);
+        const auto& zones = scene.field()->zones;
+        const bool surfaces = std::any_of(zones.begin(), zones.end(), [](const auto& zone) {
+            return zone.surface && zone.surface->GetNumberOfCells() > 0;
+        });
+        cells_[i]->empty = scene.bounds() ? ""
+                           : surfaces     ? "   (nothing to show: tick zones on the left)"
+                                          : "   (nothing to show: this file has no surfaces)";
         scene.mirror(mirror_->isChecked());
         scene.show_edges(edges_->isChecked());
         scene.set_ground(palette().base().color().lightness() < 128);
@@ -406,14 +506,104 @@ void FieldsPanel::recolour() {
             cell->scene->render();
         }
     }
+    show_differences();
+}
+
+void FieldsPanel::show_differences() {
+    std::vector<std::size_t> wanted;
+    std::string key;
+    const bool on = state().fields.difference && !cells_.empty() && cells_.front()->ready;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        Cell& cell = *cells_[i];
+        const bool as_difference = on && i > 0 && cell.ready;
+        cell.scene->widget()->setVisible(!as_difference);
+        cell.difference->setVisible(as_difference);
+        cell.title->setText(cell.source.title + (as_difference ? QString("  less the first") : cell.empty));
+        key += cell.source.id + "\n";
+        if (as_difference) {
+            wanted.push_back(i);
+        }
+    }
+    std::string array;
+    for (const auto& choice : wanted.empty() ? std::vector<Scene::Choice>{} : cells_.front()->scene->choices()) {
+        array = qt(choice.label) == array_->currentText() ? choice.name : array;
+    }
+    if (wanted.empty()) {
+        differences_of_.clear();
+        jobs_.cancel("differences");
+        return;
+    }
+    for (const double end : state().fields.range.value_or(std::array<double, 2>{0, 0})) {
+        key += core::format_number(end) + " ";
+    }
+    key += array;
+    if (key == differences_of_) {
+        return;
+    }
+    differences_of_ = key;
+    for (const std::size_t i : wanted) {
+        cells_[i]->difference->show_text(array.empty() ? "Choose what the difference is of: Colour by" : "…");
+    }
+    if (!array.empty()) {
+        draw_differences(wanted, array);
+    }
+}
+
+/// All in one job, so that they have one range of colours.
+void FieldsPanel::draw_differences(const std::vector<std::size_t>& cells, const std::string& array) {
+    postproc::ViewOptions options;
+    if (!session().folder.empty()) {
+        options.forward = postproc::axis_from(session().study.forward);
+        options.up = postproc::axis_from(session().study.up);
+        options.symmetry = session().study.symmetry;
+    }
+    options.zones = cells_.front()->source.zones;
+    if (const auto& range = state().fields.range) {
+        options.ranges = {{"difference", {(*range)[0], (*range)[1]}}};
+    }
+    std::vector<std::shared_ptr<const postproc::Field>> fields;
+    for (const std::size_t i : cells) {
+        fields.push_back(cells_[i]->field);
+    }
+    jobs_.start("differences", "differences of " + qt(array),
+                [this, cells, fields, first = cells_.front()->field, array, options,
+                 key = differences_of_](core::Progress& progress) {
+                    const auto drawn = differences_to(*first, fields, array, options, progress);
+                    return [this, cells, drawn, key] {
+                        for (std::size_t k = 0; k < cells.size() && key == differences_of_; ++k) {
+                            FittedPicture& place = *cells_[cells[k]]->difference;
+                            if (drawn[k].image.isNull()) {
+                                place.show_text(drawn[k].said);
+                            } else {
+                                place.show_image(drawn[k].image);
+                            }
+                            place.setToolTip(drawn[k].said);
+                        }
+                    };
+                });
+}
+
+std::size_t FieldsPanel::differences() const {
+    return static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), [](const auto& cell) {
+        return cell->difference->isVisible() && !cell->difference->image.isNull();
+    }));
 }
 
 void FieldsPanel::look_from(const std::string& camera) {
     Cell* cell = first_ready();
     if (cell != nullptr && camera != camera_) {
         camera_ = camera;
+        std::optional<std::array<double, 6>> box;  // around the bodies of all cells: they have one camera
+        for (const auto& one : cells_) {
+            const auto own = one->ready ? one->scene->bounds() : std::nullopt;
+            for (std::size_t i = 0; own && box && i < 6; i += 2) {
+                (*box)[i] = std::min((*box)[i], (*own)[i]);
+                (*box)[i + 1] = std::max((*box)[i + 1], (*own)[i + 1]);
+            }
+            box = box ? box : own;
+        }
         cell->scene->look_from(camera, session().folder.empty() ? "+x" : session().study.forward,
-                               session().folder.empty() ? "+z" : session().study.up);
+                               session().folder.empty() ? "+z" : session().study.up, box);
     }
 }
 
@@ -461,7 +651,11 @@ bool FieldsPanel::has_picture() const { return first_ready() != nullptr; }
 QImage FieldsPanel::sheet() const {
     std::vector<std::pair<QString, QImage>> pictures;
     for (const auto& cell : cells_) {
-        if (cell->ready) {
+        if (cell->difference->isVisible() && !cell->difference->image.isNull()) {
+            pictures.emplace_back(cell->title->text(),
+                                  cell->difference->image.scaled(cells_.front()->scene->widget()->size(),
+                                                                 Qt::KeepAspectRatio, Qt::SmoothTransformation));
+        } else if (cell->ready) {
             const std::string png = cell->scene->png();
             pictures.emplace_back(cell->source.title, QImage::fromData(reinterpret_cast<const uchar*>(png.data()),
                                                                        static_cast<int>(png.size())));

@@ -20,6 +20,8 @@ class QTableWidget;
 
 namespace underbody::studio {
 
+class FittedPicture;
+
 class FieldsPanel : public Panel {
     Q_OBJECT
 public:
@@ -33,6 +35,8 @@ public:
     void export_table(const std::filesystem::path& path) override;
     /// How many cells show a field that is read.
     [[nodiscard]] std::size_t drawn() const;
+    /// How many cells show their difference to the first.
+    [[nodiscard]] std::size_t differences() const;
     [[nodiscard]] QImage sheet() const;
 
 protected:
@@ -49,9 +53,12 @@ private:
         QWidget* box = nullptr;
         QLabel* title = nullptr;
         std::unique_ptr<Scene> scene;
+        FittedPicture* difference = nullptr;  ///< in place of the scene
+        std::shared_ptr<const postproc::Field> field;
         Source source;
         core::FileStamp stamp;
         bool ready = false;
+        QString empty;  ///< why nothing is seen
     };
     void build();
     void build_controls(QWidget& side);
@@ -59,11 +66,14 @@ private:
     [[nodiscard]] Source source_of(const cases::Case& one) const;
     void lay_out(const std::vector<Source>& sources);
     void read(std::size_t cell);
-    void taken(std::size_t cell, const Source& source, const std::shared_ptr<const Scene::Prepared>& prepared);
+    void taken(std::size_t cell, const Source& source, const std::shared_ptr<const postproc::Field>& field,
+               const std::shared_ptr<const Scene::Prepared>& prepared);
     void fill_controls();
     void recolour();
     void fill_loads(const std::vector<Source>& sources);
     void look_from(const std::string& camera);
+    void show_differences();
+    void draw_differences(const std::vector<std::size_t>& cells, const std::string& array);
     [[nodiscard]] Cell* first_ready() const;
 
     std::vector<std::unique_ptr<Cell>> cells_;
@@ -78,6 +88,8 @@ private:
     QCheckBox* whole_range_ = nullptr;
     QCheckBox* edges_ = nullptr;
     QCheckBox* mirror_ = nullptr;
+    QCheckBox* difference_ = nullptr;
+    std::string differences_of_;  ///< what is drawn as differences, or being drawn
     QTableWidget* loads_ = nullptr;
 };
 

@@ -310,6 +310,7 @@ void ForcePanel::redraw() {
     }
     const std::string second = view().value(2).toStdString();
     list_->setRowCount(0);
+    list_->hide();
     reach_->clear();
     try {
         if (view().value(0) == "map") {
@@ -387,6 +388,7 @@ void ForcePanel::list_equilibria(const tables::EquilibriumOptions& options) {
             list_->setItem(row, column, item);
         }
     }
+    list_->setVisible(!found.all.empty());
     list_->resizeColumnsToContents();
     list_->horizontalHeader()->setStretchLastSection(true);
 }

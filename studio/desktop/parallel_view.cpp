@@ -12,7 +12,7 @@
 namespace underbody::studio {
 
 namespace {
-constexpr int top = 44, bottom = 22, side = 60;
+constexpr int top = 60, bottom = 22, side = 60;
 }
 
 ParallelView::ParallelView(QWidget* parent) : QWidget(parent) {
@@ -109,9 +109,11 @@ void ParallelView::paintEvent(QPaintEvent*) {
         const double x = x_of(i);
         painter.setPen(QPen(palette().text().color(), 1));
         painter.drawLine(QPointF(x, top), QPointF(x, height() - bottom));
-        painter.drawText(QRectF(x - 70, 2, 140, 18), Qt::AlignCenter, axis.title);
+        const double room = axes_.size() < 2 ? 140 : std::min(140.0, x_of(1) - x_of(0) - 4);
+        painter.drawText(QRectF(x - room / 2, 2, room, 34), Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap,
+                         QString(axis.title).replace('_', ' '));
         const auto text = [&](double value) { return qt(core::format_number(axis.factor * value, 4)); };
-        painter.drawText(QRectF(x - 60, 20, 120, 18), Qt::AlignCenter, text(axis.upper));
+        painter.drawText(QRectF(x - 60, 38, 120, 18), Qt::AlignCenter, text(axis.upper));
         painter.drawText(QRectF(x - 60, height() - bottom + 2, 120, 18), Qt::AlignCenter, text(axis.lower));
         std::array<double, 2> range{};
         if (pressed_ == static_cast<int>(i)) {

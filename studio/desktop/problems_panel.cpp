@@ -9,8 +9,20 @@
 #include <QStyle>
 #include <QTime>
 #include <QToolButton>
+#include <algorithm>
+#include <filesystem>
 
 namespace underbody::studio {
+
+namespace {
+
+/// Tables of a study's model stand in a folder of their own each time that it is read.
+bool same_place(const QString& a, const QString& b) {
+    const QString temporary = QString::fromStdString(std::filesystem::temp_directory_path().string()) + "/";
+    return a == b || (a.startsWith(temporary) && b.startsWith(temporary) && a.section('/', -1) == b.section('/', -1));
+}
+
+}  // namespace
 
 ProblemList::ProblemList(QWidget* parent) : QTreeWidget(parent) {
     setObjectName("problems");
@@ -39,6 +51,16 @@ ProblemList::ProblemList(QWidget* parent) : QTreeWidget(parent) {
 
 void ProblemList::add(const core::Problem& problem, const QString& hint) {
     using Severity = core::Problem::Severity;
+    // What is found again each time something is drawn stands there once, with the time of the last.
+    const QString place = QString::fromStdString(problem.place.text());
+    for (int i = topLevelItemCount() - 1; i >= std::max(0, topLevelItemCount() - 200); --i) {
+        QTreeWidgetItem* known = topLevelItem(i);
+        if (problem.severity != Severity::note && same_place(known->text(2), place) &&
+            known->text(1) == QString::fromStdString(problem.message)) {
+            known->setText(0, QTime::currentTime().toString("HH:mm:ss"));
+            return;
+        }
+    }
     constexpr int most = 2000;
     while (topLevelItemCount() >= most) {
         delete takeTopLevelItem(0);
@@ -50,7 +72,7 @@ void ProblemList::add(const core::Problem& problem, const QString& hint) {
     item->setIcon(0, style()->standardIcon(icon));
     item->setText(0, QTime::currentTime().toString("HH:mm:ss"));
     item->setText(1, QString::fromStdString(problem.message));
-    item->setText(2, QString::fromStdString(problem.place.text()));
+    item->setText(2, place);
     item->setText(3, hint);
     for (int column = 1; column < 4; ++column) {
         item->setToolTip(column, item->text(column));

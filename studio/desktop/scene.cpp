@@ -420,7 +420,10 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
     } else {
         p.colours->SetVectorModeToMagnitude();
     }
-    p.bar->SetTitle(axis_title(choice.label, choice.unit).c_str());
+    // In a small view the full title would be cut: the name stands beside the views.
+    const bool small = p.widget->width() < 520 || p.widget->height() < 260;
+    p.bar->SetTitle((small ? pretty_unit(choice.unit) : axis_title(choice.label, choice.unit)).c_str());
+    p.bar->SetNumberOfLabels(small ? 3 : 6);
     p.bar->SetVisibility(any);
 }
 
@@ -454,7 +457,14 @@ void Scene::set_ground(bool dark) {
     }
 }
 
-void Scene::look_from(const std::string& view, const std::string& forward, const std::string& up) {
+std::optional<std::array<double, 6>> Scene::bounds() const {
+    std::array<double, 6> box{};
+    parts_->renderer->ComputeVisiblePropBounds(box.data());
+    return box[0] <= box[1] ? std::optional(box) : std::nullopt;
+}
+
+void Scene::look_from(const std::string& view, const std::string& forward, const std::string& up,
+                      const std::optional<std::array<double, 6>>& box) {
     const auto f = direction(forward, {1, 0, 0});
     const auto u = direction(up, {0, 0, 1});
     // Starboard of someone who looks forward: f x u.
@@ -481,7 +491,11 @@ void Scene::look_from(const std::string& view, const std::string& forward, const
     camera->SetPosition(from[0], from[1], from[2]);
     camera->SetViewUp(top[0], top[1], top[2]);
     camera->SetParallelProjection(view != "iso");
-    parts_->renderer->ResetCamera();
+    if (box) {
+        parts_->renderer->ResetCamera(box->data());
+    } else {
+        parts_->renderer->ResetCamera();
+    }
     camera->Zoom(view == "iso" ? 1.2 : 1.15);
     camera->SetWindowCenter(0.1, 0);  // room for the colour bar on the right
 }

@@ -65,7 +65,10 @@ public:
     /// What is seen of the body of a shape or file: the surfaces have no arrays.
     [[nodiscard]] bool has_arrays() const { return !choices().empty(); }
     /// "bottom", "top", "side", "front", "iso" in the frame of the file.
-    void look_from(const std::string& view, const std::string& forward, const std::string& up);
+    void look_from(const std::string& view, const std::string& forward, const std::string& up,
+                   const std::optional<std::array<double, 6>>& box = {});
+    /// Of what is drawn (x from, to, y, z), empty when that is nothing.
+    [[nodiscard]] std::optional<std::array<double, 6>> bounds() const;
 
     /// Called with the value under the mouse at a click.
     std::function<void(const QString&)> on_pick;

@@ -241,7 +241,7 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
     header()->setStretchLastSection(true);
     header()->resizeSection(StudyModel::name, 172);
     for (int column = StudyModel::gap; column < StudyModel::column_count; ++column) {
-        header()->resizeSection(column, column < StudyModel::lift ? 42 : 50);
+        header()->resizeSection(column, column < StudyModel::lift ? 41 : 56);
     }
     connect(selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { take_selection(); });
     connect(&desk, &Desk::session_changed, this, &StudyTree::read_again);

@@ -118,6 +118,28 @@ TEST(Desktop, ShowsAStudyInEveryWorkspace) {
     EXPECT_GT(difference(picture(shots / "stability.png"), picture(shots / "stability-used.png")), 0.01) << "a motion";
 }
 
+// J4: the second case less the first, in place of its field.
+TEST(Desktop, ComparesByDifferences) {
+    if (!has_xvfb()) {
+        GTEST_SKIP() << "skipped: Xvfb is not installed";
+    }
+    const core::TemporaryFolder folder;
+    test::make_few_gaps(folder.path() / "study");
+    const std::string log = "open " + (folder.path() / "study").string() +
+                            "\nselect case/ellipse-h5-p0 case/ellipse-h2-p0\nfields camera=bottom\n";
+    core::write_file(folder.path() / "fields.log", log);
+    core::write_file(folder.path() / "differences.log", log + "fields difference=on\n");
+    for (const char* name : {"fields", "differences"}) {
+        const auto run = run_studio({"--replay", (folder.path() / (std::string(name) + ".log")).string(),
+                                     "--screenshot", (folder.path() / name).string()});
+        ASSERT_EQ(run.exit_code, 0) << run.errors;
+    }
+    const QImage fields = picture(folder.path() / "fields" / "compare.png");
+    const QImage differences = picture(folder.path() / "differences" / "compare.png");
+    EXPECT_GT(difference(fields, differences), 0.03);
+    EXPECT_GT(colours(differences), 200U);
+}
+
 TEST(Desktop, ReplaysALogWithoutAWindow) {
     const core::TemporaryFolder folder;
     test::make_few_gaps(folder.path() / "study");

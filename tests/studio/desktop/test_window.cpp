@@ -318,6 +318,17 @@ TEST_F(Window, WhatACancelledRunHasStoredIsShown) {
     EXPECT_GT(window_->desk().session().results.loads.rows(), 0U);
 }
 
+TEST_F(Window, AProblemThatIsFoundAgainStandsThereOnce) {
+    auto* list = window_->findChild<ProblemList*>();
+    const int before = list->topLevelItemCount();
+    const core::Problem problem{core::Problem::Severity::warning, "the turn is not supported", {"a.csv", {}, {}, {}}};
+    list->add(problem);
+    list->add(problem);
+    EXPECT_EQ(list->topLevelItemCount(), before + 1);
+    list->add({core::Problem::Severity::warning, "the turn is not supported", {"b.csv", {}, {}, {}}});
+    EXPECT_EQ(list->topLevelItemCount(), before + 2) << "in another file it is another one";
+}
+
 TEST_F(Window, AnErrorGoesWhenSomethingSucceeds) {
     open(computed_study());
     act("workspace nowhere");
