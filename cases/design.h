@@ -2,9 +2,11 @@
 // decided stands in files under [design] folder, so that a search that was stopped goes on, and runs of any other
 // solver can be put in:
 //
-//     plan.csv      one row a design: name, the varied numbers, fidelity, why it was taken, "planned" or why it cannot
-//     be shapes/       NAME.toml of each runs/FIDELITY/  the cases of OpenFOAM results.csv   one row a run: design,
-//     varied numbers, conditions, fidelity, loads with NAME_sigma, state
+// - plan.csv: one row a design, with its name, the varied numbers, fidelity, why it was taken, "planned" or why it
+//   cannot be.
+// - shapes/NAME.toml: the shape of each.
+// - runs/FIDELITY/: the cases of OpenFOAM.
+// - results.csv: one row a run, with design, varied numbers, conditions, fidelity, loads with NAME_sigma, state.
 #pragma once
 
 #include <map>

@@ -235,7 +235,7 @@ private:
         if (!unknown.empty()) {
             throw core::InputError(
                 "name",
-                "nobody knows which quantity " + joined(unknown) +
+                "it is not known which quantity " + joined(unknown) +
                     (unknown.size() == 1 ? " is, and it varies" : " are, and they vary") + " from point to point",
                 {file_.string(), {}, {}, {}},
                 "say it for each: parameters = { P1 = \"gap\", P2 = \"\" }, where nothing leaves a parameter out");

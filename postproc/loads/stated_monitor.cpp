@@ -130,7 +130,7 @@ double reference_of(const MonitorSource& source, const Monitor& monitor, const L
                                 : moment && !length ? "length"
                                                     : "";
     if (!missing.empty()) {
-        throw InputError("missing", "coefficients, and nobody says the reference " + missing + " that they refer to",
+        throw InputError("missing", "coefficients, and the reference " + missing + " that they refer to is not given",
                          {monitor.file, {}, {}, {}},
                          missing == "density" ? "give it: option 'density'"
                                               : "state the force that 1 stands for: \"" + source.quantity + " [2.4 " +

@@ -118,7 +118,7 @@ struct Inputs {
     }
 };
 
-void read_inputs(const std::string& path, const std::vector<dynamics::Jet>& jets, Inputs& inputs) {
+void read_inputs(const std::string& path, const std::vector<dynamics::Jet>& jets, Inputs& inputs, Shell& shell) {
     const core::Table table = core::read_csv(path);
     const std::vector<double>& time = table.numbers("time");
     for (std::size_t i = 1; i < time.size(); ++i) {
@@ -128,6 +128,7 @@ void read_inputs(const std::string& path, const std::vector<dynamics::Jet>& jets
     }
     inputs.signals.time = inputs.jet_time = time;
     inputs.thrust.resize(jets.size());
+    std::string passed_over;
     for (const core::Column& column : table.columns()) {
         Channel channel{};
         if (column.is_text() || column.name == "time") {
@@ -139,6 +140,11 @@ void read_inputs(const std::string& path, const std::vector<dynamics::Jet>& jets
             }
             continue;
         }
+        const bool of_a_jet =
+            std::any_of(jets.begin(), jets.end(), [&](const auto& jet) { return jet.name == column.name; });
+        if (!of_a_jet) {
+            passed_over += (passed_over.empty() ? "'" : ", '") + column.name + "'";
+        }
         for (std::size_t k = 0; k < jets.size(); ++k) {
             if (jets[k].name == column.name) {
                 for (std::size_t i = 0; i < time.size(); ++i) {
@@ -149,6 +155,11 @@ void read_inputs(const std::string& path, const std::vector<dynamics::Jet>& jets
                 inputs.thrust[k] = column.numbers;
             }
         }
+    }
+    if (!passed_over.empty()) {
+        shell.show({{core::Problem::Severity::warning,
+                     "columns that are no input of the model were passed over: " + passed_over,
+                     {path, {}, {}, {}}}});
     }
     if (inputs.signals.signals.empty() && !inputs.drives_jets()) {
         throw core::InputError("missing", "there is no input in the table", {path, {}, {}, {}},
@@ -212,7 +223,7 @@ Job job_of(const SimulateArguments& a) {
     Job job{model_with(a.model, a.set), {}, {}, {}, {}, {}};
     job.inputs.thrust.resize(job.model.jets.size());
     if (!a.inputs.empty()) {
-        read_inputs(a.inputs, job.model.jets, job.inputs);
+        read_inputs(a.inputs, job.model.jets, job.inputs, shell);
     }
     job.start = start_of(a.from, job.inputs.signals.held);
     for (const core::NamedValue& value :

@@ -109,6 +109,13 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
         shell.print(std::to_string(names.size()) + " of " + std::to_string(results.loads.rows()) +
                     " solutions have not settled, the first '" + names.front() + "'");
     }
+    for (const auto& check : results.verifications) {
+        if (check.failed > 0) {
+            shell.print("check '" + check.name + "': " + std::to_string(check.failed) + " of " +
+                        std::to_string(check.values) + " values lie beyond its tolerance, the worst " +
+                        core::format_number(100 * check.worst, 3) + " % (" + check.worst_case + ")");
+        }
+    }
     shell.print(std::to_string(results.computed) + " results computed, " + std::to_string(results.reused) +
                 " unchanged, " + std::to_string(results.failed) + " failed");
     return results.failed == 0 ? done : wrong_input;

@@ -294,7 +294,18 @@ TEST(Figures, LongTitlesAndManyNamesWrapInsteadOfLeaving) {
         figure.curves.push_back(
             {"curve number " + std::to_string(k), {1, 20}, {0.01 * static_cast<double>(k), 0}, palette(k)});
     }
-    picture("crowded", figure, {480, 420, 2});
+    const QImage image = picture("crowded", figure, {480, 420, 2});
+    const QRgb paper = image.pixel(0, 0);
+    for (int x = 0; x < image.width(); ++x) {
+        for (const int y : {0, 1, image.height() - 2, image.height() - 1}) {
+            ASSERT_EQ(image.pixel(x, y), paper) << "ink at the upper or lower rim, x " << x;
+        }
+    }
+    for (int y = 0; y < image.height(); ++y) {
+        for (const int x : {0, 1, image.width() - 2, image.width() - 1}) {
+            ASSERT_EQ(image.pixel(x, y), paper) << "ink at the left or right rim, y " << y;
+        }
+    }
 }
 
 TEST(Figures, NothingToDrawAndNonsenseAreDrawnWithoutComplaint) {
