@@ -342,8 +342,9 @@ TEST_F(StatedLoads, OfCoefficientsBecomeForcesByTheReferenceValuesOfTheSolver) {
     const auto of = [&](const std::string& what, const std::string& column) {
         return stated_by_monitor(monitor_source(what + "=" + table.string() + ":" + column), result);
     };
-    EXPECT_THAT([&] { of("lift_coefficient", "Cl"); },
-                testing::ThrowsMessage<core::InputError>(HasSubstr("the reference density that they refer to is not given")));
+    EXPECT_THAT(
+        [&] { of("lift_coefficient", "Cl"); },
+        testing::ThrowsMessage<core::InputError>(HasSubstr("the reference density that they refer to is not given")));
     result.solver_references.density = 1000;
     EXPECT_NEAR(of("lift_coefficient", "Cl").value, -1, 1e-12);
     core::Problems notes;
@@ -356,8 +357,8 @@ TEST_F(StatedLoads, OfCoefficientsBecomeForcesByTheReferenceValuesOfTheSolver) {
                                  "(\"Iteration\" \"cl\")\n1 -0.0004\n2 -0.0004\n3 -0.0004\n4 -0.0004\n5 -0.0004\n6 "
                                  "-0.0004\n7 -0.0004\n8 -0.0004\n");
     EXPECT_THAT([&] { stated_by_monitor(monitor_source("lift_coefficient=" + monitor.string()), result); },
-                testing::ThrowsMessage<core::InputError>(testing::AllOf(HasSubstr("the reference speed"),
-                                                                        HasSubstr("lift_force [2.4 N]=FILE"))));
+                testing::ThrowsMessage<core::InputError>(
+                    testing::AllOf(HasSubstr("the reference speed"), HasSubstr("lift_force [2.4 N]=FILE"))));
     result.solver_references = {1000, 1, 5, 1};
     EXPECT_NEAR(stated_by_monitor(monitor_source("lift_coefficient=" + monitor.string()), result).value, -1, 1e-12);
     EXPECT_THROW(monitor_source("lift_coefficient [N]=cl.out"), core::UsageError);
