@@ -219,7 +219,7 @@ struct Job {
     }
 };
 
-Job job_of(const SimulateArguments& a) {
+Job job_of(const SimulateArguments& a, Shell& shell) {
     Job job{model_with(a.model, a.set), {}, {}, {}, {}, {}};
     job.inputs.thrust.resize(job.model.jets.size());
     if (!a.inputs.empty()) {
@@ -386,7 +386,7 @@ int run_simulate(const SimulateArguments& a, Shell& shell) {
     for (const std::string& file : {a.out, a.plot}) {
         Shell::will_write(file);
     }
-    Job job = job_of(a);
+    Job job = job_of(a, shell);
     const std::string motion = motion_of(a, job);
     const bool in_heave = motion == "heave" || motion == "heave-pitch";
     if (in_heave && (job.hold || !a.thrust.empty() || job.inputs.drives_jets())) {
