@@ -13,6 +13,7 @@ constexpr std::size_t most_restarts = 3;
 constexpr std::size_t kick_steps = 15;   ///< in which a lost input shows
 constexpr std::size_t kick_settle = 20;  ///< not judged after one that did
 constexpr double kick_shows = 2.5;       ///< deviations of the sum of innovations since
+constexpr double longest_bridge = 3.5;   ///< usual steps whose input was lost too: the state is found anew as well
 constexpr double silence = 1;            ///< s without a reading: the state is found anew
 constexpr double gate = 4.5;             ///< beyond it one reading is wild ...
 constexpr std::size_t most_wild = 4;     ///< ... and so many in a row are no accident
@@ -105,7 +106,8 @@ WatchInnovation WatchResiduals::gap_innovation(const WatchStep& step) {
 }
 
 std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep& step) {
-    if (!time_ || step.time - *time_ > silence) {
+    const bool lost = step.unknown_input > 0 && step.unknown_for > longest_bridge * usual_step_;
+    if (!time_ || lost || step.time - *time_ > silence) {
         if (!std::isfinite(step.gap)) {
             return {};
         }
