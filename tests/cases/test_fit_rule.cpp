@@ -2,6 +2,7 @@
 // force.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cases/region_model.h"
@@ -118,7 +119,9 @@ TEST_F(FitRule, AModelAtAnotherSpeedSaysThatItsForceIsScaled) {
                      "[vehicle]\nmass = \"2.2 kg\"\nnet_weight = \"0.18 N\"\n[conditions]\nspeed = \"0.6 m/s\"\n");
     const dynamics::Model model = region_model(study, region, results);
     ASSERT_FALSE(model.remarks.empty());
-    EXPECT_NE(model.remarks.back().message.find("(0.6/0.5)^2"), std::string::npos) << model.remarks.back().message;
+    EXPECT_TRUE(std::any_of(model.remarks.begin(), model.remarks.end(), [](const core::Problem& remark) {
+        return remark.message.find("(0.6/0.5)^2") != std::string::npos;
+    }));
     ASSERT_EQ(model.forces.at(0).scales.size(), 1U);
     study.tables[0].speed_exponent = 0;
     EXPECT_TRUE(region_model(study, region, results).forces.at(0).scales.empty());

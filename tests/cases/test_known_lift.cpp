@@ -19,6 +19,8 @@ symmetry = "y"
 [[body]]
 name = "evie"
 shape = "evie.toml"
+[[case]]
+files = "{variant}-h{gap:mm}-p{pitch:deg}.csv"
 [[table]]
 name = "lift"
 quantity = "lift_force"
@@ -70,6 +72,7 @@ protected:
     KnownLiftOfShapes() {
         core::write_file(folder_.path() / "study.toml", study_toml);
         core::write_file(folder_.path() / "evie.toml", shape_toml);
+        core::write_file(folder_.path() / "evie-h5-p0.csv", "not read here");
         shape_ = geometry::read_shape(folder_.path() / "evie.toml");
         shapes_ = {{"evie", folder_.path() / "evie.toml", shape_}};
     }

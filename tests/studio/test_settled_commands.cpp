@@ -128,7 +128,7 @@ TEST_F(SettledCommands, TheErrorOfAMeanAndThatOfTheMeshBothReachTheTable) {
                              cube_field(0.003, lift / 1e-3));
         }
     }
-    const std::vector<std::string> mean = {"loads", "w-c{cells}-t{time:s}.csv", "--mean", "--out"};
+    const std::vector<std::string> mean = {"loads", "w-c{cells:1}-t{time:s}.csv", "--mean", "--out"};
     const auto with = [&](const std::string& file, const std::vector<std::string>& more) {
         auto words = mean;
         words.push_back(file);
@@ -145,7 +145,7 @@ TEST_F(SettledCommands, TheErrorOfAMeanAndThatOfTheMeshBothReachTheTable) {
     const double in_time = alone.numbers("lift_force_sigma")[1], sigma = both.numbers("lift_force_sigma")[0];
     EXPECT_GT(sigma, 1.2 * in_time);
     const auto json = nlohmann::json::parse(
-        run({"--json", "loads", "w-c{cells}-t{time:s}.csv", "--mean", "--mesh-study", "cells"}).output);
+        run({"--json", "loads", "w-c{cells:1}-t{time:s}.csv", "--mean", "--mesh-study", "cells"}).output);
     const auto& one = json.at("files").at(0);
     EXPECT_NEAR(one.at("sigma").at("lift_force").get<double>(), sigma, 1e-6 * sigma);
     const double mesh = one.at("mesh_uncertainty").at("lift_force").at("standard_uncertainty").get<double>();
