@@ -146,7 +146,7 @@ TEST_F(SettledCommands, TheErrorOfAMeanAndThatOfTheMeshBothReachTheTable) {
     EXPECT_GT(sigma, 1.2 * in_time);
     const auto json = nlohmann::json::parse(
         run({"--json", "loads", "w-c{cells:1}-t{time:s}.csv", "--mean", "--mesh-study", "cells"}).output);
-    const auto& one = json.at("files").at(0);
+    const auto& one = json.contains("files") ? json.at("files").at(0) : json;  // one row stands alone
     EXPECT_NEAR(one.at("sigma").at("lift_force").get<double>(), sigma, 1e-6 * sigma);
     const double mesh = one.at("mesh_uncertainty").at("lift_force").at("standard_uncertainty").get<double>();
     EXPECT_NEAR(std::hypot(mesh, in_time), sigma, 1e-3 * sigma);

@@ -37,19 +37,16 @@ BlockErrors StaticLoop::held_out_errors(const std::vector<dynamics::EffectUse>& 
     return errors;
 }
 
-BlockErrors StaticLoop::unseen_errors(const FittedHypothesis* one) const {
+BlockErrors StaticLoop::unseen_errors(const std::vector<dynamics::EffectUse>& whole, const FitOn& fit_on) const {
     constexpr std::size_t folds = 4;
-    BlockErrors errors = held_out_errors(one != nullptr ? one->hypothesis.with(one->fit.parameters)
-                                                        : std::vector<dynamics::EffectUse>{});
+    BlockErrors errors = held_out_errors(whole);
     const std::size_t first = errors.blocks.size();
     errors.blocks.resize(first + experiment_.set_points());
     for (std::size_t fold = 0; fold < folds; ++fold) {
         const auto left_out = [&](std::size_t i) { return experiment_.observations()[i].set_point % folds == fold; };
         std::vector<std::size_t> inside;
         std::remove_copy_if(train_.begin(), train_.end(), std::back_inserter(inside), left_out);
-        const std::vector<dynamics::EffectUse> uses =
-            one != nullptr ? one->hypothesis.with(experiment_.fit(one->hypothesis, inside).fit.parameters)
-                           : std::vector<dynamics::EffectUse>{};
+        const std::vector<dynamics::EffectUse> uses = fit_on(inside);
         for (const std::size_t i : train_) {
             const Observation& seen = experiment_.observations()[i];
             if (left_out(i)) {
@@ -59,6 +56,16 @@ BlockErrors StaticLoop::unseen_errors(const FittedHypothesis* one) const {
         }
     }
     return errors;
+}
+
+BlockErrors StaticLoop::unseen_errors(const FittedHypothesis* one) const {
+    using Uses = std::vector<dynamics::EffectUse>;
+    return unseen_errors(one != nullptr ? one->hypothesis.with(one->fit.parameters) : Uses{},
+                         [&](const std::vector<std::size_t>& inside) {
+                             return one != nullptr
+                                        ? one->hypothesis.with(experiment_.fit(one->hypothesis, inside).fit.parameters)
+                                        : Uses{};
+                         });
 }
 
 /// A quarter of the set points alone misses effects of the size of the noise.
@@ -78,14 +85,23 @@ bool StaticLoop::rest_is_noise(const BlockErrors& errors) const {
            chi_squared_tail(errors.sum_of_squares(), static_cast<double>(errors.count())) > calibration_.rest_chance;
 }
 
-bool StaticLoop::correct(const BlockErrors& before) {
+bool StaticLoop::correct(const FittedHypothesis* before) {
     const bool over_time = std::find(whole_.variables.begin(), whole_.variables.end(),
                                      dynamics::channel_name(Channel::time)) != whole_.variables.end();
     const std::vector<dynamics::EffectUse> kept = uses_;
     uses_.clear();
     if (!over_time && !whole_.variables.empty()) {
-        make_correction();
-        if (!uses_.empty() && paired_fall(before, held_out_errors(uses_), calibration_.fall_tail).falls()) {
+        const std::vector<std::size_t> quantities = quantities_to_correct();
+        uses_ = correction_on(train_, quantities);
+        const PairedFall held_out =
+            paired_fall(held_out_errors(before != nullptr ? before->hypothesis.with(before->fit.parameters)
+                                                          : std::vector<dynamics::EffectUse>{}),
+                        held_out_errors(uses_), calibration_.fall_tail);
+        const auto fit_on = [&](const std::vector<std::size_t>& inside) { return correction_on(inside, quantities); };
+        if (!uses_.empty() &&
+            (held_out.falls() ||
+             (held_out.mean > 0 &&
+              paired_fall(unseen_errors(before), unseen_errors(uses_, fit_on), calibration_.fall_tail).falls()))) {
             return true;
         }
     }
@@ -95,7 +111,6 @@ bool StaticLoop::correct(const BlockErrors& before) {
 
 /// A name needs a held-out error that falls, and a name and "none" a rest that is noise.
 void StaticLoop::guard() {
-    const BlockErrors declared = held_out_errors({});
     uses_.clear();
     if (result_.verdict == "effect") {
         const FittedHypothesis& chosen = fitted_[attribution_.chosen];
@@ -111,17 +126,17 @@ void StaticLoop::guard() {
                      " would explain the fitted readings better, but the held-out error does not fall with it beyond "
                      "its interval: it is not named",
                  {}});
-        } else if (!rest_is_noise(named) && correct(named)) {
+        } else if (!rest_is_noise(named) && correct(&chosen)) {
             result_.verdict = "unknown";
             give_to_unknown(attribution_, 0.8);
         }
-    } else if (result_.verdict == "unknown" && !correct(declared)) {
+    } else if (result_.verdict == "unknown" && !correct(nullptr)) {
         cap_probabilities(attribution_, 0.5);
     }
     result_.rest.is_noise = rest_is_noise(held_out_errors(uses_));
     if (result_.verdict == "none" && !result_.rest.is_noise) {
         result_.verdict = "unknown";
-        rule_out_none(attribution_, correct(declared) ? 0.8 : 0.5);
+        rule_out_none(attribution_, correct(nullptr) ? 0.8 : 0.5);
         result_.rest.is_noise = rest_is_noise(held_out_errors(uses_));
     }
     rest_in_noise_ = std::sqrt(std::max(0.0, std::pow(held_out_errors(uses_).rmse(), 2) - 1));

@@ -1,6 +1,7 @@
 // The loop for forces at set points: from the readings to a verdict, the error before and after, and what to do next.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,7 +55,11 @@ private:
     /// two effects: they bend into a law that neither has.
     [[nodiscard]] bool cancels(const FittedHypothesis& pair) const;
     void decide();
-    void make_correction();
+    /// Quantities in which structure was seen.
+    [[nodiscard]] std::vector<std::size_t> quantities_to_correct() const;
+    /// Smooth corrections of these quantities over the variables of whole_, fitted to the chosen readings.
+    [[nodiscard]] std::vector<dynamics::EffectUse> correction_on(const std::vector<std::size_t>& chosen,
+                                                                 const std::vector<std::size_t>& quantities) const;
     /// Whether the verdict stands when each set point counts with its weight.
     [[nodiscard]] bool same_verdict(const std::vector<double>& weight) const;
     [[nodiscard]] double stability() const;
@@ -64,14 +69,18 @@ private:
     [[nodiscard]] std::vector<std::size_t> held_out_readings() const;
     /// In units of the noise, by set point, all measured quantities together.
     [[nodiscard]] BlockErrors held_out_errors(const std::vector<dynamics::EffectUse>& uses) const;
-    /// The same of one explanation (nullptr: the model as declared), then that of the other set points, each with the
-    /// numbers that the rest of them give.
+    /// The same of what is in the model (`whole`), then that of the other set points, each with what a fit to the rest
+    /// of them gives.
+    using FitOn = std::function<std::vector<dynamics::EffectUse>(const std::vector<std::size_t>& chosen)>;
+    [[nodiscard]] BlockErrors unseen_errors(const std::vector<dynamics::EffectUse>& whole, const FitOn& fit_on) const;
+    /// Of one explanation; nullptr: the model as declared.
     [[nodiscard]] BlockErrors unseen_errors(const FittedHypothesis* one) const;
     /// Whether the error of set points that nothing was fitted to falls from one explanation to another.
     [[nodiscard]] bool falls(const FittedHypothesis* before, const FittedHypothesis& after) const;
     [[nodiscard]] bool rest_is_noise(const BlockErrors& errors) const;
-    /// Puts a smooth correction in the place of uses_ where the held-out error falls with it; false: leaves them.
-    bool correct(const BlockErrors& before);
+    /// Puts a smooth correction in the place of uses_ where the error of set points that it was not fitted to falls
+    /// with it from that of `before` (nullptr: the model as declared); false: leaves them.
+    bool correct(const FittedHypothesis* before);
     void guard();
 
     // static_null_simulation.cpp

@@ -153,7 +153,23 @@ bool StaticLoop::cancels(const FittedHypothesis& pair) const {
     return parts > most * size_of(uses);
 }
 
-void StaticLoop::make_correction() {
+std::vector<std::size_t> StaticLoop::quantities_to_correct() const {
+    std::vector<std::size_t> quantities;
+    for (std::size_t q = 0; q < experiment_.quantities().size(); ++q) {
+        std::vector<double> own = null_residuals_;
+        for (std::size_t i = 0; i < train_.size(); ++i) {
+            own[i] = experiment_.observations()[train_[i]].quantity == q ? own[i] : 0;
+        }
+        if (structure_->best(own).p <=
+            0.01) {  // in the others a correction would only carry their noise into the model
+            quantities.push_back(q);
+        }
+    }
+    return quantities;
+}
+
+std::vector<dynamics::EffectUse> StaticLoop::correction_on(const std::vector<std::size_t>& chosen,
+                                                           const std::vector<std::size_t>& quantities) const {
     std::vector<Channel> variables;
     for (const std::string& name : whole_.variables) {
         Channel channel{};
@@ -162,20 +178,15 @@ void StaticLoop::make_correction() {
         }
     }
     std::vector<double> residuals;
-    for (const std::size_t i : train_) {
+    for (const std::size_t i : chosen) {
         residuals.push_back(experiment_.observations()[i].value -
                             experiment_.predict(experiment_.observations()[i], {}));
     }
-    for (std::size_t q = 0; q < experiment_.quantities().size(); ++q) {
-        std::vector<double> own = null_residuals_;
-        for (std::size_t i = 0; i < train_.size(); ++i) {
-            own[i] = experiment_.observations()[train_[i]].quantity == q ? own[i] : 0;
-        }
-        if (structure_->best(own).p > 0.01) {
-            continue;  // nothing was seen in this quantity: a correction would only carry its noise into the model
-        }
-        uses_.push_back(smooth_correction(experiment_, train_, variables, q, residuals));
+    std::vector<dynamics::EffectUse> uses;
+    for (const std::size_t q : quantities) {
+        uses.push_back(smooth_correction(experiment_, chosen, variables, q, residuals));
     }
+    return uses;
 }
 
 void StaticLoop::decide() {
