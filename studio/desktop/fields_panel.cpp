@@ -296,6 +296,7 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
         column->setContentsMargins(0, 0, 0, 0);
         cell->title = new QLabel;
         cell->title->setTextInteractionFlags(Qt::TextSelectableByMouse);
+        cell->title->setWordWrap(true);
         cell->title->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a long name widens no window
         column->addWidget(cell->title);
         cell->scene = std::make_unique<Scene>(cell->box);

@@ -100,6 +100,23 @@ void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
     plot_->replot(QCustomPlot::rpQueuedReplot);
 }
 
+namespace {
+
+/// Plots wrap no text: a sentence is cut into lines that fit a small one.
+QString in_lines(const QString& text) {
+    constexpr int longest = 44;
+    QString all;
+    int used = 0;
+    for (const QString& word : text.split(' ')) {
+        const bool next_line = used > 0 && used + 1 + word.size() > longest;
+        all += used == 0 ? word : (next_line ? '\n' : ' ') + word;
+        used = next_line ? word.size() : used + (used == 0 ? 0 : 1) + word.size();
+    }
+    return all;
+}
+
+}  // namespace
+
 void PlotView::show_text(const QString& text) {
     core::Figure empty;
     draw(empty, *plot_);
@@ -112,7 +129,8 @@ void PlotView::show_text(const QString& text) {
     auto* label = new QCPItemText(plot_);
     label->position->setType(QCPItemPosition::ptAxisRectRatio);
     label->position->setCoords(0.5, 0.5);
-    label->setText(text);
+    label->setTextAlignment(Qt::AlignCenter);
+    label->setText(in_lines(text));
     label->setColor(palette().color(QPalette::PlaceholderText));
     plot_->replot(QCustomPlot::rpQueuedReplot);
 }
