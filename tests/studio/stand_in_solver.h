@@ -13,8 +13,11 @@ inline void write_program(const std::filesystem::path& file, const std::string& 
     std::filesystem::permissions(file, std::filesystem::perms::owner_all);
 }
 
-/// $HOOK: a file of shell code that the solver reads at every iteration ($i).
-inline const char* const fake_solver = R"sh(end=$(sed -n 's/^endTime \([0-9]*\);.*/\1/p' system/controlDict)
+/// Each case holds a file `meshed` of one line, and a further one for each time that a mesh is made again on which a
+/// solver had begun (a mesh that was cut while the mesher ran has to be made again). $HOOK: a file of shell code that
+/// the solver reads at every iteration ($i).
+inline const char* const fake_solver = R"sh(touch whole
+end=$(sed -n 's/^endTime \([0-9]*\);.*/\1/p' system/controlDict)
 every=$(sed -n 's/^writeInterval \([0-9]*\);.*/\1/p' system/controlDict)
 from=0
 for d in [1-9]*; do if [ -e "$d/U" ] && [ "$d" -gt "$from" ]; then from=$d; fi; done
@@ -48,7 +51,7 @@ inline void write_stand_in_solver(const std::filesystem::path& folder) {
                   "mkdir -p constant/polyMesh\n"
                   "printf 'FoamFile\\n{\\n    class labelList;\\n    note \"nPoints:20  nCells:4  nFaces:21  "
                   "nInternalFaces:3\";\\n}\\n' > constant/polyMesh/owner\n"
-                  "echo meshed >> meshed");
+                  "if [ -e whole ]; then echo again >> meshed; else echo meshed > meshed; fi");
     write_program(folder / "surfaceFeatureExtract", "true");
     write_program(folder / "snappyHexMesh", "true");
     write_program(folder / "checkMesh", "echo 'Mesh OK.'; echo; echo End");
