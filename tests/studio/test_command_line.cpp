@@ -357,7 +357,7 @@ TEST(CommandLine, ALargeMapEndsOnCtrlCWhereverItIs) {
                                           "--grid", "6000x6000",  "--escape", "1m"};
     const auto whole = interrupted(map, folder.path(), 1e9, true);
     ASSERT_EQ(whole.exit_code, 0);
-    for (const double part : {0.05, 0.2, 0.4, 0.6, 0.75}) {
+    for (const double part : {0.05, 0.15, 0.3, 0.45, 0.6}) {
         const auto run = interrupted(map, folder.path(), part * whole.processor_seconds, true);
         EXPECT_EQ(run.exit_code, 130) << "after " << 100 * part << " % of " << whole.processor_seconds << " s";
         EXPECT_LT(run.processor_after, 0.5) << "after " << 100 * part << " % of " << whole.processor_seconds << " s";
