@@ -48,8 +48,6 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
         key.add("force", table.quantity)
             .add("fit", table.fit)
             .add("speed_exponent", table.speed_exponent)
-            .add("net_weight", table.net_weight.value_or(NAN))  // a remark says where the model's is another
-            .add("virtual_mass", table.virtual_mass)
             .through("table", name);
         for (const auto& axis : table.axes) {
             key.add("axis", axis);
@@ -62,6 +60,10 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
 void run_one_region(Engine& engine, const RegionSpec& spec) {
     Key key = region_key("region", engine, spec);
     key.add("axes", spec.axes).add("for", spec.duration).add("columns", spec.columns).add("rows", spec.rows);
+    for (const auto& name : spec.forces) {  // a remark says where the model's are others
+        const TableSpec& table = *engine.study.find_table(name);
+        key.add("net_weight", table.net_weight.value_or(NAN)).add("virtual_mass", table.virtual_mass);
+    }
     std::string scratch_folder;  // a path of this moment, which a remark about a table may name
     Shared<dynamics::StabilityRegion> region(engine.states(), [&] {
         const Scratch scratch;

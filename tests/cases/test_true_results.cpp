@@ -178,8 +178,8 @@ TEST_F(TrueResults, OneOptionMakesExactlyWhatRestsOnItNew) {
     } changes[] = {
         {"net_weight = \"0.35 N\"",
          "net_weight = \"0.34 N\"",
-         {"table lift", "compare both", "export lift as c", "export lift as csv", "region map",
-          "model map"}},  // the map says that the table's weight is not its model's
+         {"table lift", "compare both", "export lift as c", "export lift as csv",
+          "region map"}},  // the map says that the table's weight is not its model's
         {"exports = [\"c\", \"csv\"]", "exports = [\"c\", \"json\"]", {"export lift as json"}},
         {"for = \"20 s\"", "for = \"21 s\"", {"region map"}},
         {"columns = 40", "columns = 41", {"region map"}},
