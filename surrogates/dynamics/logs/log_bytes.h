@@ -24,6 +24,15 @@ Number number_at(std::string_view bytes, std::size_t at) {
 /// The whole part of a number that may be anything in a damaged log; 0 for what no 64-bit integer holds.
 inline std::int64_t whole_part(double value) { return std::abs(value) < 9.2e18 ? static_cast<std::int64_t>(value) : 0; }
 
+/// Seconds from `start` to `time` (ns), exact to a nanosecond where 64 bits hold the difference; two times of a damaged
+/// log may lie further apart.
+inline double seconds_between(std::int64_t start, std::int64_t time) {
+    std::int64_t difference = 0;
+    return __builtin_sub_overflow(time, start, &difference)
+               ? (static_cast<double>(time) - static_cast<double>(start)) / 1e9
+               : static_cast<double>(difference) / 1e9;
+}
+
 /// A stream with a window ahead.
 class LogBytes {
 public:

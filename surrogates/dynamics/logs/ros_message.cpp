@@ -225,7 +225,7 @@ void RosDecoder::field(Walk& walk, const RosField& one, const std::string& prefi
         if (is_stamp(one.type)) {
             const auto seconds = static_cast<std::int64_t>(next<std::int32_t>(walk.cdr));
             const auto rest = static_cast<std::int64_t>(next<std::uint32_t>(walk.cdr));
-            give(name, static_cast<double>(seconds * 1000000000 + rest - walk.start) / 1e9, "s");
+            give(name, seconds_between(walk.start, seconds * 1000000000 + rest), "s");
         } else if (!is_primitive(one.type)) {
             message(walk, one.type, name + ".");
         } else if (one.type == "string") {
@@ -332,7 +332,7 @@ void RosTopics::add_topic(std::size_t id, const std::string& name, const std::st
 void RosTopics::message(std::size_t id, std::int64_t time, std::string_view cdr) {
     start_ = messages_ == 0 ? time : start_;
     ++messages_;
-    const double seconds = static_cast<double>(time - start_) / 1e9;
+    const double seconds = seconds_between(start_, time);
     last_ = std::max(last_, seconds);
     const auto found = topics_.find(id);
     if (found == topics_.end()) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/file.h"
@@ -10,6 +11,7 @@
 #include "surrogates/dynamics/logs/log.h"
 #include "surrogates/dynamics/logs/log_bytes.h"
 #include "surrogates/dynamics/logs/log_summary.h"
+#include "surrogates/dynamics/logs/ros_message.h"
 #include "tests/support/log_writers.h"
 #include "tests/support/support.h"
 
@@ -183,6 +185,23 @@ TEST(Logs, AChunkThatWasChangedIsLeftOutAndSaid) {
     ASSERT_EQ(end.problems.size(), 1u);
     EXPECT_THAT(end.problems[0].message, HasSubstr("1 chunk with a wrong checksum"));
     EXPECT_GT(kept.rows(), 200u);
+}
+
+TEST(Logs, TimesOfADamagedBagThatLieFurtherApartThan64BitsHoldAreStillTimes) {
+    constexpr std::int64_t earliest = std::numeric_limits<std::int64_t>::min();
+    constexpr std::int64_t latest = std::numeric_limits<std::int64_t>::max();
+    Kept kept;
+    dynamics::RosTopics topics("bag", kept);
+    topics.add_topic(1, "/range", "sensor_msgs/msg/Range", "cdr");
+    topics.message(1, earliest, test::cdr_message("sensor_msgs/msg/Range", 0, 0.01));
+    topics.message(1, latest, test::cdr_message("sensor_msgs/msg/Range", 2000000000000000000, 0.02));
+    const auto& range = kept.named("/range");
+    ASSERT_EQ(range.time.size(), 2u);
+    EXPECT_EQ(range.time[0], 0);
+    EXPECT_DOUBLE_EQ(range.time[1], 18446744073.709551);
+    EXPECT_DOUBLE_EQ(range.column("header.stamp")[0], 9223372036.854775);
+    EXPECT_DOUBLE_EQ(range.column("header.stamp")[1], 11223372036.854775);
+    EXPECT_EQ(dynamics::seconds_between(1700000000000000000, 1700000000000000001), 1e-9);
 }
 
 /// All lengths of a log: what was read is the beginning of what there is, and the cut is said.
