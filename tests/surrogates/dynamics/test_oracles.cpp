@@ -312,8 +312,13 @@ TEST(Oracles, ReleaseEscapesAtTheStaticThresholdWithTheSqueezeFilmAndFarBelowWit
     s.quadratic_drag = 15;
     s.density = 1000;
     EXPECT_NEAR(escape_threshold(s, .04, 1e-4), .0219, 4e-4);
+    // Without the film's damping the first push carries it past the gap of most suction, with no lightening at all
+    // (Runge-Kutta of fourth order with halved steps says the same, with and without the film's mass); half the
+    // precision is what a bisection answers for nought.
     s.squeeze = s.gap_mass = false;
-    EXPECT_LT(escape_threshold(s, .04, 1e-5), 6e-4);
+    EXPECT_LE(escape_threshold(s, .04, 1e-5), 5e-6);
+    s.extra_force = 0;
+    EXPECT_EQ(release(s).outcome, ReleaseOutcome::escapes);
     s.squeeze = s.gap_mass = true;
     s.extra_force = 0;
     s.mass = 1 / .2529;
