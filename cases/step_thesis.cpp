@@ -2,17 +2,15 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/engine.h"
-#include "surrogates/dynamics/theory/thesis.h"
-#include "surrogates/estimator/thesis/thesis.h"
+#include "cases/thesis/claims.h"
 
 namespace underbody::cases {
 
 namespace {
 
 /// One part of the thesis: a document of claims and its figures. `make` makes a study with `figures`, at most once.
-template <class Study>
-void run_part(Engine& engine, const std::string& name, const Key& key, const std::function<Study()>& make) {
-    Shared<Study> study(engine.states(), make);
+void run_part(Engine& engine, const std::string& name, const Key& key, const std::function<thesis::Study()>& make) {
+    Shared<thesis::Study> study(engine.states(), make);
     const auto made = engine.make("thesis", name, key, [&] {
         nlohmann::json claims;
         to_json(claims, study.get());
@@ -45,14 +43,12 @@ void run_part(Engine& engine, const std::string& name, const Key& key, const std
 
 void run_thesis(Engine& engine) {
     if (engine.study.thesis) {
-        run_part<estimator::ThesisStudy>(
-            engine, "thesis", Key("thesis", {"surrogates/tables", "surrogates/dynamics", "surrogates/estimator"}),
-            [&] { return estimator::thesis_study(engine.progress); });
+        run_part(engine, "thesis", Key("thesis", {"surrogates/tables", "surrogates/dynamics", "surrogates/estimator"}),
+                 [&] { return thesis::separation(engine.progress); });
     }
     if (engine.study.thesis_dynamics) {
-        run_part<dynamics::ThesisDynamics>(engine, "dynamics",
-                                           Key("thesis dynamics", {"surrogates/tables", "surrogates/dynamics"}),
-                                           [&] { return dynamics::thesis_dynamics(engine.progress); });
+        run_part(engine, "dynamics", Key("thesis dynamics", {"surrogates/tables", "surrogates/dynamics"}),
+                 [&] { return thesis::dynamics_of_the_body(engine.progress); });
     }
 }
 

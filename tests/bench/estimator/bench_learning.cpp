@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "cases/thesis/published.h"
 #include "core/random.h"
 #include "surrogates/estimator/model/augmented_model.h"
 #include "surrogates/estimator/model/training.h"
 #include "surrogates/estimator/observe/extended_filter.h"
 #include "surrogates/estimator/observe/observer.h"
-#include "surrogates/estimator/thesis/published.h"
 
 namespace {
 std::size_t allocations = 0;
@@ -36,6 +36,7 @@ void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 namespace {
 
 using namespace underbody::estimator;
+using namespace underbody::thesis;
 
 constexpr std::size_t columns = 4000000;
 

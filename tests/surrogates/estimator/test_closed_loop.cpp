@@ -3,12 +3,14 @@
 
 #include <cmath>
 
+#include "cases/thesis/published.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/estimator/control/loop_region.h"
-#include "surrogates/estimator/thesis/published.h"
 
 namespace underbody::estimator {
 namespace {
+
+using namespace thesis;
 
 AugmentedModel p3() {
     const AugmentedModel m = published_8_47();

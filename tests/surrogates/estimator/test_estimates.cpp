@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cases/thesis/published.h"
 #include "core/random.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
@@ -14,11 +15,12 @@
 #include "surrogates/estimator/model/run_data.h"
 #include "surrogates/estimator/observe/estimate.h"
 #include "surrogates/estimator/observe/information.h"
-#include "surrogates/estimator/thesis/published.h"
 #include "tests/support/support.h"
 
 namespace underbody::estimator {
 namespace {
+
+using namespace thesis;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 

@@ -7,12 +7,14 @@
 #include <cstdlib>
 #include <limits>
 
+#include "cases/thesis/published.h"
 #include "core/file.h"
 #include "surrogates/estimator/control/closed_loop.h"
-#include "surrogates/estimator/thesis/published.h"
 
 namespace underbody::estimator {
 namespace {
+
+using namespace thesis;
 
 bool have(const char* program) {
     return std::system(("command -v " + std::string(program) + " > /dev/null 2>&1").c_str()) == 0;

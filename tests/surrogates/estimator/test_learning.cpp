@@ -7,14 +7,16 @@
 #include <limits>
 #include <numbers>
 
+#include "cases/thesis/published.h"
 #include "core/random.h"
 #include "surrogates/estimator/model/augmented_model.h"
 #include "surrogates/estimator/model/training.h"
-#include "surrogates/estimator/thesis/published.h"
 #include "tests/support/support.h"
 
 namespace underbody::estimator {
 namespace {
+
+using namespace thesis;
 
 void expect_near(const Vector& got, const Vector& want, double tolerance, const std::string& what) {
     ASSERT_EQ(got.size(), want.size()) << what;

@@ -6,15 +6,17 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cases/thesis/published.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "surrogates/estimator/control/bounds.h"
 #include "surrogates/estimator/observe/observer.h"
-#include "surrogates/estimator/thesis/published.h"
 #include "tests/support/support.h"
 
 namespace underbody::estimator {
 namespace {
+
+using namespace thesis;
 
 AugmentedModel p2_of(const AugmentedModel& m) {
     return corrected(m, Correction::p2, heave_rows(m.layout, thesis_virtual_mass(), 0));

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/thesis/published.h"
 #include "core/random.h"
 #include "surrogates/estimator/observe/surface_bank.h"
-#include "surrogates/estimator/thesis/published.h"
 
 namespace underbody::estimator {
 namespace {
+
+using namespace thesis;
 
 SeparatedPlant surface(double deeper) {
     SeparatedPlant p = reference_plant(quadratic_drag(.02, 6));

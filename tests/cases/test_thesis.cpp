@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surrogates/estimator/thesis/thesis.h"
+#include "cases/thesis/claims.h"
 
-namespace underbody::estimator {
+namespace underbody::thesis {
 namespace {
 
 TEST(ThesisStudy, DrawsItsFiguresAndJudgesItsClaims) {
-    const ThesisStudy study = thesis_study();
+    const Study study = separation();
     for (const char* number :
          {"7-7a",  "7-7b", "7-13",  "7-14",  "7-15",      "7-16",      "7-17a", "7-17b", "7-18a", "7-18b", "7-19a",
           "7-19b", "7-20", "7-21",  "7-22",  "7-peers-a", "7-peers-b", "8-2a",  "8-2b",  "8-2c",  "8-3a",  "8-3b",
@@ -49,5 +49,21 @@ TEST(ThesisStudy, DrawsItsFiguresAndJudgesItsClaims) {
     }
 }
 
+TEST(ThesisStudy, JudgesItsStatementsOnTheBody) {
+    const Study study = dynamics_of_the_body();
+    for (const char* number : {"5-22", "3-13"}) {
+        ASSERT_NE(study.figure(number), nullptr) << number;
+    }
+    const auto claim = [&](const std::string& id) {
+        const auto found =
+            std::find_if(study.claims.begin(), study.claims.end(), [&](const Claim& c) { return c.id == id; });
+        return found == study.claims.end() ? Claim{} : *found;
+    };
+    EXPECT_EQ(claim("5-22-threshold").verdict, "reproduces");
+    EXPECT_NE(claim("5-22-threshold").computed.find("without it escapes with no lightening at all"), std::string::npos);
+    EXPECT_EQ(claim("3-13").verdict, "reproduces");
+    EXPECT_EQ(claim("5-voltage").verdict, "in part");
+}
+
 }  // namespace
-}  // namespace underbody::estimator
+}  // namespace underbody::thesis

@@ -2,14 +2,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/thesis/parts.h"
 #include "surrogates/estimator/model/linear_system.h"
-#include "surrogates/estimator/thesis/thesis_parts.h"
 
-namespace underbody::estimator {
+namespace underbody::thesis {
 
 namespace {
-
-using namespace internal;
 
 const char* plant_words = "Plant: REF-A, drag 50.2 w|w|, 1/S = 0.2529. ";
 
@@ -22,7 +20,7 @@ std::vector<double> counted(std::size_t n) {
 }
 
 // 7-7: tangent, equivalent linear and nonlinear motion in the well of the stable gap.
-void plane_models(ThesisStudy& study) {
+void plane_models(Study& study) {
     const SeparatedPlant plant = reference_plant();
     const auto runs_from = [&](double h0, core::Figure& gaps, core::Figure& speeds) {
         const Motion truth = motion_of(plant, h0, 0, 120, 0.05);
@@ -76,7 +74,7 @@ void plane_models(ThesisStudy& study) {
 }
 
 // 7-13 to 7-15 and the ranks.
-void spectra(ThesisStudy& study) {
+void spectra(Study& study) {
     const TrainingSet one = grid_samples(reference_plant(quadratic_drag(1.25, 0))),
                       two = grid_samples(reference_plant());
     const AugmentedModel linear = learn(moments(one.view()), one.layout), both = learn(moments(two.view()), two.layout);
@@ -149,7 +147,7 @@ void spectra(ThesisStudy& study) {
 }
 
 // 7-16 and table 7.1
-void signs(ThesisStudy& study) {
+void signs(Study& study) {
     const SeparatedPlant plant = reference_plant();
     core::Figure f =
         plot("7-16: unforced motions from rest", plant_words, "gap less stable gap", "mm", "ground force", "mN");
@@ -185,7 +183,7 @@ void signs(ThesisStudy& study) {
 }
 
 // 7-17: correlations of grid and time-evolved data.
-void correlations(ThesisStudy& study) {
+void correlations(Study& study) {
     const SeparatedPlant plant = reference_plant();
     const TrainingSet sets[] = {grid_samples(plant), time_samples(plant)};
     Matrix r[2];
@@ -221,7 +219,7 @@ void correlations(ThesisStudy& study) {
 }
 
 // 7-18, 7-19: biased and uniform sampling, derivatives along a motion.
-void sampling(ThesisStudy& study) {
+void sampling(Study& study) {
     const SeparatedPlant plant = reference_plant();
     TrainingOptions o;
     o.gap_lower = -.03;
@@ -281,7 +279,7 @@ void sampling(ThesisStudy& study) {
 }
 
 // 7-20 to 7-22: orders.
-void orders(ThesisStudy& study) {
+void orders(Study& study) {
     const TrainingSet set = grid_samples(reference_plant());
     const Moments m = moments(set.view());
     LearnOptions two, one;
@@ -375,7 +373,7 @@ void orders(ThesisStudy& study) {
 
 }  // namespace
 
-void add_chapter_7(ThesisStudy& study, core::Progress& progress) {
+void add_chapter_7(Study& study, core::Progress& progress) {
     plane_models(study);
     progress.check();
     spectra(study);
@@ -387,4 +385,4 @@ void add_chapter_7(ThesisStudy& study, core::Progress& progress) {
     orders(study);
 }
 
-}  // namespace underbody::estimator
+}  // namespace underbody::thesis

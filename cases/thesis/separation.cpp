@@ -1,14 +1,10 @@
-#include "surrogates/estimator/thesis/thesis.h"
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cases/thesis/parts.h"
 #include "core/text.h"
-#include "surrogates/estimator/thesis/thesis_parts.h"
 
-namespace underbody::estimator {
-
-namespace internal {
+namespace underbody::thesis {
 
 std::vector<double> Motion::total() const { return difference(ground, drag); }
 
@@ -126,19 +122,8 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
     return d;
 }
 
-}  // namespace internal
-
-const core::Figure* ThesisStudy::figure(const std::string& number) const {
-    for (const auto& [name, f] : figures) {
-        if (name == number) {
-            return &f;
-        }
-    }
-    return nullptr;
-}
-
-ThesisStudy thesis_study(core::Progress& progress) {
-    ThesisStudy study;
+Study separation(core::Progress& progress) {
+    Study study;
     progress.report(0, "chapter 7");
     add_chapter_7(study, progress);
     add_peers(study, progress);
@@ -147,19 +132,4 @@ ThesisStudy thesis_study(core::Progress& progress) {
     return study;
 }
 
-void to_json(nlohmann::json& j, const ThesisStudy& study) {
-    nlohmann::json claims = nlohmann::json::array(), figures = nlohmann::json::array();
-    for (const Claim& c : study.claims) {
-        claims.push_back({{"id", c.id},
-                          {"where", c.where},
-                          {"statement", c.statement},
-                          {"computed", c.computed},
-                          {"verdict", c.verdict}});
-    }
-    for (const auto& [name, f] : study.figures) {
-        figures.push_back({{"number", name}, {"title", f.title}, {"caption", f.caption}});
-    }
-    j = {{"claims", claims}, {"figures", figures}};
-}
-
-}  // namespace underbody::estimator
+}  // namespace underbody::thesis

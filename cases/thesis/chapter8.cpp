@@ -1,16 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/thesis/parts.h"
 #include "core/random.h"
 #include "surrogates/estimator/control/bounds.h"
 #include "surrogates/estimator/observe/observer.h"
-#include "surrogates/estimator/thesis/thesis_parts.h"
 
-namespace underbody::estimator {
+namespace underbody::thesis {
 
 namespace {
-
-using namespace internal;
 
 constexpr double step = 0.05;
 
@@ -63,7 +61,7 @@ double total_error(const AugmentedModel& m, const Poles& poles = {{-1, 0}, {-2, 
 }
 
 // 8-2, 8-3: states and latent variables by the full-order observer in rotated coordinates.
-void converging_states(ThesisStudy& study, const Motion& m) {
+void converging_states(Study& study, const Motion& m) {
     const std::vector<std::string> sensors{"heave_velocity", "gap"};
     const AugmentedModel model = p3_of_8_47();
     const Vector scale{.017, .35, .012, .021}, centre{0, .6, .008, 0};
@@ -116,7 +114,7 @@ void converging_states(ThesisStudy& study, const Motion& m) {
 }
 
 // 8-2, 8-3
-void convergence(ThesisStudy& study) {
+void convergence(Study& study) {
     const SeparatedPlant plant = reference_plant();
     const Motion m = motion_of(plant, 0.25, 0, 200, step);
     const AugmentedModel model = p3_of_8_47();
@@ -161,7 +159,7 @@ void convergence(ThesisStudy& study) {
 }
 
 // 8-5, 8-6
-void truncation(ThesisStudy& study) {
+void truncation(Study& study) {
     for (const bool linear : {false, true}) {
         const SeparatedPlant plant = linear ? reference_plant(quadratic_drag(1.25, 0)) : reference_plant();
         const TrainingSet set = grid_samples(plant);
@@ -205,7 +203,7 @@ void truncation(ThesisStudy& study) {
 }
 
 // 8-9c: matrix (4) with its poles moved left, with and without noise of the velocity sensor.
-void high_gain(ThesisStudy& study, const AugmentedModel& p4, const Motion& m) {
+void high_gain(Study& study, const AugmentedModel& p4, const Motion& m) {
     core::Figure f =
         plot("8-9: matrix (4) with high gain",
              "Drag from 250 mm at rest; poles -10 and -12, noise of the velocity 0.1 mm/s per sample of 50 ms.", "time",
@@ -231,7 +229,7 @@ void high_gain(ThesisStudy& study, const AugmentedModel& p4, const Motion& m) {
 }
 
 // The physics page's noise figures beside the formula and a Monte Carlo run.
-void noise_gains(ThesisStudy& study) {
+void noise_gains(Study& study) {
     const AugmentedModel model = p3_of_8_47();
     const std::pair<Poles, double> cases[] = {
         {{{-1, 0}, {-2, 0}}, 0.9}, {{{-3, 0}, {-4, 0}}, 2.2}, {{{-10, 0}, {-12, 0}}, 8.2}};
@@ -264,7 +262,7 @@ void noise_gains(ThesisStudy& study) {
 }
 
 // 8-7 to 8-9: corrections.
-void corrections(ThesisStudy& study) {
+void corrections(Study& study) {
     const AugmentedModel base = published_8_47();
     const SeparatedPlant plant = reference_plant();
     std::vector<double> index, error;
@@ -336,7 +334,7 @@ void corrections(ThesisStudy& study) {
 }
 
 // 8-10, 8-11: training regions.
-void regions(ThesisStudy& study) {
+void regions(Study& study) {
     const SeparatedPlant plant = reference_plant();
     const std::pair<double, double> spans[] = {{-.05, .2}, {-.03, 1.0}, {-.03, 1.3}, {0, .3},
                                                {0, .6},    {0, 1.0},    {0, 1.2},    {0, 1.6}};
@@ -399,7 +397,7 @@ void regions(ThesisStudy& study) {
 }
 
 // 8-12: estimated states for the update, or the true ones.
-void update_methods(ThesisStudy& study) {
+void update_methods(Study& study) {
     const SeparatedPlant plant = reference_plant();
     const Motion m = motion_of(plant, 0.25, 0, 40, step);
     const AugmentedModel model = p3_of_8_47();
@@ -461,7 +459,7 @@ std::string bounds_text(const Matrix& m, const Matrix& structure = {}) {
                      : std::string("not Hurwitz");
 }
 
-void robustness(ThesisStudy& study) {
+void robustness(Study& study) {
     const AugmentedModel a = published_8_47(), b = published_grid();
     const std::vector<std::string> sensors{"heave_velocity", "gap"};
     Matrix c(2, 4), structure(4, 4);
@@ -503,7 +501,7 @@ void robustness(ThesisStudy& study) {
 
 }  // namespace
 
-void add_chapter_8(ThesisStudy& study, core::Progress& progress) {
+void add_chapter_8(Study& study, core::Progress& progress) {
     convergence(study);
     progress.check();
     truncation(study);
@@ -518,4 +516,4 @@ void add_chapter_8(ThesisStudy& study, core::Progress& progress) {
     progress.check();
 }
 
-}  // namespace underbody::estimator
+}  // namespace underbody::thesis

@@ -1,14 +1,12 @@
 // Section 8.9 and figure 8-14: the loop closed with estimated forces.
 #include <cmath>
 
+#include "cases/thesis/parts.h"
 #include "surrogates/estimator/control/loop_region.h"
-#include "surrogates/estimator/thesis/thesis_parts.h"
 
-namespace underbody::estimator {
+namespace underbody::thesis {
 
 namespace {
-
-using namespace internal;
 
 LinearFilter observer_at(double step) {
     const AugmentedModel model = p3_of_8_47();
@@ -24,7 +22,7 @@ ControlLaw weak_law() {
 }
 
 // 8-14 (a) to (e)
-void holding(ThesisStudy& study) {
+void holding(Study& study) {
     const SeparatedPlant plant = reference_plant();
     const double s = plant.virtual_mass;
     LoopOptions o;
@@ -65,7 +63,7 @@ void holding(ThesisStudy& study) {
 }
 
 // Each estimator in the same loop, over its own learned model, from 250 mm to 20 mm; then with what a real loop has.
-void every_estimator(ThesisStudy& study) {
+void every_estimator(Study& study) {
     const SeparatedPlant plant = reference_plant();
     const ControlLaw law = hold_at(0.02, plant.virtual_mass, -1, -1);
     LoopOptions calm, rough;
@@ -95,7 +93,7 @@ void every_estimator(ThesisStudy& study) {
 }
 
 // The law as figure 8-4 prints it, and weak gains.
-void printed_law(ThesisStudy& study) {
+void printed_law(Study& study) {
     const SeparatedPlant plant = reference_plant();
     // The law as figure 8-4 prints it, with the drag as a resistance: the drag is doubled instead of removed.
     const ControlLaw weak = weak_law();
@@ -133,7 +131,7 @@ void printed_law(ThesisStudy& study) {
 }
 
 // 8-14 (f)
-void region(ThesisStudy& study, core::Progress& progress) {
+void region(Study& study, core::Progress& progress) {
     const SeparatedPlant plant = reference_plant();
     LoopOptions map;
     map.step = 0.1;
@@ -179,7 +177,7 @@ void region(ThesisStudy& study, core::Progress& progress) {
 
 }  // namespace
 
-void add_control(ThesisStudy& study, core::Progress& progress) {
+void add_control(Study& study, core::Progress& progress) {
     holding(study);
     every_estimator(study);
     progress.check();
@@ -187,4 +185,4 @@ void add_control(ThesisStudy& study, core::Progress& progress) {
     region(study, progress);
 }
 
-}  // namespace underbody::estimator
+}  // namespace underbody::thesis

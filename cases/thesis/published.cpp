@@ -1,11 +1,13 @@
-#include "surrogates/estimator/thesis/published.h"
+#include "cases/thesis/published.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "surrogates/tables/fit/force_table.h"
 
-namespace underbody::estimator {
+namespace underbody::thesis {
+
+using namespace estimator;
 
 double thesis_virtual_mass() { return 1 / 0.2529; }
 
@@ -111,4 +113,4 @@ Matrix printed_basis() {
 
 Vector printed_eigenvalues() { return {4.6901, 1.4913, 1.1239, 0.9986, 0.6960, 0, 0, 0, 0}; }
 
-}  // namespace underbody::estimator
+}  // namespace underbody::thesis

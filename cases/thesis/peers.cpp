@@ -1,14 +1,13 @@
 // The data-driven model beside the models it replaces and the peers of today.
+#include "surrogates/estimator/model/peers.h"
+
 #include <cmath>
 
-#include "surrogates/estimator/model/peers.h"
-#include "surrogates/estimator/thesis/thesis_parts.h"
+#include "cases/thesis/parts.h"
 
-namespace underbody::estimator {
+namespace underbody::thesis {
 
 namespace {
-
-using namespace internal;
 
 const PredictionError& named(const std::vector<PredictionError>& errors, const std::string& name) {
     for (const PredictionError& e : errors) {
@@ -30,7 +29,7 @@ std::string list(const std::vector<PredictionError>& errors) {
 
 }  // namespace
 
-void add_peers(ThesisStudy& study, core::Progress& progress) {
+void add_peers(Study& study, core::Progress& progress) {
     const SeparatedPlant plant = reference_plant();
     for (const double reach : {0.3, 1.2}) {
         TrainingOptions training;
@@ -61,4 +60,4 @@ void add_peers(ThesisStudy& study, core::Progress& progress) {
     }
 }
 
-}  // namespace underbody::estimator
+}  // namespace underbody::thesis

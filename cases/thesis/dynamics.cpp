@@ -1,11 +1,10 @@
-#include "surrogates/dynamics/theory/thesis.h"
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <utility>
 
+#include "cases/thesis/claims.h"
 #include "core/text.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/simulate/feedback.h"
@@ -14,7 +13,9 @@
 #include "surrogates/dynamics/theory/release.h"
 #include "surrogates/dynamics/theory/scaling.h"
 
-namespace underbody::dynamics {
+namespace underbody::thesis {
+
+using namespace dynamics;
 
 namespace {
 
@@ -50,7 +51,54 @@ Model bare(double mass, double linear_drag, double quadratic_drag) {
         .with_parameter("vehicle.added_mass_heave", mass - 2.2);
 }
 
-void springs(ThesisDynamics& study) {
+/// Lift over gap in chords at fixed speed, as a table for a body `size` times as large: the regimes of section 4.4
+/// (lift below 1 % of the chord, suction to 25 %, weak lift above).
+tables::ForceTable thesis_lift(double size, double speed) {
+    // C_L over gap in chords: 0.214 at 1 mm falls through zero at 2 mm, suction to 50 mm, weak lift beyond.
+    const double points[][2] = {{0, 0.9},       {0.0025, 0.45}, {0.00492, 0.2144}, {0.00984, 0},   {0.015, -0.09},
+                                {0.025, -0.15}, {0.05, -0.16},  {0.1, -0.10},      {0.15, -0.055}, {0.2, -0.02},
+                                {0.246, 0},     {0.3, 0.012},   {0.4, 0.02},       {0.6, 0.012},   {1, 0.003}};
+    std::vector<double> gap, lift;
+    const double area = plan_area(chord * size, 0.152 * size);
+    for (const auto& [epsilon, coefficient] : points) {
+        gap.push_back(epsilon * chord * size);
+        lift.push_back(0.5 * 1000 * speed * speed * area * coefficient);
+    }
+    core::Table table;
+    table.source = "thesis-lift.csv";
+    table.add_numbers("gap", "m", gap);
+    table.add_numbers("lift_force", "N", lift);
+    tables::FitOptions options;
+    options.kind = tables::FitOptions::Kind::interpolation;
+    return tables::ForceTable::fit(table, "lift_force", options);
+}
+
+/// The reference vehicle `size` times as large over that lift, no drag unless given.
+Model thesis_vehicle(double size, double speed, double quadratic_drag = 0) {
+    Model model = bare(virtual_mass, 0, quadratic_drag * size * size);
+    model.vehicle.mass = 2.2 * size * size * size;
+    model.vehicle.added_mass_heave = (virtual_mass - 2.2) * size * size * size;
+    model.forces.push_back(
+        {"lift_force", "thesis-lift.csv", "thesis-lift.csv", thesis_lift(size, speed), {Channel::gap}, {}, 1.0});
+    return model;
+}
+
+/// Smallest downward kick at the stable gap nearest the ground with which the body touches, m/s, by bisection on
+/// trajectories.
+double kick_that_touches(const Model& model, double gap, double upper) {
+    TrajectoryOptions options;
+    options.duration = 20;
+    options.stop_at_contact = true;
+    options.tolerance = 1e-10;
+    double lo = 0, hi = upper;
+    for (int i = 0; i < 26; ++i) {
+        const double kick = (lo + hi) / 2;
+        (simulate(model, gap, -kick, {}, options).end == "contact" ? hi : lo) = kick;
+    }
+    return (lo + hi) / 2;
+}
+
+void springs(Study& study) {
     const auto swings = [](double stiffness, double mass) {
         const Model model =
             bare(mass, 0, 0).with_effect(make_use("tether_stiffness", {{"stiffness", stiffness}, {"gap", 0.1}}));
@@ -58,7 +106,7 @@ void springs(ThesisDynamics& study) {
     };
     const double full = swings(220, 2.2), virtual_full = swings(220, virtual_mass), slow = swings(55, 2.2),
                  virtual_slow = swings(55, virtual_mass);
-    study.checks.push_back(
+    study.claims.push_back(
         {"4-frequency", "equations 4.7, 4.8", "a stiffness of 220 N/m gives 8.8 rad/s (1.4 Hz) at 0.5 m/s",
          "motion simulated: " + n(full) + " rad/s with the mass alone, " + n(virtual_full) +
              " with the virtual mass; 220 N/m is quoted at 1 m/s, at 0.5 m/s it is 55 N/m: " + n(slow) + " and " +
@@ -69,7 +117,7 @@ void springs(ThesisDynamics& study) {
     const Model model =
         bare(virtual_mass, 0, 0).with_effect(make_use("tether_stiffness", {{"stiffness", k}, {"gap", h}}));
     const double kick = kick_that_touches(model, h, 0.05);
-    study.checks.push_back(
+    study.claims.push_back(
         {"4-kick", "equation 4.9", "the body touches when kicked down faster than omega h = 0.018 m/s at 2 mm",
          "linear spring of 55 N/m (0.5 m/s) and the virtual mass: trajectories touch from " + n(1e3 * kick) +
              " mm/s, omega h = " + n(1e3 * survivable_kick(spring_frequency(k, virtual_mass), h)) +
@@ -80,7 +128,7 @@ void springs(ThesisDynamics& study) {
     const HeavePlant plant(real);
     const HeaveEquilibrium a = heave_equilibria(plant).front();
     const double real_kick = kick_that_touches(real, a.gap, 0.2);
-    study.checks.push_back({"4-kick-nonlinear", "section 4.5",
+    study.claims.push_back({"4-kick-nonlinear", "section 4.5",
                             "lift rises near the wall, so the linear estimate is conservative",
                             "stable gap " + n(1e3 * a.gap) + " mm, dF/dh = " + n(-a.stiffness) +
                                 " N/m: linear estimate " + n(1e3 * survivable_kick(a.frequency, a.gap)) +
@@ -88,7 +136,7 @@ void springs(ThesisDynamics& study) {
                             real_kick > survivable_kick(a.frequency, a.gap) ? "reproduces" : "does not reproduce"});
 }
 
-void sizes(ThesisDynamics& study) {
+void sizes(Study& study) {
     struct Row {
         double force, mass, stiffness, frequency, gap, kick;
     };
@@ -128,7 +176,7 @@ void sizes(ThesisDynamics& study) {
         "Bodies of one shape at one speed and one gap in chords, each simulated: swings for the frequency, "
         "kicks bisected until the body touches.";
     study.figures.emplace_back("4-scaling", std::move(figure));
-    study.checks.push_back(
+    study.claims.push_back(
         {"4-scaling", "equations 4.10 to 4.15",
          "twice the size: force 4, mass 8, force per mass 1/2, stiffness 2, frequency 1/2, survivable kick 1",
          "simulated: force " + n(two.force / one.force) + ", mass " + n(two.mass / one.mass) + ", force per mass " +
@@ -140,7 +188,7 @@ void sizes(ThesisDynamics& study) {
 }
 
 /// Weight at each voltage whose equilibria are those reported; REF-A-like upwash is asked for what it would have to be.
-void voltages(ThesisDynamics& study) {
+void voltages(Study& study) {
     const double reported[][2] = {{10, 1.2}, {8, 1.0}, {4, 0.6}};
     std::string upwash;
     for (const auto& [volts, gap] : reported) {
@@ -180,14 +228,14 @@ void voltages(ThesisDynamics& study) {
     figure.caption = "Gaps reported for 4, 8 and 10 V, and the equilibria of a body whose slack tether weighs " +
                      n((low + high) / 2, 3) + " N/m.";
     study.figures.emplace_back("5-voltage", std::move(figure));
-    study.checks.push_back(
+    study.claims.push_back(
         {"5-voltage", "sections 5.4 and 5.7", "10, 8 and 4 V hold the body at 1.2, 1.0 and 0.6 m by upwash",
          "upwash over thrust would have to be " + upwash + ": five times the thrust from one jet; a slack tether of " +
              n(low, 3) + " to " + n(high, 3) + " N/m gives the same gaps within " + n(worst, 2) + " m",
          "in part"});
 }
 
-void releases(ThesisDynamics& study) {
+void releases(Study& study) {
     ReleaseSetup setup;
     setup.film = jet_film(0.0717, 0.0536, 0.0025, jet_flow(0.036, 0.005, 1000, 1e-6).flow, 1e-3, 1000);
     setup.mass = 0.6;
@@ -199,7 +247,7 @@ void releases(ThesisDynamics& study) {
     dry.squeeze = false;
     dry.extra_force = 0;
     const bool unaided = release(dry).outcome == ReleaseOutcome::escapes;
-    study.checks.push_back({"5-22-threshold", "figure 5-22, docs/physics.md section 5.3",
+    study.claims.push_back({"5-22-threshold", "figure 5-22, docs/physics.md section 5.3",
                             "a released body escapes once it is light enough",
                             "static threshold " + n(1e3 * threshold) + " mN; with the squeeze film it escapes from " +
                                 n(1e3 * with) + " mN, without " +
@@ -231,7 +279,7 @@ void releases(ThesisDynamics& study) {
     light.extra_force = 1.05 * threshold;
     add(light, "5 % lighter than the film can hold");
     study.figures.emplace_back("5-22", release_figure(runs, names));
-    study.checks.push_back({"5-22-outcomes", "figure 5-22",
+    study.claims.push_back({"5-22-outcomes", "figure 5-22",
                             "four outcomes: settles, overshoots, oscillates and decays, escapes", seen,
                             outcomes.size() == 4 ? "reproduces" : "in part"});
 }
@@ -257,7 +305,7 @@ Model sled() {
     return model;
 }
 
-void headings(ThesisDynamics& study) {
+void headings(Study& study) {
     const Model model = sled();
     const SurfaceMotion motion(model);
     const HeadingBounds bounds = heading_bounds(surface_coefficients(model), 0.35, 0);
@@ -290,7 +338,7 @@ void headings(ThesisDynamics& study) {
         "Nonlinear motion on the ground without friction at 0.35 m/s; the jets give at most 0.1 N each. "
         "Below the bound Munk's moment wins.";
     study.figures.emplace_back("3-7", std::move(figure));
-    study.checks.push_back({"3-7", "figures 3-7 to 3-9, equation 3.9",
+    study.claims.push_back({"3-7", "figures 3-7 to 3-9, equation 3.9",
                             "PD on the heading turns the vehicle when its gains are high enough",
                             "bound K2 > S_r Om^2 = " + n(bounds.least_k2_without_friction) +
                                 " N m/rad; without friction a sideslip stays and the heading "
@@ -299,7 +347,7 @@ void headings(ThesisDynamics& study) {
                             "reproduces"});
 }
 
-void regulator(ThesisDynamics& study) {
+void regulator(Study& study) {
     // Heave held at 20 mm by LQR over the thesis-like lift, from two kicks.
     const Model model = thesis_vehicle(1, 0.5, 15);
     const HeavePlant plant(model);
@@ -337,7 +385,7 @@ void regulator(ThesisDynamics& study) {
         "effect balance, " +
         n(1e3 * parked) + " mm.";
     study.figures.emplace_back("3-13", std::move(figure));
-    study.checks.push_back({"3-13", "figures 3-13 and 3-14", "LQR holds the vehicle against the ground effect",
+    study.claims.push_back({"3-13", "figures 3-13 and 3-14", "LQR holds the vehicle against the ground effect",
                             "gains k_h = " + n(gains.gap_gain) + " N/m, k_w = " + n(gains.velocity_gain) +
                                 " N s/m; the nonlinear model ends at " + n(1e3 * last) +
                                 " mm, where spring and ground effect balance (" + n(1e3 * parked) + " mm)",
@@ -346,60 +394,9 @@ void regulator(ThesisDynamics& study) {
 
 }  // namespace
 
-tables::ForceTable thesis_lift(double size, double speed) {
-    // C_L over gap in chords: 0.214 at 1 mm falls through zero at 2 mm, suction to 50 mm, weak lift beyond.
-    const double points[][2] = {{0, 0.9},       {0.0025, 0.45}, {0.00492, 0.2144}, {0.00984, 0},   {0.015, -0.09},
-                                {0.025, -0.15}, {0.05, -0.16},  {0.1, -0.10},      {0.15, -0.055}, {0.2, -0.02},
-                                {0.246, 0},     {0.3, 0.012},   {0.4, 0.02},       {0.6, 0.012},   {1, 0.003}};
-    std::vector<double> gap, lift;
-    const double area = plan_area(chord * size, 0.152 * size);
-    for (const auto& [epsilon, coefficient] : points) {
-        gap.push_back(epsilon * chord * size);
-        lift.push_back(0.5 * 1000 * speed * speed * area * coefficient);
-    }
-    core::Table table;
-    table.source = "thesis-lift.csv";
-    table.add_numbers("gap", "m", gap);
-    table.add_numbers("lift_force", "N", lift);
-    tables::FitOptions options;
-    options.kind = tables::FitOptions::Kind::interpolation;
-    return tables::ForceTable::fit(table, "lift_force", options);
-}
-
-Model thesis_vehicle(double size, double speed, double quadratic_drag) {
-    Model model = bare(virtual_mass, 0, quadratic_drag * size * size);
-    model.vehicle.mass = 2.2 * size * size * size;
-    model.vehicle.added_mass_heave = (virtual_mass - 2.2) * size * size * size;
-    model.forces.push_back(
-        {"lift_force", "thesis-lift.csv", "thesis-lift.csv", thesis_lift(size, speed), {Channel::gap}, {}, 1.0});
-    return model;
-}
-
-double kick_that_touches(const Model& model, double gap, double upper) {
-    TrajectoryOptions options;
-    options.duration = 20;
-    options.stop_at_contact = true;
-    options.tolerance = 1e-10;
-    double lo = 0, hi = upper;
-    for (int i = 0; i < 26; ++i) {
-        const double kick = (lo + hi) / 2;
-        (simulate(model, gap, -kick, {}, options).end == "contact" ? hi : lo) = kick;
-    }
-    return (lo + hi) / 2;
-}
-
-const core::Figure* ThesisDynamics::figure(const std::string& name) const {
-    for (const auto& [known, figure] : figures) {
-        if (known == name) {
-            return &figure;
-        }
-    }
-    return nullptr;
-}
-
-ThesisDynamics thesis_dynamics(core::Progress& progress) {
-    ThesisDynamics study;
-    void (*const parts[])(ThesisDynamics&) = {springs, sizes, voltages, releases, headings, regulator};
+Study dynamics_of_the_body(core::Progress& progress) {
+    Study study;
+    void (*const parts[])(Study&) = {springs, sizes, voltages, releases, headings, regulator};
     double done = 0;
     for (const auto part : parts) {
         progress.check();
@@ -410,15 +407,4 @@ ThesisDynamics thesis_dynamics(core::Progress& progress) {
     return study;
 }
 
-void to_json(nlohmann::json& json, const ThesisDynamics& study) {
-    json = {{"claims", nlohmann::json::array()}};
-    for (const ThesisCheck& check : study.checks) {
-        json["claims"].push_back({{"id", check.id},
-                                  {"where", check.where},
-                                  {"statement", check.statement},
-                                  {"computed", check.computed},
-                                  {"verdict", check.verdict}});
-    }
-}
-
-}  // namespace underbody::dynamics
+}  // namespace underbody::thesis

@@ -1,13 +1,22 @@
-// Shared by the two chapters of the thesis study.
+// Shared by the parts of chapters 7 and 8.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "surrogates/estimator/thesis/published.h"
-#include "surrogates/estimator/thesis/thesis.h"
+#include "cases/thesis/claims.h"
+#include "cases/thesis/published.h"
 
-namespace underbody::estimator::internal {
+namespace underbody::thesis {
+
+using namespace estimator;
+
+/// The parts of the study; each adds its figures and claims.
+void add_chapter_7(Study& study, core::Progress& progress);
+/// Tangent, equivalent-linear, learned, dmdc, edmd and nonlinear models side by side.
+void add_peers(Study& study, core::Progress& progress);
+void add_chapter_8(Study& study, core::Progress& progress);
+void add_control(Study& study, core::Progress& progress);  ///< the end of chapter 8
 
 /// Unforced (or forced) motion of the plant, sampled.
 struct Motion {
@@ -37,4 +46,4 @@ AugmentedModel p3_of_8_47();  ///< 8.47 with correction P3
 double rms(const std::vector<double>& values);
 std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b);
 
-}  // namespace underbody::estimator::internal
+}  // namespace underbody::thesis
