@@ -145,9 +145,10 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock)
     : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
     const fs::path script = folder_ / "Allrun";
     if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
-        throw core::InputError(
-            "missing", fs::exists(folder_) ? "there is no Allrun in this folder" : "there is no such folder",
-            {folder_.string(), {}, {}, {}}, "underbody body domain SHAPE.toml --gap 5mm --out FOLDER writes a case");
+        throw core::InputError("missing",
+                               fs::exists(folder_) ? "there is no Allrun in this folder" : "there is no such folder",
+                               {folder_.string(), {}, {}, {}},
+                               "'body domain' writes a case around a shape, from its gap on (option 'gap 5mm')");
     }
     if (!fs::is_regular_file(folder_ / "system" / "controlDict")) {
         throw core::InputError("missing", "the case has no system/controlDict", {folder_.string(), {}, {}, {}});

@@ -279,7 +279,7 @@ SurfaceMesh read_ply(std::string_view bytes, const std::string& file) {
 double metres_per_unit(const std::filesystem::path& path, const std::optional<std::string>& unit) {
     if (!unit) {
         throw core::InputError("unit", "the file does not say in what unit its lengths are",
-                               {path.string(), {}, {}, {}}, "say it with --unit mm (or m, cm, in)");
+                               {path.string(), {}, {}, {}}, "say it with option 'unit mm' (or m, cm, in)");
     }
     const double scale = core::convert(1, *unit, "m");
     if (!(scale > 0)) {

@@ -88,7 +88,8 @@ std::string refusal(const Call& call, const std::string& kind) {
 TEST(MeshFile, AsksForTheUnit) {
     const core::TemporaryFolder folder;
     write_mesh(sample(), folder.path() / "body.stl");
-    EXPECT_THAT(refusal([&] { read_mesh(folder.path() / "body.stl", {}); }, "unit"), testing::HasSubstr("--unit"));
+    EXPECT_THAT(refusal([&] { read_mesh(folder.path() / "body.stl", {}); }, "unit"),
+                testing::HasSubstr("option 'unit mm'"));
     EXPECT_THROW(read_mesh(folder.path() / "body.stl", in("kg")), core::InputError);
 }
 

@@ -23,6 +23,14 @@ forbid cases 'studio/|tests/' "$upward"
 for library in core geometry postproc surrogates cases; do
     forbid "$library" 'Q[A-Z][A-Za-z]+|qcustomplot|CLI/|spdlog/' 'libraries know nothing of Qt or the command line'
 done
+# Messages of libraries name no flags of the command line: they say "option 'unit mm'", which each front words its way.
+# Not meant: what is handed to sbatch and the compiler, and what doctor says that a program is for.
+hits=$(grep -rnE --include='*.h' --include='*.cpp' '"([^"\\]|\\.)*--[a-z]{2}' core geometry postproc surrogates cases 2>/dev/null |
+    grep -vE '^(cases/(sweep_slurm|surroundings)\.cpp|surrogates/tables/exports/fmu\.cpp):|--nice=|^[^:]*:[0-9]+: *//')
+if [ -n "$hits" ]; then
+    printf 'flags of the command line in a library (write option '"'name value'"'):\n%s\n' "$hits"
+    bad=1
+fi
 # Headers that only .cpp files of the importers include: they say so in their first lines.
 inner='^postproc/importers/(hdf5/hdf5_numbers|hdf5/hdf5_chunks|hdf5/hdf5_handle|solver_number)\.h:'
 for room in core geometry postproc surrogates cases; do

@@ -202,9 +202,9 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
         return pitch_region(model, options, progress);
     }
     if (!axis_of(options, "gap") || !axis_of(options, "heave_velocity")) {
-        throw core::InputError("range",
-                               "heave alone has the states gap and heave_velocity: a region in heave needs both", {},
-                               "leave out --motion heave, or use --axes gap=0:0.5,heave_velocity=-0.1:0.1");
+        throw core::InputError(
+            "range", "heave alone has the states gap and heave_velocity: a region in heave needs both", {},
+            "leave out option 'motion heave', or use option 'axes gap=0:0.5,heave_velocity=-0.1:0.1'");
     }
     const HeaveRegionSetup setup(model, options);
     const bool gap_first = options.axes[0].name == "gap";

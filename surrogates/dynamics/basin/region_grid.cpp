@@ -13,7 +13,7 @@ namespace underbody::dynamics {
 namespace {
 
 [[noreturn]] void refuse(const std::string& why) {
-    throw core::InputError("range", why, {}, "for instance --axes gap=0:0.5,heave_velocity=-0.1:0.1");
+    throw core::InputError("range", why, {}, "for instance option 'axes gap=0:0.5,heave_velocity=-0.1:0.1'");
 }
 
 }  // namespace

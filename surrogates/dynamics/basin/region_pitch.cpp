@@ -86,7 +86,7 @@ StabilityRegion pitch_region(const Model& model, const RegionOptions& options, c
     const std::size_t first = state_of(options.axes[0].name), second = state_of(options.axes[1].name);
     if (first != 0 && second != 0 && !options.held.has(Channel::gap)) {
         throw core::InputError("missing", "the region holds the gap, but nothing says at what", {},
-                               "give it: --conditions gap=20mm");
+                               "give it: option 'conditions gap=20mm'");
     }
     const PitchEnds ends(plant, options, setup.escape, setup.sizes);
     progress.report(0.02, "finding where starts end");

@@ -101,7 +101,7 @@ ForcePoints force_points(const Model& declared, const Conditions& given) {
     const std::size_t count = points_of(axes, 1);
     if (count > most_points) {
         throw core::InputError("range", "the tables of the model have more than a million set points together",
-                               {declared.name, {}, {}, {}}, "hold one of their axes, such as --where \"speed=0.5\"");
+                               {declared.name, {}, {}, {}}, "hold one of their axes, such as option 'where speed=0.5'");
     }
     std::vector<std::vector<double>> columns(axes.size()), forces(quantities.size());
     std::vector<StaticModel> models;

@@ -178,7 +178,7 @@ std::vector<TestMotion> motions_from_runs(const dynamics::Model& model, const dy
     }
     if (motions.empty()) {
         throw core::InputError("few", "no run is long enough to predict over half of the horizon",
-                               {data.folder.string(), {}, {}, {}}, "take a shorter --horizon");
+                               {data.folder.string(), {}, {}, {}}, "take a shorter option 'horizon'");
     }
     return motions;
 }

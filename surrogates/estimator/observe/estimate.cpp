@@ -181,7 +181,7 @@ ObserverDesign design_linear(const AugmentedModel& model, const std::vector<Prep
     if ((o.observer == "reduced" || o.observer == "disturbance") && !velocity) {
         throw core::InputError("missing",
                                "the " + o.observer + " observer needs measured heave_velocity, and the data have none",
-                               {}, "take --observer extended, kalman or full: they need the gap alone");
+                               {}, "take extended, kalman or full (option 'observer'): they need the gap alone");
     }
     const std::vector<std::string> sensors =
         velocity ? std::vector<std::string>{"heave_velocity", "gap"} : std::vector<std::string>{"gap"};

@@ -74,7 +74,7 @@ void check_path(const std::filesystem::path& path, const ForceTable& table, bool
     }
     if (!overwrite && !is_export(path)) {
         throw core::InputError("exists", "the file is there and is no force table that Underbody wrote",
-                               {path.string(), {}, {}, {}}, "choose another name, or say --overwrite");
+                               {path.string(), {}, {}, {}}, "choose another name, or say option 'overwrite'");
     }
 }
 
@@ -113,7 +113,7 @@ ExportResult export_tables(const std::vector<ForceTable>& tables, const std::str
         throw core::UsageError("format",
                                "the format " + format + " takes at most " + std::to_string(found->most_axes) +
                                    " axes, this table has " + std::to_string(axes),
-                               {}, "hold one of them: select rows with --where");
+                               {}, "hold one of them: select rows with option 'where'");
     }
     for (const ForceTable& table : tables) {
         check_path(path, table, options.overwrite);

@@ -55,7 +55,7 @@ RangePolicies parse_range_policies(const std::string& text) {
         if (equals == std::string::npos) {
             if (policies.others) {
                 throw core::UsageError("range", "the range policy of all axes is given twice: '" + text + "'", {},
-                                       "such as --range extrapolate,gap=refuse");
+                                       "such as option 'range extrapolate,gap=refuse'");
             }
             policies.others = known_policy(word);
             continue;
@@ -63,7 +63,7 @@ RangePolicies parse_range_policies(const std::string& text) {
         const std::string axis(core::trimmed(word.substr(0, equals)));
         if (axis.empty()) {
             throw core::UsageError("range", "'" + word + "' names no axis", {},
-                                   "such as --range gap=refuse,pitch=clamp");
+                                   "such as option 'range gap=refuse,pitch=clamp'");
         }
         const bool known = std::any_of(policies.named.begin(), policies.named.end(),
                                        [&](const auto& entry) { return entry.first == axis; });

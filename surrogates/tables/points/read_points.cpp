@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
     throw core::InputError("parse", what, {path.string(), {}, {}, {}},
-                           "a JSON table is one that 'underbody export --format json' wrote");
+                           "a JSON table is one that an export with option 'format json' wrote");
 }
 
 /// Columns and the line of facts of one quantity.
