@@ -42,7 +42,8 @@ const std::vector<Exporter>& exporters() {
          true,
          nullptr,
          2},
-        {{"fmu", table_ending("fmu"), "FMU 2.0, model exchange and co-simulation, Linux x86-64, source included"},
+        {{"fmu", table_ending("fmu"),
+          "FMU 2.0, model exchange and co-simulation; Linux and (with its cross compiler) Windows, source included"},
          export_fmu},
     };
     return all;

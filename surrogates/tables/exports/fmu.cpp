@@ -1,21 +1,13 @@
 // FMU 2.0 for model exchange and co-simulation: the C header of the table with the standard's functions around it.
 // FMI Specification 2.0.4. Inputs are the axes; outputs the value, its slopes, its error and whether the point lies
 // outside.
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <cstdlib>
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/hash.h"
 #include "core/text.h"
 #include "surrogates/tables/exports/export_grid.h"
-#include "surrogates/tables/exports/zip.h"
-
-extern char** environ;
+#include "surrogates/tables/exports/fmu_package.h"
 
 namespace underbody::tables {
 
@@ -52,7 +44,9 @@ typedef struct {
     fmi2Real nextEventTime;
 } fmi2EventInfo;
 
-#if defined(__GNUC__)
+#if defined(_WIN32)
+#define EXPORTED __declspec(dllexport)
+#elif defined(__GNUC__)
 #define EXPORTED __attribute__((visibility("default")))
 #else
 #define EXPORTED
@@ -422,26 +416,6 @@ std::string description(const ExportGrid& grid, const std::string& guid) {
     return xml + "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 
-/// Compiles in a folder with relative names, so that the bytes do not depend on where. False when there is no compiler
-/// or it failed.
-bool compiled(const std::filesystem::path& folder) {
-    std::string script =
-        "cd \"$0\" && exec cc -std=c99 -O2 -fPIC -shared -fvisibility=hidden -Wl,--build-id=none -s -o table.so fmu.c";
-    std::string shell = "sh";
-    std::string option = "-c";
-    std::string where = folder.string();
-    char* arguments[] = {shell.data(), option.data(), script.data(), where.data(), nullptr};
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-    pid_t child = 0;
-    const int failed = posix_spawnp(&child, "sh", &actions, nullptr, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    int status = 1;
-    return failed == 0 && waitpid(child, &status, 0) == child && status == 0;
-}
-
 }  // namespace
 
 void export_fmu(const ExportGrid& asked, const std::filesystem::path& path, ExportResult& result) {
@@ -451,28 +425,9 @@ void export_fmu(const ExportGrid& asked, const std::filesystem::path& path, Expo
     ExportResult ignored;
     export_c(grid, folder.path() / "table.h", ignored);
     const std::string header = core::read_file(folder.path() / "table.h");
-    const std::string hash = core::content_hash(header);
-    const std::string guid = "{" + hash.substr(0, 8) + "-" + hash.substr(8, 4) + "-" + hash.substr(12, 4) + "-" +
-                             hash.substr(16, 4) + "-" + hash.substr(20, 12) + "}";
-    const std::string code = source(grid, guid);
-    core::write_file(folder.path() / "fmu.c", code);
-    std::vector<std::pair<std::string, std::string>> entries = {{"modelDescription.xml", description(grid, guid)}};
-#if defined(__x86_64__)
-    if (compiled(folder.path())) {
-        entries.emplace_back("binaries/linux64/" + grid.name + ".so", core::read_file(folder.path() / "table.so"));
-    } else {
-        result.remarks.push_back(
-            {core::Problem::Severity::warning,
-             "there is no working C compiler 'cc': the FMU holds its source only (sources/), no binary for Linux",
-             {}});
-    }
-#else
-    result.remarks.push_back(
-        {core::Problem::Severity::warning, "this machine is not x86-64: the FMU holds its source only (sources/)", {}});
-#endif
-    entries.emplace_back("sources/fmu.c", code);
-    entries.emplace_back("sources/table.h", header);
-    core::write_file(path, zip_archive(entries, "Underbody"));
+    const std::string guid = fmu_guid(header);
+    write_fmu(path, grid.name, description(grid, guid), {{"fmu.c", source(grid, guid)}, {"table.h", header}},
+              result.remarks);
 }
 
 }  // namespace underbody::tables

@@ -4,8 +4,10 @@
 
 #include <numeric>
 
+#include "core/text.h"
 #include "tests/surrogates/tables/exports_support.h"
 #include "tests/surrogates/tables/fmu_loader.h"
+#include "tests/surrogates/tables/fmu_wine.h"
 
 namespace underbody {
 namespace {
@@ -232,6 +234,43 @@ TEST(ExportsOfFmu, GiveSeveralForces) {
         }
     }
     fmu.free(instance);
+}
+
+TEST(ExportsOfFmu, RunUnderWindowsAsHere) {
+    UNDERBODY_NEEDS_WINE();
+    core::TemporaryFolder folder;
+    const ForceTable table = test::sum_of_tables();
+    export_table(table, "fmu", folder.path() / "lift.fmu");
+    const std::string first = core::read_file(folder.path() / "lift.fmu");
+    export_table(table, "fmu", folder.path() / "lift.fmu");
+    EXPECT_TRUE(first == core::read_file(folder.path() / "lift.fmu")) << "the same table must give the same bytes";
+    const auto entries = unzipped(first);
+    ASSERT_TRUE(entries.contains("binaries/win64/lift.dll"));
+    const std::string& xml = entries.at("modelDescription.xml");
+    const std::size_t g = xml.find("guid=\"") + 6;
+    const std::size_t n = table.axes().size();
+    const auto points = test::random_points(table, 2000);
+    std::string commands;
+    for (std::size_t i = 0; i < 2000; ++i) {
+        commands += "set " + std::to_string(n);
+        for (std::size_t k = 0; k < n; ++k) {
+            commands += " " + std::to_string(k) + " " + core::format_number(points[i * n + k]);
+        }
+        commands += "\nget " + std::to_string(n + 4);
+        for (std::size_t k = 0; k < n + 4; ++k) {
+            commands += " " + std::to_string(n + k);
+        }
+        commands += "\n";
+    }
+    const auto out =
+        test::called_under_wine(entries.at("binaries/win64/lift.dll"), xml.substr(g, xml.find('"', g) - g), commands);
+    ASSERT_EQ(out.size(), 2000 * (n + 4));
+    const test::Sizes sizes(table, points);
+    for (std::size_t i = 0; i < 2000; ++i) {
+        const double* at = &out[i * (n + 4)];
+        ASSERT_NO_FATAL_FAILURE(test::expect_alike(table, &points[i * n], sizes, 1e-12, at[0], at + 1, at[1 + n],
+                                                   at[2 + n] != 0, at[3 + n] != 0));
+    }
 }
 
 }  // namespace
