@@ -1,14 +1,16 @@
-"""bench_scaling.py PROGRAM [N...]: studies of N cases made by this script, as many as a design campaign may have.
+"""bench_scaling.py PROGRAM [N | NxR...]: studies of N cases made by this script, as many as a design campaign may have.
 
 Each case is a closed cube of six faces with a pressure gradient of its own, so that what is timed is what a case costs beside
 its field: the name, the condition, the store, the table, the report. Printed for each N: the first run, a run with nothing
-changed, a run after one file changed, list, compare; the largest memory of each; the store on disk. Lift is checked against
-Archimedes: gradient times volume.
+changed, a run after one file changed, list, compare with itself as stored; the largest memory of each; the store on disk. NxR: the
+store then holds R results of each case, as after R - 1 earlier versions of all files (rows copied under other keys by this script),
+and what needs no computing is measured again.
 """
 import json
 import os
 import pathlib
 import resource
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -29,9 +31,11 @@ def make_study(folder, count):
     (folder / "fields").mkdir(parents=True)
     for i in range(count):
         variant, gap = f"v{i // 10}", 5 + i % 10
-        write_case(folder / "fields" / f"{variant}-h{gap}.csv", 100 + gap + 0.01 * (i // 10))
+        if i % 10 == 0:
+            (folder / "fields" / variant).mkdir()
+        write_case(folder / "fields" / variant / f"h{gap}.csv", 100 + gap + 0.01 * (i // 10))
     (folder / "study.toml").write_text(
-        'title = "scaling"\n\n[[case]]\nfiles = "fields/{variant}-h{gap:mm}.csv"\n\n'
+        'title = "scaling"\n\n[[case]]\nfiles = "fields/{variant}/h{gap:mm}.csv"\n\n'
         '[[table]]\nname = "lift"\nquantity = "lift_force"\naxes = ["gap"]\nwhere = { variant = "v0" }\n')
 
 
@@ -51,25 +55,65 @@ def timed(words):
     return took, processor() - before, output
 
 
+def largest_memory(words):
+    """MB that a command holds at most, measured in a process of its own."""
+    code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True); "
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+    return int(subprocess.run([sys.executable, "-c", code, *words], stdout=subprocess.PIPE, text=True, check=True).stdout) / 1024
+
+
+def grow(folder, results):
+    """Earlier results beside those there: the same values under other keys, with smaller numbers, so that they are older."""
+    database = sqlite3.connect(folder / ".underbody" / "store.sqlite")
+    (most,) = database.execute("SELECT max(id) FROM result").fetchone()
+    database.execute("PRAGMA synchronous = OFF")
+    for generation in range(1, results):
+        shift = -generation * most
+        database.execute("INSERT INTO result SELECT id + ?, kind, name, key || ?, inputs, about, summary, made FROM result "
+                         "WHERE id > 0", (shift, f"-{generation}"))
+        database.execute("INSERT INTO result_value SELECT id + ?, bytes FROM result_value WHERE id > 0", (shift,))
+        database.commit()
+    rows = database.execute("SELECT count(*) FROM result").fetchone()[0]
+    database.close()
+    return rows
+
+
+def measure(program, folder, steps):
+    line = []
+    for name, words in steps:
+        if name == "one changed":
+            write_case(folder / "fields" / "v0" / "h5.csv", 150)
+        words = [program, *map(str, words), "--json", "--quiet"]
+        took, used, output = timed(words)
+        if name == "list":
+            line.append(f"{len(json.loads(output)['cases'])} listed")
+        line.append(f"{name} {took:.2f} s ({used:.2f} processor)")
+        if name in ("nothing changed", "list", "compare"):
+            line[-1] += f" {largest_memory(words):.0f} MB"
+    return ", ".join(line)
+
+
 def main():
     program = sys.argv[1] if len(sys.argv) > 1 else "build/release/bin/underbody"
-    for count in [int(word) for word in sys.argv[2:]] or [1000, 10000]:
+    for word in sys.argv[2:] or ["1000", "10000"]:
+        count, _, results = word.partition("x")
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(scratch) / "study"
-            make_study(folder, count)
-            line = [f"{count} cases:"]
-            for name, words in (("first run", ["study", "run", folder]), ("nothing changed", ["study", "run", folder]),
-                                ("one changed", ["study", "run", folder]), ("list", ["study", "list", folder])):
-                if name == "one changed":
-                    write_case(folder / "fields" / "v0-h5.csv", 150)
-                took, used, output = timed([program, *map(str, words), "--json", "--quiet"])
-                line.append(f"{name} {took:.2f} s ({used:.2f} processor),")
-            cases = json.loads(output).get("cases", [])
-            line.append(f"{len(cases)} listed,")
-            memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-            store = sum(os.path.getsize(path) for path in folder.rglob(".underbody/*") if path.is_file())
-            line.append(f"largest memory {memory:.0f} MB, store {store / 1e6:.1f} MB ({store / count:.0f} B a case)")
-            print(" ".join(line), flush=True)
+            begin = time.perf_counter()
+            make_study(folder, int(count))
+            print(f"{count} cases (made in {time.perf_counter() - begin:.1f} s):", flush=True)
+            run = ["study", "run", folder]
+            still = [("nothing changed", run), ("list", ["study", "list", folder]),
+                     ("compare", ["study", "compare", folder, folder, "--as-stored"])]
+            print("  " + measure(program, folder, [("first run", run), ("one changed", run), *still]), flush=True)
+            size = sum(os.path.getsize(path) for path in folder.rglob(".underbody/*") if path.is_file())
+            report = max((path.stat().st_size for path in folder.rglob("*.html")), default=0)
+            print(f"  store {size / 1e6:.1f} MB ({size / int(count):.0f} B a case), report {report / 1e6:.1f} MB", flush=True)
+            if results:
+                begin = time.perf_counter()
+                rows = grow(folder, int(results))
+                print(f"  {rows} results (made in {time.perf_counter() - begin:.1f} s): {measure(program, folder, still)}",
+                      flush=True)
 
 
 if __name__ == "__main__":
