@@ -26,7 +26,7 @@ done
 # Messages of libraries name no flags of the command line: they say "option 'unit mm'", which each front words its way.
 # Not meant: what is handed to sbatch and the compiler, and what doctor says that a program is for.
 hits=$(grep -rnE --include='*.h' --include='*.cpp' '"([^"\\]|\\.)*--[a-z]{2}' core geometry postproc surrogates cases 2>/dev/null |
-    grep -vE '^(cases/(sweep_slurm|surroundings)\.cpp|surrogates/tables/exports/fmu\.cpp):|--nice=|^[^:]*:[0-9]+: *//')
+    grep -vE '^(cases/(sweep_slurm|surroundings)\.cpp|surrogates/tables/exports/fmu_package\.cpp):|--nice=|^[^:]*:[0-9]+: *//')
 if [ -n "$hits" ]; then
     printf 'flags of the command line in a library (write option '"'name value'"'):\n%s\n' "$hits"
     bad=1

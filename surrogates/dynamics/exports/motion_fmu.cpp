@@ -252,7 +252,7 @@ void check_file(const std::filesystem::path& path, bool overwrite) {
     if (std::filesystem::is_directory(path, ignored) ||
         core::read_file(path).substr(0, 4096).find("by Underbody") == std::string::npos) {
         throw core::InputError("exists", "the file is there and is no FMU that Underbody wrote",
-                               {path.string(), {}, {}, {}}, "choose another name, or say --overwrite");
+                               {path.string(), {}, {}, {}}, "choose another name, or say option 'overwrite'");
     }
 }
 
