@@ -55,6 +55,7 @@ BodyShape shape_from(const core::TomlTable& root, const std::string& name) {
     shape.edge_radius = body.quantity_or("edge_radius", "m", 0);
     shape.taper = body.quantity_or("taper", "1", 0);
     shape.base_pitch = body.quantity_or("base_pitch", "rad", 0);
+    shape.base_offset = body.quantity_or("base_offset", "m", 0);
     if (root.has("protrusion")) {
         const core::TomlTable table = root.table("protrusion");
         Protrusion p;
@@ -118,7 +119,8 @@ std::string write_shape(const BodyShape& shape) {
     optional_length("base_length", shape.base_length);
     optional_length("base_width", shape.base_width);
     out += "edge_radius = " + length_text(shape.edge_radius) + "\ntaper = " + number(shape.taper) +
-           "\nbase_pitch = \"" + number(shape.base_pitch) + " rad\"\n";
+           "\nbase_pitch = \"" + number(shape.base_pitch) + " rad\"\nbase_offset = " + length_text(shape.base_offset) +
+           "\n";
     if (shape.protrusion) {
         const Protrusion& p = *shape.protrusion;
         out += "\n[protrusion]\nposition = " + number(p.position) + "\nheight = " + length_text(p.height) +
@@ -144,6 +146,10 @@ std::string shape_hash(const BodyShape& shape) {
     hasher.add(name_of(shape.base));
     number(extent.tail / scale), number(extent.half_width / scale);
     number(shape.edge_radius), number(shape.taper), number(shape.base_pitch);
+    if (shape.base_offset != 0) {  // shapes from before there was one keep their hash
+        hasher.add("base_offset");
+        number(shape.base_offset);
+    }
     if (shape.protrusion && shape.protrusion->height > 0) {
         const Protrusion& p = *shape.protrusion;
         hasher.add("protrusion").add(name_of(p.profile));

@@ -42,9 +42,9 @@ struct Nozzle {
 /// the side of the base rectangle and is tangent to the ellipsoid at the midplane: a circle where one exists, that is
 /// when the ellipsoid stands out beyond the rectangle by no more than the depth of the base, else a quarter of an
 /// ellipse, which runs smoothly into the base. `ellipse_front`: the same without the cut in front. `taper` and
-/// `base_pitch`, both about the centre of the flat base, then move the part below the midplane, by the square of the
-/// depth: at the base in full, at the midplane nothing, with no kink there. What stands below the base (a protrusion)
-/// moves with the base and keeps its shape.
+/// `base_pitch`, both about the centre of the flat base, and `base_offset` then move the part below the midplane, by
+/// the square of the depth: at the base in full, at the midplane nothing, with no kink there. What stands below the
+/// base (a protrusion) moves with the base and keeps its shape.
 struct BodyShape {
     std::string name = "body";
     double length = 0.2032;
@@ -58,6 +58,7 @@ struct BodyShape {
     double edge_radius = 0;  ///< of the rounding between base and hull (rolling ball on each piece of the hull)
     double taper = 0;        ///< the base narrows by this fraction of its width at its centre, from nose to tail
     double base_pitch = 0;   ///< nose up positive, about the centre of the base
+    double base_offset = 0;  ///< m, forward positive: how far the base lies from where the cut leaves it
     std::optional<Protrusion> protrusion;
     std::optional<Nozzle> nozzle;
     friend bool operator==(const BodyShape&, const BodyShape&) = default;
@@ -92,8 +93,8 @@ BodyShape shape_from(const core::TomlTable& root, const std::string& name);
 /// the nearest allowed one. `table` (may be null) gives the places of the keys.
 void check(const BodyShape& shape, const core::TomlTable* table = nullptr);
 
-/// m, from the axis of the ellipsoid forward to the centre of the flat base (the origin of its meshes): 0 but for
-/// `ellipse_front`. The shape must have passed `check`.
+/// m, from the axis of the ellipsoid forward to the centre of the flat base (the origin of its meshes): `base_offset`,
+/// and for `ellipse_front` where its cut leaves the base. The shape must have passed `check`.
 double base_centre(const BodyShape& shape);
 
 /// Tip to tip width of the protrusion: as written, or as wide as the flat base allows at its place (less 2 % of the

@@ -117,6 +117,7 @@ ExactBody::ExactBody(const BodyShape& shape)
     const BodyShape::BaseExtent extent = shape.base_extent();
     taper_ = shape.taper / (extent.nose - extent.tail);
     slope_ = std::tan(shape.base_pitch);
+    offset_ = shape.base_offset;
     if (shape.base != BaseKind::ellipse) {
         along_ = SideProfile(-extent.tail, a_, depth_, shape.edge_radius);
         across_ = SideProfile(extent.half_width, b_, depth_, shape.edge_radius);
@@ -126,7 +127,7 @@ ExactBody::ExactBody(const BodyShape& shape)
     }
     highest_fillet_ = std::max(fillet_top(0), fillet_top(half_pi));
     if (shape.base == BaseKind::ellipse_front) {
-        base_centre_ = 0.5 * (ellipsoid_point(0, 0).x - along_.base_half());
+        cut_centre_ = 0.5 * (ellipsoid_point(0, 0).x - along_.base_half());
     }
     if (!shape.protrusion) {
         return;
@@ -240,23 +241,31 @@ Vec3 ExactBody::bent(const Vec3& p) const {
     }
     // What stands below the base moves with it and keeps its shape.
     const double g = square(std::min(1.0, (depth_ - p.z) / depth_));
-    const double x = p.x - base_centre_;
-    return {p.x, p.y * (1 + taper_ * x * g), p.z + slope_ * x * g};
+    const double x = p.x - cut_centre_;
+    return {p.x + offset_ * g, p.y * (1 + taper_ * x * g), p.z + slope_ * x * g};
 }
 
 Vec3 ExactBody::unbent(const Vec3& p) const {
     if (!is_bent() || p.z >= depth_) {
         return p;
     }
-    const double x = p.x - base_centre_;
-    if (p.z <= slope_ * x) {
-        return {p.x, p.y / (1 + taper_ * x), p.z - slope_ * x};
+    const double from_base = p.x - offset_ - cut_centre_;
+    if (p.z <= slope_ * from_base) {
+        return {p.x - offset_, p.y / (1 + taper_ * from_base), p.z - slope_ * from_base};
     }
-    // With v = depth - height: v' = v - k v^2, k = slope x / depth^2.
-    const double k = slope_ * x / square(depth_), bent_v = depth_ - p.z;
-    const double v = 2 * bent_v / (1 + std::sqrt(std::max(0.0, 1 - 4 * k * bent_v)));
+    // With v = depth - height: v' = v - k v^2, k = slope x / depth^2; where the base is moved x follows v.
+    const double bent_v = depth_ - p.z;
+    double x = p.x - cut_centre_, v = bent_v;
+    for (int i = 0; i < 60; ++i) {
+        const double k = slope_ * x / square(depth_), before = v;
+        v = 2 * bent_v / (1 + std::sqrt(std::max(0.0, 1 - 4 * k * bent_v)));
+        x = p.x - cut_centre_ - offset_ * square(v / depth_);
+        if (std::abs(v - before) < 1e-16 * depth_ || offset_ == 0) {
+            break;
+        }
+    }
     const double g = square(v / depth_);
-    return {p.x, p.y / (1 + taper_ * x * g), depth_ - v};
+    return {x + cut_centre_, p.y / (1 + taper_ * x * g), depth_ - v};
 }
 
 double ExactBody::profile_depth(double d) const {

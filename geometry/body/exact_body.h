@@ -2,9 +2,9 @@
 // measured.
 //
 // Coordinates: x forward from the axis of the ellipsoid, y to port, height u above the flat base, before or after the
-// bend that makes taper and base pitch. A mesh has its origin at the centre of the base, `base_centre()` forward of the
-// axis. The unbent body is the intersection of convex pieces: the ellipsoid, and the sides that
-// cut it, each with its own rounded edge to the base.
+// bend that makes taper, base pitch and base offset. A mesh has its origin at the centre of the base, `base_centre()`
+// forward of the axis. The unbent body is the intersection of convex pieces: the ellipsoid, and the sides that cut it,
+// each with its own rounded edge to the base.
 #pragma once
 
 #include <vector>
@@ -79,8 +79,10 @@ public:
     [[nodiscard]] double semi_z() const { return c_; }
     [[nodiscard]] double depth() const { return depth_; }
     [[nodiscard]] double top() const { return depth_ + c_; }
-    /// x of the middle between the ends of the flat base: 0 but for `ellipse_front`.
-    [[nodiscard]] double base_centre() const { return base_centre_; }
+    /// x of the middle between the ends of the flat base, bent; and before it is moved by `base_offset`: 0 but for
+    /// `ellipse_front`.
+    [[nodiscard]] double base_centre() const { return cut_centre_ + offset_; }
+    [[nodiscard]] double cut_centre() const { return cut_centre_; }
 
     [[nodiscard]] bool cut(Side side) const;
     [[nodiscard]] const SideProfile& profile(Side side) const { return side == Side::port ? across_ : along_; }
@@ -95,10 +97,10 @@ public:
     /// Highest of them.
     [[nodiscard]] double highest_fillet() const;
 
-    /// Bends a point of the unbent body (taper, pitch of the base), and back.
+    /// Bends a point of the unbent body (taper, pitch and offset of the base), and back.
     [[nodiscard]] Vec3 bent(const Vec3& p) const;
     [[nodiscard]] Vec3 unbent(const Vec3& p) const;
-    [[nodiscard]] bool is_bent() const { return taper_ != 0 || slope_ != 0; }
+    [[nodiscard]] bool is_bent() const { return taper_ != 0 || slope_ != 0 || offset_ != 0; }
 
     /// How deep the protrusion stands below the base at a point of the (unbent) base plane; 0 outside it.
     [[nodiscard]] double protrusion_depth(double x, double y) const;
@@ -135,9 +137,10 @@ private:
     std::vector<SpineEntry> spine_table_;
     BodyShape shape_;
     double a_, b_, c_, depth_;
-    double base_centre_ = 0;
-    double taper_ = 0;  // d(width factor)/dx at the base
-    double slope_ = 0;  // tangent of the pitch of the base
+    double cut_centre_ = 0;
+    double taper_ = 0;   // d(width factor)/dx at the base
+    double slope_ = 0;   // tangent of the pitch of the base
+    double offset_ = 0;  // of the base
     double highest_fillet_ = 0;
     SideProfile along_, across_;
     // protrusion profile: an arc or a line for the flank, an arc of the blend

@@ -57,7 +57,8 @@ struct Section {
     }
 };
 
-// What the bend (y by 1 + taper x g, height by slope x g) makes of the moments of a thin section at a height.
+// What the bend (x by offset g, y by 1 + taper x g, height by slope x g) makes of the moments of a thin section at a
+// height; x counts from the centre of the base, before the bend of the cut one, after it of the one that was moved.
 class Bend {
 public:
     explicit Bend(const ExactBody& body) : depth_(body.depth()) {
@@ -65,14 +66,19 @@ public:
         const BodyShape::BaseExtent extent = shape.base_extent();
         taper_ = shape.taper / (extent.nose - extent.tail);
         slope_ = std::tan(shape.base_pitch);
+        offset_ = shape.base_offset;
     }
     [[nodiscard]] VolumeMoments of(const Section& s, double height) const {
         const double v = std::clamp((depth_ - height) / depth_, 0.0, 1.0);
         const double widening = taper_ * v * v, lift = slope_ * v * v;
-        const double lifting = height < 0 ? 0 : -2 * slope_ * v / depth_;  // d lift/d height
-        // Integral of x^n (1 + widening x)^m (1 + lifting x): the volume element is m = 1, y^2 of the bent body m = 3.
+        const double rate = height < 0 ? 0 : -2 * v / depth_;  // of g by the height
+        const double lifting = slope_ * rate, along = offset_ * (v * v - 1);
+        // A point that goes along the tilted base rises with it: the part of the volume element that has no x.
+        const double even = 1 - offset_ * rate * slope_ * v * v;
+        // Integral of x^n (1 + widening x)^m (even + lifting x): the volume element is m = 1, y^2 of the bent body m
+        // = 3.
         const auto with = [&](const std::array<double, 5>& of, std::size_t n, int m) {
-            std::array<double, 5> factor{1, lifting, 0, 0, 0};
+            std::array<double, 5> factor{even, lifting, 0, 0, 0};
             for (int i = 0; i < m; ++i) {
                 for (std::size_t k = 4; k > 0; --k) {
                     factor[k] += widening * factor[k - 1];
@@ -92,11 +98,15 @@ public:
         m.z = height * m.one + lift * m.x;
         m.zz = height * height * m.one + 2 * height * lift * m.x + lift * lift * m.xx;
         m.zx = height * m.x + lift * m.xx;
+        // Moved along: x + along.
+        m.zx += along * m.z;
+        m.xx += along * (2 * m.x + along * m.one);
+        m.x += along * m.one;
         return m;
     }
 
 private:
-    double depth_, taper_, slope_;
+    double depth_, taper_, slope_, offset_;
 };
 
 double root(const ExactBody& body, double height, double low, double high, bool of_x, double value) {
@@ -130,7 +140,7 @@ Section section(const ExactBody& body, double height) {
         port_fore = root(body, height, 0, pi / 2, false, port);
         port_aft = pi - port_fore;
     }
-    const double centre = body.base_centre();
+    const double centre = body.cut_centre();
     const auto along = [&](double t) {
         constexpr double step = 2e-5;
         const Vec3 p = body.ellipsoid_point(height, t);
@@ -156,7 +166,7 @@ Section section(const ExactBody& body, double height) {
 // What stands below the base: columns of water displaced, each down to the depth of the profile.
 VolumeMoments protrusion_moments(const ExactBody& body, const Bend& bend) {
     const ExactBody::Foot foot = body.protrusion_foot();
-    const double centre = body.base_centre();
+    const double centre = body.cut_centre();
     const auto columns = [&](const Section& over, double depth) {
         return integral([&](double u) { return bend.of(over, u); }, -depth, 0);
     };
@@ -222,7 +232,7 @@ VolumeMoments ExactBody::moments() const {
         sum = sum + protrusion_moments(*this, bend);
     }
     if (shape_.nozzle && shape_.nozzle->depth > 0) {
-        const Section bore = disc(shape_.base_x(shape_.nozzle->position) - base_centre_, shape_.nozzle->diameter / 2);
+        const Section bore = disc(shape_.base_x(shape_.nozzle->position) - cut_centre_, shape_.nozzle->diameter / 2);
         sum = sum + integral([&](double u) { return bend.of(bore, u); }, 0, shape_.nozzle->depth) * -1;
     }
     return sum;

@@ -27,6 +27,9 @@ core::FileTable body() {
              {"edge_radius", "m", "\"2 mm\"", "0", "radius of the rounding between base and hull"},
              {"taper", "1", "0.1", "0", "share of its width by which the base narrows from nose to tail"},
              {"base_pitch", "rad", "\"1 deg\"", "0", "tilt of the base about its centre, positive nose up"},
+             {"base_offset", "m", "\"-20 mm\"", "0",
+              "how far the base lies forward (negative: aft) of where the cut leaves it; the hull below the midplane "
+              "follows"},
              {"name", "text", "\"ellipse\"", "the name of the file", "name of the body in reports"}},
             true};
 }

@@ -162,6 +162,10 @@ void check_base(const BodyShape& shape, const Checker& checker) {
     const double limit = std::min(15 * degrees, bend);
     checker.angle("body", "base_pitch", shape.base_pitch, -limit, limit,
                   "the pitch of the base, which the hull below the midplane can follow without a fold");
+    // The hull leans by 2 base_offset / depth at the base: 58 degrees at this limit.
+    const double most = 0.8 * shape.base_depth();
+    checker.length("body", "base_offset", shape.base_offset, -most, most,
+                   "how far the base may lie forward of where the cut leaves it: four fifths of its depth");
 }
 
 void check_protrusion(const BodyShape& shape, const Checker& checker) {

@@ -116,7 +116,8 @@ std::map<std::string, std::array<double, 2>> allowed_ranges(const geometry::Body
         };
         const bool share = name == "body.base_cut" || name == "body.taper" || name.ends_with("position");
         const double most = unit == "rad" ? 0.35 : share ? 1 : std::max(2 * std::abs(value), 0.1 * shape.length);
-        ranges[name] = {end(unit == "rad" || name == "body.taper" ? -most : 0), end(most)};
+        const bool both_ways = unit == "rad" || name == "body.taper" || name == "body.base_offset";
+        ranges[name] = {end(both_ways ? -most : 0), end(most)};
     }
     return ranges;
 }

@@ -89,6 +89,9 @@ std::vector<std::pair<std::string, BodyShape>> family() {
         {"taper", evie_with("taper = 0.3\n")},
         {"taper of a rectangle", evie_with("base = \"rectangle\"\ntaper = 0.5\n")},
         {"pitched base", evie_with("base_pitch = \"2 deg\"\n")},
+        {"base moved aft", evie_with("base_offset = \"-30 mm\"\n")},
+        {"base moved forward, pitched, tapered",
+         evie_with("base_offset = \"15 mm\"\nbase_pitch = \"-1 deg\"\ntaper = -0.3\n")},
         {"small base", evie_with("base = \"rectangle\"\nbase_length = \"60 mm\"\nbase_width = \"40 mm\"\n")},
         {"all of it", evie_with("base = \"ellipse_front\"\nbase_pitch = \"1 deg\"\nedge_radius = \"3 mm\"\ntaper = "
                                 "0.2\n[nozzle]\ndiameter = \"5 mm\"\ndepth = \"3 mm\"\n[protrusion]\nheight = \"1.5 "

@@ -76,6 +76,21 @@ TEST(ExactMass, OfAPitchedBaseIsItsClosedForm) {
     EXPECT_NEAR(m.xx / level.xx, 1, 1e-9);
 }
 
+TEST(ExactMass, OfABaseThatWasMovedIsItsClosedForm) {
+    BodyShape shape;
+    const VolumeMoments plain = ExactBody(shape).moments();
+    shape.base_offset = -0.03;
+    const double a = shape.length / 2, b = shape.width / 2, c = shape.height / 2, k = shape.base_cut;
+    const VolumeMoments m = ExactBody(shape).moments();
+    // Sections slide as they are, by the square of their depth v; x counts from the base, which goes all the way:
+    // integral of (v^2 - 1) over the sections pi a b (1 - k^2 v^2) below the midplane, and the upper half.
+    const double left_behind = pi * a * b * c * (k * (-2.0 / 3 + 2 * k * k / 15) - 2.0 / 3) * shape.base_offset;
+    EXPECT_NEAR(m.one / plain.one, 1, 1e-12);
+    EXPECT_NEAR(m.z / plain.z, 1, 1e-12);
+    EXPECT_NEAR(m.x / left_behind, 1, 1e-9);
+    EXPECT_NEAR(m.yy / plain.yy, 1, 1e-12);
+}
+
 TEST(ExactMass, OfRidgeAndBoreIsTheirClosedForm) {
     BodyShape shape;
     const VolumeMoments plain = ExactBody(shape).moments();
@@ -99,7 +114,11 @@ TEST(ExactMass, IsWhereTheMeshesOfEveryKindOfBodyConverge) {
     all.nozzle = Nozzle{0.005, 0.5, 0.01};
     all.taper = 0.1;
     all.base_pitch = 1.5 * degree;
-    for (const BodyShape& shape : {shipped("rectangle"), all}) {
+    BodyShape moved = shipped("ellipse");
+    moved.base_offset = -0.03;
+    moved.base_pitch = -2 * degree;
+    moved.taper = -0.2;
+    for (const BodyShape& shape : {shipped("rectangle"), all, moved}) {
         const SurfaceMesh coarse_mesh = made(shape, 15000), fine_mesh = made(shape, 60000);
         const MassProperties exact = mass_properties(ExactBody(shape), coarse_mesh);
         const MassProperties coarse = mass_properties(coarse_mesh), fine = mass_properties(fine_mesh);
