@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t trust_region_from = 6;  // variables beyond which a plan cannot fill the space
+constexpr double apart = 0.01;  // share of the ranges within which two runs say the same
 
 /// How often a run near `x` gave a result: runs count by their distance, and two that did stand for what is known
 /// before any.
@@ -42,14 +42,31 @@ double chance_solved(const std::vector<SearchVariable>& variables, std::span<con
     return good / (good + bad);
 }
 
-bool differs(const std::vector<SearchVariable>& variables, const std::vector<double>& a, const std::vector<double>& b) {
-    for (std::size_t v = 0; v < variables.size(); ++v) {
-        if (std::abs(variables[v].scaled(a[v]) - variables[v].scaled(b[v])) > 1e-4) {
-            return true;
+/// Designs that a further one must not repeat.
+class Taken {
+public:
+    Taken(const std::vector<SearchVariable>& variables, const DesignSearch::NextOptions& options)
+        : variables_(variables) {
+        for (const auto& [at, fidelity] : options.planned) {
+            add(at);
         }
     }
-    return false;
-}
+    void add(const std::vector<double>& at) { designs_.push_back(at); }
+    [[nodiscard]] bool holds(std::span<const double> x) const {
+        return std::any_of(designs_.begin(), designs_.end(), [&](const std::vector<double>& other) {
+            for (std::size_t v = 0; v < variables_.size(); ++v) {
+                if (std::abs(variables_[v].scaled(x[v]) - variables_[v].scaled(other[v])) > apart) {
+                    return false;
+                }
+            }
+            return true;
+        });
+    }
+
+private:
+    const std::vector<SearchVariable>& variables_;
+    std::vector<std::vector<double>> designs_;
+};
 
 }  // namespace
 
@@ -255,11 +272,9 @@ void DesignSearch::choose_level(Candidate& candidate, const NextOptions& options
             point[bound.filled[v]] = candidate.at[v];
         }
     }
-    const std::size_t levels = bound.surrogate->process().levels();
     candidate.sigma_now = bound.surrogate->at(point).sigma;
-    candidate.level = levels - 1;
     double best = -1;
-    for (std::size_t t = 0; t < levels; ++t) {
+    for (const std::size_t t : bound.surrogate->fidelities()) {
         const double cost = t < options.level_costs.size() ? options.level_costs[t] : 1;
         const double after = bound.surrogate->sigma_after(point, point, t);
         const double gain = (candidate.sigma_now * candidate.sigma_now - after * after) / cost;
@@ -271,7 +286,7 @@ void DesignSearch::choose_level(Candidate& candidate, const NextOptions& options
     }
 }
 
-DesignSearch DesignSearch::with(const Candidate& candidate) const {
+DesignSearch DesignSearch::with(const std::vector<double>& at, std::size_t fidelity) const {
     DesignSearch result = *this;
     for (auto& [name, surrogate] : result.surrogates_) {
         for (const Objective& objective : problem_.objectives) {
@@ -282,20 +297,29 @@ DesignSearch DesignSearch::with(const Candidate& candidate) const {
             for (std::vector<double> point : bound.points) {
                 for (std::size_t v = 0; v < bound.filled.size(); ++v) {
                     if (bound.filled[v] != none) {
-                        point[bound.filled[v]] = candidate.at[v];
+                        point[bound.filled[v]] = at[v];
                     }
                 }
-                surrogate = surrogate.with({point, candidate.level, std::numeric_limits<double>::quiet_NaN(), 0});
+                surrogate = surrogate.with({point, fidelity, std::numeric_limits<double>::quiet_NaN(), 0});
             }
         }
     }
     return result;
 }
 
+DesignSearch DesignSearch::with_planned(const NextOptions& options) const {
+    DesignSearch search = *this;
+    for (const auto& [at, fidelity] : options.planned) {
+        search = search.with(at, fidelity);
+    }
+    return search;
+}
+
 std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, core::Progress& progress) const {
     const std::size_t axes = problem_.variables.size();
     std::vector<Candidate> batch;
-    DesignSearch search = *this;
+    DesignSearch search = with_planned(options);
+    Taken taken(problem_.variables, options);
     std::vector<double> centre;
     double best = best_of(options.solved);
     if (options.region && axes > trust_region_from && !std::isnan(best)) {
@@ -316,7 +340,8 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
             high[v] = std::min(1.0, centre[v] + options.region->length / 2);
         }
         const auto acquisition = [&](std::span<const double> u) {
-            const double value = search.log_acquisition(unscaled(u), best, options, nullptr);
+            const std::vector<double> x = unscaled(u);
+            const double value = taken.holds(x) ? -infinity : search.log_acquisition(x, best, options, nullptr);
             return std::isfinite(value) ? value : -1e10;
         };
         std::vector<std::pair<double, std::vector<double>>> tried;
@@ -332,7 +357,7 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
         std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(refined), tried.end(),
                           [](const auto& a, const auto& b) { return a.first > b.first; });
         if (tried.front().first <= -1e10) {
-            break;  // no design meets the known limits
+            break;  // no further design meets the known limits
         }
         for (std::size_t i = 0; i < refined; ++i) {
             nlopt::opt local(nlopt::LN_SBPLX, static_cast<unsigned>(axes));
@@ -358,14 +383,9 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
         Candidate candidate;
         (void)search.log_acquisition(unscaled(chosen->second), best, options, &candidate);
         search.choose_level(candidate, options);
-        const bool again = std::any_of(batch.begin(), batch.end(), [&](const Candidate& c) {
-            return !differs(problem_.variables, c.at, candidate.at);
-        });
-        if (again) {
-            break;  // the rest of the batch would say the same again
-        }
         batch.push_back(candidate);
-        search = search.with(candidate);
+        search = search.with(candidate.at, candidate.level);
+        taken.add(candidate.at);
     }
     return batch;
 }
@@ -374,7 +394,8 @@ std::vector<Candidate> DesignSearch::next_to_learn(const NextOptions& options, c
     const std::size_t axes = problem_.variables.size();
     const Plan where = sobol_plan(64, axes, options.seed + 1000);
     std::vector<Candidate> batch;
-    DesignSearch search = *this;
+    DesignSearch search = with_planned(options);
+    Taken taken(problem_.variables, options);
     const Bound bound = bind(problem_.objectives.front().response);
     const auto filled = [&](std::span<const double> u) {
         std::vector<double> point = bound.points.front();
@@ -389,16 +410,15 @@ std::vector<Candidate> DesignSearch::next_to_learn(const NextOptions& options, c
     while (batch.size() < options.count) {
         progress.check();
         const Surrogate& surrogate = search.surrogates_.at(problem_.objectives.front().response.quantity);
-        const std::size_t levels = surrogate.process().levels();
         double most = 0;
         Candidate chosen;
         for (const std::vector<double>& u : sobol_plan(100, axes, options.seed + batch.size())) {
             const std::vector<double> x = unscaled(u);
-            if (!known_limits_hold(x)) {
+            if (taken.holds(x) || !known_limits_hold(x)) {
                 continue;
             }
             const double solved = chance_solved(problem_.variables, x, options);
-            for (std::size_t t = 0; t < levels; ++t) {
+            for (const std::size_t t : surrogate.fidelities()) {
                 double gain = 0;
                 for (const std::vector<double>& other : where) {
                     const std::vector<double> target = filled(other);
@@ -422,7 +442,8 @@ std::vector<Candidate> DesignSearch::next_to_learn(const NextOptions& options, c
             break;
         }
         batch.push_back(chosen);
-        search = search.with(chosen);
+        search = search.with(chosen.at, chosen.level);
+        taken.add(chosen.at);
     }
     return batch;
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/progress.h"
@@ -62,10 +63,13 @@ struct Candidate {
     double log_value = 0;      ///< log of the acquisition, for candidates of next_designs()
     double chance_valid = 1;   ///< that all limits hold
     double chance_solved = 1;  ///< that a run gives a result, learned from runs that failed
-    std::size_t level = 0;     ///< fidelity that pays best
+    std::size_t level = 0;     ///< fidelity that pays best, of those that have runs
     double sigma_now = 0;      ///< of the first objective at the candidate, highest fidelity
     double sigma_after = 0;    ///< expected after its run on `level`
 };
+
+/// Beyond so many variables a plan cannot fill the ranges: a search keeps to a trust region.
+constexpr std::size_t trust_region_from = 6;
 
 /// A box around the best design, for searches in more variables than a plan can fill (Eriksson et al. 2019).
 struct TrustRegion {
@@ -94,12 +98,15 @@ public:
         std::vector<double> level_costs;          ///< core-seconds of a run of each fidelity; one entry: one fidelity
         std::vector<std::vector<double>> solved;  ///< designs that were run, SI
         std::vector<std::vector<double>> failed;  ///< designs whose run gave no result
-        std::optional<TrustRegion> region;        ///< around the best known design
+        /// Designs that were decided on and have no result yet, and their fidelities: they count as run with what is
+        /// predicted there, and nothing is proposed within a hundredth of the ranges about them.
+        std::vector<std::pair<std::vector<double>, std::size_t>> planned;
+        std::optional<TrustRegion> region;  ///< around the best known design, beyond trust_region_from variables
         std::uint64_t seed = 1;
     };
     /// Where a run improves the first objective most, in the logarithm of the expected improvement times the chances
-    /// that limits hold and that it is solved; the batch's earlier members count as run with what is predicted there.
-    /// Empty when no design meets the known limits.
+    /// that limits hold and that it is solved; the batch's earlier members count as planned. Fewer than asked for only
+    /// when no more designs meet the known limits.
     [[nodiscard]] std::vector<Candidate> next_designs(const NextOptions& options,
                                                       core::Progress& progress = core::Progress::none()) const;
     /// Where the first objective's sigma, averaged over the searched ranges, falls most a core-second.
@@ -137,7 +144,8 @@ private:
     [[nodiscard]] bool known_limits_hold(std::span<const double> x) const;
     [[nodiscard]] std::vector<double> unscaled(std::span<const double> u) const;
     void choose_level(Candidate& candidate, const NextOptions& options) const;
-    [[nodiscard]] DesignSearch with(const Candidate& candidate) const;
+    [[nodiscard]] DesignSearch with(const std::vector<double>& at, std::size_t fidelity) const;
+    [[nodiscard]] DesignSearch with_planned(const NextOptions& options) const;
 
     SearchProblem problem_;
     std::map<std::string, Surrogate> surrogates_;

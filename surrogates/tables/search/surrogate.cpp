@@ -127,6 +127,9 @@ Surrogate Surrogate::fit(std::string quantity, std::string unit, std::vector<Sea
     result.quantity_ = std::move(quantity);
     result.unit_ = std::move(unit);
     result.variables_ = std::move(variables);
+    for (const auto& [given, own] : level_of) {
+        result.fidelities_.push_back(given);
+    }
     result.middle_ = mean;
     result.spread_ = spread;
     result.check_left_out(progress);
@@ -191,6 +194,11 @@ void Surrogate::check_left_out(core::Progress& progress) {
     }
     const auto count = static_cast<double>(error.size());
     check_.inside_95 = static_cast<double>(inside) / count;
+    const double shapes = static_cast<double>(check_.shapes), z2 = 1.96 * 1.96, p = check_.inside_95;
+    const double middle = (p + z2 / (2 * shapes)) / (1 + z2 / shapes);
+    const double half = 1.96 / (1 + z2 / shapes) * std::sqrt((p * (1 - p) + z2 / (4 * shapes)) / shapes);
+    check_.inside_lower = std::max(0.0, middle - half);
+    check_.inside_upper = std::min(1.0, middle + half);
     check_.root_mean_square = spread_ * std::sqrt(own / count);
     check_.nearest_shape = spread_ * std::sqrt(nearest / count);
 }
@@ -229,13 +237,18 @@ SurrogatePrediction Surrogate::sum(std::span<const double> weights,
     return result;
 }
 
-double Surrogate::sigma_after(std::span<const double> target, std::span<const double> x, std::size_t level) const {
-    return error_factor_ * spread_ * std::sqrt(process_.variance_after(scaled(target), scaled(x), level));
+double Surrogate::sigma_after(std::span<const double> target, std::span<const double> x, std::size_t fidelity) const {
+    return error_factor_ * spread_ * std::sqrt(process_.variance_after(scaled(target), scaled(x), level_of(fidelity)));
+}
+
+std::size_t Surrogate::level_of(std::size_t fidelity) const {
+    const auto at = std::lower_bound(fidelities_.begin(), fidelities_.end(), fidelity);
+    return std::min(static_cast<std::size_t>(at - fidelities_.begin()), fidelities_.size() - 1);
 }
 
 Surrogate Surrogate::with(const SearchRun& run) const {
     const std::vector<double> x = scaled(run.at);
-    const std::size_t level = std::min(run.level, process_.levels() - 1);
+    const std::size_t level = level_of(run.level);
     const double y = std::isfinite(run.value) ? (run.value - middle_) / spread_ : process_.at(x, level).mean;
     Surrogate result = *this;
     result.process_ = process_.with(x, y, std::pow(run.sigma / spread_, 2), level);
@@ -243,9 +256,10 @@ Surrogate Surrogate::with(const SearchRun& run) const {
 }
 
 void to_json(nlohmann::json& json, const Surrogate& surrogate) {
-    json = {{"quantity", surrogate.quantity()},     {"unit", surrogate.unit()},
-            {"variables", nlohmann::json::array()}, {"runs", nlohmann::json::array()},
-            {"factors", nlohmann::json::array()},   {"error_factor", surrogate.error_factor()}};
+    json = {{"quantity", surrogate.quantity()},        {"unit", surrogate.unit()},
+            {"variables", nlohmann::json::array()},    {"fidelities", surrogate.fidelities()},
+            {"runs", nlohmann::json::array()},         {"factors", nlohmann::json::array()},
+            {"error_factor", surrogate.error_factor()}};
     for (const SearchVariable& v : surrogate.variables()) {
         json["variables"].push_back({{"name", v.name},
                                      {"unit", v.unit},
@@ -264,6 +278,7 @@ void to_json(nlohmann::json& json, const Surrogate& surrogate) {
         {"shapes", check.shapes},
         {"points", check.points},
         {"inside_95", check.inside_95},
+        {"inside_95_interval", {check.inside_lower, check.inside_upper}},
         {"root_mean_square", check.root_mean_square},
         {"nearest_shape", std::isfinite(check.nearest_shape) ? nlohmann::json(check.nearest_shape) : nlohmann::json()}};
 }

@@ -33,14 +33,14 @@ struct SearchVariable {
 /// One run of one case.
 struct SearchRun {
     std::vector<double> at;  ///< SI, one a variable
-    std::size_t level = 0;   ///< fidelity, 0 the cheapest
+    std::size_t level = 0;   ///< fidelity, 0 the cheapest; of some there may be no runs
     double value = 0;        ///< SI
     double sigma = 0;        ///< one standard deviation of the value: scatter of the run
 };
 
 struct SurrogatePrediction {
-    double value = 0;                 ///< SI
-    double sigma = 0;                 ///< one standard deviation of the value that the highest fidelity would give
+    double value = 0;  ///< SI
+    double sigma = 0;  ///< one standard deviation of the value that the highest fidelity of which there are runs gives
     std::vector<double> slope;        ///< d value / d variable, where asked for
     std::vector<double> sigma_slope;  ///< d sigma / d variable
 };
@@ -48,8 +48,10 @@ struct SurrogatePrediction {
 /// How it does on shapes that it did not see: every shape left out once with all its runs, parameters held.
 struct LeftOutCheck {
     std::size_t shapes = 0;
-    std::size_t points = 0;       ///< of the highest fidelity
-    double inside_95 = 0;         ///< share within 1.96 sigma (as stated, after calibration)
+    std::size_t points = 0;   ///< of the highest fidelity
+    double inside_95 = 0;     ///< share within 1.96 sigma (as stated, after calibration)
+    double inside_lower = 0;  ///< its 95 % interval (Wilson 1927), counted by shape: runs of one err alike
+    double inside_upper = 1;
     double root_mean_square = 0;  ///< SI
     double nearest_shape = 0;     ///< the same error when each is taken from the nearest shape's nearest run instead
     std::vector<double> measured, predicted, sigma;  ///< each point, SI
@@ -70,6 +72,8 @@ public:
     [[nodiscard]] const LeftOutCheck& check() const { return check_; }
     /// What stated errors are multiplied with since shapes left out were missed by that much more or less.
     [[nodiscard]] double error_factor() const { return error_factor_; }
+    /// SearchRun::level of each level of the process: the fidelities of which there are runs, cheapest first.
+    [[nodiscard]] const std::vector<std::size_t>& fidelities() const { return fidelities_; }
     /// SI per unit of the process's values.
     [[nodiscard]] double spread() const { return spread_; }
 
@@ -77,10 +81,11 @@ public:
     /// Of a weighted sum of values at several points, e.g. a difference over the pitch: value and sigma.
     [[nodiscard]] SurrogatePrediction sum(std::span<const double> weights,
                                           const std::vector<std::vector<double>>& points) const;
-    /// Sigma at `target` after a further run at `x` on `level`.
+    /// Sigma at `target` after a further run at `x` of a fidelity (of which there are runs).
     [[nodiscard]] double sigma_after(std::span<const double> target, std::span<const double> x,
-                                     std::size_t level) const;
-    /// With a run more, parameters held: for batches. NaN stands for the prediction itself.
+                                     std::size_t fidelity) const;
+    /// With a run more, parameters held: for batches. NaN stands for the prediction itself. A fidelity of which there
+    /// are no runs counts as the next better one that has some, or as the best.
     [[nodiscard]] Surrogate with(const SearchRun& run) const;
 
     /// Point in the coordinates of the process.
@@ -89,17 +94,19 @@ public:
 private:
     explicit Surrogate(MultiFidelity process) : process_(std::move(process)) {}
     void check_left_out(core::Progress& progress);
+    [[nodiscard]] std::size_t level_of(std::size_t fidelity) const;
 
     std::string quantity_, unit_;
     std::vector<SearchVariable> variables_;
+    std::vector<std::size_t> fidelities_;
     double middle_ = 0, spread_ = 1, error_factor_ = 1;
     MultiFidelity process_;
     LeftOutCheck check_;
 };
 
-/// `quantity`, `unit`, `variables`, `runs` (a fidelity), `factors` (rho of each fidelity), `lengths` (of the highest
-/// fidelity's own process, in ranges), `error_factor`, `left_out` {`shapes`, `points`, `inside_95`,
-/// `root_mean_square`, `nearest_shape`}.
+/// `quantity`, `unit`, `variables`, `fidelities` (numbers of those that have runs), `runs` and `factors` (rho) of each
+/// of these, `lengths` (of the highest fidelity's own process, in ranges), `error_factor`, `left_out` {`shapes`,
+/// `points`, `inside_95`, `inside_95_interval`, `root_mean_square`, `nearest_shape`}.
 void to_json(nlohmann::json& json, const Surrogate& surrogate);
 
 }  // namespace underbody::tables

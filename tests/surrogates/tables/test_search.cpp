@@ -168,6 +168,11 @@ TEST(Search, ErrorsHoldOnShapesThatWereLeftOut) {
         EXPECT_EQ(surrogate.check().points, 144u);
         EXPECT_LT(surrogate.check().root_mean_square, 0.5 * surrogate.check().nearest_shape);
         EXPECT_GE(surrogate.check().inside_95, 0.88);
+        const double p = surrogate.check().inside_95;
+        for (const double end : {surrogate.check().inside_lower, surrogate.check().inside_upper}) {
+            // Wilson: the share whose own spread over 24 shapes reaches what was seen.
+            EXPECT_NEAR(std::abs(end - p), 1.96 * std::sqrt(end * (1 - end) / 24), 1e-9);
+        }
         for (std::size_t s = 24; s < shapes.size(); ++s) {  // fresh shapes, at gaps and pitches between
             const std::vector<double> x = {variables[0].unscaled(shapes[s][0]), variables[1].unscaled(shapes[s][1]),
                                            random.uniform(1.2e-3, 9e-3), random.uniform(-0.03, 0.03)};
@@ -362,6 +367,61 @@ TEST(Search, ABatchIsSpreadAndFailuresAreShunned) {
     const auto next = search.next_designs(after);
     ASSERT_EQ(next.size(), 1u);
     EXPECT_GT(std::hypot((batch[0].at[0] - next[0].at[0]) / 15, (batch[0].at[1] - next[0].at[1]) / 15), 0.02);
+}
+
+TEST(Search, WhatIsPlannedIsNotProposedAgain) {
+    const DesignSearch search(smallest_f(), {{"f", of_branin(60, 4)}});
+    DesignSearch::NextOptions options;
+    options.count = 6;
+    for (const auto& u : sobol_plan(60, 2, 4)) {
+        options.solved.push_back({-5 + 15 * u[0], 15 * u[1]});
+    }
+    std::vector<std::vector<double>> all;
+    for (int times = 0; times < 2; ++times) {
+        for (const bool learn : {false, true}) {
+            const auto batch = learn ? search.next_to_learn(options) : search.next_designs(options);
+            ASSERT_EQ(batch.size(), options.count) << "as many as were asked for";
+            for (const Candidate& c : batch) {
+                options.planned.emplace_back(c.at, c.level);
+                all.push_back(c.at);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t j = i + 1; j < all.size(); ++j) {
+            EXPECT_GT(std::max(std::abs(all[i][0] - all[j][0]), std::abs(all[i][1] - all[j][1])) / 15, 0.0099)
+                << i << ", " << j;
+        }
+    }
+}
+
+TEST(Search, FidelitiesKeepTheirNumbersWhereOneHasNoRuns) {
+    const std::vector<SearchVariable> variables = {{"x", "1", 0, 1}};
+    std::vector<SearchRun> runs;
+    for (int i = 0; i <= 10; ++i) {
+        runs.push_back({{0.1 * i}, 1, forrester_cheap(0.1 * i), 0});
+    }
+    for (const double x : {0.0, 0.4, 0.6, 1.0}) {
+        runs.push_back({{x}, 3, forrester(x), 0});
+    }
+    const Surrogate surrogate = Surrogate::fit("f", "1", variables, runs);
+    EXPECT_EQ(surrogate.fidelities(), (std::vector<std::size_t>{1, 3}));
+    const std::vector<double> x = {0.75};
+    EXPECT_LT(surrogate.sigma_after(x, x, 3), surrogate.sigma_after(x, x, 1));
+    EXPECT_DOUBLE_EQ(surrogate.with({x, 2, std::nan(""), 0}).at(x).sigma,
+                     surrogate.with({x, 3, std::nan(""), 0}).at(x).sigma)
+        << "counts as a run of the next better one";
+    SearchProblem problem;
+    problem.variables = variables;
+    problem.objectives = {{{"f", "f", {}, "", 0}, Objective::Sense::minimise, 0}};
+    const DesignSearch search(problem, {{"f", surrogate}});
+    DesignSearch::NextOptions options;
+    options.solved = {{0.0}, {0.4}, {0.6}, {1.0}};
+    options.level_costs = {1e-6, 1, 1e-6, 1};  // those without runs cannot be weighed
+    EXPECT_EQ(search.next_designs(options).at(0).level, 3u);
+    options.level_costs = {1, 1, 1, 1e6};
+    EXPECT_EQ(search.next_designs(options).at(0).level, 1u);
+    EXPECT_EQ(search.next_to_learn(options).at(0).level, 1u);
 }
 
 TEST(Search, TheCheapFidelityIsChosenWhereItTellsMore) {
