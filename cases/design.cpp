@@ -7,7 +7,6 @@
 #include "cases/design_file.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/own_files.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/search/sampling.h"
@@ -49,8 +48,8 @@ std::size_t level_of(const DesignSpec& spec, const std::string& fidelity, const 
                            core::did_you_mean(fidelity, names));
 }
 
-std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const fs::path& file) {
-    const core::Table table = core::read_csv(file);
+std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const core::Table& table) {
+    const std::string& file = table.source;
     std::vector<PlannedDesign> plan(table.rows());
     const auto names = table.text("design");
     const auto fidelities = text_or(table, "fidelity", spec.fidelities.front().name);
@@ -58,7 +57,7 @@ std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const fs::path& fil
     const auto states = text_or(table, "state", "planned");
     for (std::size_t i = 0; i < plan.size(); ++i) {
         plan[i] = {names[i], {}, fidelities[i], whys[i], states[i]};
-        (void)level_of(spec, fidelities[i], file.string() + " row " + std::to_string(i + 1));
+        (void)level_of(spec, fidelities[i], file + " row " + std::to_string(i + 1));
     }
     for (const SearchVariable& v : spec.variables) {
         const auto& values = numbers_of(table, v);
@@ -69,8 +68,8 @@ std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const fs::path& fil
     return plan;
 }
 
-std::vector<DesignRun> read_results(const DesignSpec& spec, const fs::path& file, core::Problems& notes) {
-    const core::Table table = core::read_csv(file);
+std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
+    const std::string& file = table.source;
     std::vector<DesignRun> runs(table.rows());
     const auto designs = text_or(table, "design", "-");
     const auto fidelities = text_or(table, "fidelity", spec.fidelities.back().name);
@@ -79,7 +78,7 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const fs::path& file
         runs[i].design = designs[i];
         runs[i].fidelity = fidelities[i];
         runs[i].state = states[i];
-        (void)level_of(spec, fidelities[i], file.string() + " row " + std::to_string(i + 1));
+        (void)level_of(spec, fidelities[i], file + " row " + std::to_string(i + 1));
     }
     for (const SearchVariable& v : spec.all_variables()) {
         const auto& values = numbers_of(table, v);
@@ -93,21 +92,34 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const fs::path& file
     for (const std::string& q : spec.quantities) {
         const bool there = table.find(q) != nullptr, sigma = table.find(q + "_sigma") != nullptr;
         if (!there) {
-            notes.push_back({core::Problem::Severity::warning,
-                             "no column " + q + ": it cannot be learned",
-                             {file.string(), {}, {}, {}}});
+            notes.push_back(
+                {core::Problem::Severity::warning, "no column " + q + ": it cannot be learned", {file, {}, {}, {}}});
             continue;
         }
         const auto& values = table.numbers(q);
         for (std::size_t i = 0; i < runs.size(); ++i) {
             if (std::isfinite(values[i])) {
                 runs[i].loads[q] = values[i];
-                runs[i].sigmas[q] =
-                    sigma && std::isfinite(table.numbers(q + "_sigma")[i]) ? table.numbers(q + "_sigma")[i] : 0;
+                if (sigma && std::isfinite(table.numbers(q + "_sigma")[i])) {
+                    runs[i].sigmas[q] = table.numbers(q + "_sigma")[i];
+                }
             }
         }
     }
     return runs;
+}
+
+/// The same case: equal but for the rounding of a file.
+bool is_same(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
+    if (a.design != b.design || a.fidelity != b.fidelity) {
+        return false;
+    }
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        if (std::abs(a.at[v] - b.at[v]) > 1e-7 * (variables[v].upper - variables[v].lower)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace
@@ -122,12 +134,21 @@ Design Design::open(const Study& study) {
     check_responses(design.spec_);
     design.base_ = geometry::read_shape(design.spec_.shape);
     const fs::path plan = design.spec_.folder / "plan.csv", results = design.spec_.folder / "results.csv";
+    const auto names = [](const core::Table& table) {
+        std::vector<std::string> result;
+        for (const core::Column& column : table.columns()) {
+            result.push_back(column.name);
+        }
+        return result;
+    };
     if (fs::exists(plan)) {
-        design.plan_ = read_plan(design.spec_, plan);
+        design.plan_ = read_plan(design.spec_, design.plan_file_.read(plan, names(design.plan_table())));
     }
     if (fs::exists(results)) {
-        design.runs_ = read_results(design.spec_, results, design.notes);
+        design.runs_ =
+            read_results(design.spec_, design.results_file_.read(results, names(design.results_table())), design.notes);
     }
+    design.note_unknown_sigmas();
     std::size_t unsettled = 0;
     for (const DesignRun& run : design.runs_) {
         unsettled += run.state == not_settled_state ? 1 : 0;
@@ -161,7 +182,7 @@ std::size_t Design::make_plan(core::Progress& progress) {
         }
         plan_.push_back(std::move(design));
     }
-    write();
+    write_plan();
     return count;
 }
 
@@ -171,12 +192,18 @@ void Design::add(const std::vector<tables::Candidate>& candidates, const std::st
                          spec_.fidelities.at(std::min(c.level, spec_.fidelities.size() - 1)).name, one_field(why),
                          "planned"});
     }
-    write();
+    write_plan();
 }
 
-void Design::write() const {
-    std::vector<PlannedDesign> plan = plan_;
-    for (PlannedDesign& design : plan) {
+void Design::write_plan() {
+    write_shapes();
+    fs::create_directories(spec_.folder);
+    plan_file_.write(spec_.folder / "plan.csv", plan_table());
+}
+
+bool Design::write_shapes() {
+    bool refused = false;
+    for (PlannedDesign& design : plan_) {
         const fs::path file = spec_.folder / "shapes" / (design.name + ".toml");
         try {
             geometry::BodyShape shape = shape_at(spec_, base_, design.at);
@@ -187,15 +214,59 @@ void Design::write() const {
                 core::write_file(file, text);
             }
         } catch (const core::InputError& error) {
+            refused = refused || design.state == "planned";
             design.state = one_field(error.message());
         }
     }
-    Design written = *this;
-    written.plan_ = std::move(plan);
+    return refused;
+}
+
+DesignRun* Design::find(const DesignRun& run) {
+    const auto variables = spec_.all_variables();
+    const auto same = std::find_if(runs_.begin(), runs_.end(),
+                                   [&](const DesignRun& known) { return is_same(variables, known, run); });
+    return same == runs_.end() ? nullptr : &*same;
+}
+
+void Design::keep(const DesignRun& run) {
+    DesignRun* same = find(run);
+    if (same != nullptr) {
+        if (same->loads.empty() && run.loads.empty() && same->state == run.state) {
+            return;  // failed again in the same way
+        }
+        *same = run;
+        rows_changed_ = true;  // the case itself is there to be read again; the file follows
+        return;
+    }
+    runs_.push_back(run);
+    if (results_file_.ours() && !rows_changed_) {
+        results_file_.append(results_table(runs_.size() - 1));
+    } else {
+        write_results();
+    }
+}
+
+void Design::write_results() {
     fs::create_directories(spec_.folder);
-    core::write_csv(spec_.folder / "plan.csv", written.plan_table());
-    if (!runs_.empty()) {
-        core::write_csv(spec_.folder / "results.csv", results_table());
+    results_file_.write(spec_.folder / "results.csv", results_table());
+    rows_changed_ = false;
+}
+
+void Design::note_unknown_sigmas() {
+    for (const std::string& q : spec_.quantities) {
+        std::size_t without = 0, with = 0;
+        for (const DesignRun& run : runs_) {
+            if (run.usable() && run.loads.contains(q)) {
+                (run.sigmas.contains(q) ? with : without) += 1;
+            }
+        }
+        if (without > 0) {
+            notes.push_back({core::Problem::Severity::note,
+                             q + ": of " + std::to_string(without) + " runs the standard deviation is unknown: " +
+                                 (with > 0 ? "learned with the median of the others of their fidelity"
+                                           : "their scatter is estimated with the surrogate"),
+                             {(spec_.folder / "results.csv").string(), {}, {}, {}}});
+        }
     }
 }
 
@@ -223,10 +294,11 @@ core::Table Design::plan_table() const {
     return table;
 }
 
-core::Table Design::results_table() const {
+core::Table Design::results_table(std::size_t first) const {
     core::Table table;
+    const std::span<const DesignRun> runs = std::span(runs_).subspan(first);
     std::vector<std::string> designs, fidelities, states;
-    for (const DesignRun& run : runs_) {
+    for (const DesignRun& run : runs) {
         designs.push_back(run.design);
         fidelities.push_back(run.fidelity);
         states.push_back(run.state);
@@ -235,7 +307,7 @@ core::Table Design::results_table() const {
     const auto all = spec_.all_variables();
     for (std::size_t v = 0; v < all.size(); ++v) {
         std::vector<double> values;
-        for (const DesignRun& run : runs_) {
+        for (const DesignRun& run : runs) {
             values.push_back(run.at[v]);
         }
         table.add_numbers(all[v].name, all[v].unit, values, geometry::shown_unit(all[v].unit));
@@ -243,7 +315,7 @@ core::Table Design::results_table() const {
     table.add_text("fidelity", fidelities);
     for (const std::string& q : spec_.quantities) {
         std::vector<double> values, sigmas;
-        for (const DesignRun& run : runs_) {
+        for (const DesignRun& run : runs) {
             const auto load = run.loads.find(q), sigma = run.sigmas.find(q);
             values.push_back(load == run.loads.end() ? std::nan("") : load->second);
             sigmas.push_back(sigma == run.sigmas.end() ? std::nan("") : sigma->second);
@@ -260,10 +332,22 @@ std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& prog
     std::map<std::string, tables::Surrogate> result;
     for (const std::string& q : spec_.quantities) {
         std::vector<tables::SearchRun> runs;
+        std::map<std::string, std::vector<double>> stated;  // by fidelity
         for (const DesignRun& run : runs_) {
-            const auto load = run.loads.find(q);
+            if (run.usable() && run.sigmas.contains(q)) {
+                stated[run.fidelity].push_back(run.sigmas.at(q));
+            }
+        }
+        const auto usual = [&](const std::string& fidelity) {
+            std::vector<double>& sigmas = stated[fidelity];
+            std::sort(sigmas.begin(), sigmas.end());
+            return sigmas.empty() ? 0.0 : sigmas[sigmas.size() / 2];  // the surrogate estimates a scatter as well
+        };
+        for (const DesignRun& run : runs_) {
+            const auto load = run.loads.find(q), sigma = run.sigmas.find(q);
             if (run.usable() && load != run.loads.end()) {
-                runs.push_back({run.at, level_of(spec_, run.fidelity, run.design), load->second, run.sigmas.at(q)});
+                runs.push_back({run.at, level_of(spec_, run.fidelity, run.design), load->second,
+                                sigma == run.sigmas.end() ? usual(run.fidelity) : sigma->second});
             }
         }
         result.emplace(q,
@@ -298,7 +382,36 @@ tables::DesignSearch::NextOptions Design::known() const {
     for (const auto& [at, good] : solved) {
         (good ? options.solved : options.failed).push_back(at);
     }
+    for (const PlannedDesign& design : plan_) {
+        const bool run = std::any_of(runs_.begin(), runs_.end(), [&](const DesignRun& r) {
+            return r.design == design.name && r.fidelity == design.fidelity;
+        });
+        if (design.state == "planned" && !run) {
+            options.planned.emplace_back(design.at, level_of(spec_, design.fidelity, design.name));
+        }
+    }
     return options;
+}
+
+std::optional<tables::TrustRegion> Design::trust_region(const tables::DesignSearch& search) const {
+    if (spec_.variables.size() <= tables::trust_region_from) {
+        return {};
+    }
+    tables::TrustRegion region;
+    double best = std::nan("");
+    for (const PlannedDesign& design : plan_) {
+        const bool run = std::any_of(runs_.begin(), runs_.end(),
+                                     [&](const DesignRun& r) { return r.design == design.name && r.usable(); });
+        const double value = run ? search.best_of({design.at}) : std::nan("");
+        // A thousandth of the best is no improvement (Eriksson et al. 2019).
+        const bool improved = std::isnan(best) ? !std::isnan(value) : value < best - 1e-3 * std::abs(best);
+        best = std::fmin(best, value);
+        if (design.why != "plan" && run) {
+            region.step(improved, spec_.variables.size());
+            region = region.collapsed() ? tables::TrustRegion{} : region;
+        }
+    }
+    return region;
 }
 
 tables::SobolIndices Design::sensitivity(const tables::Surrogate& surrogate) const {

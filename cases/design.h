@@ -11,10 +11,12 @@
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cases/design_spec.h"
+#include "cases/design_table.h"
 #include "cases/study.h"
 #include "core/html.h"
 #include "core/progress.h"
@@ -37,7 +39,7 @@ struct DesignRun {
     std::string design;
     std::vector<double> at;  ///< SI, one of DesignSpec::all_variables()
     std::string fidelity;
-    std::map<std::string, double> loads, sigmas;  ///< SI; by quantity
+    std::map<std::string, double> loads, sigmas;  ///< SI; by quantity; a sigma that nobody states is not there
     std::string state;                            ///< "solved", "not settled", or what failed
     [[nodiscard]] bool usable() const { return state == "solved"; }
 };
@@ -60,8 +62,9 @@ public:
     void add(const std::vector<tables::Candidate>& candidates, const std::string& why);
     /// Solves what is planned and has no result with OpenFOAM here, `jobs` at a time, and reads loads into results.csv.
     /// A case that fails is kept as failed with its reason and the others go on; one whose loads have not settled is
-    /// kept as "not settled". results.csv is written after each case. Rows that are there without a case in
-    /// runs/FIDELITY stay as they are.
+    /// kept as "not settled". results.csv grows after each case. Rows that are there without a case in runs/FIDELITY
+    /// stay as they are, and so do columns that the program does not know. Throws core::InputError (kind "changed")
+    /// when results.csv was changed meanwhile.
     void solve(const Study& study, int jobs, core::Progress& progress = core::Progress::none());
 
     /// A surrogate a quantity. Throws core::InputError when there are too few runs.
@@ -69,20 +72,30 @@ public:
         core::Progress& progress = core::Progress::none()) const;
     /// The search that [design] asks for. Throws core::InputError without an objective.
     [[nodiscard]] tables::DesignSearch search(std::map<std::string, tables::Surrogate> surrogates) const;
-    /// What was run and what failed, for the search.
+    /// What was run, what failed, and what is planned and has no result, for the search.
     [[nodiscard]] tables::DesignSearch::NextOptions known() const;
+    /// The box that a search in more than tables::trust_region_from variables keeps to: how the designs that it chose
+    /// did, one after the other as they stand in the plan. None with fewer variables.
+    [[nodiscard]] std::optional<tables::TrustRegion> trust_region(const tables::DesignSearch& search) const;
     /// Indices of a quantity over the shape's variables and the conditions, of the surrogate's mean.
     [[nodiscard]] tables::SobolIndices sensitivity(const tables::Surrogate& surrogate) const;
 
     [[nodiscard]] core::Table plan_table() const;
-    [[nodiscard]] core::Table results_table() const;
+    [[nodiscard]] core::Table results_table(std::size_t first = 0) const;
 
 private:
-    void write() const;
+    void write_plan();
+    bool write_shapes();  ///< true where a planned one turns out to be no shape
+    [[nodiscard]] DesignRun* find(const DesignRun& run);
+    void keep(const DesignRun& run);
+    void write_results();
+    void note_unknown_sigmas();
     DesignSpec spec_;
     geometry::BodyShape base_;
     std::vector<PlannedDesign> plan_;
     std::vector<DesignRun> runs_;
+    DesignTable plan_file_, results_file_;
+    bool rows_changed_ = false;  ///< results.csv has rows that say otherwise than runs_
 };
 
 /// Predicted against computed, each shape left out once: with bands.

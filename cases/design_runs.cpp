@@ -22,17 +22,6 @@ using tables::SearchVariable;
 
 namespace {
 
-/// Equal but for the rounding of a file.
-bool same_point(const std::vector<SearchVariable>& variables, const std::vector<double>& a,
-                const std::vector<double>& b) {
-    for (std::size_t v = 0; v < variables.size(); ++v) {
-        if (std::abs(a[v] - b[v]) > 1e-7 * (variables[v].upper - variables[v].lower)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /// The centre of buoyancy of the placed body, in the axes of its case.
 geometry::Vec3 centre_of_buoyancy(const SweepCase& one) {
     const geometry::VolumeMoments m = geometry::ExactBody(geometry::read_shape(one.shape)).moments();
@@ -65,19 +54,23 @@ void take_loads(const Study& study, const SweepCase& one, DesignRun& run, core::
     }
     const geometry::Vec3 centre = centre_of_buoyancy(one);
     const double ahead = result.reference[0] - centre.x, above = result.reference[2] - centre.z;
-    const auto of = [](const std::map<std::string, double>& values, const char* name) {
-        const auto found = values.find(name);
-        return found == values.end() ? 0.0 : found->second;
+    const auto all_of = [](const std::map<std::string, double>& values) {
+        return values.contains("pitch_moment") && values.contains("lift_force") && values.contains("drag_force");
     };
-    run.loads[moment_at_buoyancy] =
-        of(run.loads, "pitch_moment") + ahead * of(run.loads, "lift_force") + above * of(run.loads, "drag_force");
-    run.sigmas[moment_at_buoyancy] = std::hypot(of(run.sigmas, "pitch_moment"), ahead * of(run.sigmas, "lift_force"),
-                                                above * of(run.sigmas, "drag_force"));
-    // The solver's run has its own, narrower criterion: of each iteration, not of the trend alone.
+    if (all_of(run.loads)) {
+        run.loads[moment_at_buoyancy] =
+            run.loads.at("pitch_moment") + ahead * run.loads.at("lift_force") + above * run.loads.at("drag_force");
+    }
+    if (all_of(run.sigmas)) {
+        run.sigmas[moment_at_buoyancy] = std::hypot(run.sigmas.at("pitch_moment"), ahead * run.sigmas.at("lift_force"),
+                                                    above * run.sigmas.at("drag_force"));
+    }
+    // A run that ended by its own criterion has settled by it; what it still drifts by is part of its sigmas.
     const auto marker = read_marker(file);
-    const bool stopped_early = marker.is_object() && marker.contains("settled") && marker["settled"] == false;
-    run.state =
-        stopped_early || settled.verdict == postproc::SettledVerdict::not_settled ? not_settled_state : "solved";
+    const bool judged = marker.is_object() && marker.contains("settled") && marker["settled"].is_boolean();
+    const bool unsettled =
+        judged ? !marker["settled"].get<bool>() : settled.verdict == postproc::SettledVerdict::not_settled;
+    run.state = unsettled ? not_settled_state : "solved";
 }
 
 /// What a fidelity's planned designs come to as a sweep.
@@ -94,6 +87,7 @@ SweepSpec sweep_of(const DesignSpec& spec, const FidelitySpec& fidelity, const s
     sweep.pitches = spec.pitches;
     sweep.speeds = spec.speeds;
     sweep.mesh = fidelity.mesh;
+    sweep.kinematic_viscosity = spec.kinematic_viscosity;
     return sweep;
 }
 
@@ -101,6 +95,9 @@ SweepSpec sweep_of(const DesignSpec& spec, const FidelitySpec& fidelity, const s
 
 void Design::solve(const Study& study, int jobs, core::Progress& progress) {
     const std::vector<SearchVariable> all = spec_.all_variables();
+    if (write_shapes()) {  // of designs that were typed into plan.csv
+        write_plan();
+    }
     for (const FidelitySpec& fidelity : spec_.fidelities) {
         Study with_sweep = study;
         with_sweep.sweep = sweep_of(spec_, fidelity, plan_, study);
@@ -117,12 +114,7 @@ void Design::solve(const Study& study, int jobs, core::Progress& progress) {
             }
             return run;
         };
-        const auto known = [&](const DesignRun& run) {
-            return std::find_if(runs_.begin(), runs_.end(), [&](const DesignRun& r) {
-                return r.design == run.design && r.fidelity == run.fidelity && same_point(all, r.at, run.at);
-            });
-        };
-        const auto keep = [&](const SweepCase& one, const std::string& failure) {
+        const auto ended = [&](const SweepCase& one, const std::string& failure) {
             DesignRun run = empty_run(one);
             run.state = one_field(failure);
             if (failure.empty()) {
@@ -134,32 +126,33 @@ void Design::solve(const Study& study, int jobs, core::Progress& progress) {
                     run.state = one_field(error.message());
                 }
             }
-            const auto same = known(run);
-            if (same != runs_.end() && same->loads.empty() && run.loads.empty() && same->state == run.state) {
-                return;  // failed again in the same way
-            }
-            if (same != runs_.end()) {
-                *same = run;
-            } else {
-                runs_.push_back(run);
-            }
-            write();  // what was computed stays when the next case is interrupted
+            keep(run);  // what was computed stays when the next case is interrupted
         };
         for (const SweepCase& one : sweep_cases(with_sweep, progress)) {
-            const auto there = known(empty_run(one));
-            if (one.present && (there == runs_.end() || !there->usable())) {
-                keep(one, "");
+            const DesignRun* there = find(empty_run(one));
+            if (one.present && (there == nullptr || !there->usable())) {
+                ended(one, "");
             }
         }
         SweepOptions options;
         options.jobs = jobs;
         // A row without its case is of another solver, or of a search that was handed on without its fields.
         options.wanted = [&](const SweepCase& one) {
-            const auto there = known(empty_run(one));
-            return there == runs_.end() || !there->usable() || fs::exists(one.folder);
+            const DesignRun* there = find(empty_run(one));
+            return there == nullptr || !there->usable() || fs::exists(one.folder);
         };
-        options.ended = keep;
-        (void)sweep_locally(with_sweep, options, progress);
+        options.ended = ended;
+        try {
+            (void)sweep_locally(with_sweep, options, progress);
+        } catch (...) {
+            if (rows_changed_) {
+                write_results();
+            }
+            throw;
+        }
+        if (rows_changed_) {
+            write_results();
+        }
     }
 }
 

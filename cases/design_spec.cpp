@@ -169,6 +169,11 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
     spec.gaps = one_or_more(design, "gap", "m", 5e-3);
     spec.pitches = one_or_more(design, "pitch", "rad", 0);
     spec.speeds = one_or_more(design, "speed", "m/s", 0.5);
+    spec.kinematic_viscosity = design.quantity_or("kinematic_viscosity", "m^2/s", spec.kinematic_viscosity);
+    if (!(spec.kinematic_viscosity > 0)) {
+        throw core::InputError("range", design.path_of("kinematic_viscosity") + " must be above zero",
+                               design.place("kinematic_viscosity"), "kinematic_viscosity = \"1.0e-6 m^2/s\"");
+    }
     spec.quantities = design.has("quantities") ? design.strings("quantities")
                                                : std::vector<std::string>{"lift_force", "drag_force", "pitch_moment"};
     for (const std::string& q : spec.quantities) {
@@ -257,6 +262,8 @@ std::vector<FileTable> design_tables() {
           {"gap", "m or list of m", "[\"3 mm\", \"5 mm\", \"10 mm\"]", "5 mm", "every design is computed at these"},
           {"pitch", "rad or list of rad", "[\"-1 deg\", \"1 deg\"]", "0", "and at these, positive nose up"},
           {"speed", "m/s or list of m/s", "\"0.5 m/s\"", "0.5 m/s", "and at these"},
+          {"kinematic_viscosity", "m^2/s", "\"1.0e-6 m^2/s\"",
+           core::format_number(DesignSpec().kinematic_viscosity) + " m^2/s", "of the water"},
           {"quantities", "list of texts", "[\"lift_force\", \"pitch_moment\"]", "lift_force, drag_force, pitch_moment",
            "loads that are learned"}}},
         {"design.vary[]",

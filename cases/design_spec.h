@@ -29,6 +29,7 @@ struct DesignSpec {
     std::size_t points = 24;
     std::uint64_t seed = 1;
     std::vector<double> gaps, pitches, speeds;  ///< every design is computed at all of them; m, rad, m/s
+    double kinematic_viscosity = 1e-6;          ///< of the water, m^2/s
     std::vector<std::string> quantities;
     std::vector<tables::SearchVariable> variables;  ///< of the shape
     std::vector<geometry::Tie> ties;                ///< [[design.tie]]

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
-#include "core/own_files.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
@@ -101,17 +100,16 @@ std::string text_of(const tables::DesignSearch& search, const tables::Candidate&
 int plan(Shell& shell, const Arguments& a) {
     cases::Design design = open(shell, a);
     const std::size_t fresh = design.make_plan(shell.progress());
-    const cases::Design written = cases::Design::open(cases::Study::open(a.study));  // with what shapes cannot be made
     std::size_t refused = 0;
-    for (const auto& d : written.plan()) {
+    for (const auto& d : design.plan()) {
         refused += d.state != "planned" ? 1 : 0;
     }
     const std::string file = (design.spec().folder / "plan.csv").string();
     if (shell.json) {
-        shell.print_json({{"plan", file}, {"designs", written.plan().size()}, {"new", fresh}, {"refused", refused}});
+        shell.print_json({{"plan", file}, {"designs", design.plan().size()}, {"new", fresh}, {"refused", refused}});
     }
     shell.print(
-        file + ": " + std::to_string(written.plan().size()) + " designs, " + std::to_string(fresh) + " of them new" +
+        file + ": " + std::to_string(design.plan().size()) + " designs, " + std::to_string(fresh) + " of them new" +
         (refused > 0 ? ", " + std::to_string(refused) + " of them no possible shape (column state)" : "") + "\n");
     return done;
 }
@@ -123,11 +121,12 @@ int run(Shell& shell, const Arguments& a) {
         design.make_plan(shell.progress());
     }
     design.solve(study, a.jobs, shell.progress());
-    std::size_t good = 0;
+    std::size_t good = 0, computed = 0;
     json failed = json::array();
     std::string text;
     for (const auto& one : design.runs()) {
         good += one.usable() ? 1 : 0;
+        computed += one.loads.empty() ? 0 : 1;
         if (!one.usable()) {
             failed.push_back({{"design", one.design}, {"fidelity", one.fidelity}, {"state", one.state}});
             text += one.design + " (" + one.fidelity + "): " + one.state + "\n";
@@ -139,7 +138,7 @@ int run(Shell& shell, const Arguments& a) {
     }
     shell.print(text + file + ": " + std::to_string(good) + " of " + std::to_string(design.runs().size()) +
                 " runs can be used\n");
-    return done;
+    return computed == 0 && !design.runs().empty() ? wrong_input : done;  // not one case gave loads
 }
 
 int fit(Shell& shell, const Arguments& a) {
@@ -148,16 +147,19 @@ int fit(Shell& shell, const Arguments& a) {
     std::string text;
     for (const auto& [name, surrogate] : design.surrogates(shell.progress())) {
         list.push_back(surrogate);
+        list.back()["fidelity"] = design.spec().fidelities.at(surrogate.fidelities().back()).name;
         const auto& check = surrogate.check();
-        text += name + ": " + std::to_string(check.points) + " runs of " + std::to_string(check.shapes) +
-                " shapes; on shapes left out the error is " + core::format_number(check.root_mean_square, 3) + " " +
-                surrogate.unit() +
+        text += name + ": " + std::to_string(check.points) + " runs (" +
+                design.spec().fidelities.at(surrogate.fidelities().back()).name + ") of " +
+                std::to_string(check.shapes) + " shapes; on shapes left out the error is " +
+                core::format_number(check.root_mean_square, 3) + " " + surrogate.unit() +
                 (std::isfinite(check.nearest_shape) ? " (" + core::format_number(check.nearest_shape, 3) + " " +
                                                           surrogate.unit() + " by the nearest shape)"
                                                     : "") +
-                ", " + core::format_number(100 * check.inside_95, 3) +
-                " % lie inside the 95 % band (errors scaled by " + core::format_number(surrogate.error_factor(), 3) +
-                ")\n";
+                ", " + core::format_number(100 * check.inside_95, 3) + " % lie inside the 95 % band (" +
+                core::format_number(100 * check.inside_lower, 3) + " to " +
+                core::format_number(100 * check.inside_upper, 3) + " %, counted by shape; errors scaled by " +
+                core::format_number(surrogate.error_factor(), 3) + ")\n";
     }
     if (shell.json) {
         shell.print_json({{"surrogates", list}, {"notes", notes_json(design)}});
@@ -171,9 +173,7 @@ int next(Shell& shell, const Arguments& a) {
     const tables::DesignSearch search = design.search(design.surrogates(shell.progress()));
     auto options = design.known();
     options.count = a.count;
-    if (search.problem().variables.size() > 6) {
-        options.region = tables::TrustRegion{};
-    }
+    options.region = design.trust_region(search);
     const auto designs =
         a.learn ? search.next_to_learn(options, shell.progress()) : search.next_designs(options, shell.progress());
     json list = json::array();
@@ -185,8 +185,9 @@ int next(Shell& shell, const Arguments& a) {
                 core::format_number(c.sigma_after, 3) + "; it is solved with a chance of " +
                 core::format_number(100 * c.chance_solved, 3) + " %\n" + text_of(search, c);
     }
-    if (designs.empty()) {
-        text = "No design meets the limits that are known without a run.\n";
+    if (designs.size() < a.count) {
+        text += (designs.empty() ? std::string("No design") : "Only " + std::to_string(designs.size()) + " designs") +
+                " that the plan has not yet meet the limits that are known without a run.\n";
     }
     if (a.add && !designs.empty()) {
         design.add(designs, a.learn ? "largest drop of the error" : "expected improvement");
@@ -282,39 +283,49 @@ void add_design_command(CLI::App& app, Shell& shell) {
     CLI::App* command = app.add_subcommand("design", "a search for a better shape: [design] of study.toml");
     command->require_subcommand(1);
     auto a = std::make_shared<Arguments>();
-    const auto step = [&](const char* name, const char* what, int (*action)(Shell&, const Arguments&)) {
+    const auto step = [&](const char* name, const char* what, int (*action)(Shell&, const Arguments&),
+                          const std::string& more = "") {
         CLI::App* sub = command->add_subcommand(name, what);
+        sub->footer("Examples:\n  underbody design " + std::string(name) + " cases/evie-pitch\n" + more);
         sub->add_option("study", a->study, "folder with study.toml, which has a [design]")->required();
         shell.on(sub, [action, a, &shell] { return action(shell, *a); });
         return sub;
     };
-    step("plan", "the first designs, into plan.csv and shapes", plan);
-    step("run", "computes what is planned and has no result, by OpenFOAM", run)
+    step("plan", "the first designs, into plan.csv and shapes", plan,
+         "Designs can be typed into design/plan.csv as well; `design run` makes their shapes.\n");
+    step("run", "computes what is planned and has no result, by OpenFOAM", run,
+         "  underbody design run cases/evie-pitch --jobs 2\n"
+         "Exit code 3 when not one case of results.csv gave loads.\n")
         ->add_option("--jobs", a->jobs, "cases at a time, each on one core")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     step("fit", "surrogates of the loads, checked on shapes left out", fit);
-    CLI::App* more = step("next", "what to compute next, and what it is worth", next);
+    CLI::App* more = step("next", "what to compute next, and what it is worth", next,
+                          "  underbody design next cases/evie-pitch --count 2 --add\n"
+                          "  underbody design next cases/evie-pitch --learn\n"
+                          "Planned designs without a result count as run with what is predicted there.\n");
     more->add_option("--count", a->count, "designs at once, for so many machines")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     more->add_flag("--learn", a->learn, "where the error of the first objective falls most, not where it improves");
     more->add_flag("--add", a->add, "into the plan, to be run");
-    CLI::App* best = step("optimise", "the best design by the surrogates, and fronts of several objectives", optimise);
+    CLI::App* best = step("optimise", "the best design by the surrogates, and fronts of several objectives", optimise,
+                          "  underbody design optimise cases/evie-pitch --sigmas 2 --out best.csv\n"
+                          "  underbody design optimise cases/evie-pitch --front 10\n");
     best->add_option("--sigmas", a->sigmas, "limits are met by so many standard deviations")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     best->add_option("--front", a->front, "designs of the front of all objectives")->capture_default_str();
     best->add_option("--out", a->out, "CSV of the designs found");
     step("sensitivity", "which variables the loads depend on: Sobol's indices", sensitivity);
-    step("report", "everything as one page", report)
+    step("report", "everything as one page", report, "  underbody design report cases/evie-pitch --out design.html\n")
         ->add_option("--out", a->out, "HTML file (default STUDY/report/design.html)");
     command->footer(
         "Examples:\n"
-        "  underbody design plan cases/my-search\n"
-        "  underbody design run cases/my-search --jobs 2\n"
-        "  underbody design next cases/my-search --count 2 --add\n"
-        "  underbody design optimise cases/my-search --front 10\n");
+        "  underbody design plan cases/evie-pitch\n"
+        "  underbody design run cases/evie-pitch --jobs 2\n"
+        "  underbody design next cases/evie-pitch --count 2 --add\n"
+        "  underbody design optimise cases/evie-pitch --front 10\n");
 }
 
 }  // namespace underbody::studio

@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cases/design.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/own_files.h"
 #include "core/units.h"
 
 namespace {
@@ -186,6 +188,220 @@ TEST_F(DesignFiles, AFailedRunIsKeptAsFailed) {
     EXPECT_EQ(options.solved.size(), 15u);
     EXPECT_EQ(options.failed.size(), 1u);
     EXPECT_EQ(known.surrogates().at("lift_force").check().shapes, 15u);
+}
+
+TEST_F(DesignFiles, WhatIsPlannedIsNotProposedAgain) {
+    const std::string text = design_toml;
+    core::write_file(folder_.path() / "study.toml",
+                     text.substr(0, text.find("[design.volume]")));  // costs a volume each
+    Design design = open();
+    design.make_plan();
+    compute(design);
+    std::vector<std::vector<double>> proposed;
+    for (std::size_t times = 0; times < 2; ++times) {
+        Design known = open();
+        EXPECT_EQ(known.known().planned.size(), 2 * times);
+        const auto search = known.search(known.surrogates());
+        auto options = known.known();
+        options.count = 2;
+        const auto next = search.next_designs(options);
+        ASSERT_EQ(next.size(), 2u);
+        for (const auto& c : next) {
+            for (const auto& other : proposed) {
+                EXPECT_GT(std::abs(c.at[0] - other[0]) / 2.5e-3 + std::abs(c.at[1] - other[1]) / 0.25, 0.0099);
+            }
+            proposed.push_back(c.at);
+        }
+        known.add(next, "expected improvement");
+    }
+    EXPECT_EQ(open().plan().size(), 20u);
+}
+
+TEST_F(DesignFiles, AnUnknownStandardDeviationStaysUnknown) {
+    Design design = open();
+    design.make_plan();
+    compute(design);
+    const fs::path file = folder_.path() / "design" / "results.csv";
+    std::string text = core::read_file(file);
+    const std::size_t first = text.find(",0.0005,");
+    text.replace(first, 8, ",,");
+    core::write_file(file, text);
+    const Design known = open();
+    EXPECT_FALSE(known.runs().front().sigmas.contains("lift_force"));
+    EXPECT_TRUE(known.runs().back().sigmas.contains("lift_force"));
+    EXPECT_TRUE(std::isnan(known.results_table().numbers("lift_force_sigma").front())) << "not zero";
+    ASSERT_EQ(known.notes.size(), 1u);
+    EXPECT_THAT(known.notes.front().message,
+                testing::HasSubstr("lift_force: of 1 runs the standard deviation is unknown"));
+    EXPECT_EQ(known.surrogates().at("lift_force").check().points, 96u);
+    // Nobody states one at all.
+    text.erase(text.find(",lift_force_sigma [N]"), 21);
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
+        std::size_t comma = at + 1;
+        for (int column = 0; column < 7 && comma < text.size(); ++column) {
+            comma = text.find(',', comma) + 1;
+        }
+        if (comma < text.size()) {
+            text.erase(comma, text.find(',', comma) + 1 - comma);
+        }
+    }
+    core::write_file(file, text);
+    const Design none = open();
+    EXPECT_THAT(none.notes.front().message, testing::HasSubstr("estimated"));
+    EXPECT_EQ(none.surrogates().at("lift_force").check().points, 96u);
+}
+
+/// plan.csv and results.csv are written by people, too: with --force or without.
+TEST_F(DesignFiles, FilesOfPeopleAreWrittenOnAsTheyAreRead) {
+    Design design = open();
+    design.make_plan();
+    const fs::path plan = folder_.path() / "design" / "plan.csv";
+    std::string text = core::read_file(plan), typed = "# ours\n";
+    std::size_t line = 0;
+    for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1, ++line) {
+        typed += text.substr(at, end - at) + (line == 0 ? ",remark,price [N]\n" : ",good,1.5\n");
+    }
+    typed += "by hand,2,0.7,coarse,typed,planned,perhaps,2.5\n";
+    fs::remove(plan);
+    std::ofstream(plan) << typed;
+    core::protect_other_files(true);
+    std::string toml = design_toml;
+    toml.replace(toml.find("points = 16"), 11, "points = 18");
+    fs::remove(folder_.path() / "study.toml");
+    std::ofstream(folder_.path() / "study.toml") << toml;
+    Design more = open();
+    EXPECT_EQ(more.make_plan(), 2u);
+    // Changed by somebody while a command is under way: left as it is.
+    const std::string after = core::read_file(plan);
+    std::ofstream(plan, std::ios::app) << "late,2.5,0.7,coarse,typed,planned,,\n";
+    EXPECT_THROW(more.add({}, "expected improvement"), core::InputError);
+    EXPECT_THAT(core::read_file(plan), testing::HasSubstr("late"));
+    core::protect_other_files(false);
+    const core::Table table = core::read_csv(after, "plan.csv");
+    EXPECT_EQ(table.comments, std::vector<std::string>{"ours"});
+    ASSERT_EQ(table.rows(), 19u);
+    EXPECT_EQ(table.text("remark")[16], "perhaps");
+    EXPECT_EQ(table.text("remark")[17], "");
+    EXPECT_DOUBLE_EQ(table.numbers("price")[0], 1.5);
+    EXPECT_TRUE(fs::exists(folder_.path() / "design/shapes/by hand.toml"));
+}
+
+TEST_F(DesignFiles, RowsAreAddedToTheFileThatIsThere) {
+    DesignTable file;
+    const auto rows = [](double from, std::size_t count) {
+        core::Table table;
+        std::vector<double> numbers;
+        for (std::size_t i = 0; i < count; ++i) {
+            numbers.push_back(from + static_cast<double>(i));
+        }
+        table.add_text("design", std::vector<std::string>(count, "a"));
+        table.add_numbers("gap", "m", numbers, "mm");
+        return table;
+    };
+    const fs::path path = folder_.path() / "rows.csv";
+    EXPECT_FALSE(file.ours());
+    file.write(path, rows(0, 2));
+    EXPECT_TRUE(file.ours());
+    fs::create_hard_link(path, folder_.path() / "the same file");
+    for (int i = 2; i < 50; ++i) {
+        file.append(rows(i, 1));
+    }
+    EXPECT_TRUE(fs::equivalent(path, folder_.path() / "the same file")) << "a row costs a row, not the whole file";
+    EXPECT_EQ(core::read_file(path), core::write_csv(rows(0, 50)));
+    EXPECT_TRUE(core::may_replace(path)) << "it is still the program's own";
+    std::ofstream(path, std::ios::app) << "b,1\n";
+    EXPECT_THROW(file.append(rows(50, 1)), core::InputError);
+    EXPECT_EQ(core::read_csv(path).rows(), 51u);
+}
+
+/// Seven variables: a plan cannot fill them, and the search keeps to a box about the best.
+TEST_F(DesignFiles, ASearchInManyVariablesKeepsToItsTrustRegion) {
+    core::write_file(folder_.path() / "study.toml", R"(
+title = "many"
+[design]
+shape = "evie.toml"
+points = 20
+quantities = ["lift_force"]
+vary = [{ key = "body.length", from = "190 mm", to = "220 mm" },
+        { key = "body.width", from = "140 mm", to = "160 mm" },
+        { key = "body.height", from = "140 mm", to = "150 mm" },
+        { key = "body.base_cut", from = 0.7, to = 0.8 },
+        { key = "body.taper", from = -0.1, to = 0.1 },
+        { key = "body.base_pitch", from = "-1 deg", to = "1 deg" },
+        { key = "body.base_offset", from = "-10 mm", to = "10 mm" }]
+fidelity = [{ name = "draft" }]
+objective = [{ quantity = "lift_force", sense = "minimise" }]
+)");
+    core::write_file(folder_.path() / "evie.toml",
+                     "[body]\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\nheight = \"145 mm\"\nbase_cut = 0.75\n");
+    const auto put_results = [&] {
+        const Design design = open();
+        std::string csv = "design";
+        for (const auto& v : design.spec().variables) {
+            csv += "," + v.name + " [" + v.unit + "]";
+        }
+        csv += ",fidelity,lift_force [N],lift_force_sigma [N],state\n";
+        for (const PlannedDesign& d : design.plan()) {
+            double lift = 1;
+            csv += d.name;
+            for (std::size_t v = 0; v < d.at.size(); ++v) {
+                lift += std::pow(design.spec().variables[v].scaled(d.at[v]) - 0.5, 2);
+                csv += "," + std::to_string(d.at[v]);
+            }
+            csv += ",draft," + std::to_string(lift) + ",0.0001,solved\n";
+        }
+        fs::remove(folder_.path() / "design" / "results.csv");
+        core::write_file(folder_.path() / "design" / "results.csv", csv);
+    };
+    Design design = open();
+    design.make_plan();
+    put_results();
+    const auto region = [&] {
+        const Design known = open();
+        return known.trust_region(known.search(known.surrogates()));
+    };
+    ASSERT_TRUE(region());
+    EXPECT_DOUBLE_EQ(region()->length, 0.8) << "nothing was chosen by the search yet";
+    // Seven designs far from the best, one after the other: half the box.
+    for (int i = 0; i < 7; ++i) {
+        Design known = open();
+        tables::Candidate bad;
+        for (std::size_t v = 0; v < 7; ++v) {
+            bad.at.push_back(known.spec().variables[v].unscaled((i >> (v % 3) & 1) != 0 ? 0.98 : 0.02));
+        }
+        bad.at[6] = known.spec().variables[6].unscaled(0.1 + 0.1 * i);
+        known.add({bad}, "expected improvement");
+    }
+    put_results();
+    EXPECT_DOUBLE_EQ(region()->length, 0.4);
+    const Design known = open();
+    const auto search = known.search(known.surrogates());
+    auto options = known.known();
+    options.count = 2;
+    options.region = known.trust_region(search);
+    std::vector<double> best;
+    for (const auto& x : options.solved) {
+        if (best.empty() || search.best_of({x}) < search.best_of({best})) {
+            best = x;
+        }
+    }
+    for (const auto& c : search.next_designs(options)) {
+        for (std::size_t v = 0; v < 7; ++v) {
+            const auto& variable = known.spec().variables[v];
+            EXPECT_LE(std::abs(variable.scaled(c.at[v]) - variable.scaled(best[v])), 0.2 + 1e-9) << variable.name;
+        }
+    }
+}
+
+TEST_F(DesignFiles, TheWaterIsTheStudys) {
+    EXPECT_DOUBLE_EQ(open().spec().kinematic_viscosity, 1e-6);
+    std::string text = design_toml;
+    text.replace(text.find("points = 16"), 11, "kinematic_viscosity = \"1.3e-6 m^2/s\"");
+    core::write_file(folder_.path() / "study.toml", text);
+    EXPECT_DOUBLE_EQ(open().spec().kinematic_viscosity, 1.3e-6);
+    text.replace(text.find("1.3e-6"), 6, "0");
+    core::write_file(folder_.path() / "study.toml", text);
+    EXPECT_THROW((void)open(), core::InputError);
 }
 
 TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {

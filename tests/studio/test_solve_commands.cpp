@@ -630,6 +630,47 @@ TEST_F(SolveCommands, ARunThatDoesNotSettleRunsToItsEndAndSaysSo) {
     EXPECT_TRUE(fs::exists(folder_.path() / "case" / "constant" / "polyMesh" / "owner"));
 }
 
+TEST_F(SolveCommands, ADesignTakesWhatPeopleTypedAndSaysWhenAllFailed) {
+    program("ln", "exec /bin/ln \"$@\"");
+    program("simpleFoam", waiting_solver("0"));
+    write_study();
+    const fs::path study = folder_.path() / "search";
+    core::write_file(study / "evie.toml", core::read_file(folder_.path() / "study" / "ellipse.toml"));
+    core::write_file(study / "study.toml",
+                     "title = \"search\"\n[frame]\nsymmetry = \"y\"\n[design]\nshape = \"evie.toml\"\npoints = 1\n"
+                     "gap = \"3 mm\"\npitch = [\"-6 deg\", \"-5 deg\"]\nkinematic_viscosity = \"1.1e-6 m^2/s\"\n"
+                     "[[design.vary]]\nkey = \"body.base_cut\"\nfrom = 0.74\nto = 0.76\n"
+                     "[[design.fidelity]]\nname = \"draft\"\niterations = 240\n");
+    core::write_file(study / "design" / "plan.csv",
+                     "design,body.base_cut [1],fidelity,why,state,remark\nmine,0.75,draft,typed,planned,see above\n");
+    const auto failed = run({"design", "run", "search", "--json"});
+    EXPECT_EQ(failed.exit_code, 3) << "not one case gave loads";
+    ASSERT_TRUE(fs::exists(study / "design" / "results.csv")) << failed.errors << failed.output;
+    EXPECT_EQ(json::parse(failed.output)["usable"], 0);
+    core::Table table = core::read_csv(study / "design" / "results.csv");
+    ASSERT_EQ(table.rows(), 2u);
+    for (const std::string& state : table.text("state")) {
+        EXPECT_THAT(state, HasSubstr("below the ground"));  // was: no such file, of the shape that was typed
+    }
+    EXPECT_TRUE(fs::exists(study / "design/shapes/mine.toml"));
+    // A remark beside the results, and a pitch at which there is room.
+    std::string text = core::read_file(study / "design" / "results.csv");
+    text.insert(text.find('\n'), ", remark");
+    text.insert(text.find('\n', text.find('\n') + 1), ", touches");
+    text.insert(text.rfind('\n'), ", touches too");
+    fs::remove(study / "design" / "results.csv");
+    std::ofstream(study / "design" / "results.csv") << text;
+    replace(study / "study.toml", "\"-5 deg\"", "\"1 deg\"");
+    (void)run({"design", "run", "search", "--json"});  // the stand-in's fields hold no loads
+    table = core::read_csv(study / "design" / "results.csv");
+    ASSERT_EQ(table.rows(), 3u);
+    EXPECT_EQ(table.text("remark")[0], "touches");
+    EXPECT_EQ(table.text("remark")[1], "touches too");
+    EXPECT_EQ(core::read_csv(study / "design" / "plan.csv").text("remark")[0], "see above");
+    EXPECT_THAT(core::read_file(study / "design/runs/draft/mine-h3-p1-u0.5/constant/transportProperties"),
+                HasSubstr("nu 1.1e-06"));
+}
+
 TEST_F(SolveCommands, WhatBelongsToOneMesherIsRefusedWithTheOther) {
     write_study();
     const fs::path toml = folder_.path() / "study" / "study.toml";
@@ -770,6 +811,18 @@ TEST(RealOpenFoam, ADesignIsRunOnBlocks) {
                     (x * std::cos(a) - z * std::sin(a)) * table.numbers("lift_force")[made] -
                     (x * std::sin(a) + z * std::cos(a)) * table.numbers("drag_force")[made],
                 1e-5);
+    // What the run's own criterion says of it counts, not the trend that the loads have at its end.
+    const fs::path marker = folder.path() / "design/runs/draft/design-001-h3-p1-u0.5/case.foam";
+    json said = json::parse(core::read_file(marker));
+    said["settled"] = true;
+    core::write_file(marker, said.dump(2));
+    EXPECT_EQ(test::run_underbody({"design", "run", "."}, folder.path()).exit_code, 0);
+    EXPECT_EQ(core::read_csv(results).text("state")[made], "solved");
+    said["settled"] = false;
+    core::write_file(marker, said.dump(2));
+    fs::remove(results);
+    EXPECT_EQ(test::run_underbody({"design", "run", "."}, folder.path()).exit_code, 0);
+    EXPECT_EQ(core::read_csv(results).text("state")[0], "not settled");
     // What is there is not made again; what lost its fields keeps its row.
     const std::string before = core::read_file(results);
     EXPECT_EQ(test::run_underbody({"design", "run", "."}, folder.path()).exit_code, 0);
