@@ -15,9 +15,11 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/motion_start.h"
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/cli/table_options.h"
+#include "surrogates/dynamics/exports/motion_fmu.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::studio {
@@ -36,6 +38,8 @@ struct ExportCommand {
     std::string base_centre;
     bool overwrite = false;
     bool self_test = false;
+    std::string motion;
+    std::string from;
 };
 
 tables::ExportOptions options_of(const ExportCommand& command) {
@@ -118,7 +122,90 @@ std::optional<std::array<double, 3>> lever_of(const ExportCommand& command) {
     return std::isnan(centre[2]) ? std::nullopt : std::optional(centre);
 }
 
+dynamics::MotionFmuOptions motion_options(const ExportCommand& command, const dynamics::Model& model) {
+    const auto& motions = dynamics::fmu_motions();
+    const auto motion = std::find(motions.begin(), motions.end(), command.motion);
+    if (motion == motions.end()) {
+        throw core::UsageError("name", "motions are heave, heave-pitch and body, not '" + command.motion + "'", {},
+                               core::did_you_mean(command.motion, motions));
+    }
+    dynamics::MotionFmuOptions options;
+    options.motion = static_cast<dynamics::FmuMotion>(motion - motions.begin());
+    options.name = command.name;
+    options.overwrite = command.overwrite;
+    for (const auto& [name, value] : read_assignments(command.table.where)) {
+        options.held.set(name, value);
+    }
+    const MotionStart start = motion_start(command.from, options.held);
+    const auto held = options.held.over(model.conditions);
+    if (options.motion == dynamics::FmuMotion::heave) {
+        options.start = {start.needed_gap(), start.heave_velocity.value_or(0)};
+    } else if (options.motion == dynamics::FmuMotion::heave_pitch) {
+        const auto of = start.of_pitch();
+        options.start.assign(of.begin(), of.end());
+    } else {
+        const auto of = start.of_body(dynamics::RigidBody(model, held), held);
+        options.start.assign(of.begin(), of.end());
+    }
+    return options;
+}
+
+/// The motion of a model, not only its forces.
+int run_motion(Shell& shell, const ExportCommand& command) {
+    if (!command.table.is_model()) {
+        throw core::UsageError(
+            "range", "--motion writes the motion of a model (model.toml), '" + command.table.file + "' is none");
+    }
+    if (format_of(command) != "fmu") {
+        throw core::UsageError("format", "a motion is written as an FMU (--format fmu), not as " + format_of(command));
+    }
+    if (!command.max_error.empty() || !command.points.empty() || command.number != "double" || command.self_test ||
+        command.frame != "up") {
+        throw core::UsageError("range",
+                               "--max-error, --points, --number, --frame and --self-test are of tables: a "
+                               "motion is written as it is simulated");
+    }
+    const auto model = dynamics::read_model(command.table.file);
+    auto options = motion_options(command, model);
+    options.overwrite = options.overwrite || shell.force;
+    const core::ReplacingAllowed by_the_export_itself;
+    const auto fmu = dynamics::export_motion_fmu(model, command.out, options);
+    shell.print(fmu.file.string());
+    shell.remark(fmu.remarks);
+    const auto names = [](const std::vector<dynamics::MotionFmuVariable>& variables) {
+        std::string list;
+        for (const auto& one : variables) {
+            list += (list.empty() ? "" : ", ") + one.name;
+        }
+        return list;
+    };
+    shell.info("inputs " + names(fmu.inputs) + "; states " + names(fmu.states));
+    if (shell.json) {
+        nlohmann::json document{{"format", "fmu"}, {"motion", command.motion}, {"files", {fmu.file.string()}}};
+        document["bytes"] = std::filesystem::file_size(fmu.file);
+        for (const auto& [key, variables] :
+             {std::pair{"inputs", &fmu.inputs}, std::pair{"states", &fmu.states}, std::pair{"outputs", &fmu.outputs}}) {
+            document[key] = nlohmann::json::array();
+            for (const auto& one : *variables) {
+                document[key].push_back({{"name", one.name}, {"unit", one.unit}, {"start", one.start}});
+            }
+        }
+        document["warnings"] = nlohmann::json::array();
+        for (const auto& remark : fmu.remarks) {
+            document["warnings"].push_back(remark.message);
+        }
+        shell.print_json(document);
+    }
+    return done;
+}
+
 int run_export(Shell& shell, const ExportCommand& command) {
+    if (!command.motion.empty()) {
+        return run_motion(shell, command);
+    }
+    if (!command.from.empty()) {
+        throw core::UsageError("range", "--from says where a motion starts: say --motion too");
+    }
     const std::string format = format_of(command);
     auto options = options_of(command);
     options.overwrite = options.overwrite || shell.force;
@@ -197,21 +284,28 @@ void add_export_command(CLI::App& app, Shell& shell) {
     sub->add_flag(
         "--self-test", command->self_test,
         "C: beside the header NAME_test.c, a program that compares it with what this program says at 200 points");
+    sub->add_option("--motion", command->motion,
+                    "FMU of a model: its motion in heave | heave-pitch | body, with states, contact and inputs");
+    sub->add_option("--from", command->from,
+                    "where that motion starts, as simulate has it, such as gap=20mm,pitch=1deg");
     sub->add_flag("--overwrite", command->overwrite, "replace a file that this program did not write");
     std::string text = "Formats:\n";
     for (const auto& format : tables::export_formats()) {
         text += "  " + format.name + std::string(format.name.size() < 10 ? 10 - format.name.size() : 1, ' ') +
                 format.description + "\n";
     }
-    sub->footer(text +
-                "Examples:\n"
-                "  underbody export lift.csv --format c --out lift.h --max-error 0.5%\n"
-                "  underbody export found/model.toml --format c --out lift.h      the force of a model, with what "
-                "discover added to it\n"
-                "  underbody export model.toml --quantity lift_force,drag_force,pitch_moment --axes "
-                "gap,pitch,speed=0:0.8,jet_voltage=0:12 --out body.h\n"
-                "      all forces of a model over all its axes, in one header and one call\n"
-                "  underbody export loads.csv --quantity pitch_moment --format json --out moment.json --frame ned");
+    sub->footer(
+        text +
+        "Examples:\n"
+        "  underbody export lift.csv --format c --out lift.h --max-error 0.5%\n"
+        "  underbody export found/model.toml --format c --out lift.h      the force of a model, with what "
+        "discover added to it\n"
+        "  underbody export model.toml --quantity lift_force,drag_force,pitch_moment --axes "
+        "gap,pitch,speed=0:0.8,jet_voltage=0:12 --out body.h\n"
+        "      all forces of a model over all its axes, in one header and one call\n"
+        "  underbody export model.toml --motion body --from gap=20mm,speed=0.35m/s --format fmu --out body.fmu\n"
+        "      the motion itself: what simulate integrates, for Simulink, OpenModelica and others\n"
+        "  underbody export loads.csv --quantity pitch_moment --format json --out moment.json --frame ned");
     shell.on(sub, [&shell, command] { return run_export(shell, *command); });
 }
 

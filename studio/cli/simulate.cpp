@@ -13,6 +13,7 @@
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/force_notes.h"
 #include "studio/cli/model_options.h"
+#include "studio/cli/motion_start.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/plant/heave.h"
@@ -45,52 +46,6 @@ struct SimulateArguments {
     bool until_settled = false;
     bool until_contact = false;
 };
-
-/// States of the body that have no place among the quantities that files share.
-const std::vector<core::QuantityName>& body_names() {
-    static const std::vector<core::QuantityName> names{{"sway_velocity", "m/s", "", ""},
-                                                       {"yaw_rate", "rad/s", "", ""},
-                                                       {"heading", "rad", "", ""},
-                                                       {"north", "m", "", ""},
-                                                       {"east", "m", "", ""}};
-    return names;
-}
-
-/// Where the motion starts, what is held, what varies.
-struct Start {
-    std::optional<double> gap, heave_velocity, pitch, pitch_rate, speed, sway_velocity, yaw_rate, heading, north, east;
-    [[nodiscard]] bool turns() const { return pitch || pitch_rate; }
-    [[nodiscard]] bool travels() const { return sway_velocity || yaw_rate || heading || north || east; }
-};
-
-Start start_of(const std::string& text, dynamics::Conditions& held) {
-    Start start;
-    const std::pair<const char*, std::optional<double> Start::*> states[] = {{"gap", &Start::gap},
-                                                                             {"heave_velocity", &Start::heave_velocity},
-                                                                             {"pitch", &Start::pitch},
-                                                                             {"pitch_rate", &Start::pitch_rate},
-                                                                             {"sway_velocity", &Start::sway_velocity},
-                                                                             {"yaw_rate", &Start::yaw_rate},
-                                                                             {"heading", &Start::heading},
-                                                                             {"north", &Start::north},
-                                                                             {"east", &Start::east}};
-    for (const core::NamedValue& value : core::parse_assignments(text, body_names())) {
-        bool is_state = false;
-        for (const auto& [name, member] : states) {
-            if (value.name == name) {
-                start.*member = value.value;
-                is_state = true;
-            }
-        }
-        if (value.name == "speed") {
-            start.speed = value.value;
-        }
-        if (!is_state) {
-            held.set(value.name, value.value);
-        }
-    }
-    return start;
-}
 
 /// Recorded inputs from a table: time, any channels, and thrusts by the names of the jets.
 struct Inputs {
@@ -194,7 +149,7 @@ std::vector<double> steady_thrusts(const std::string& text, const std::vector<dy
 /// Everything a motion needs, read and checked before anything runs.
 struct Job {
     dynamics::Model model;
-    Start start;
+    MotionStart start;
     Inputs inputs;
     std::vector<double> thrust;
     std::optional<dynamics::VehicleHold> hold;
@@ -225,7 +180,7 @@ Job job_of(const SimulateArguments& a, Shell& shell) {
     if (!a.inputs.empty()) {
         read_inputs(a.inputs, job.model.jets, job.inputs, shell);
     }
-    job.start = start_of(a.from, job.inputs.signals.held);
+    job.start = motion_start(a.from, job.inputs.signals.held);
     for (const core::NamedValue& value :
          a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         job.inputs.signals.held.set(value.name, value.value);
@@ -244,14 +199,6 @@ Job job_of(const SimulateArguments& a, Shell& shell) {
         throw core::UsageError("range", "--for must be positive, --step not negative, --tolerance between 0 and 0.1");
     }
     return job;
-}
-
-double needed_gap(const Start& start) {
-    if (!start.gap) {
-        throw core::UsageError("missing", "--from needs the gap to start at", {},
-                               "for instance --from gap=20mm,heave_velocity=0");
-    }
-    return *start.gap;
 }
 
 template <class Motion>
@@ -288,7 +235,7 @@ std::string event_text(const std::vector<dynamics::TrajectoryEvent>& events) {
 
 void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
     const dynamics::Trajectory motion = dynamics::simulate(
-        job.model, needed_gap(job.start), job.start.heave_velocity.value_or(0), job.inputs.signals, job.options,
+        job.model, job.start.needed_gap(), job.start.heave_velocity.value_or(0), job.inputs.signals, job.options,
         shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
     shell.show(motion.remarks);
     const dynamics::HeavePlant plant = dynamics::plant_for(job.model, job.inputs.signals);
@@ -303,8 +250,7 @@ void run_heave_pitch(const SimulateArguments& a, Job& job, Shell& shell) {
     if (const auto feedback = pitch_feedback_of(a.feedback, a.lqr, plant)) {
         plant.close_loop(*feedback);
     }
-    const dynamics::PitchState start{needed_gap(job.start), job.start.heave_velocity.value_or(0),
-                                     job.start.pitch.value_or(0), job.start.pitch_rate.value_or(0)};
+    const dynamics::PitchState start = job.start.of_pitch();
     dynamics::PitchTrajectory motion =
         dynamics::simulate(plant, start, job.options, shell.progress(), job.inputs.signals);
     add_remarks(motion.remarks, job.model);
@@ -341,19 +287,7 @@ void run_surface(const SimulateArguments& a, Job& job, Shell& shell) {
 
 void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
     const dynamics::RigidBody body(job.model, job.inputs.signals.held, dynamics::varying_channels(job.inputs.signals));
-    const double pitch = job.start.pitch.value_or(0);
-    dynamics::BodyState start{};
-    start[dynamics::state_u] =
-        job.start.speed.value_or(job.inputs.signals.held.over(job.model.conditions).get(Channel::speed, 0));
-    start[dynamics::state_v] = job.start.sway_velocity.value_or(0);
-    start[dynamics::state_q] = job.start.pitch_rate.value_or(0);
-    start[dynamics::state_r] = job.start.yaw_rate.value_or(0);
-    start[dynamics::state_theta] = pitch;
-    start[dynamics::state_w] = body.down_velocity_for(job.start.heave_velocity.value_or(0), start);
-    start[dynamics::state_psi] = job.start.heading.value_or(0);
-    start[dynamics::state_x] = job.start.north.value_or(0);
-    start[dynamics::state_y] = job.start.east.value_or(0);
-    start[dynamics::state_z] = body.height_for_gap(needed_gap(job.start), pitch);
+    const dynamics::BodyState start = job.start.of_body(body, job.inputs.signals.held.over(job.model.conditions));
     dynamics::BodyTrajectory motion =
         dynamics::simulate_body(body, start, job.command(), job.body_options(), shell.progress(), job.inputs.signals);
     add_remarks(motion.remarks, job.model);
