@@ -136,7 +136,7 @@ dynamics::MotionFmuOptions motion_options(const ExportCommand& command, const dy
     for (const auto& [name, value] : read_assignments(command.table.where)) {
         options.held.set(name, value);
     }
-    const MotionStart start = motion_start(command.from, options.held);
+    const MotionStart start = command.from.empty() ? MotionStart{} : motion_start(command.from, options.held);
     const auto held = options.held.over(model.conditions);
     if (options.motion == dynamics::FmuMotion::heave) {
         options.start = {start.needed_gap(), start.heave_velocity.value_or(0)};
@@ -187,7 +187,10 @@ int run_motion(Shell& shell, const ExportCommand& command) {
              {std::pair{"inputs", &fmu.inputs}, std::pair{"states", &fmu.states}, std::pair{"outputs", &fmu.outputs}}) {
             document[key] = nlohmann::json::array();
             for (const auto& one : *variables) {
-                document[key].push_back({{"name", one.name}, {"unit", one.unit}, {"start", one.start}});
+                document[key].push_back({{"name", one.name}, {"unit", one.unit}});
+                if (variables != &fmu.outputs) {
+                    document[key].back()["start"] = one.start;
+                }
             }
         }
         document["warnings"] = nlohmann::json::array();

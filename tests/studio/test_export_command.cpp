@@ -183,5 +183,42 @@ TEST(ExportCommand, RefusesWhatAModelCannotGive) {
     }
 }
 
+TEST(ExportCommand, WritesTheMotionOfAModelAsAnFmu) {
+    core::TemporaryFolder folder;
+    const std::string model = (test::source_folder() / "cases/evie/model.toml").string();
+    const auto run = run_underbody(
+        {"export", model, "--motion", "heave-pitch", "--from", "gap=20mm,pitch=1deg", "--out", "motion.fmu", "--json"},
+        folder.path());
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const auto json = nlohmann::json::parse(run.output);
+    EXPECT_EQ(json["motion"], "heave-pitch");
+    EXPECT_EQ(json["inputs"][0]["name"], "input_force");
+    ASSERT_EQ(json["states"].size(), 4u);
+    EXPECT_EQ(json["states"][0]["name"], "gap");
+    EXPECT_EQ(json["states"][0]["start"], 0.02);
+    EXPECT_EQ(json["outputs"][0]["unit"], "N");
+    EXPECT_THAT(json["warnings"].dump(), HasSubstr("the speed is held at 0.35 m/s"));
+    EXPECT_EQ(json["bytes"], std::filesystem::file_size(folder.path() / "motion.fmu"));
+
+    core::write_file(folder.path() / "notes.fmu", "notes");
+    for (const auto& [words, says] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+             {{model, "--motion", "heav", "--from", "gap=1mm", "--out", "w.fmu"}, "did you mean 'heave'"},
+             {{model, "--motion", "heave", "--out", "w.fmu"}, "--from needs the gap"},
+             {{model, "--motion", "heave", "--from", "gap=-1mm", "--out", "w.fmu"}, "the start lies in the ground"},
+             {{model, "--motion", "heave", "--from", "gap=5mm", "--out", "w.h"}, "a motion is written as an FMU"},
+             {{model, "--motion", "heave", "--from", "gap=5mm", "--out", "w.fmu", "--points", "gap=4"}, "of tables"},
+             {{model, "--from", "gap=5mm", "--out", "w.fmu"}, "say --motion too"},
+             {{model, "--motion", "heave", "--from", "gap=5mm", "--out", "notes.fmu"}, "no FMU that Underbody wrote"},
+             {{"forces.csv", "--motion", "heave", "--from", "gap=5mm", "--out", "w.fmu"}, "the motion of a model"}}) {
+        std::vector<std::string> all{"export"};
+        all.insert(all.end(), words.begin(), words.end());
+        const auto wrong = run_underbody(all, folder.path());
+        EXPECT_TRUE(wrong.exit_code == 2 || wrong.exit_code == 3) << wrong.exit_code;
+        EXPECT_THAT(wrong.errors, HasSubstr(says));
+        EXPECT_FALSE(std::filesystem::exists(folder.path() / "w.fmu"));
+    }
+    EXPECT_EQ(core::read_file(folder.path() / "notes.fmu"), "notes");
+}
+
 }  // namespace
 }  // namespace underbody

@@ -244,6 +244,19 @@ void hold_what_effects_need(const Model& model, FmuMotion motion, std::vector<Ch
     varying.clear();
 }
 
+/// Drag, friction and the scales of forces of a run in heave and pitch are those of one speed.
+void say_held_speed(const Model& model, const Conditions& held, MotionFmu& fmu) {
+    const bool scales = std::any_of(model.forces.begin(), model.forces.end(), [](const ForceSource& source) {
+        return std::find(source.axes.begin(), source.axes.end(), Channel::speed) != source.axes.end() ||
+               std::any_of(source.scales.begin(), source.scales.end(),
+                           [](const ForceScale& scale) { return scale.channel == Channel::speed; });
+    });
+    if (scales || held.get(Channel::speed, 0) != 0) {
+        warn(fmu, "the speed is held at " + core::format_number(start_of(model, held, Channel::speed), 6) +
+                      " m/s, no input: this motion is that of one speed");
+    }
+}
+
 void check_file(const std::filesystem::path& path, bool overwrite) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored) || overwrite) {
@@ -272,6 +285,9 @@ MotionFmu export_motion_fmu(const Model& declared, const std::filesystem::path& 
     fmu.remarks = motion_remarks(model, held);
     std::vector<Channel> varying = varying_of(model, options.motion);
     hold_what_effects_need(model, options.motion, varying, fmu);
+    if (options.motion == FmuMotion::heave_pitch) {
+        say_held_speed(model, held, fmu);
+    }
     const HeavePlant vertical =
         options.motion == FmuMotion::heave ? HeavePlant(model, held, varying) : vertical_channel(model, held, varying);
     MotionSource source{model, options.motion, held, own_channels(options.motion), varying, vertical, fmu};
