@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/measured/studies.h"
+#include "core/own_files.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
@@ -14,6 +15,7 @@
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/static/load_cell.h"
 #include "surrogates/discovery/wording.h"
+#include "surrogates/estimator/observe/exported_again.h"
 #include "surrogates/estimator/observe/made_again.h"
 
 namespace underbody::studio {
@@ -32,6 +34,7 @@ struct DiscoverArguments {
     std::string settle = "0 s";
     bool without_thrust = false;
     std::vector<std::string> candidates;
+    std::vector<std::string> exports;
 };
 
 /// "", " over 2 s", " in free run".
@@ -169,6 +172,33 @@ std::string make_again(discovery::Discovery& found, const dynamics::Model& model
     return text;
 }
 
+/// The end of the chain: files for controllers with the model as declared and as found, and what changed in them.
+std::string export_again(discovery::Discovery& found, const dynamics::Model& model, const DiscoverArguments& arguments,
+                         Shell& shell) {
+    const std::filesystem::path folder(arguments.out);
+    nlohmann::json all = nlohmann::json::array();
+    std::string text;
+    const core::ReplacingAllowed by_the_export_itself;  // it knows its own files by what is in them
+    for (const std::string& name : arguments.exports) {
+        const estimator::ExportedAgain again =
+            estimator::export_again(model, found.model, folder, name, shell.force, shell.progress());
+        shell.show(again.remarks);
+        all.push_back(again);
+        for (const core::ReportTable& table : again.tables()) {
+            found.made_again_tables.push_back(table);
+            text += name + ", " + table.title + ": " + table.note + "\n";
+        }
+        text += "Exported: " + again.before.front().string() + " (as declared), " + again.after.front().string() +
+                " (as found)\n";
+    }
+    nlohmann::json keys = found.made_again ? *found.made_again : nlohmann::json::object();
+    if (!all.empty()) {
+        keys["exports"] = all;
+        found.made_again = std::make_shared<const nlohmann::json>(keys);
+    }
+    return text;
+}
+
 }  // namespace
 
 void add_discover_command(CLI::App& app, Shell& shell) {
@@ -195,12 +225,17 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         ->add_option("--candidates", arguments->candidates,
                      "effects to consider, by name, comma separated (default: all that such data can show)")
         ->delimiter(',');
+    command->add_option("--export", arguments->exports,
+                        "file for a controller (its ending says the format, such as lift.h), written into --out with "
+                        "the model as found and into --out/declared with the model as declared, and compared in the "
+                        "report; may be given again");
     command->footer(
         "Examples:\n"
         "  underbody discover model.toml --data runs --out found        report, new model and discovery.json in "
         "found/\n"
         "  underbody discover model.toml --data runs --out found --json   the same, discovery.json on stdout as well\n"
         "  underbody discover model.toml --data runs --out found --candidates coulomb_friction,linear_damping\n"
+        "  underbody discover model.toml --data runs --out found --export lift.h   and the header before and after\n"
         "  underbody predict found/model.toml --data other-runs         the new model on data it has not seen\n"
         "  underbody discover --reduce log.csv --out bench.csv          raw log of a load cell to forces, by its "
         "pump-off blocks\n"
@@ -223,6 +258,13 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         for (const char* file : {"model.toml", "report.html", "discovery.json", "next-experiment.csv"}) {
             Shell::will_write((std::filesystem::path(arguments->out) / file).string());
         }
+        for (const std::string& name : arguments->exports) {
+            if (std::filesystem::path(name).has_parent_path()) {
+                throw core::UsageError("path", "'" + name + "' is more than the name of a file", {},
+                                       "it is written into --out: --export lift.h");
+            }
+            (void)estimator::export_format_of(name);
+        }
         const dynamics::Model model = dynamics::read_model(arguments->model);
         const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
         discovery::DiscoverOptions options;
@@ -235,7 +277,8 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         }
         discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
         shell.remark(found.problems);
-        const std::string again = make_again(found, model, data, shell);
+        std::string again = make_again(found, model, data, shell);
+        again += export_again(found, model, *arguments, shell);
         discovery::write_discovery(found, model, data, arguments->out, renderer);
         if (shell.json) {
             shell.print_json(discovery::to_json(found));

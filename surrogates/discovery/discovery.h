@@ -8,12 +8,14 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/figure.h"
 #include "core/progress.h"
+#include "core/report_table.h"
 #include "core/table.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/model/measurements.h"
@@ -98,6 +100,16 @@ struct UnexplainedRest {
     std::vector<std::string> depends_on;
 };
 
+/// A number that differs from run to run far beyond its errors, though the rig is one: a sensor's zero, a clock.
+struct DiffersByRun {
+    std::string name;  ///< of the catalogue: the effect that it is a number of
+    std::string parameter;
+    std::string unit;
+    double chance = 1;  ///< that noise alone lets runs differ as much
+    std::vector<std::string> runs;
+    std::vector<double> value, sigma;  ///< run by run, SI
+};
+
 struct Discovery {
     std::string verdict;   ///< none, effect, unknown
     std::string sentence;  ///< the verdict for people
@@ -112,6 +124,7 @@ struct Discovery {
     std::string held_out;            ///< which data the error is from
     std::string mended;              ///< how the records are read anew ([records] of the model); empty: as logged
     UnexplainedRest rest;
+    std::optional<DiffersByRun> by_run;  ///< asked where nothing was found that all runs have in common
     std::vector<DetectionLimit> limits;
     Consequence consequence;
     Placebo placebo;
@@ -124,6 +137,7 @@ struct Discovery {
     /// Keys that a caller adds to `consequence` in discovery.json: what rooms beside this one made again with the new
     /// model (its figures go into `figures`). May be empty.
     std::shared_ptr<const nlohmann::json> made_again;
+    std::vector<core::ReportTable> made_again_tables;  ///< for the report: exports before and after
     double seconds = 0;
 };
 

@@ -155,6 +155,21 @@ void add_consequence(core::HtmlPage& page, const Consequence& consequence) {
     }
 }
 
+/// The chain on to what a controller is given: its tables with the model as declared and as found.
+void add_made_again(core::HtmlPage& page, const Discovery& d) {
+    if (d.made_again_tables.empty()) {
+        return;
+    }
+    page.section("Exports made again");
+    for (const core::ReportTable& table : d.made_again_tables) {
+        page.subsection(table.title);
+        page.table(table.header, table.rows, table.note);
+        for (const auto& [target, text] : table.links) {
+            page.link(target, target + ": " + text);
+        }
+    }
+}
+
 void add_noise_and_limits(core::HtmlPage& page, const Discovery& d) {
     page.section("Noise and limits");
     std::vector<std::vector<std::string>> noise;
@@ -212,6 +227,7 @@ std::string report_html(const Discovery& d, const dynamics::Model& before, const
     add_rivals(page, d);
     add_error(page, d);
     add_consequence(page, d.consequence);
+    add_made_again(page, d);
     page.section("The next experiment");
     page.paragraph(d.next_experiment);
     if (d.next_set_points.rows() > 0) {

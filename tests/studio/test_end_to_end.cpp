@@ -158,7 +158,7 @@ TEST_F(EndToEnd, FromFilesOfCfdToAHeaderThatKnowsTheEffectOfTheRig) {
     run({"export", declared, "--axes", "gap", "--out", "before.h", "--name", "before"});
     simulate_rig(rough);
     const json wrong = json::parse(run({"predict", declared, "--data", "rig", "--json"}));
-    run({"discover", declared, "--data", "rig", "--out", "found"});
+    run({"discover", declared, "--data", "rig", "--out", "found", "--export", "lift.h"});
     const json found = json::parse(core::read_file(folder / "found/discovery.json"));
     ASSERT_EQ(found["verdict"], "effect") << found.dump(1);
     EXPECT_EQ(found["effects"].size(), 1U);
@@ -183,6 +183,17 @@ TEST_F(EndToEnd, FromFilesOfCfdToAHeaderThatKnowsTheEffectOfTheRig) {
     EXPECT_NEAR(error_before, 0.0140, 5e-4) << "the roughness over 6 to 36 mm";
     EXPECT_LT(error_after, 0.1 * error_before);
     EXPECT_LT(error_after, 1e-3);
+    // what discover exported itself says the same, and its report compares the two
+    EXPECT_LT(error_of(lift_of("found/declared/lift.h", "lift", gaps), gaps, cfd_lift), 5e-4);
+    EXPECT_LT(error_of(lift_of("found/lift.h", "lift", gaps), gaps, true_lift), 1e-3);
+    const json exported = found["consequence"]["exports"][0]["quantities"][0];
+    EXPECT_EQ(exported["quantity"], "lift_force");
+    EXPECT_NEAR(exported["largest_change"].get<double>(),
+                std::abs(exported["after"].get<double>() - exported["before"].get<double>()), 1e-12);
+    EXPECT_GT(exported["largest_change"].get<double>(), error_before) << "the roughness is the change";
+    const std::string page = core::read_file(folder / "found/report.html");
+    EXPECT_THAT(page, HasSubstr("lift_force as exported, before and after"));
+    EXPECT_THAT(page, HasSubstr("declared/lift.h"));
     std::cout << "error of the exported header, N: " << error_before << " before, " << error_after << " after\n";
 
     // And back: from the header to the fields.
