@@ -104,6 +104,13 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     for (Attribution::Share& share : result.shares) {
         share.probability *= (1 - result.none_probability) * (1 - unknown) / total;
     }
+    if (!any) {  // no name has anything to show: what they would share goes to what is left
+        double& heir = gate_p >= calibration.gate ? result.none_probability : result.unknown_probability;
+        for (Attribution::Share& share : result.shares) {
+            heir += share.probability * (1 - std::exp(-no_finding));
+            share.probability *= std::exp(-no_finding);
+        }
+    }
     if (gate_p >= calibration.gate) {
         result.verdict = "none";
     } else {

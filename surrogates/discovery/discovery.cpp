@@ -171,6 +171,12 @@ nlohmann::json to_json(const Discovery& d) {
     if (!d.mended.empty()) {
         json["records_mended"] = d.mended;
     }
+    if (d.by_run) {
+        json["differs_by_run"] = {{"name", d.by_run->name},  {"parameter", d.by_run->parameter},
+                                  {"unit", d.by_run->unit},  {"chance", d.by_run->chance},
+                                  {"runs", d.by_run->runs},  {"value", d.by_run->value},
+                                  {"sigma", d.by_run->sigma}};
+    }
     json["detection_limits"] = nlohmann::json::array();
     for (const DetectionLimit& limit : d.limits) {
         json["detection_limits"].push_back({{"name", limit.name},

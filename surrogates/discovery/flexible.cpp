@@ -214,16 +214,10 @@ std::vector<double> orthonormal_mix(const DesignMatrix& matrix) {
 }
 
 double explained_square(const DesignMatrix& orthonormal_columns, const std::vector<double>& y) {
-    double sum = 0;
-    for (std::size_t k = 0; k < orthonormal_columns.columns; ++k) {
-        const double* column = orthonormal_columns.values.data() + k * orthonormal_columns.rows;
-        double dot = 0;
-        for (std::size_t i = 0; i < y.size(); ++i) {
-            dot += column[i] * y[i];
-        }
-        sum += dot * dot;
-    }
-    return sum;
+    const auto rows = static_cast<Eigen::Index>(orthonormal_columns.rows);
+    const Eigen::Map<const Eigen::MatrixXd> q(orthonormal_columns.values.data(), rows,
+                                              static_cast<Eigen::Index>(orthonormal_columns.columns));
+    return (q.transpose() * Eigen::Map<const Eigen::VectorXd>(y.data(), rows)).squaredNorm();
 }
 
 DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& matrix) {

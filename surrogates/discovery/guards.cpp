@@ -131,6 +131,19 @@ PairedFall paired_fall(const BlockErrors& before, const BlockErrors& after, doub
     return result;
 }
 
+double largest_of_twins(const std::vector<double>& errors, double chance) {
+    const double n = static_cast<double>(errors.size());
+    double sum = 0, square = 0;
+    for (const double error : errors) {
+        sum += std::log(error);
+    }
+    for (const double error : errors) {
+        square += std::pow(std::log(error) - sum / n, 2);
+    }
+    const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1), chance));
+    return std::exp(sum / n + t * std::sqrt(square / (n - 1) * (1 + 1 / n)));
+}
+
 namespace {
 
 /// Each number of an effect of static sets acts without the others. Where they can stand in for each other (dead zone
@@ -168,6 +181,10 @@ bool differ_together(const FittedHypothesis& fitted, const std::string& name, do
 
 }  // namespace
 
+double sigmas_after_scan(double sigmas) {
+    return std::sqrt(2 * std::log(frequencies_tried / std::erfc(sigmas / std::sqrt(2.0))));
+}
+
 bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas) {
     const Hypothesis& h = fitted.hypothesis;
     return std::all_of(h.names.begin(), h.names.end(), [&](const std::string& name) {
@@ -180,7 +197,8 @@ bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas) {
             }
             unit = info.unit;  // the first number of an effect is its strength, and so are others of its unit
             const double away = std::abs(fitted.fit.parameters[j] - use.values[h.slots[j].value]);
-            if (away > sigmas * fitted.fit.sigma[j]) {
+            const bool scanned = dynamics::effect(use.name).info().search.scanned;
+            if (away > (scanned ? sigmas_after_scan(sigmas) : sigmas) * fitted.fit.sigma[j]) {
                 return true;
             }
         }

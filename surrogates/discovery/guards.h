@@ -48,8 +48,18 @@ struct BlockErrors {
 /// the blocks are. Their interval is Student's t; of fewer than three blocks the readings' errors count as independent.
 PairedFall paired_fall(const BlockErrors& before, const BlockErrors& after, double tail);
 
-/// True where each name of the hypothesis has a strength that lies more than `sigmas` of its own errors from where it
-/// does nothing, or (static sets) numbers that lie as unlikely far from there together.
+/// The error that one more twin exceeds with that chance: logarithms of errors are taken for normal, with the mean and
+/// the scatter of those given (Student's t). At least two.
+double largest_of_twins(const std::vector<double>& errors, double chance);
+
+/// As many of its own errors as the largest amplitude of noise at the frequencies of a scan exceeds as seldom as one
+/// number of no scan exceeds `sigmas`: an amplitude of noise at one frequency is beyond z with the chance exp(-z^2/2)
+/// (Rayleigh 1880).
+double sigmas_after_scan(double sigmas);
+
+/// True where each name of the hypothesis has a strength that lies more than `sigmas` (after a scan
+/// sigmas_after_scan()) of its own errors from where it does nothing, or (static sets) numbers that lie as unlikely far
+/// from there together.
 bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas);
 
 /// Lowers all probabilities of names (and of `unknown`) so that none is above `most`; what they lose goes to "none".

@@ -90,6 +90,8 @@ Touch touch_of(const Hypothesis& hypothesis, const dynamics::Model& model);
 /// Effects that can stand in for parts of each other (EffectSearch::kin).
 bool one_kin(const std::vector<std::string>& names);
 
+/// Frequencies that a scan asks, as if independent of each other.
+constexpr double frequencies_tried = 110;
 /// Amplitude, frequency and phase: begins where a scan over frequency says.
 bool is_scanned(const Hypothesis& hypothesis);
 

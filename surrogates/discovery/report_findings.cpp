@@ -100,11 +100,15 @@ void tell_verdict(const Judgement& j, Discovery& result) {
         FoundEffect unknown = unknown_effect(j.attribution.unknown_probability, j.whole.variables);
         unknown.uses = j.uses;
         unknown.explained = j.whole.gain;
-        unknown.evidence = (j.attribution.chosen < j.fitted.size()
-                                ? "the best named effect (" + named().hypothesis.label() + ") leaves " +
-                                      core::format_number(100 * j.left, 3) + " % of the structure; "
-                                : std::string()) +
-                           j.correction + " over " + list_of(j.whole.variables) + " takes its place";
+        const std::string left = j.attribution.chosen < j.fitted.size()
+                                     ? "the best named effect (" + named().hypothesis.label() + ") leaves " +
+                                           core::format_number(100 * j.left, 3) + " % of the structure; "
+                                     : std::string();
+        unknown.evidence =
+            result.by_run
+                ? "runs differ as much by noise alone with a chance of " + core::format_number(result.by_run->chance, 2)
+            : j.uses.empty() ? left + "no correction is in the model"
+                             : left + j.correction + " over " + list_of(j.whole.variables) + " takes its place";
         result.effects.push_back(std::move(unknown));
     }
 }

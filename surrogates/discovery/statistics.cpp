@@ -80,6 +80,14 @@ double chi_squared_limit(double tail, double dof) {
     return boost::math::quantile(boost::math::complement(boost::math::chi_squared(dof), tail));
 }
 
+double surprise(double gain, double count) {
+    if (count <= 0) {
+        return 0;
+    }
+    const double tail = chi_squared_tail(gain, count);
+    return tail > 1e-290 ? -std::log10(tail) : 290 + gain / 10;
+}
+
 double sum_of_squares(std::span<const double> values) {
     double sum = 0;
     for (const double value : values) {

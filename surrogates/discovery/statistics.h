@@ -31,6 +31,10 @@ double f_tail(double x, double dof_above, double dof_below);
 /// The x that a chi-squared variable exceeds with probability `tail`.
 double chi_squared_limit(double tail, double dof);
 
+/// -log10 of the chance that `count` squared normal values sum to more than `gain`; goes on where the chance is too
+/// small for a number.
+double surprise(double gain, double count);
+
 double sum_of_squares(std::span<const double> values);
 
 /// Autocorrelation of a series at a lag; 0 when it is constant.

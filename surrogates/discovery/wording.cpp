@@ -52,8 +52,9 @@ std::string probability_text(double probability) {
 
 namespace {
 
-constexpr double tied = 0.2;       ///< a rival of that probability is worth a name in the verdict
-constexpr double tied_kin = 0.05;  ///< and one whose law can stand in for the other's of that
+constexpr double allowed_rise = 1.05;  ///< of an error that falls elsewhere: above, it is said
+constexpr double tied = 0.2;           ///< a rival of that probability is worth a name in the verdict
+constexpr double tied_kin = 0.05;      ///< and one whose law can stand in for the other's of that
 
 bool is_tied(const Discovery& discovery, const FoundEffect& rival) {
     const bool kin = discovery.effects.size() == 1 && dynamics::find_effect(rival.name) != nullptr &&
@@ -124,7 +125,41 @@ std::string rest_sentence(const Discovery& discovery) {
 
 namespace {
 
+/// "the bias of gap_sensor_bias differs from run to run: from -1.4 +- 0.2 mm in run-06 to 0.99 +- 0.2 mm in run-01"
+std::string by_run_text(const DiffersByRun& one) {
+    const auto [low, high] = std::minmax_element(one.value.begin(), one.value.end());
+    const auto at = [&](std::vector<double>::const_iterator where) {
+        const auto g = static_cast<std::size_t>(where - one.value.begin());
+        return value_text({one.parameter, one.value[g], one.sigma[g], one.unit}) + " in " + one.runs[g];
+    };
+    return "the " + one.parameter + " of " + one.name + " differs from run to run: from " + at(low) + " to " + at(high);
+}
+
+/// Where a longer prediction, or that of another channel, is worse with what was found than without it: never silent.
+std::string worse_elsewhere(const Discovery& discovery) {
+    std::string text;
+    for (std::size_t i = 1; i < discovery.error.size(); ++i) {
+        const ErrorChange& change = discovery.error[i];
+        if (!(change.after.rmse > allowed_rise * change.before.rmse)) {
+            continue;
+        }
+        const std::string over = std::isinf(change.horizon) ? " in a free run"
+                                 : change.horizon > 0       ? " over " + core::format_number(change.horizon, 3) + " s"
+                                                            : "";
+        text += (text.empty() ? " But that of " : ", and that of ") + change.channel + over + " rises from " +
+                core::format_number(change.before.rmse, 3) + " to " + core::format_number(change.after.rmse, 3) + " " +
+                change.unit;
+    }
+    const bool longer = !text.empty() && discovery.error.front().horizon > 0;
+    return text.empty() ? text
+                        : text + (longer ? ": predictions as long as that are no better with what was found." : ".");
+}
+
 std::string unknown_sentence(const Discovery& discovery, const std::string& error) {
+    if (discovery.by_run) {
+        return "Something real is missing that is not the same in all runs: " + by_run_text(*discovery.by_run) +
+               ". The model is as declared: what one run shows says nothing of the next.";
+    }
     const bool corrected = std::any_of(discovery.effects.begin(), discovery.effects.end(),
                                        [](const FoundEffect& effect) { return !effect.uses.empty(); });
     const bool over_time = discovery.depends_on == std::vector<std::string>{"time"};
@@ -147,7 +182,7 @@ std::string verdict_sentence(const Discovery& discovery) {
                   core::format_number(discovery.error.front().before.rmse, 3) + " to " +
                   core::format_number(discovery.error.front().after.rmse, 3) + " " + discovery.error.front().unit +
                   " (noise " + core::format_number(discovery.error.front().noise, 3) + " " +
-                  discovery.error.front().unit + ").";
+                  discovery.error.front().unit + ")." + worse_elsewhere(discovery);
     if (discovery.verdict == "none") {
         return (discovery.mended.empty()
                     ? std::string("Nothing is missing")

@@ -113,7 +113,7 @@ TEST(MeasuredStudies, HeavyBallsFallByTheirWeightAloneAndLightOnesDoNot) {
         }
         // a fall of three seconds shows no wave, and a later look at a fall is a fall
         EXPECT_DOUBLE_EQ(probability_of(study.found, "gap_sensor_delay"), 0) << study.name;
-        EXPECT_LT(probability_of(study.found, "periodic_disturbance"), is("Bowling") ? 0.002 : 1e-12) << study.name;
+        EXPECT_LT(probability_of(study.found, "periodic_disturbance"), 1e-12) << study.name;
     }
 }
 

@@ -41,6 +41,8 @@ Discovery HeaveLoop::run() {
         progress_.report(0.65, "pairs of effects");
         fit_pairs();
         fit_further();
+    } else {
+        look_run_by_run();
     }
     decide();
     progress_.report(0.8, "clean twins");

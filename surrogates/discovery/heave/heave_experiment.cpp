@@ -175,9 +175,13 @@ double HeaveExperiment::fit_process(const std::vector<dynamics::EffectUse>& uses
 
 bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise) const {
     std::vector<double> innovations;
+    // in scatters of the readings: the white part of a noise that was fitted before may be next to nothing
+    const double scatter = noise_.gap;
     HeaveNoise best_noise = noise;
     best_noise.slow = 0;
-    const double white_only = evaluate(uses, nullptr, best_noise, innovations);
+    best_noise.gap = scatter;
+    const double white_only =
+        noise.slow > 0 ? fit_process(uses, best_noise) : evaluate(uses, nullptr, best_noise, innovations);
     double best = white_only;
     const auto attempt = [&](const HeaveNoise& trial) {
         const double cost = evaluate(uses, nullptr, trial, innovations);
@@ -188,14 +192,17 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
         }
         return false;
     };
+    if (noise.slow > 0) {
+        attempt(noise);
+    }
     // coloured noise leaves little scatter from reading to reading: it may be several times as large as that
     for (const double time : {0.08, 0.3, 1.0}) {
         for (const double size : {0.4, 1.0, 2.0, 4.0}) {
             for (const double white : {1.0, 0.3}) {
                 HeaveNoise trial = noise;
-                trial.slow = size * noise.gap;
+                trial.slow = size * scatter;
                 trial.slow_time = time;
-                trial.gap = white * noise.gap;
+                trial.gap = white * scatter;
                 for (const double share : {1.0, 1e-2, 1e-4, 1e-7}) {
                     trial.process = std::max(process_floor, noise.process * share);
                     attempt(trial);

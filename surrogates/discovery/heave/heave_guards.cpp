@@ -13,6 +13,8 @@ namespace underbody::discovery {
 namespace {
 
 constexpr std::size_t blocks_wanted = 12;  ///< of held-out runs: enough for Student's t, each of several windows
+constexpr std::size_t few_twins = 4, more_twins = 16;
+constexpr double far_over_twins = 4;  ///< no spread of twins makes noise of that
 
 }  // namespace
 
@@ -65,11 +67,20 @@ bool HeaveLoop::falls(const Answer& before, const Answer& after) const {
 }
 
 bool HeaveLoop::rest_is_noise(const Answer& answer) {
-    const double twins = twins_error(held_out_runs(), answer.uses, answer.noise);
+    std::vector<double> twins = twins_errors(held_out_runs(), answer.uses, answer.noise, 0, few_twins);
     const double error = held_out_error(answer);
-    result_.rest.twins = twins;
-    result_.rest.unexplained = std::sqrt(std::max(0.0, error * error - twins * twins));
-    return error <= calibration_.most_over_twins * twins;
+    double limit = calibration_.most_over_twins * root_mean_square(twins);
+    if (error > limit && error < far_over_twins * root_mean_square(twins)) {
+        // where a small error of the state grows over a window, twins differ among each other by as much
+        const std::vector<double> more =
+            twins_errors(held_out_runs(), answer.uses, answer.noise, few_twins, more_twins);
+        twins.insert(twins.end(), more.begin(), more.end());
+        limit = std::max(calibration_.most_over_twins * root_mean_square(twins),
+                         largest_of_twins(twins, calibration_.rest_chance));
+    }
+    result_.rest.twins = root_mean_square(twins);
+    result_.rest.unexplained = std::sqrt(std::max(0.0, error * error - result_.rest.twins * result_.rest.twins));
+    return error <= limit;
 }
 
 double HeaveLoop::share_left(const Answer& declared, const Answer& answer) const {
@@ -153,9 +164,17 @@ void HeaveLoop::guard() {
     if (result_.verdict != "effect" || kept.uses.empty()) {
         quiet_rest = rest_is_noise(kept);
     }
-    if (result_.verdict == "none" && !quiet_rest) {
+    if (result_.verdict == "none" && result_.by_run) {
+        call_runs_unlike();
+    } else if (result_.verdict == "none" && !quiet_rest) {
         call_rest_unknown(kept, declared);
         quiet_rest = rest_is_noise(kept);
+    }
+    if (result_.verdict == "unknown" && kept.uses.empty() && !result_.by_run) {
+        look_run_by_run();  // what no law of all runs explains may be a number that each has of its own
+    }
+    if (result_.verdict != "unknown" || !kept.uses.empty()) {
+        result_.by_run.reset();
     }
     result_.rest.is_noise = quiet_rest;
     if (!kept.variables.empty()) {
@@ -175,6 +194,15 @@ void HeaveLoop::refuse(const std::string& reason) {
     cap_probabilities(attribution_, 0.5);
     result_.verdict = "none";
     result_.none_probability = attribution_.none_probability;
+}
+
+/// Each run may be predicted as well as its twins, since the filter finds where it begins, and they still contradict
+/// each other: something is missing, and no one number is true of all.
+void HeaveLoop::call_runs_unlike() {
+    result_.verdict = "unknown";
+    whole_.variables = {variable_name(Variable::time)};
+    rule_out_none(attribution_, 1 - result_.by_run->chance);
+    result_.none_probability = 0;
 }
 
 /// The declared model predicts worse than its twins do: something is missing, whatever the likelihoods say.

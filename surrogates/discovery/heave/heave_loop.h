@@ -69,6 +69,14 @@ private:
         std::vector<std::size_t> second;  ///< candidates that would explain most beside it, best first
     };
     [[nodiscard]] Rest rest_beside(const FittedHypothesis& base, const HeaveNoise& noise) const;
+    // heave_by_run.cpp
+    /// One number of the record or of the rig, run by run, and what it shows beside its mean.
+    struct RunByRun {
+        std::vector<double> value, sigma;
+        Probe probe;
+    };
+    [[nodiscard]] RunByRun run_by_run(const Hypothesis& candidate, const std::vector<double>& innovations) const;
+    void look_run_by_run();
     void smooth_corrections();
     [[nodiscard]] HeaveExperiment::Smooth refined(const HeaveExperiment::Smooth& begin) const;
     [[nodiscard]] double smooth_score(const HeaveExperiment::Smooth& one) const;
@@ -104,6 +112,7 @@ private:
     [[nodiscard]] std::optional<Answer> smooth_answer();
     void guard();
     void refuse(const std::string& reason);
+    void call_runs_unlike();
     void call_rest_unknown(Answer& kept, Answer& declared);
     /// N: as far as the residual force of the runs goes that a correction explains.
     [[nodiscard]] double largest_force(const HeaveExperiment::Smooth& smooth) const;
@@ -112,9 +121,10 @@ private:
     /// Twins of an experiment's runs: the model with `uses` moves, `noise` is the filter's, `drawn` what is drawn.
     [[nodiscard]] HeaveRecords twins_of(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                                         const HeaveNoise& noise, const HeaveNoise& drawn, std::uint64_t stream) const;
-    /// m: error of the held-out runs' twins over the first horizon.
-    [[nodiscard]] double twins_error(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses,
-                                     const HeaveNoise& noise) const;
+    /// m: errors over the first horizon of `count` twins of the held-out runs, from the `first` on.
+    [[nodiscard]] std::vector<double> twins_errors(const HeaveExperiment& test,
+                                                   const std::vector<dynamics::EffectUse>& uses,
+                                                   const HeaveNoise& noise, std::size_t first, std::size_t count) const;
     void run_placebo();
 
     // heave_describe.cpp

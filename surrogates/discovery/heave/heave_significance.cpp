@@ -15,16 +15,6 @@ namespace {
 using Variable = FlexibleForce::Variable;
 
 constexpr std::size_t draws = 199;
-constexpr double frequencies_tried = 110;
-
-/// -log10 of the chance that `count` squared normal values sum to more than `gain`.
-double surprise(double gain, double count) {
-    if (count <= 0) {
-        return 0;
-    }
-    const double tail = chi_squared_tail(gain, count);
-    return tail > 1e-290 ? -std::log10(tail) : 290 + gain / 10;
-}
 
 /// Laws of the gap may bend often, beside another variable too; those of velocity, input and time bend less.
 const std::vector<HeaveExperiment::SmoothSet>& smooth_sets() {
