@@ -201,7 +201,7 @@ std::size_t openturns(const TestFunction& t, std::uint64_t seed) {
     search.setMaximumEvaluationNumber(static_cast<OT::UnsignedInteger>(t.most - t.first));
     search.setParameterEstimationPeriod(1);
     search.setImprovementFactor(0);
-    search.setCorrelationLengthFactor(0);
+    search.setCorrelationLengthFactor(1e12);  // stops where a length is below a distance over this: never
     search.setStopCallback([](void* there) { return static_cast<OT::Bool>(*static_cast<std::size_t*>(there) > 0); },
                            &found);
     try {
