@@ -13,6 +13,8 @@ constexpr std::size_t most_restarts = 3;
 constexpr std::size_t kick_steps = 15;   ///< in which a lost input shows
 constexpr std::size_t kick_settle = 20;  ///< not judged after one that did
 constexpr double kick_shows = 2.5;       ///< deviations of the sum of innovations since
+constexpr double most_unjudged = 0.5;    ///< steps after lost inputs, as a share of all
+constexpr double lost_memory = 500;      ///< steps
 constexpr double longest_bridge = 3.5;   ///< usual steps whose input was lost too: the state is found anew as well
 constexpr double silence = 1;            ///< s without a reading: the state is found anew
 constexpr double gate = 4.5;             ///< beyond it one reading is wild ...
@@ -125,7 +127,11 @@ std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep
     }
     if (step.unknown_input > 0 && time_ && step.time - *time_ <= silence) {
         kick_ = {step.unknown_input, step.unknown_for, step.time, kick_steps, 0, 0};
+        // what a lost input did is none of what the model lacks; where many are lost, something has to be judged
+        const double often = std::max(lost_share_, 1e-3);
+        settling_ = std::max(settling_, std::min(kick_steps, static_cast<std::size_t>(most_unjudged / often)));
     }
+    lost_share_ += ((step.unknown_input > 0 ? 1 : 0) - lost_share_) / lost_memory;
     time_ = step.time;
     filter_.advance(step);
     std::array<std::optional<WatchResidual>, 2> out;

@@ -65,6 +65,7 @@ private:
         double sum = 0, count = 0;  ///< of the innovations since
     };
     Kick kick_;
+    double lost_share_ = 0;  ///< of the steps, lately: those whose input was lost
     Likelihood* likelihood_ = nullptr;
 };
 

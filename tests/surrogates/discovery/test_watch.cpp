@@ -105,6 +105,26 @@ TEST(Watch, FalseAlarmsComeAtMostAsOftenAsStated) {
     EXPECT_LE(false_alarms(wild, 10, 240), 130);
 }
 
+TEST(Watch, RowsLostWithTheirInputAreNoChangeAndHideNone) {
+    WatchedRig losing(7);
+    losing.colour = 0.9;
+    losing.lost_rows = 0.02;
+    EXPECT_LE(false_alarms(losing, 10, 240), 130);
+    for (const double share : {0.02, 0.05}) {
+        WatchedRig rig(8);
+        rig.lost_rows = share;
+        Watch watch(WatchedRig::model(), {});
+        bool early = false, seen = false;
+        while (!seen && rig.time < 1800) {
+            rig.force = rig.time > 900 ? 0.02 : 0;
+            seen = rig.show(watch).has_value();
+            early = early || (seen && rig.time < 900);
+        }
+        EXPECT_TRUE(seen) << share;
+        EXPECT_FALSE(early) << share;
+    }
+}
+
 struct Seen {
     std::optional<WatchAlarm> alarm;
     double changed = 600;
