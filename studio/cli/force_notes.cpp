@@ -16,7 +16,9 @@ void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Con
     }
     const auto say = [&](const core::Problem& problem) {
         if (problem.severity != core::Problem::Severity::note) {
-            shell.print("warning: " + problem.message + "\n");
+            if (!shell.json) {  // there they stand in the document
+                shell.remark({problem});
+            }
             json["warnings"].push_back(problem.message);
         }
     };

@@ -106,7 +106,8 @@ void print_classes(Shell& shell, const std::vector<dynamics::EndClass>& classes)
             text += std::string(dynamics::end_kind_name(end.kind)) +
                     (end.name == dynamics::end_kind_name(end.kind) ? "" : " " + end.name) +
                     (std::isnan(end.gap) ? "" : " at " + core::format_number(1e3 * end.gap, 5) + " mm") + ": " +
-                    percent(end.fraction) + "\n";
+                    percent(end.fraction) +
+                    (end.outside > 0 ? " (" + percent(end.outside) + " by motions beyond a force table)" : "") + "\n";
         }
     }
     shell.print(text);
@@ -118,7 +119,7 @@ void show_remarks(Shell& shell, const dynamics::StabilityRegion& region, const s
     for (core::Problem& remark : named) {
         remark.message = name + ": " + remark.message;
     }
-    shell.show(named);
+    shell.remark(named);
 }
 
 int run_starts(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
@@ -134,8 +135,10 @@ int run_starts(const RegionArguments& a, const dynamics::Model& model, const dyn
         nlohmann::json json = {{"classes", nlohmann::json::array()}, {"starts", nlohmann::json::array()}};
         for (const dynamics::EndClass& end : classes) {
             if (end.fraction > 0) {
-                json["classes"].push_back(
-                    {{"name", end.name}, {"kind", dynamics::end_kind_name(end.kind)}, {"fraction", end.fraction}});
+                json["classes"].push_back({{"name", end.name},
+                                           {"kind", dynamics::end_kind_name(end.kind)},
+                                           {"fraction", end.fraction},
+                                           {"outside_table_path_fraction", end.outside}});
                 if (!std::isnan(end.gap)) {
                     json["classes"].back()["gap"] = end.gap;
                 }
@@ -161,7 +164,7 @@ int run_starts(const RegionArguments& a, const dynamics::Model& model, const dyn
 int run_probability(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
                     Shell& shell) {
     const dynamics::ProbabilityMap map = dynamics::probability_map(model, options, a.draws, a.seed, shell.progress());
-    shell.show(map.remarks);
+    shell.remark(map.remarks);
     if (!a.out.empty()) {
         write_picture(dynamics::probability_figure(map), a.out);
     }
@@ -302,7 +305,7 @@ int run_region(const RegionArguments& a, Shell& shell) {
         return run_variants(a, model, options, shell);
     }
     const dynamics::StabilityRegion region = dynamics::stability_region(model, options, shell.progress());
-    shell.show(region.remarks);
+    shell.remark(region.remarks);
     if (!a.out.empty()) {
         write_picture(dynamics::region_figure(region), a.out);
     }

@@ -135,7 +135,7 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
     if (draws > 0) {
         const dynamics::ProbabilityMap map =
             loop_probability(loop.plant, loop.law, loop.estimator, loop.options, grid, draws, shell.progress());
-        shell.show(map.remarks);
+        shell.remark(map.remarks);
         dynamics::to_json(json, map);
         figure = dynamics::probability_figure(map);
         figure.title = "Chance that the loop holds the gap";
@@ -145,7 +145,7 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
     } else {
         const dynamics::StabilityRegion region =
             loop_region(loop.plant, loop.law, loop.estimator, loop.options, grid, shell.progress());
-        shell.show(region.remarks);
+        shell.remark(region.remarks);
         dynamics::to_json(json, region);
         figure = dynamics::region_figure(region);
         figure.title = "Where starts end with the loop and its estimator";
@@ -157,7 +157,11 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
             text += std::string(dynamics::end_kind_name(end.kind)) +
                     (end.name == dynamics::end_kind_name(end.kind) ? "" : " " + end.name) +
                     (std::isnan(end.gap) ? "" : " at " + core::format_number(1e3 * end.gap, 5) + " mm") + ": " +
-                    core::format_number(100 * end.fraction, 4) + " %\n";
+                    core::format_number(100 * end.fraction, 4) + " %" +
+                    (end.outside > 0
+                         ? " (" + core::format_number(100 * end.outside, 4) + " % by motions beyond a force table)"
+                         : "") +
+                    "\n";
         }
     }
     if (!picture.empty()) {

@@ -189,8 +189,12 @@ void Shell::remark(const core::Problems& problems) {
         return;
     }
     for (const auto& problem : problems) {
-        problem.severity == core::Problem::Severity::note ? detail(text_of(problem))
-                                                          : print("warning: " + text_of(problem));
+        const std::string text = text_of(problem);
+        if (problem.severity == core::Problem::Severity::note) {
+            detail(text);
+        } else if (said_.insert(text).second) {
+            print("warning: " + text);
+        }
     }
 }
 
@@ -199,7 +203,7 @@ void Shell::show(const core::Problems& problems) {
         const std::string text = text_of(problem);
         if (problem.severity == core::Problem::Severity::note) {
             detail(text);
-        } else {
+        } else if (said_.insert(text).second) {
             warn(text);
         }
     }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 #include <string>
 
 #include "core/error.h"
@@ -89,6 +90,7 @@ private:
     void report(const core::Error& error, const char* what);
     void say(int level, const std::string& text);
     std::function<int()> action_;
+    std::set<std::string> said_;  ///< warnings, each of which is said once
     Caller* caller_ = nullptr;
     core::Progress progress_;
 };

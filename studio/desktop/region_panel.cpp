@@ -52,6 +52,10 @@ QString summary(const dynamics::StabilityRegion& region) {
                     "there.</p>")
                     .arg(map_number(100 * region.outside_fraction, 3));
     }
+    if (region.path_outside_fraction > 0) {
+        text += QString("<p>%1 % of the motions are at some time outside that range.</p>")
+                    .arg(map_number(100 * region.path_outside_fraction, 3));
+    }
     return text;
 }
 

@@ -207,6 +207,7 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
             "leave out option 'motion heave', or use option 'axes gap=0:0.5,heave_velocity=-0.1:0.1'");
     }
     const HeaveRegionSetup setup(model, options);
+    check_gap_axis(options, setup.contact_gap);
     const bool gap_first = options.axes[0].name == "gap";
     progress.report(0.02, "finding where starts end");
     const RegionBatch batch = [&](std::span<const double> x, std::span<const double> y, std::span<End> out) {
@@ -269,10 +270,12 @@ core::Table ends_of_starts(const Model& model, const core::Table& starts, const 
                                       ? pitch_ends_of_starts(model, starts, options, classes, progress)
                                       : heave_ends_of_starts(model, starts, options, classes, progress);
     std::vector<std::string> names, kinds;
-    std::vector<double> times;
+    std::vector<double> times, outside;
     for (const End& end : ends) {
         EndClass& found = classes[static_cast<std::size_t>(end.index)];
         found.fraction += 1.0 / static_cast<double>(ends.size());
+        found.outside += end.outside ? 1.0 / static_cast<double>(ends.size()) : 0.0;
+        outside.push_back(end.outside ? 1 : 0);
         names.push_back(found.name);
         kinds.emplace_back(end_kind_name(found.kind));
         times.push_back(end.time);
@@ -281,6 +284,7 @@ core::Table ends_of_starts(const Model& model, const core::Table& starts, const 
     table.add_text("class", names);
     table.add_text("kind", kinds);
     table.add_numbers("time", "s", times);
+    table.add_numbers("outside_table", "1", outside);
     return table;
 }
 
@@ -366,10 +370,14 @@ void to_json(nlohmann::json& json, const StabilityRegion& region) {
     json["contact_gap"] = region.contact_gap;
     json["escape_gap"] = region.escape_gap;
     json["outside_table_fraction"] = region.outside_fraction;
+    json["outside_table_path_fraction"] = region.path_outside_fraction;
     json["rule"] = region.rule;
     json["classes"] = nlohmann::json::array();
     for (const EndClass& end : region.classes) {
-        nlohmann::json one = {{"name", end.name}, {"kind", end_kind_name(end.kind)}, {"fraction", end.fraction}};
+        nlohmann::json one = {{"name", end.name},
+                              {"kind", end_kind_name(end.kind)},
+                              {"fraction", end.fraction},
+                              {"outside_table_path_fraction", end.outside}};
         if (!std::isnan(end.gap)) {
             one["gap"] = end.gap;
         }

@@ -27,12 +27,14 @@ struct EndClass {
     EndKind kind = EndKind::undecided;
     double gap = std::numeric_limits<double>::quiet_NaN();  ///< of an attractor, m
     double fraction = 0;                                    ///< of the area of starts
+    double outside = 0;  ///< of the area of starts: those of them whose motion leaves the range of a force table
 };
 
 /// Where a start ends: an index into a list of classes, and when that was decided.
 struct End {
     int index = 0;
     double time = 0;  ///< s: of contact or escape; for an attractor, when the motion could no longer leave its well
+    bool outside = false;  ///< from its start to its end the motion was somewhere beyond the range of a force table
 };
 
 struct HeaveFeedback;  // surrogates/dynamics/simulate/feedback.h
@@ -72,6 +74,7 @@ struct StabilityRegion {
     double duration = 0;
     double contact_gap = 0, escape_gap = 0;
     double outside_fraction = 0;                       ///< share of starts outside the range of a force table
+    double path_outside_fraction = 0;                  ///< share of starts whose motion is outside it anywhere
     double table_lower = 0, table_upper = 0;           ///< m, gaps that every force table covers
     double pitch_lower = -1e300, pitch_upper = 1e300;  ///< rad, likewise
     std::string model;
@@ -89,7 +92,8 @@ struct StabilityRegion {
 /// With inputs held and forces that depend on gap and velocity, E = 1/2 M(h) w^2 - integral of the static force dh
 /// never grows where the resistance opposes the motion (dE/dt = -w R(w)). A motion with less energy than the lower rim
 /// of the well it is in can never leave it and ends at the well's equilibrium (LaSalle): it is decided then. Otherwise
-/// an explicit Runge-Kutta pair (Dormand and Prince 1980) goes on to contact, escape or the end of the time.
+/// an explicit Runge-Kutta pair (Dormand and Prince 1980) goes on to contact, escape or the end of the time. Where the
+/// well is wider than the force tables, the motion is followed until it left them or lacks the energy to.
 class HeaveEnds {
 public:
     HeaveEnds(const HeavePlant& plant, double contact_gap, double escape_gap, double duration, double tolerance,
@@ -127,7 +131,8 @@ RegionSweep swept_regions(const Model& model, const RegionOptions& options, cons
 /// Area of each kind of end against what was swept.
 core::Figure sweep_figure(const RegionSweep& sweep);
 
-/// Where given starts end: columns of `starts` that are states (others kept), plus `class`, `kind` and `time`.
+/// Where given starts end: columns of `starts` that are states (others kept), plus `class`, `kind`, `time` and
+/// `outside_table` (1: the motion is at some time beyond the range of a force table).
 core::Table ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
                            std::vector<EndClass>& classes, core::Progress& progress = core::Progress::none());
 
@@ -147,6 +152,7 @@ struct ProbabilityMap {
     std::size_t columns = 0, rows = 0;
     std::vector<float> safe;               ///< [row * columns + column], 0 to 1
     double area_mean = 0, area_sigma = 0;  ///< safe fraction of the area over the draws
+    double path_outside_fraction = 0;      ///< share of the motions of all draws that leave the range of a force table
     std::size_t draws = 0;
     core::Problems remarks;
 };

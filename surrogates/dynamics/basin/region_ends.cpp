@@ -197,15 +197,25 @@ struct HeaveEnds::Impl {
         }
     }
 
-    [[nodiscard]] int captured(double h, double w) const {
+    [[nodiscard]] bool outside(double h) const { return h < plant.terms.table_lower || h > plant.terms.table_upper; }
+
+    struct Captured {
+        int index = -1;
+        bool within_tables = true;  ///< it lacks the energy to reach a gap that no force table covers
+    };
+    [[nodiscard]] Captured captured(double h, double w) const {
         for (const Well& well : wells) {
             if (h > well.lower && h < well.upper) {
                 double slope = 0;
-                const double mass = plant.inertia(h, slope);
-                return 0.5 * mass * w * w + potential(h) < well.rim ? well.class_index : -1;
+                const double energy_now = 0.5 * plant.inertia(h, slope) * w * w + potential(h);
+                const auto reaches = [&](double edge) {
+                    return edge > well.lower && edge < well.upper && potential(edge) <= energy_now;
+                };
+                return {energy_now < well.rim ? well.class_index : -1,
+                        !reaches(plant.terms.table_lower) && !reaches(plant.terms.table_upper)};
             }
         }
-        return -1;
+        return {};
     }
 
     /// The heave equation with all that depends on the gap alone taken from one curve.
@@ -273,15 +283,15 @@ struct HeaveEnds::Impl {
 
     [[nodiscard]] End of(double h, double w) const {
         if (h <= contact) {
-            return {contact_class, 0};
+            return {contact_class, 0, outside(h)};
         }
         if (h >= escape) {
-            return {escape_class, 0};
+            return {escape_class, 0, outside(h)};
         }
         if (energy) {
-            const int index = captured(h, w);
-            if (index >= 0) {
-                return {index, 0};
+            const Captured now = captured(h, w);
+            if (now.index >= 0 && (now.within_tables || outside(h))) {
+                return {now.index, 0, outside(h)};
             }
             return go<2>(StaticRate{&plant.terms, &force, rest_resistance}, {h, w});
         }
@@ -313,39 +323,66 @@ struct HeaveEnds::Impl {
         const double look_back = actuator && actuator->delayed() ? actuator->max_step() : 1e300;
         DormandPrince<N, Rate> ode(rate, 0.0, start, scale, 0.02);
         Extent third, fourth;
+        End held{-1, 0, outside(start[0])};  // once it can no longer leave a well, it may still leave the tables
+        if (energy) {
+            held.index = captured(start[0], start[1]).index;
+        }
         while (ode.t() < duration) {
             if (!ode.step(std::min(duration, ode.t() + look_back)) || ode.tries() > 200000) {
-                return {undecided_class, ode.t()};
+                return held.index >= 0 ? held : End{undecided_class, ode.t(), held.outside};
             }
             if (actuator) {
                 actuator->accept(ode.t(), ode.y().data(), ode.rate().data());
             }
             const double h = ode.y()[0], w = ode.y()[1];
-            const End event = passed(ode);
-            if (event.index >= 0) {
-                return event;
+            const double turned = turning_gap(ode);
+            const End event = passed(ode, turned);
+            if (event.index >= 0 && held.index < 0) {  // the step went on beyond, the motion did not
+                const double level = event.index == contact_class ? contact : escape;
+                return {event.index, event.time, held.outside || outside(level)};
             }
+            held.outside = held.outside || outside(h) || outside(turned);
             if (energy) {
-                const int index = captured(h, w);
-                if (index >= 0) {
-                    return {index, ode.t()};
+                const Captured now = captured(h, w);
+                if (held.index < 0 && now.index >= 0) {
+                    held = {now.index, ode.t(), held.outside};
+                }
+                if (held.index >= 0 && (held.outside || now.within_tables)) {
+                    return held;
                 }
             } else if (ode.t() > 0.5 * duration) {
                 (ode.t() > 0.75 * duration ? fourth : third).take(h);
             }
         }
-        return energy ? End{undecided_class, duration} : settled(ode.y()[0], third, fourth);
+        if (held.index >= 0) {
+            return held;
+        }
+        End end = energy ? End{undecided_class, duration} : settled(ode.y()[0], third, fourth);
+        end.outside = held.outside;
+        return end;
+    }
+
+    /// Share of the last step after which the motion turned round; 1 when it did not.
+    template <class Integrator>
+    static double turning_part(const Integrator& ode) {
+        const double w = ode.y()[1], w0 = ode.before()[1];
+        return w0 != 0 && (w0 < 0) != (w < 0) ? w0 / (w0 - w) : 1;
+    }
+    /// The gap farthest along within the last step: where the motion turned round, else at the end.
+    template <class Integrator>
+    static double turning_gap(const Integrator& ode) {
+        const double part = turning_part(ode);
+        return part < 1 ? ode.between(part, 0) : ode.y()[0];
     }
 
     /// Contact or escape within the last step; a negative index when neither.
     template <class Integrator>
-    End passed(const Integrator& ode) const {
-        const double h = ode.y()[0], w = ode.y()[1], w0 = ode.before()[1];
+    End passed(const Integrator& ode, double turned) const {
+        const double h = ode.y()[0];
         double part = 1;
         bool low = h <= contact, high = h >= escape;
-        if (!low && !high && w0 != 0 && (w0 < 0) != (w < 0)) {
-            part = w0 / (w0 - w);  // the turning point within the step
-            const double turned = ode.between(part, 0);
+        if (!low && !high) {
+            part = turning_part(ode);
             low = turned <= contact;
             high = turned >= escape;
         }

@@ -171,7 +171,10 @@ core::Figure region_figure(const StabilityRegion& region) {
         core::format_number(1e3 * region.contact_gap, 4) + " mm, escape above " +
         core::format_number(1e3 * region.escape_gap, 5) + " mm." +
         (over_gap_and_pitch(region) ? " Arrows: where a start at rest sets off." : "") +
-        (region.outside_fraction > 0 ? " Beyond the dashed line the force table holds its end value." : "");
+        (region.outside_fraction > 0 ? " Beyond the dashed line the force table holds its end value." : "") +
+        (region.path_outside_fraction > 0
+             ? " " + percent(region.path_outside_fraction) + " of the motions are beyond a force table at some time."
+             : "");
     return figure;
 }
 

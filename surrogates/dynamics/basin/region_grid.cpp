@@ -38,6 +38,20 @@ void check_region_options(const RegionOptions& options) {
     }
 }
 
+void check_gap_axis(const RegionOptions& options, double contact_gap) {
+    for (const core::NamedRange& axis : options.axes) {
+        if (axis.name == "gap" && axis.lower < contact_gap - 1e-9 * (axis.upper - axis.lower)) {
+            throw core::InputError("range",
+                                   "the axis of gaps begins at " + core::format_number(1e3 * axis.lower, 6) +
+                                       " mm, in the ground: the body touches it at " +
+                                       core::format_number(1e3 * contact_gap, 6) + " mm",
+                                   {},
+                                   "begin there, or set [contact] gap in the model where the gap is counted from "
+                                   "another height");
+        }
+    }
+}
+
 std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch, const core::Progress& progress) {
     std::vector<double> x, y;
     x.reserve(o.columns * o.rows);
@@ -63,12 +77,18 @@ std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch, c
 
 namespace {
 
-/// Fractions of the area: cells beside another class count by a finer grid of starts within them.
-std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& batch, const std::vector<End>& ends,
-                                     std::size_t classes, const core::Progress& progress) {
+/// Fractions of the area: cells beside another class count by a finer grid of starts within them. The second list:
+/// of those whose motion leaves the range of a force table.
+std::array<std::vector<double>, 2> region_fractions(const RegionOptions& o, const RegionBatch& batch,
+                                                    const std::vector<End>& ends, std::size_t classes,
+                                                    const core::Progress& progress) {
     constexpr std::size_t fine = 4;
     const std::size_t columns = o.columns, rows = o.rows;
-    std::vector<double> sums(classes, 0.0);
+    std::array<std::vector<double>, 2> sums{std::vector<double>(classes, 0.0), std::vector<double>(classes, 0.0)};
+    const auto count = [&](const End& end, double weight) {
+        sums[0][static_cast<std::size_t>(end.index)] += weight;
+        sums[1][static_cast<std::size_t>(end.index)] += end.outside ? weight : 0;
+    };
     std::vector<std::size_t> edge;
     for (std::size_t j = 0; j < rows; ++j) {
         progress.check();
@@ -80,7 +100,7 @@ std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& 
             if (at_edge) {
                 edge.push_back(j * columns + i);
             } else {
-                sums[static_cast<std::size_t>(own)] += 1;
+                count(ends[j * columns + i], 1);
             }
         }
     }
@@ -101,10 +121,12 @@ std::vector<double> region_fractions(const RegionOptions& o, const RegionBatch& 
     std::vector<End> refined(x.size());
     batch(x, y, refined);
     for (const End& end : refined) {
-        sums[static_cast<std::size_t>(end.index)] += 1.0 / (fine * fine);
+        count(end, 1.0 / (fine * fine));
     }
-    for (double& sum : sums) {
-        sum /= static_cast<double>(columns * rows);
+    for (std::vector<double>& list : sums) {
+        for (double& sum : list) {
+            sum /= static_cast<double>(columns * rows);
+        }
     }
     return sums;
 }
@@ -118,7 +140,7 @@ StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batc
     region.columns = options.columns;
     region.rows = options.rows;
     region.duration = options.duration;
-    const std::vector<double> sums = region_fractions(options, batch, ends, classes.size(), progress);
+    const auto [sums, outside] = region_fractions(options, batch, ends, classes.size(), progress);
     std::vector<bool> occurs(classes.size(), false);
     for (const End& end : ends) {
         occurs[static_cast<std::size_t>(end.index)] = true;
@@ -129,6 +151,8 @@ StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batc
             renamed[i] = static_cast<int>(region.classes.size());
             region.classes.push_back(classes[i]);
             region.classes.back().fraction = sums[i];
+            region.classes.back().outside = outside[i];
+            region.path_outside_fraction += outside[i];
         }
     }
     progress.check();
@@ -264,35 +288,45 @@ double outside_share(const StabilityRegion& region) {
     return inside > 1 - 1e-12 ? 0 : 1 - inside;
 }
 
-namespace {
-
-void add_outside_remark(StabilityRegion& region) {
-    if (region.outside_fraction == 0) {
-        return;
+void add_outside_remarks(StabilityRegion& region) {
+    const std::string range =
+        table_range_text(region.table_lower, region.table_upper, region.pitch_lower, region.pitch_upper);
+    if (region.outside_fraction > 0) {
+        region.remarks.push_back({core::Problem::Severity::warning,
+                                  core::format_number(100 * region.outside_fraction, 3) +
+                                      " % of the starts lie outside the range of a force table (" + range +
+                                      "), where it holds its end value",
+                                  {}});
     }
-    std::string range;
-    for (const core::NamedRange& axis : region.axes) {
-        const bool gap = axis.name == "gap";
-        const double lower = gap ? region.table_lower : region.pitch_lower,
-                     upper = gap ? region.table_upper : region.pitch_upper;
-        if ((gap || axis.name == "pitch") && (axis.lower < lower || axis.upper > upper)) {
-            const double scale = gap ? 1 : 180 / std::numbers::pi;
-            range += (range.empty() ? "" : "; ") + axis.name + " " + core::format_number(scale * lower, 6) + " to " +
-                     core::format_number(scale * upper, 6) + (gap ? " m" : " deg");
-        }
-    }
-    region.remarks.push_back({core::Problem::Severity::warning,
-                              core::format_number(100 * region.outside_fraction, 3) +
-                                  " % of the starts lie outside the range of a force table (" + range +
-                                  "), where it holds its end value",
-                              {}});
+    add_path_remark(region.remarks, region.path_outside_fraction, range);
 }
 
-}  // namespace
+std::string table_range_text(double gap_lower, double gap_upper, double pitch_lower, double pitch_upper) {
+    std::string range;
+    const auto add = [&](const char* name, double lower, double upper, double scale, const char* unit) {
+        if (lower > -1e299 || upper < 1e299) {
+            range += std::string(range.empty() ? "" : "; ") + name + " " + core::format_number(scale * lower, 6) +
+                     " to " + core::format_number(scale * upper, 6) + unit;
+        }
+    };
+    add("gap", gap_lower, gap_upper, 1, " m");
+    add("pitch", pitch_lower, pitch_upper, 180 / std::numbers::pi, " deg");
+    return range;
+}
+
+void add_path_remark(core::Problems& remarks, double share, const std::string& range) {
+    if (share > 0) {
+        remarks.push_back({core::Problem::Severity::warning,
+                           core::format_number(100 * share, 3) +
+                               " % of the motions are at some time outside the range of a force table (" + range +
+                               "), where it holds its end value: how they end rests on forces that no table gives",
+                           {}});
+    }
+}
 
 void add_model_remarks(StabilityRegion& region, const Model& model, const Conditions& held) {
     region.remarks = motion_remarks(model, held);
-    add_outside_remark(region);
+    add_outside_remarks(region);
 }
 
 bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts) {

@@ -20,6 +20,8 @@ using RegionBatch = std::function<void(std::span<const double> x, std::span<cons
 
 /// Throws core::InputError for axes, sizes or a duration that cannot be.
 void check_region_options(const RegionOptions& options);
+/// Throws core::InputError where the axis of gaps begins below contact: such starts lie in the ground.
+void check_gap_axis(const RegionOptions& options, double contact_gap);
 /// One start at the centre of each cell. This and the next two ask `progress` row by row whether to go on.
 std::vector<End> region_grid(const RegionOptions& options, const RegionBatch& batch,
                              const core::Progress& progress = core::Progress::none());
@@ -34,7 +36,14 @@ void add_traced_boundaries(StabilityRegion& region, const RegionOptions& options
                            const std::vector<End>& ends, const core::Progress& progress = core::Progress::none());
 /// Share of the map's area where a force table is asked beyond its range.
 double outside_share(const StabilityRegion& region);
-/// Those of a motion, and how much of the map lies beyond a force table.
+/// The range of the force tables along the states that are axes of tables: "gap 0 to 0.1 m; pitch -4 to 4 deg".
+std::string table_range_text(double gap_lower, double gap_upper, double pitch_lower = -1e300,
+                             double pitch_upper = 1e300);
+/// Warning that a share of motions leaves the tables' range; nothing when none does.
+void add_path_remark(core::Problems& remarks, double share, const std::string& range);
+/// Warnings that starts, and motions, are beyond the force tables; from the region's fractions and ranges.
+void add_outside_remarks(StabilityRegion& region);
+/// Those of a motion, and how much of the map's starts and motions lies beyond a force table.
 void add_model_remarks(StabilityRegion& region, const Model& model, const Conditions& held);
 
 /// True when the motion asked for is that of heave and pitch together.

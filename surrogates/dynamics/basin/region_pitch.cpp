@@ -83,6 +83,7 @@ std::string rule_of(const RegionOptions& options) {
 StabilityRegion pitch_region(const Model& model, const RegionOptions& options, core::Progress& progress) {
     const PitchSetup setup(model, options);
     const HeavePitch& plant = setup.plant;
+    check_gap_axis(options, plant.contact_gap());
     const std::size_t first = state_of(options.axes[0].name), second = state_of(options.axes[1].name);
     if (first != 0 && second != 0 && !options.held.has(Channel::gap)) {
         throw core::InputError("missing", "the region holds the gap, but nothing says at what", {},

@@ -70,6 +70,9 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
         radius /= 1.15 * 1.3;  // a margin, since shells are checked at points only
         capture.holds = radius > 2e-6;
         capture.level = radius * radius;
+        const Matrix reach = inverse(capture.p);
+        capture.gap_reach = std::sqrt(reach(0, 0));
+        capture.pitch_reach = std::sqrt(reach(2, 2));
     }
     captures_.push_back(std::move(capture));
 }
@@ -117,10 +120,10 @@ End PitchEnds::of(const PitchState& start) const {
     const std::array<double, 2> gaps = plant_.edge_gaps(start);
     const double least = std::min(gaps[0], gaps[1]);
     if (least < 0 || (least <= 0 && !options_.through_contact)) {
-        return {contact_class(), 0};
+        return {contact_class(), 0, outside(start[0], start[2])};
     }
     if (start[0] >= escape_) {
-        return {escape_class(), 0};
+        return {escape_class(), 0, outside(start[0], start[2])};
     }
     if (plant_.vertical().loop_has_states()) {
         return plant_.remembers() ? go<true, true>(start) : go<false, true>(start);
@@ -138,6 +141,17 @@ double PitchEnds::margin(const PitchState& y, ContactState bearing, const Surrou
         }
     }
     return std::min(value[0], value[1]);
+}
+
+/// The last step, its ends and where gap or pitch turned round within it.
+template <class Integrator>
+bool PitchEnds::leaves_tables(const Integrator& ode) const {
+    const auto farthest = [&](std::size_t i) {
+        const double rate = ode.y()[i + 1], before = ode.before()[i + 1];
+        const bool turned = before != 0 && (before < 0) != (rate < 0);
+        return turned ? ode.between(before / (before - rate), i) : ode.y()[i];
+    };
+    return outside(ode.y()[0], ode.y()[2]) || outside(farthest(0), ode.y()[2]) || outside(ode.y()[0], farthest(2));
 }
 
 template <bool Memory, bool Loop>
@@ -170,13 +184,15 @@ End PitchEnds::go(const PitchState& start) const {
     double t = 0;
     Extent third, fourth;
     int changes = 0;
+    End held{-1, 0, outside(start[0], start[2])};  // an attractor's set may be wider than the tables
+    const auto ends = [&](int index, double when) { return held.index >= 0 ? held : End{index, when, held.outside}; };
     while (t < options_.duration) {
         const Law rate{&plant_, &actuator, bearing};
         DormandPrince<N, Law> ode(rate, t, y, scale, 0.02);
         bool changed = false;
         while (!changed && t < options_.duration) {
             if (!ode.step(std::min(options_.duration, ode.t() + look_back)) || ode.tries() > 400000) {
-                return {undecided_class(), ode.t()};
+                return ends(undecided_class(), ode.t());
             }
             if constexpr (Loop) {
                 actuator.accept(ode.t(), ode.y().data(), ode.rate().data());
@@ -210,42 +226,49 @@ End PitchEnds::go(const PitchState& start) const {
                     (value(middle) < 0 ? hi : lo) = middle;
                 }
                 t = before + hi * width;
+                held.outside = held.outside || outside(between(hi)[0], between(hi)[2]);
                 if (!options_.through_contact) {
-                    return {contact_class(), t};
+                    return ends(contact_class(), t);
                 }
                 y = between(hi);
                 PitchState landed = motion(y);
                 try {
                     land(plant_, landed, bearing, rate.around(t, y.data()));
                 } catch (const core::Error&) {
-                    return {undecided_class(), t};
+                    return ends(undecided_class(), t);
                 }
                 std::copy(landed.begin(), landed.end(), y.begin());
                 if (rests(landed, bearing)) {
-                    return {contact_class(), t};
+                    return ends(contact_class(), t);
                 }
                 if (++changes > 2000) {
-                    return {std::abs(y[1]) < 1e-3 * sizes_[1] ? contact_class() : undecided_class(), t};
+                    return ends(std::abs(y[1]) < 1e-3 * sizes_[1] ? contact_class() : undecided_class(), t);
                 }
                 changed = true;
+            } else {  // beyond the escape gap the step went on, the motion did not
+                held.outside = held.outside || (y[0] >= escape_ ? outside(escape_, y[2]) : leaves_tables(ode));
             }
             if (y[0] >= escape_) {
-                return {escape_class(), t};
+                return ends(escape_class(), t);
             }
             if (bearing == ContactState::free) {
                 const int index = captured(motion(y));
-                if (index >= 0) {
-                    return {index, t};
+                if (held.index < 0 && index >= 0) {
+                    held = {index, t, held.outside};
+                }
+                if (held.index >= 0 &&
+                    (held.outside || within_tables(motion(y), static_cast<std::size_t>(held.index)))) {
+                    return held;
                 }
             } else if (rests(motion(y), bearing)) {
-                return {contact_class(), t};
+                return ends(contact_class(), t);
             }
             if (t > 0.5 * options_.duration) {
                 (t > 0.75 * options_.duration ? fourth : third).take(motion(y));
             }
         }
     }
-    return bearing == ContactState::free ? settled(third, fourth) : End{contact_class(), options_.duration};
+    return ends(bearing == ContactState::free ? settled(third, fourth).index : contact_class(), options_.duration);
 }
 
 }  // namespace underbody::dynamics

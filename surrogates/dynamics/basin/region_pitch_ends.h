@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "surrogates/dynamics/basin/region.h"
@@ -18,6 +19,7 @@ struct Capture {
     bool holds = false;
     Matrix p;
     double level = 0;
+    double gap_reach = 0, pitch_reach = 0;  ///< m and rad, of the set x'Px <= 1
     [[nodiscard]] double value(const PitchState& y) const {
         const double x[4] = {y[0] - gap, y[1], y[2] - pitch, y[3]};
         double sum = 0;
@@ -61,6 +63,7 @@ private:
     [[nodiscard]] int undecided_class() const { return static_cast<int>(classes_.size()) - 1; }
 
     void add_attractor(const HeaveEquilibrium& e);
+    /// The set that holds this state, or -1; sets stand in the order of the attractors' classes.
     [[nodiscard]] int captured(const PitchState& y) const {
         for (const Capture& capture : captures_) {
             if (capture.holds && capture.value(y) < capture.level) {
@@ -121,6 +124,21 @@ private:
     [[nodiscard]] End settled(const Extent& third, const Extent& fourth) const;
     [[nodiscard]] double margin(const PitchState& y, ContactState bearing, const Surroundings& around) const;
     [[nodiscard]] bool rests(const PitchState& y, ContactState bearing) const;
+    /// Where a force table holds its end value.
+    [[nodiscard]] bool outside(double gap, double pitch) const {
+        return gap < plant_.table_lower() || gap > plant_.table_upper() || pitch < plant_.pitch_lower() ||
+               pitch > plant_.pitch_upper();
+    }
+    template <class Integrator>
+    [[nodiscard]] bool leaves_tables(const Integrator& ode) const;
+    /// True when what the attractor holds reaches no place that a force table does not cover.
+    [[nodiscard]] bool within_tables(const PitchState& y, std::size_t capture) const {
+        const double gap = captures_[capture].gap, pitch = captures_[capture].pitch;
+        const double value = captures_[capture].value(y);
+        const double far = std::sqrt(value) * captures_[capture].gap_reach,
+                     turned = std::sqrt(value) * captures_[capture].pitch_reach;
+        return !outside(gap - far, pitch - turned) && !outside(gap + far, pitch + turned);
+    }
 
     const HeavePitch& plant_;
     const RegionOptions& options_;

@@ -23,10 +23,13 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
     each.refine = false;
     // All draws share the bounds of the declared model: a drawn table has the same range.
     double sum = 0, squares = 0;
+    std::string range;
     for (std::size_t draw = 0; draw < draws; ++draw) {
         progress.check();
         progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing force tables");
         const StabilityRegion region = stability_region(drawn_model(model, seed, draw), each, progress);
+        map.path_outside_fraction += region.path_outside_fraction / static_cast<double>(draws);
+        range = table_range_text(region.table_lower, region.table_upper, region.pitch_lower, region.pitch_upper);
         std::size_t safe = 0;
         for (std::size_t i = 0; i < region.index.size(); ++i) {
             const bool back = region.classes[static_cast<std::size_t>(region.index[i])].kind == EndKind::attractor;
@@ -45,6 +48,7 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
     map.area_sigma =
         draws > 1 ? std::sqrt(std::max(0.0, squares / count - map.area_mean * map.area_mean) * count / (count - 1))
                   : 0.0;
+    add_path_remark(map.remarks, map.path_outside_fraction, range);
     if (map.area_sigma == 0) {
         map.remarks.push_back(
             {core::Problem::Severity::note, "the force tables carry no error, or none that matters here", {}});
@@ -57,7 +61,12 @@ void to_json(nlohmann::json& json, const ProbabilityMap& map) {
             {"rows", map.rows},
             {"draws", map.draws},
             {"area_mean", map.area_mean},
-            {"area_sigma", map.area_sigma}};
+            {"area_sigma", map.area_sigma},
+            {"outside_table_path_fraction", map.path_outside_fraction},
+            {"remarks", nlohmann::json::array()}};
+    for (const core::Problem& remark : map.remarks) {
+        json["remarks"].push_back(remark.message);
+    }
     json["axes"] = nlohmann::json::array();
     for (const core::NamedRange& axis : map.axes) {
         json["axes"].push_back({{"name", axis.name}, {"lower", axis.lower}, {"upper", axis.upper}});

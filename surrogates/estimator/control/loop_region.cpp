@@ -20,6 +20,7 @@ struct Outcome {
     EndKind kind = EndKind::undecided;
     double gap = NAN;  // at rest
     double time = 0;
+    bool outside = false;  // of the force tables, at a sample
 };
 
 // Range and mean of the gap over a stretch of time.
@@ -55,15 +56,18 @@ struct Judge {
         const auto window = static_cast<std::size_t>(std::ceil((noisy ? 10.0 : 1.0) / loop.step));
         const double within = noisy ? tolerance : 2e-5, between = noisy ? 0.02 * tolerance + 4 * loop.gap_noise : 1e-5;
         double lowest = INFINITY, highest = -INFINITY, sum = 0, last = NAN;
+        bool outside = gap < plant.lower || gap > plant.upper;
         Stretch third, fourth;
         for (std::size_t k = 1; k <= samples; ++k) {
             run.advance();
             const double h = run.gap(), time = loop.step * static_cast<double>(k);
+            const double reached = std::clamp(h, plant.contact_gap, far);
+            outside = outside || reached < plant.lower || reached > plant.upper;
             if (h <= plant.contact_gap) {
-                return {EndKind::contact, NAN, time};
+                return {EndKind::contact, NAN, time, outside};
             }
             if (!std::isfinite(h) || h > far) {
-                return {EndKind::escape, NAN, time};
+                return {EndKind::escape, NAN, time, outside};
             }
             lowest = std::min(lowest, h);
             highest = std::max(highest, h);
@@ -72,7 +76,7 @@ struct Judge {
             if (k % window == 0) {
                 const double mean = sum / static_cast<double>(window);
                 if (highest - lowest < within && std::abs(mean - last) < between) {
-                    return {EndKind::attractor, mean, time};
+                    return {EndKind::attractor, mean, time, outside};
                 }
                 last = mean;
                 lowest = INFINITY;
@@ -83,9 +87,9 @@ struct Judge {
         // Still swinging, but about one place: the means of the last two quarters agree beside the swing.
         const double swing = std::max(third.highest, fourth.highest) - std::min(third.lowest, fourth.lowest);
         if (swing < 10 * tolerance && std::abs(third.mean() - fourth.mean()) < 0.2 * swing + between) {
-            return {EndKind::attractor, 0.5 * (third.mean() + fourth.mean()), loop.duration};
+            return {EndKind::attractor, 0.5 * (third.mean() + fourth.mean()), loop.duration, outside};
         }
-        return {EndKind::undecided, NAN, loop.duration};
+        return {EndKind::undecided, NAN, loop.duration, outside};
     }
 };
 
@@ -175,7 +179,7 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
     for (std::size_t draw = 0; draw < draws; ++draw) {
         progress.check();
         progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing the sensors' noise");
-        std::vector<unsigned char> held(count, 0);
+        std::vector<unsigned char> held(count, 0), outside(count, 0);
         dynamics::region_grid(
             ready.grid,
             [&](std::span<const double> x, std::span<const double> y, std::span<End>) {
@@ -184,6 +188,7 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
                     [&](std::size_t i) {
                         const Outcome end =
                             ready.swapped ? ready.judge.of(y[i], x[i], draw) : ready.judge.of(x[i], y[i], draw);
+                        outside[i] = end.outside ? 1 : 0;
                         held[i] = end.kind == EndKind::attractor &&
                                   std::abs(end.gap - law.reference_gap) <= ready.judge.tolerance;
                     },
@@ -194,6 +199,7 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
         for (std::size_t i = 0; i < count; ++i) {
             map.safe[i] += held[i] != 0 ? 1.0F : 0.0F;
             good += held[i];
+            map.path_outside_fraction += outside[i] / static_cast<double>(count * draws);
         }
         const double share = static_cast<double>(good) / static_cast<double>(count);
         sum += share;
@@ -206,6 +212,8 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
     map.area_mean = sum / n;
     map.area_sigma =
         draws > 1 ? std::sqrt(std::max(0.0, squares / n - map.area_mean * map.area_mean) * n / (n - 1)) : 0.0;
+    dynamics::add_path_remark(map.remarks, map.path_outside_fraction,
+                              dynamics::table_range_text(plant.lower, plant.upper));
     if (!(loop.gap_noise > 0 || loop.velocity_noise > 0)) {
         map.remarks.push_back({core::Problem::Severity::note, "the sensors have no noise: every draw is the same", {}});
     }
@@ -243,15 +251,18 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
     classes.push_back({"undecided", EndKind::undecided, NAN, 0});
     const auto end_of = [&](const Outcome& o) {
         if (o.kind == EndKind::contact || o.kind == EndKind::escape || o.kind == EndKind::undecided) {
-            return End{contact + (o.kind == EndKind::contact ? 0 : o.kind == EndKind::escape ? 1 : 2), o.time};
+            return End{contact + (o.kind == EndKind::contact  ? 0
+                                  : o.kind == EndKind::escape ? 1
+                                                              : 2),
+                       o.time, o.outside};
         }
         if (std::abs(o.gap - law.reference_gap) <= tolerance || places.empty()) {
-            return End{0, o.time};
+            return End{0, o.time, o.outside};
         }
         const auto nearest = std::min_element(places.begin(), places.end(), [&](double a, double b) {
             return std::abs(a - o.gap) < std::abs(b - o.gap);
         });
-        return End{1 + static_cast<int>(nearest - places.begin()), o.time};
+        return End{1 + static_cast<int>(nearest - places.begin()), o.time, o.outside};
     };
     std::vector<End> ends;
     for (const Outcome& o : first) {
@@ -269,7 +280,9 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
     region.table_lower = plant.lower;
     region.table_upper = plant.upper;
     region.rule = rule_of(estimator, law, loop);
+    region.outside_fraction = dynamics::outside_share(region);
     region.remarks = plant.remarks;
+    dynamics::add_outside_remarks(region);
     // Loops are dear: lines midway between starts, without further runs.
     grid.refine = false;
     dynamics::add_traced_boundaries(region, grid, {}, ends, progress);

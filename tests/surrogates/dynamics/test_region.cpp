@@ -1,6 +1,7 @@
 // Stability regions against CVODE, closed forms and each other.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.h"
@@ -167,9 +168,106 @@ TEST(Region, EnergyAndSettlingRulesAgree) {
     EXPECT_LT(different, a.index.size() / 50);
 }
 
+/// A spring about 0.1 m given by a table from 0.02 to 0.18 m, which holds its end values beyond.
+Model short_table_model() {
+    core::Table table;
+    table.source = "short.csv";
+    table.add_numbers("gap", "m", {0.02, 0.06, 0.1, 0.14, 0.18});
+    table.add_numbers("lift_force", "N", {8, 4, 0, -4, -8});
+    Model model = test::free_model(4, 0, 1e-5, 0);
+    tables::FitOptions fit;
+    fit.kind = tables::FitOptions::Kind::interpolation;
+    model.forces.push_back({"lift_force",
+                            "short.csv",
+                            "short.csv",
+                            tables::ForceTable::fit(table, "lift_force", fit),
+                            {Channel::gap},
+                            {},
+                            1.0});
+    model.contact.gap = -0.3;
+    return model;
+}
+
+TEST(Region, CountsTheMotionsThatLeaveTheTable) {
+    // Every start of the map lies inside the table; the motion leaves it where (h - 0.1)^2 + (w/5)^2 > 0.08^2.
+    const double half = 0.05, a = 0.08;
+    const double stay = 10 * (half * std::sqrt(a * a - half * half) + a * a * std::asin(half / a)) / 0.1;
+    const Model still = short_table_model();
+    const Model waved = still.with_effect(make_use("periodic_disturbance", {{"amplitude", 1e-12}, {"frequency", 1.0}}));
+    for (const Model& model : {still, waved}) {  // decided by energy, and by settling
+        RegionOptions options = map_of(0.05, 0.15, 0.5, 60);
+        options.escape_gap = 0.6;
+        options.duration = 20;
+        const StabilityRegion region = stability_region(model, options);
+        EXPECT_EQ(region.outside_fraction, 0);
+        EXPECT_NEAR(region.path_outside_fraction, 1 - stay, 4e-3);
+        double sum = 0;
+        for (const EndClass& end : region.classes) {
+            sum += end.outside;
+            EXPECT_LE(end.outside, end.fraction);
+        }
+        EXPECT_NEAR(sum, region.path_outside_fraction, 1e-12);
+        const bool said = std::any_of(region.remarks.begin(), region.remarks.end(), [](const core::Problem& p) {
+            return p.message.find(
+                       "of the motions are at some time outside the range of a force table (gap 0.02 to "
+                       "0.18 m)") != std::string::npos;
+        });
+        EXPECT_TRUE(said);
+    }
+    // Escape at the table's own end is no motion beyond it; those that go down first leave it there.
+    const StabilityRegion at_end = stability_region(still, map_of(0.05, 0.15, 0.5, 60));
+    for (const EndClass& end : at_end.classes) {
+        if (end.kind == EndKind::escape) {
+            EXPECT_NEAR(end.outside, end.fraction / 2, 6e-3);
+            EXPECT_GT(end.fraction, 0.2);
+        }
+    }
+    EXPECT_EQ(at_end.count(EndKind::contact), 0U);
+    RegionOptions narrow = map_of(0.08, 0.12, 0.1, 10);
+    narrow.escape_gap = 0.6;
+    EXPECT_EQ(stability_region(still, narrow).path_outside_fraction, 0);
+}
+
+TEST(Region, MotionsThatLeaveTheTableAreThoseOfCvode) {
+    const Model model = test::ref_a_model(0.3, 15, 0.01);
+    core::Random random(11);
+    core::Table starts;
+    std::vector<double> gap, velocity;
+    for (int i = 0; i < 150; ++i) {
+        gap.push_back(random.uniform(1.2, 2.0));
+        velocity.push_back(random.uniform(-0.1, 0.4));
+    }
+    starts.add_numbers("gap", "m", gap);
+    starts.add_numbers("heave_velocity", "m/s", velocity);
+    RegionOptions options;
+    options.duration = 200;
+    options.escape_gap = 2.5;
+    std::vector<EndClass> classes;
+    const core::Table ends = ends_of_starts(model, starts, options, classes);
+    TrajectoryOptions each;
+    each.duration = 200;
+    each.stop_at_contact = true;
+    each.escape_gap = 2.5;
+    each.output_step = 0.01;
+    std::size_t beyond = 0;
+    for (std::size_t i = 0; i < gap.size(); ++i) {
+        const Trajectory motion = simulate(model, gap[i], velocity[i], {}, each);
+        const double highest = *std::max_element(motion.gap.begin(), motion.gap.end());
+        if (std::abs(highest - 1.8) < 1e-5) {
+            continue;  // too near to the table's end for either
+        }
+        EXPECT_EQ(ends.numbers("outside_table")[i] > 0, highest > 1.8) << gap[i] << " " << velocity[i];
+        beyond += highest > 1.8 ? 1 : 0;
+    }
+    EXPECT_GT(beyond, 20U);
+    EXPECT_LT(beyond, 130U);
+}
+
 TEST(Region, RefusesWhatCannotBe) {
     RegionOptions options = map_of(0, 1, 0.1, 10);
     options.axes[1].name = "temperature";
+    EXPECT_THROW(stability_region(test::ref_a_model(), options), core::InputError);
+    options = map_of(-0.06, 1, 0.1, 10);  // it touches at -0.05
     EXPECT_THROW(stability_region(test::ref_a_model(), options), core::InputError);
     options = map_of(1, 0, 0.1, 10);
     EXPECT_THROW(stability_region(test::ref_a_model(), options), core::InputError);
