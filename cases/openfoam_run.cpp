@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "postproc/importers/reports/openfoam_forces.h"
+#include "postproc/loads/settled.h"
 
 namespace underbody::cases {
 
@@ -96,7 +97,7 @@ RunState run_state(const fs::path& folder) {
 
 SettledLoads settled_loads(const fs::path& folder) {
     constexpr std::size_t window = 100;
-    constexpr double first_iteration = 220, allowed = 0.003;
+    constexpr double first_iteration = 220;
     SettledLoads loads;
     const auto histories = postproc::read_openfoam_forces(folder);
     const auto found = std::find_if(histories.begin(), histories.end(),
@@ -124,10 +125,11 @@ SettledLoads settled_loads(const fs::path& folder) {
             over([&](std::size_t i) { return f.pressure_moment[i][1] + f.viscous_moment[i][1]; }).second;
     }
     const double share = std::max(loads.force_range, arm > 0 ? loads.moment_range / arm : 0) / loads.resultant;
-    loads.settled = share <= allowed;
+    loads.settled = share <= postproc::still_range;
     loads.text =
         (loads.settled ? "lift, drag and pitch moment stay within " : "lift, drag or pitch moment change by ") +
-        core::format_number(100 * share, 2) + " % of the resultant over " + std::to_string(window) + " iterations";
+        core::format_number(100 * share, 2) + " % of the resultant over " + std::to_string(window) +
+        " iterations (a run is ended early at " + core::format_number(100 * postproc::still_range, 2) + " %)";
     return loads;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -130,6 +131,7 @@ public:
 
     Settled verdict() {
         std::vector<std::string> faults = not_finite_;
+        find_units_of_swings();
         for (const auto& load : settled_.loads) {
             const double of_load = scale_of(load);
             const std::string fault = of_load > 0 ? fault_of(load.scatter, of_load, settled_.transient) : "";
@@ -157,8 +159,10 @@ public:
             settled_.why = "residuals at " + core::format_number(high->last, 2) +
                            " or below; no history of a load: its scatter is not known";
         } else {
-            settled_.why = short_ ? "the histories beside the file are too short to judge"
-                                  : "no history of a load and no residuals beside the file";
+            settled_.why = !without_unit_.empty()
+                               ? without_unit_ + " swings about zero in a unit that nothing beside the file states"
+                           : short_ ? "the histories beside the file are too short to judge"
+                                    : "no history of a load and no residuals beside the file";
         }
         return std::move(settled_);
     }
@@ -209,20 +213,54 @@ private:
                 continue;
             }
             LoadHistory load{quantity, monitor.file, iteration_scatter(history), 0};
-            // A coefficient, half a body, another sign: what is common to all is the share of the mean.
-            if (std::abs(load.scatter.mean) > load.scatter.deviation) {
-                load.sigma = load.scatter.standard_uncertainty / std::abs(load.scatter.mean) *
-                             std::abs(load_of(result_, quantity));
-                own_unit_.insert(quantity);
+            // A coefficient, half a body, another sign: what is common to all is the share of the mean. One that
+            // swings about zero has none: its value at the field's time says what its unit is.
+            const double own = std::abs(load_of(result_, quantity)), mean = std::abs(load.scatter.mean);
+            const bool swings = mean <= load.scatter.deviation;
+            const double now = std::abs(history.back());
+            const bool told = own > 0 && (!swings || now > 0.2 * load.scatter.deviation);
+            per_newton_[quantity] = told ? (swings ? now : mean) / own : 0;
+            if (!swings) {
+                load.sigma = load.scatter.standard_uncertainty / mean * own;
             }
             settled_.loads.push_back(std::move(load));
         }
     }
 
+    /// Monitors that swing about zero and show no unit by themselves have that of another monitor of forces, or of
+    /// moments, in a unit of its own; those for which there is none say nothing.
+    void find_units_of_swings() {
+        const auto moment = [](const std::string& quantity) { return quantity.ends_with("_moment"); };
+        const auto unit_like = [&](const std::string& quantity) {
+            const auto found = std::find_if(per_newton_.begin(), per_newton_.end(), [&](const auto& other) {
+                return other.second > 0 && moment(other.first) == moment(quantity);
+            });
+            return found == per_newton_.end() ? 0 : found->second;
+        };
+        std::erase_if(settled_.loads, [&](LoadHistory& load) {
+            const auto known = per_newton_.find(load.quantity);
+            if (known == per_newton_.end() || std::abs(load.scatter.mean) > load.scatter.deviation) {
+                return false;
+            }
+            const bool nought = load.scatter.mean == 0 && load.scatter.deviation == 0;
+            const double unit = known->second > 0 ? known->second : unit_like(load.quantity);
+            if (!(unit > 0) && !nought) {
+                without_unit_ = load.quantity;
+                return true;
+            }
+            swing_unit_[load.quantity] = unit;
+            load.sigma = unit > 0 ? load.scatter.standard_uncertainty / unit : 0;
+            return false;
+        });
+    }
+
     /// What the history's drift and scatter count against, in the history's unit; 0: nothing that it could.
     [[nodiscard]] double scale_of(const LoadHistory& load) const {
         const double force = force_ * (load.quantity.ends_with("_moment") ? result_.length : 1);
-        if (!own_unit_.contains(load.quantity)) {
+        if (const auto swing = swing_unit_.find(load.quantity); swing != swing_unit_.end()) {
+            return swing->second * force;
+        }
+        if (!per_newton_.contains(load.quantity)) {
             const bool known_unit = load.sigma > 0;
             return known_unit ? std::max(force * load.scatter.standard_uncertainty / load.sigma,
                                          rounding * std::abs(load.scatter.mean))
@@ -254,7 +292,8 @@ private:
             }
         }
         return std::to_string(settled_.loads.size()) + (settled_.loads.size() == 1 ? " history" : " histories") +
-               ": no drift, " + name + " scatters by " + percent(worst) + " of the force";
+               ": no drift, " + name + " scatters by " + percent(worst) + " of the force" +
+               (settled_.transient ? "" : " (" + percent(settled_scatter) + " are allowed)");
     }
 
     static constexpr double rounding = 1e-9;
@@ -263,7 +302,9 @@ private:
     double force_ = 0;
     Settled settled_;
     std::set<std::string> files_;
-    std::set<std::string> own_unit_;  ///< quantities whose history is in a unit that nobody states
+    std::map<std::string, double> per_newton_;  ///< of histories whose unit nobody states: units a N (N m); 0: unknown
+    std::map<std::string, double> swing_unit_;  ///< likewise, of those that swing about zero
+    std::string without_unit_;  ///< a quantity whose history says nothing, because its unit is not known
     std::vector<std::string> not_finite_;
     bool short_ = false;
 };

@@ -26,6 +26,10 @@ std::string to_string(SettledVerdict verdict);
 /// instant of it, says too little of the mean. Above a thousandth a residual that is all there is to go by is no proof
 /// (the usual criterion of Fluent); above a tenth it is proof of the opposite. Chosen, not fitted; set in 2026-11.
 inline constexpr double settled_scatter = 0.05;
+/// Stricter: a run that the program watches is ended before its last iteration only where lift, drag and pitch moment
+/// (over a tenth of the body's length) stay within this share of the resultant over their last iterations. Whether
+/// what it leaves is settled is then asked by settled_scatter as of any other case.
+inline constexpr double still_range = 0.003;
 inline constexpr double settled_residual = 1e-3;
 inline constexpr double unsettled_residual = 0.1;
 
@@ -56,7 +60,9 @@ struct Settled {
 /// (the solver's own forces, monitors that the user names). Beside `file` are read: logs of an OpenFOAM case; texts
 /// named after the file (STEM.trn, STEM-lift.out ...), and where the folder holds no other case every .out, .trn and
 /// .log: residuals of transcripts and of CFX's output, and monitors whose column or file says what it is (lift, drag,
-/// cl ...): their unit is not known, so that they count by their share of the mean. Histories count up to the time of
+/// cl ...): their unit is not known, so that they count by their share of the mean, and where they swing about zero by
+/// what their value at the field's time, or another monitor of the kind, says of their unit; what nothing says a unit
+/// of is no proof either way. Histories count up to the time of
 /// the field. A file that cannot be read as it should is passed over; `notes` says so.
 Settled settled_by(const LoadsResult& result, const std::vector<StatedLoad>& stated, const std::filesystem::path& file,
                    core::Problems& notes);

@@ -129,6 +129,31 @@ TEST_F(SettledTest, ADragThatJumpsByHalfHasNotSettled) {
     EXPECT_GT(jumping.loads.at(0).sigma, 0.2);
 }
 
+TEST_F(SettledTest, ACoefficientThatSwingsAboutZeroIsNoForceInNewton) {
+    // The lift of -3 N is the coefficient's -0.1 at the last iteration: it swings by two thirds of the force of 3.16 N.
+    // In newton it would be a fiftieth.
+    const auto swing = [](double end) { return [end](int i) { return 0.1 * std::sin(0.7 * (i - 200) + end); }; };
+    monitor("case-cl.out", "cl", 200, swing(-M_PI / 2));
+    const Settled swinging = judged(body());
+    EXPECT_EQ(swinging.verdict, SettledVerdict::not_settled) << swinging.why;
+    EXPECT_THAT(swinging.why, HasSubstr("lift_force scatters by"));
+    ASSERT_EQ(swinging.loads.size(), 1U);
+    EXPECT_NEAR(swinging.loads[0].sigma, 3 / std::sqrt(2.0), 0.3);
+    // At its zero it shows no unit: alone it says nothing, beside a drag coefficient it has that one's.
+    monitor("case-cl.out", "cl", 200, swing(0.001));
+    const Settled unknown = judged(body());
+    EXPECT_EQ(unknown.verdict, SettledVerdict::unknown) << unknown.why;
+    EXPECT_THAT(unknown.why, HasSubstr("lift_force swings about zero in a unit that nothing"));
+    monitor("case-cd.out", "cd", 200, [](int) { return 0.1 / 3; });
+    const Settled beside = judged(body());
+    EXPECT_EQ(beside.verdict, SettledVerdict::not_settled) << beside.why;
+    EXPECT_THAT(beside.why, HasSubstr("lift_force scatters by"));
+    // A side force that is nought but for rounding is none either way.
+    put("case-cl.out", "\"Iteration\" \"cl\"\n");
+    monitor("case-side.out", "side", 200, [](int i) { return 1e-9 * std::sin(i * 1.3); });
+    EXPECT_EQ(judged(body()).verdict, SettledVerdict::settled) << judged(body()).why;
+}
+
 TEST_F(SettledTest, ADriftOrAShortHistoryIsSaid) {
     monitor("case-lift.out", "lift", 100, [](int i) { return -3.0 + 0.004 * i; });
     EXPECT_EQ(judged(body()).verdict, SettledVerdict::not_settled);
