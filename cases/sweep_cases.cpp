@@ -1,5 +1,6 @@
 // Which cases a sweep wants, and how far each is.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "cases/sweep_parts.h"
 #include "cases/sweep_slurm.h"
 #include "core/file.h"
+#include "core/inputs.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/body_surface.h"
@@ -147,14 +149,54 @@ std::string joined(const std::vector<std::string>& texts, const char* between, s
     return text + (texts.size() > most ? between + std::to_string(texts.size() - most) + " more" : "");
 }
 
-/// A case of the study with these conditions whose file does not lie in the case's own folder.
-bool have_another(const Study& study, const SweepCase& one) {
-    const auto fitting = study.select(one.conditions);
-    return std::any_of(fitting.begin(), fitting.end(), [&](const Case* other) {
+/// Cases of a study by the numbers of their conditions: of ten thousand few have one value of the number that differs
+/// most.
+class CasesByNumber {
+public:
+    explicit CasesByNumber(const Study& study) : study_(study) {
+        for (const Case& entry : study.cases) {
+            for (const auto& [name, value] : entry.conditions.numbers) {
+                by_number_[name].emplace_back(value, &entry);
+            }
+        }
+        for (auto& [name, list] : by_number_) {
+            std::sort(list.begin(), list.end());
+        }
+    }
+
+    /// A case with these conditions whose file does not lie in the case's own folder.
+    [[nodiscard]] bool have_another(const SweepCase& one) const {
         const fs::path own = one.folder.lexically_normal();
-        return other->file.lexically_normal() != own && other->file.parent_path().lexically_normal() != own;
-    });
-}
+        const auto other = [&](const Case& entry) {
+            return entry.conditions.satisfies(one.conditions) && entry.file.lexically_normal() != own &&
+                   entry.file.parent_path().lexically_normal() != own;
+        };
+        std::optional<std::pair<List::const_iterator, List::const_iterator>> fewest;
+        for (const auto& [name, value] : one.conditions.numbers) {
+            const auto found = by_number_.find(name);
+            if (found == by_number_.end()) {
+                return false;
+            }
+            const double slack = 1e-8 * std::abs(value) + 1e-14;  // wider than Conditions::satisfies
+            const auto less = [](const Entry& entry, double bound) { return entry.first < bound; };
+            const List& list = found->second;
+            const auto first = std::lower_bound(list.begin(), list.end(), value - slack, less);
+            const auto last = std::lower_bound(first, list.end(), value + slack, less);
+            if (!fewest || last - first < fewest->second - fewest->first) {
+                fewest = {first, last};
+            }
+        }
+        return fewest ? std::any_of(fewest->first, fewest->second,
+                                    [&](const Entry& entry) { return other(*entry.second); })
+                      : std::any_of(study_.cases.begin(), study_.cases.end(), other);
+    }
+
+private:
+    using Entry = std::pair<double, const Case*>;
+    using List = std::vector<Entry>;
+    const Study& study_;
+    std::map<std::string, List> by_number_;
+};
 
 /// How far the one that is in the making has come: "iteration 150 of 400".
 std::string how_far(const fs::path& unfinished) {
@@ -177,7 +219,7 @@ std::string failure_of(const fs::path& failed) {
 class Examiner {
 public:
     Examiner(const Study& study, core::Progress& progress, std::string submission = {})
-        : study_(study), progress_(progress), submission_(std::move(submission)) {}
+        : study_(study), known_(study), progress_(progress), submission_(std::move(submission)) {}
 
     void examine(SweepCase& one) {
         progress_.check();
@@ -186,7 +228,7 @@ public:
             one.reason = what_is_stale(one, marker);
             one.state = one.reason.empty() ? SweepState::solved : SweepState::stale;
         }
-        if (one.state != SweepState::solved && have_another(study_, one)) {
+        if (one.state != SweepState::solved && known_.have_another(one)) {
             one.state = SweepState::present;
             one.reason.clear();
         }
@@ -253,13 +295,14 @@ private:
     }
 
     /// Files that were there and are other ones now; what the mesher adds is no part of it. Files that are older than
-    /// the marker, which was written when all was over, need not be read.
+    /// the marker, which was written when all was over, need not be read: by the time that users can set and by the one
+    /// that they cannot.
     static std::vector<std::string> changed_since_solved(const fs::path& folder, const CaseRecord& record) {
-        std::error_code error;
-        const auto solved = fs::last_write_time(folder / solved_marker, error);
-        const bool untouched = !error && std::all_of(record.files.begin(), record.files.end(), [&](const auto& file) {
-            const auto written = fs::last_write_time(folder / file.first, error);
-            return !error && written <= solved;
+        const core::FileStamp solved = core::stamp_of(folder / solved_marker);
+        const bool untouched = std::all_of(record.files.begin(), record.files.end(), [&](const auto& file) {
+            const core::FileStamp now = core::stamp_of(folder / file.first);
+            return now.kind == core::FileStamp::Kind::file && now.modified <= solved.modified &&
+                   now.changed <= solved.changed;
         });
         std::vector<std::string> names;
         if (untouched) {
@@ -332,6 +375,7 @@ private:
     }
 
     const Study& study_;
+    const CasesByNumber known_;
     core::Progress& progress_;
     std::string submission_;
     bool holds_locks_ = false;

@@ -482,6 +482,10 @@ TEST_F(SolveCommands, ASolvedCaseThatIsNoLongerWholeIsNotTakenAsSolved) {
     EXPECT_EQ(list()[name]["state"], "solved");
     replace(runs() / name / "system" / "fvSolution", "0.3", "0.2");
     EXPECT_THAT(list()[name]["reason"].get<std::string>(), HasSubstr("changed since it was solved: system/fvSolution"));
+    // Also where the time of the file, which anybody can set, says that nothing happened.
+    fs::last_write_time(runs() / name / "system" / "fvSolution",
+                        fs::last_write_time(runs() / name / "case.foam") - std::chrono::hours(1));
+    EXPECT_THAT(list()[name]["reason"].get<std::string>(), HasSubstr("changed since it was solved: system/fvSolution"));
     EXPECT_EQ(run({"sweep", "study"}).exit_code, 0);
     EXPECT_EQ(list()[name]["state"], "solved");
 }
