@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/made_again.h"
 #include "surrogates/discovery/residual.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
@@ -24,7 +25,10 @@ const std::vector<std::string> rooms = {"surrogates/tables", "surrogates/dynamic
 std::string compute_discovery(Engine& engine, const MeasurementSpec& spec) {
     const auto model = named_in_study(engine, dynamics::read_model(spec.model), spec.model);
     const auto data = named_in_study(engine, dynamics::read_measurements(spec.data));
-    const auto found = discovery::discover(model, data, {}, engine.progress);
+    discovery::DiscoverOptions options;
+    options.placebo_twins = discovery::usual_placebo_twins;
+    auto found = discovery::discover(model, data, options, engine.progress);
+    (void)discovery::make_again(found, model, data, engine.progress);
     const auto renderer = [&](const core::Figure& figure) {
         return engine.options.renderer ? engine.options.renderer(figure) : std::string();
     };

@@ -13,10 +13,10 @@
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/made_again.h"
 #include "surrogates/discovery/static/load_cell.h"
 #include "surrogates/discovery/wording.h"
 #include "surrogates/estimator/observe/exported_again.h"
-#include "surrogates/estimator/observe/made_again.h"
 
 namespace underbody::studio {
 
@@ -28,7 +28,7 @@ struct DiscoverArguments {
     std::string out;
     std::string horizon = "2 s";
     std::uint64_t seed = 1;
-    std::size_t placebo = 4;
+    std::size_t placebo = discovery::usual_placebo_twins;
     std::string measured;
     std::string log;
     std::string settle = "0 s";
@@ -140,14 +140,11 @@ int reduce(Shell& shell, const DiscoverArguments& arguments) {
 /// keys of `consequence`, and a few words.
 std::string make_again(discovery::Discovery& found, const dynamics::Model& model, const dynamics::Measurements& data,
                        Shell& shell) {
-    if (found.verdict == "none") {
+    const auto made = discovery::make_again(found, model, data, shell.progress());
+    if (!made) {
         return {};
     }
-    const estimator::MadeAgain again = estimator::make_again(model, found.model, data, shell.progress());
-    for (const core::Figure& figure : again.figures()) {
-        found.figures.push_back(figure);
-    }
-    found.made_again = std::make_shared<const nlohmann::json>(again);
+    const estimator::MadeAgain& again = *made;
     std::string text;
     if (again.separation_before && again.separation_after) {
         const auto millinewton = [](double force) { return core::format_number(1e3 * force, 3); };

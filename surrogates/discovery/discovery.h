@@ -141,6 +141,9 @@ struct Discovery {
     double seconds = 0;
 };
 
+/// Twins of the placebo where a user does not say how many: by the command and in a study alike.
+inline constexpr std::size_t usual_placebo_twins = 4;
+
 struct DiscoverOptions {
     double horizon = 2;  ///< s, of the windows of the time-series error
     std::uint64_t seed = 1;

@@ -166,8 +166,11 @@ std::vector<core::Figure> MadeAgain::figures() const {
             all.push_back(dynamics::region_figure(*map));
             all.back().title = std::string("Where free motions end, ") + when;
         }
-        all.push_back(dynamics::region_overlay_figure({*map_before, *map_after}, {"before", "after"}));
-        all.back().title = "Boundaries of the two maps";
+        core::Figure boundaries = dynamics::region_overlay_figure({*map_before, *map_after}, {"before", "after"});
+        if (!boundaries.curves.empty()) {  // where all starts end alike there are none
+            boundaries.title = "Boundaries of the two maps";
+            all.push_back(std::move(boundaries));
+        }
     }
     return all;
 }
