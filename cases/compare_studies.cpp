@@ -45,9 +45,9 @@ std::vector<Member> members_of(const Campaign& side) {
     return members;
 }
 
-std::string condition_text(const std::string& name, double value) {
-    const auto* quantity = core::find_quantity(name);
-    return core::format_number(value, 9) + (quantity != nullptr && quantity->unit != "1" ? " " + quantity->unit : "");
+std::string condition_text(const Conditions& conditions, const std::string& name, double value) {
+    const std::string unit = conditions.unit(name);
+    return core::format_number(value, 9) + (unit != "1" ? " " + unit : "");
 }
 
 /// The conditions of a case as texts.
@@ -57,7 +57,7 @@ std::map<std::string, std::string> conditions_of(const Case& entry) {
         all[name] = value;
     }
     for (const auto& [name, value] : entry.conditions.numbers) {
-        all[name] = condition_text(name, value);
+        all[name] = condition_text(entry.conditions, name, value);
     }
     return all;
 }

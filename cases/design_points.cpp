@@ -74,7 +74,7 @@ std::string unit_of(const std::string& unit) {
 /// The quantity that a name stands for among those who set up such cases; empty: none.
 std::string usual_quantity(const std::string& name) {
     const std::string key = core::plain_name(name);
-    return core::find_quantity(key) != nullptr ? key : core::other_name_of(key, core::Likeness::certain);
+    return condition_unit(key) ? key : core::other_name_of(key, core::Likeness::certain);
 }
 
 bool is_result(const std::string& name) {
@@ -294,29 +294,30 @@ private:
             if (std::isnan(from.values[c])) {
                 throw core::InputError("missing", label(parameter) + " of " + from.name + " is missing", at(from.line));
             }
-            point.conditions.numbers.emplace_back(parameter.quantity, in_si(parameter, from.values[c], from.line));
+            point.conditions.set(parameter.quantity, in_si(parameter, from.values[c], from.line),
+                                 unit_of(parameter.unit));
         }
         result_.points.push_back(std::move(point));
     }
 
     [[nodiscard]] double in_si(const DesignParameter& parameter, double value, std::int64_t line) const {
-        const auto* quantity = core::find_quantity(parameter.quantity);
-        const std::string si = quantity != nullptr ? quantity->unit : "1";
+        const auto known = condition_unit(parameter.quantity);
         const std::string unit = unit_of(parameter.unit);
+        const std::string si = known.value_or("1");
         if (unit.empty() && si != "1") {
             throw core::InputError(
                 "unit", label(parameter) + " has no unit", at(line),
                 "say it where the parameter is named: " + (parameter.id.empty() ? parameter.name : parameter.id) +
                     " = \"" + parameter.quantity + " [" + si + "]\"");
         }
-        if (quantity == nullptr && !unit.empty() && !core::is_unit(unit)) {
+        if (!known && !unit.empty() && !core::is_unit(unit)) {
             throw core::InputError("unit", "'" + parameter.unit + "' of " + label(parameter) + " is no known unit",
                                    at(line));
         }
-        if (quantity == nullptr) {
-            return value;  // a word of the user's own: as it stands
+        if (unit.empty()) {
+            return value;
         }
-        return core::convert(value, unit.empty() ? "1" : unit, si, at(line));
+        return core::convert(value, unit, known ? si : core::si_unit(unit), at(line));
     }
 
     static std::string joined(const std::vector<std::string>& texts) {
@@ -337,6 +338,15 @@ private:
     std::map<std::pair<std::size_t, std::size_t>, std::string> texts_;  ///< cells that are no numbers
     char separator_ = ',';
 };
+
+}  // namespace
+
+namespace {
+
+/// Of a word of the user's own; else nothing.
+std::string written_unit(const Conditions& conditions, const std::string& name) {
+    return condition_unit(name) ? "" : conditions.shown_unit(name);
+}
 
 }  // namespace
 
@@ -391,8 +401,7 @@ bool DesignPointCases::take(Case& entry) {
                                place_, "make the pattern fit one of them");
     }
     for (const auto& number_of : point->conditions.numbers) {
-        std::erase_if(entry.conditions.numbers, [&](const auto& old) { return old.first == number_of.first; });
-        entry.conditions.numbers.push_back(number_of);
+        entry.conditions.set(number_of.first, number_of.second, written_unit(point->conditions, number_of.first));
     }
     entry.name = "dp" + std::to_string(point->number);
     return true;

@@ -37,6 +37,9 @@ Key& Key::add(const std::string& label, const Conditions& conditions) {
     for (const auto& [name, value] : conditions.texts) {
         add(label + "." + name, value);
     }
+    for (const auto& own : conditions.own_units) {
+        add(label + "." + own.name + " in", own.written);
+    }
     return *this;
 }
 

@@ -61,6 +61,28 @@ void remark_on_weights(dynamics::Model& model, const Study& study, const RegionS
     }
 }
 
+/// Forces grow with the density: a table of one water is not that of another.
+void remark_on_densities(dynamics::Model& model, const Study& study, const RegionSpec& spec,
+                         const StudyResults& results) {
+    for (const auto& name : spec.forces) {
+        const TableSpec& table = *study.find_table(name);
+        auto range = range_in_cases(table, results, "density");
+        if (const auto held = study.reference.number("density"); !range && held) {
+            range = {*held, *held};
+        }
+        const double own = model.environment.density;
+        if (range && std::max(std::abs(range->first - own), std::abs(range->second - own)) > 2e-3 * own) {
+            model.remarks.push_back(
+                {core::Problem::Severity::warning,
+                 "the table '" + name + "' is of water of " + core::format_number(range->first, 6) +
+                     (range->second > range->first ? " to " + core::format_number(range->second, 6) : "") +
+                     " kg/m^3, the model's is of " + core::format_number(own, 6) +
+                     " kg/m^3: the map takes the table's forces as they are",
+                 {model.name, {}, {}, {}}});
+        }
+    }
+}
+
 /// The model's text with one [[force]] for each table of the study, whose files are named by `place`.
 std::string composed_text(const Study& study, const RegionSpec& spec, const StudyResults& results,
                           const std::string& place) {
@@ -97,6 +119,7 @@ dynamics::Model composed_model(const Study& study, const RegionSpec& spec, const
                                   spec.model.has_parent_path() ? spec.model.parent_path() : fs::path("."));
     remark_on_speeds(model, study, spec, results);
     remark_on_weights(model, study, spec);
+    remark_on_densities(model, study, spec, results);
     return model;
 }
 

@@ -178,7 +178,9 @@ ReportTable films_at_equilibria(const Study& study, const StudyResults& results,
         const auto text = [](double value) { return core::format_number(value, 17); };
         std::vector<std::string> inputs = {"half_length=" + text(base->at("half_length")),
                                            "half_width=" + text(base->at("half_width")), "gap=" + text(point.gap)};
-        if (const auto density = study.reference.number("density")) {
+        const auto stated = range_in_cases(table, results, "density");
+        if (const auto density = stated && stated->first == stated->second ? std::optional(stated->first)
+                                                                           : study.reference.number("density")) {
             inputs.push_back("density=" + text(*density));
         }
         const auto values = core::closed_form_values(squeeze, inputs);

@@ -27,18 +27,21 @@ postproc::LoadsOptions loads_options(const Study& study, const Case& entry) {
     options.up = postproc::axis_from(study.up);
     options.symmetry = study.symmetry;
     options.reference = study.moments_about;
-    options.references.density = study.reference.number("density");
+    options.references.density = study.density_of(entry);
     options.references.length = study.reference.number("length");
     options.references.width = study.reference.number("width");
     options.references.height = study.reference.number("height");
-    options.references.speed = entry.conditions.number("speed");
+    options.references.speed = study.speed_of(entry);
     return options;
 }
 
 Key loads_key(const Study& study, const Case& entry) {
     Key key("loads", {"postproc"});
     key.add("forward", study.forward).add("up", study.up).add("symmetry", study.symmetry);
-    key.add("reference", study.reference).add("speed", entry.conditions.number("speed").value_or(0));
+    key.add("reference", study.reference).add("speed", study.speed_of(entry).value_or(0));
+    if (const auto own = entry.conditions.number("density")) {
+        key.add("density", *own);
+    }
     if (study.moments_about) {
         for (const double x : *study.moments_about) {
             key.add("moments_about", x);
@@ -190,8 +193,11 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
             const bool in_mean = entry.mean && name == "time";
             values.push_back(in_mean ? std::nan("") : entry.conditions.number(name).value_or(std::nan("")));
         }
-        const auto* quantity = core::find_quantity(name);
-        const std::string unit = quantity != nullptr ? quantity->unit : "1";
+        const auto first = std::find_if(done.begin(), done.end(), [&](const auto* one) {
+            return study.cases[one->entry].conditions.number(name).has_value();
+        });
+        const Conditions& conditions = study.cases[(*first)->entry].conditions;
+        const std::string unit = conditions.unit(name);
         // A load that a manifest states stands beside the one that is computed, as in a table of `loads`.
         const bool computed =
             !name.ends_with("_sigma") && std::any_of(done.begin(), done.end(), [&](const CaseLoads* one) {
@@ -199,7 +205,7 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
                                    [&](const LoadValue& value) { return value.name == name; });
             });
         const std::string column = computed ? name + "_stated" : name;
-        table.add_numbers(column, unit, std::move(values), name == "gap" ? "mm" : name == "pitch" ? "deg" : unit);
+        table.add_numbers(column, unit, std::move(values), conditions.shown_unit(name));
     }
     if (done.empty()) {
         return table;

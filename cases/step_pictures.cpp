@@ -3,6 +3,7 @@
 
 #include "cases/engine.h"
 #include "postproc/field/field.h"
+#include "postproc/field/kinematic.h"
 #include "postproc/loads/loads.h"
 #include "postproc/views/views.h"
 
@@ -17,7 +18,7 @@ postproc::ViewOptions view_options(const Study& study, const PictureSpec& spec, 
     options.symmetry = study.symmetry;
     options.zones = entry.zones;
     options.case_name = entry.conditions.label();
-    options.speed = entry.conditions.number("speed").value_or(0);
+    options.speed = study.speed_of(entry).value_or(0);
     if (spec.range) {
         options.ranges = {{"pressure", *spec.range}};
     }
@@ -29,6 +30,8 @@ Key picture_key(const std::string& kind, const Engine& engine, const PictureSpec
     key.add("file", engine.path_in_study(entry.file));
     key.add("forward", engine.study.forward).add("up", engine.study.up).add("symmetry", engine.study.symmetry);
     key.add("conditions", entry.conditions).add("picture", spec.name);
+    key.add("reference_speed", engine.study.speed_of(entry).value_or(0));
+    key.add("density", engine.study.density_of(entry).value_or(0));
     for (const auto& zone : entry.zones) {
         key.add("zone", zone);
     }
@@ -52,8 +55,11 @@ std::vector<std::string> views_of(Engine& engine, const PictureSpec& spec, const
 }
 
 void draw_case(Engine& engine, const PictureSpec& spec, const Case& entry) {
-    Shared<postproc::Field> field(engine.states(),
-                                  [&] { return postproc::read_field(entry.file, {}, engine.progress); });
+    Shared<postproc::Field> field(engine.states(), [&] {
+        auto read = postproc::read_field(entry.file, {}, engine.progress);
+        (void)postproc::bring_to_pascal(read, engine.study.density_of(entry));
+        return read;
+    });
     const postproc::ViewOptions options = view_options(engine.study, spec, entry);
     for (const auto& name : views_of(engine, spec, entry, field, options)) {
         Key key = picture_key("picture", engine, spec, entry);

@@ -49,7 +49,8 @@ tables::EquilibriumOptions equilibrium_options(const TableSpec& spec) {
     return options;
 }
 
-std::string compute_table(const TableSpec& spec, const core::Table& points, const tables::ForceTable& table) {
+std::string compute_table(const TableSpec& spec, const core::Table& points, const tables::ForceTable& table,
+                          const std::vector<std::string>& mixed) {
     nlohmann::json document;
     if (spec.net_weight) {
         tables::to_json(document, tables::equilibria(table, equilibrium_options(spec)));
@@ -59,6 +60,9 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     document["points"] = core::write_csv(points);
     document["remarks"] =
         nlohmann::json::array({"Fitted by " + table.kind() + " through " + std::to_string(points.rows()) + " points."});
+    for (const auto& remark : mixed) {
+        document["remarks"].push_back(remark);
+    }
     for (const auto& remark : table.remarks()) {
         document["remarks"].push_back(remark.message);
     }
@@ -142,7 +146,12 @@ void run_table(Engine& engine, const TableSpec& spec) {
     }
     SharedTable table(engine.states(), [&] { return fitted(spec, points); });
     Key key = table_key("table", spec, points);
-    const auto made = engine.make("table", spec.name, key, [&] { return compute_table(spec, points, table.get()); });
+    const auto mixed = mixed_conditions(spec, engine.results);
+    for (const auto& remark : mixed) {
+        key.add("remark", remark);
+    }
+    const auto made =
+        engine.make("table", spec.name, key, [&] { return compute_table(spec, points, table.get(), mixed); });
     if (!made) {
         return;
     }

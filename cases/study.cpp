@@ -27,80 +27,6 @@ namespace underbody::cases {
 namespace fs = std::filesystem;
 using core::TomlTable;
 
-std::optional<double> Conditions::number(const std::string& name) const {
-    for (const auto& [key, value] : numbers) {
-        if (key == name) {
-            return value;
-        }
-    }
-    return std::nullopt;
-}
-
-std::optional<std::string> Conditions::text(const std::string& name) const {
-    for (const auto& [key, value] : texts) {
-        if (key == name) {
-            return value;
-        }
-    }
-    return std::nullopt;
-}
-
-bool Conditions::satisfies(const Conditions& wanted) const {
-    for (const auto& [name, value] : wanted.numbers) {
-        const auto mine = number(name);
-        if (!mine || std::abs(*mine - value) > 1e-9 * std::max(std::abs(*mine), std::abs(value)) + 1e-15) {
-            return false;
-        }
-    }
-    return std::all_of(wanted.texts.begin(), wanted.texts.end(),
-                       [this](const auto& wish) { return text(wish.first) == wish.second; });
-}
-
-std::string Conditions::label() const {
-    std::string result;
-    for (const auto& [name, value] : texts) {
-        result += (result.empty() ? "" : ", ") + value;
-    }
-    static const std::map<std::string, std::string> shown_units = {{"gap", "mm"}, {"pitch", "deg"}};
-    for (const auto& [name, value] : numbers) {
-        const auto* quantity = core::find_quantity(name);
-        const std::string si = quantity != nullptr ? quantity->unit : "1";
-        const auto shown = shown_units.find(name);
-        const std::string unit = shown != shown_units.end() ? shown->second : si;
-        result += (result.empty() ? "" : ", ") + name + " " + core::format_number(core::convert(value, si, unit), 4) +
-                  (unit == "1" ? "" : " " + unit);
-    }
-    return result;
-}
-
-Conditions conditions_from(const std::string& text) {
-    Conditions conditions;
-    for (const auto part : core::split(text, ',')) {
-        const std::size_t equals = part.find('=');
-        const std::string name(core::trimmed(part.substr(0, equals)));
-        const std::string value(equals == std::string_view::npos ? "" : core::trimmed(part.substr(equals + 1)));
-        if (name.empty() || value.empty()) {
-            throw core::UsageError("parse", "'" + std::string(core::trimmed(part)) + "' is not of the form name=value",
-                                   {}, "such as \"variant=A, pitch=0\"");
-        }
-        if (conditions.number(name) || conditions.text(name)) {
-            throw core::UsageError("duplicate", "'" + name + "' is given twice");
-        }
-        if (const auto* quantity = core::find_quantity(name)) {
-            try {
-                conditions.numbers.emplace_back(name, core::parse_in(value, quantity->unit));
-            } catch (const core::Error& error) {
-                throw core::UsageError("parse", error.message(), {}, error.hint());
-            }
-        } else if (const auto number = core::parse_number(value)) {
-            conditions.numbers.emplace_back(name, *number);
-        } else {
-            conditions.texts.emplace_back(name, value);
-        }
-    }
-    return conditions;
-}
-
 namespace {
 
 /// A number, or a text that is a number with or without a unit.
@@ -120,8 +46,8 @@ bool is_number_like(const TomlTable& table, const std::string& key) {
 Conditions read_conditions(const TomlTable& table) {
     Conditions conditions;
     for (const auto& key : table.keys()) {
-        if (const auto* quantity = core::find_quantity(key)) {
-            conditions.numbers.emplace_back(key, table.quantity(key, quantity->unit));
+        if (const auto unit = condition_unit(key)) {
+            conditions.numbers.emplace_back(key, table.quantity(key, *unit));
         } else if (const std::string meant = core::mistyped_quantity(key);
                    !meant.empty() && is_number_like(table, key)) {
             throw core::InputError("name", "there is no condition '" + table.path_of(key) + "'", table.place(key),
@@ -221,13 +147,39 @@ std::vector<core::NamePattern::Found> find_cases(const std::string& pattern, con
     return found;
 }
 
-void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::string, std::string>& files) {
+/// The units that the numbers in file names are written in. Throws core::InputError for one of another dimension than
+/// the condition has, here or (a word of the user's own) in a pattern before: `own`, by name.
+std::map<std::string, std::string> units_of(const std::string& pattern, const TomlTable& table,
+                                            std::map<std::string, std::string>& own) {
+    std::map<std::string, std::string> units;
+    const core::NamePattern parsed(pattern);
+    for (const auto& part : parsed.parts()) {
+        if (part.kind != core::NamePattern::Part::Kind::number) {
+            continue;
+        }
+        const std::string before =
+            condition_unit(part.value).value_or(own.emplace(part.value, part.unit).first->second);
+        if (!core::same_dimension(part.unit, before)) {
+            throw core::InputError("unit",
+                                   "the condition '" + part.value + "' is in " + part.unit + " in '" + pattern +
+                                       "', and in " + before + " elsewhere",
+                                   table.place("files"), "give one of them another name");
+        }
+        units[part.value] = part.unit;
+    }
+    return units;
+}
+
+void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::string, std::string>& files,
+               std::map<std::string, std::string>& own_units) {
     const std::string pattern = table.string("files");
     const Conditions held = read_where(table, "conditions");
     const std::vector<std::string> zones = table.strings("zones");
     const bool mean = table.boolean_or("mean", false);
     DesignPointCases design(table);
-    for (auto& item : find_cases(pattern, study.folder(), table)) {
+    auto found = find_cases(pattern, study.folder(), table);
+    const auto units = units_of(pattern, table, own_units);
+    for (auto& item : found) {
         Case entry;
         entry.file = item.path;
         std::error_code error;
@@ -235,8 +187,7 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
         entry.conditions = held;
         entry.zones = zones;
         for (auto& number : item.match.numbers) {
-            std::erase_if(entry.conditions.numbers, [&](const auto& old) { return old.first == number.first; });
-            entry.conditions.numbers.push_back(number);
+            entry.conditions.set(number.first, number.second, units.at(number.first));
         }
         for (auto& text : item.match.texts) {
             std::erase_if(entry.conditions.texts, [&](const auto& old) { return old.first == text.first; });
@@ -548,8 +499,9 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     study.origin = root.string_or("origin", "");
     read_frame(study, root);
     std::unordered_map<std::string, std::string> files;  // and the pattern that found them
+    std::map<std::string, std::string> own_units;        // of words of the user's own in patterns
     for (const auto& table : root.tables("case")) {
-        add_cases(study, table, files);
+        add_cases(study, table, files, own_units);
     }
     std::set<std::string> bodies;
     for (const auto& table : root.tables("body")) {
@@ -650,6 +602,16 @@ std::vector<const Case*> Study::select(const Conditions& where) const {
         }
     }
     return chosen;
+}
+
+std::optional<double> Study::density_of(const Case& entry) const {
+    const auto own = entry.conditions.number("density");
+    return own ? own : reference.number("density");
+}
+
+std::optional<double> Study::speed_of(const Case& entry) const {
+    const auto own = entry.conditions.number("speed");
+    return own ? own : reference.number("speed");
 }
 
 const TableSpec* Study::find_table(const std::string& name) const {

@@ -30,14 +30,33 @@ namespace underbody::cases {
 struct Conditions {
     std::vector<std::pair<std::string, double>> numbers;
     std::vector<std::pair<std::string, std::string>> texts;
+    /// Of numbers that are no quantity the program knows: the user's own words.
+    struct OwnUnit {
+        std::string name;
+        std::string si;       ///< of the number
+        std::string written;  ///< as the user wrote it
+    };
+    std::vector<OwnUnit> own_units;
 
+    /// Sets a number, in place of one of that name; `written`: the unit that it was written in, of a word of the
+    /// user's own.
+    void set(const std::string& name, double value, const std::string& written = {});
+    /// SI unit of a number of that name: the known quantity's, the one that the user gave it, else "1".
+    [[nodiscard]] std::string unit(const std::string& name) const;
+    /// The unit to show it in: gap in mm, pitch in deg, the user's own words as written.
+    [[nodiscard]] std::string shown_unit(const std::string& name) const;
     [[nodiscard]] std::optional<double> number(const std::string& name) const;
     [[nodiscard]] std::optional<std::string> text(const std::string& name) const;
-    /// True if every condition of `wanted` holds here (numbers to 1e-9 relative).
+    /// True if every condition of `wanted` holds here (numbers to 1e-9 relative); a text with a unit ("3 mm") is held
+    /// against a number in its unit.
     [[nodiscard]] bool satisfies(const Conditions& wanted) const;
     /// "ellipse, gap 5 mm, pitch 0 deg" for people.
     [[nodiscard]] std::string label() const;
 };
+
+/// SI unit of a number in the conditions of a case: of a known quantity, and of the density of its water; none: a word
+/// of the user's own.
+std::optional<std::string> condition_unit(const std::string& name);
 
 /// "variant=ellipse, gap=5mm", as on the command line: known quantities with units (SI without), other words as they
 /// are. Throws core::UsageError: a part that is not name=value, a unit of another dimension, a name given twice.
@@ -189,6 +208,9 @@ public:
     core::Problems notes;  ///< what was left out on opening: cases of the sweep that are stale
 
     [[nodiscard]] std::vector<const Case*> select(const Conditions& where) const;
+    /// kg/m^3 and m/s: the case's own, else those of [reference].
+    [[nodiscard]] std::optional<double> density_of(const Case& entry) const;
+    [[nodiscard]] std::optional<double> speed_of(const Case& entry) const;
     [[nodiscard]] const TableSpec* find_table(const std::string& name) const;
 
 private:
@@ -301,6 +323,11 @@ tables::FitOptions fit_options(const TableSpec& spec);
 /// is known. Throws core::InputError (missing): there are no loads, no case fits, a case lacks an axis or the quantity,
 /// the mesh study failed or does not cover the quantity.
 core::Table table_points(const TableSpec& spec, const StudyResults& results);
+/// Smallest and largest value that a condition has in the cases of a table; nothing when none states it.
+std::optional<std::pair<double, double>> range_in_cases(const TableSpec& spec, const StudyResults& results,
+                                                        const std::string& condition);
+/// Sentences about density and speed where they differ among the cases of a table that has no such axis.
+std::vector<std::string> mixed_conditions(const TableSpec& spec, const StudyResults& results);
 /// The speed that all these points have, m/s; nothing where it is an axis, differs or is not known.
 std::optional<double> speed_of(const TableSpec& spec, const core::Table& points);
 

@@ -76,8 +76,10 @@ FileTable reference() {
             {{"length", "m", "\"203.2 mm\"", "none", "length of the body"},
              {"width", "m", "\"152 mm\"", "none", "width of the body"},
              {"height", "m", "\"145 mm\"", "none", "height of the body"},
-             {"density", "kg/m^3", "\"998 kg/m^3\"", "998", "density of the water"},
-             {"speed", "m/s", "\"0.5 m/s\"", "the speed of each case", "speed"}}};
+             {"density", "kg/m^3", "\"998 kg/m^3\"", "998",
+              "density of the water, of cases whose conditions state none of their own"},
+             {"speed", "m/s", "\"0.5 m/s\"", "the speed of each case",
+              "speed of the coefficients of cases whose conditions state none, and of [sweep]"}}};
 }
 
 std::vector<FileTable> inputs() {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cases/study.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/points/set_points.h"
 
@@ -43,17 +44,30 @@ std::vector<double> scatter_of(const TableSpec& spec, const core::Table& loads) 
 
 bool row_fits(const core::Table& loads, std::size_t row, const Conditions& where) {
     Conditions mine;
-    for (const auto& [name, value] : where.numbers) {
-        if (const auto* column = loads.find(name); column != nullptr && !column->is_text()) {
-            mine.numbers.emplace_back(name, column->numbers[row]);
-        }
-    }
-    for (const auto& [name, value] : where.texts) {
+    const auto take = [&](const std::string& name) {
         if (const auto* column = loads.find(name); column != nullptr && column->is_text()) {
             mine.texts.emplace_back(name, column->text[row]);
+        } else if (column != nullptr) {
+            mine.set(name, column->numbers[row], column->unit);
         }
+    };
+    for (const auto& [name, value] : where.numbers) {
+        take(name);
+    }
+    for (const auto& [name, value] : where.texts) {
+        take(name);
     }
     return mine.satisfies(where);
+}
+
+std::vector<std::size_t> rows_of(const TableSpec& spec, const core::Table& loads) {
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < loads.rows(); ++row) {
+        if (row_fits(loads, row, spec.where)) {
+            rows.push_back(row);
+        }
+    }
+    return rows;
 }
 
 /// What is the same in all these cases: the speed, the pitch, the variant. An exported table says it in its head, and a
@@ -91,6 +105,37 @@ std::optional<double> speed_of(const TableSpec& spec, const core::Table& points)
     return speed->numbers.front();
 }
 
+std::optional<std::pair<double, double>> range_in_cases(const TableSpec& spec, const StudyResults& results,
+                                                        const std::string& condition) {
+    std::optional<std::pair<double, double>> range;
+    const auto* column = results.loads.find(condition);
+    if (column == nullptr || column->is_text()) {
+        return range;
+    }
+    for (const std::size_t row : rows_of(spec, results.loads)) {
+        const double value = column->numbers[row];
+        if (std::isfinite(value)) {
+            range = {range ? std::min(range->first, value) : value, range ? std::max(range->second, value) : value};
+        }
+    }
+    return range;
+}
+
+std::vector<std::string> mixed_conditions(const TableSpec& spec, const StudyResults& results) {
+    std::vector<std::string> remarks;
+    for (const char* name : {"density", "speed"}) {
+        const auto range = range_in_cases(spec, results, name);
+        const bool axis = std::find(spec.axes.begin(), spec.axes.end(), name) != spec.axes.end();
+        if (range && !axis && range->second - range->first > 1e-9 * std::abs(range->second)) {
+            remarks.push_back("Its cases have no one " + std::string(name) + " (" +
+                              core::format_number(range->first, 6) + " to " + core::format_number(range->second, 6) +
+                              " " + condition_unit(name).value_or("1") +
+                              "), and it is no axis of the table: what it changes is taken for scatter.");
+        }
+    }
+    return remarks;
+}
+
 tables::FitOptions fit_options(const TableSpec& spec) {
     tables::FitOptions options;
     options.axes = spec.axes;
@@ -103,12 +148,7 @@ core::Table table_points(const TableSpec& spec, const StudyResults& results) {
     if (loads.rows() == 0) {
         throw core::InputError("missing", "there are no loads yet", {}, "run the study first: underbody study run");
     }
-    std::vector<std::size_t> rows;
-    for (std::size_t row = 0; row < loads.rows(); ++row) {
-        if (row_fits(loads, row, spec.where)) {
-            rows.push_back(row);
-        }
-    }
+    const std::vector<std::size_t> rows = rows_of(spec, loads);
     if (rows.empty()) {
         throw core::InputError("missing", "no case with loads fits the table '" + spec.name + "'");
     }

@@ -142,6 +142,9 @@ nlohmann::json json_of_case(const cases::Case& entry, const cases::CaseLoads& lo
     for (const auto& [name, value] : entry.conditions.texts) {
         item["conditions"][name] = value;
     }
+    for (const auto& own : entry.conditions.own_units) {
+        item["condition_units"][own.name] = own.si;
+    }
     for (const auto& value : loads.values) {
         if (value.name == "lift_force" || value.name == "drag_force" || value.name.ends_with("_sigma")) {
             item[value.name] = value.value;

@@ -65,6 +65,16 @@ TEST_F(DesignPointTable, OtherFormsOfTheHeaderSayTheSame) {
     same("\xEF\xBB\xBFName;gap [mm];speed [m/s]\nDP 0;5,0;0,5\nDP 1;10,0;0,5\n");
 }
 
+TEST_F(DesignPointTable, AWordOfTheUsersOwnKeepsItsUnit) {
+    const DesignPoints table =
+        read("Name,P1 - overhang [mm],P2 - density [g cm^-3]\nDP 0,5,1.025\nDP 1,10,1.025\n", {{"P1", "overhang"}});
+    const Conditions& last = table.points.at(1).conditions;
+    EXPECT_DOUBLE_EQ(last.number("overhang").value(), 0.01);
+    EXPECT_EQ(last.unit("overhang"), "m");
+    EXPECT_EQ(last.shown_unit("overhang"), "mm");
+    EXPECT_THAT(last.label(), HasSubstr("overhang 10 mm"));
+}
+
 TEST_F(DesignPointTable, AnUnknownParameterThatVariesHasToBeNamed) {
     const std::string text = "Name,P1 - h0 [mm],P2 - mesh_level,P3 - nu [m^2 s^-1]\nDP 0,5,1,1e-6\nDP 1,10,2,1e-6\n";
     const auto error = refused(text);
