@@ -10,6 +10,7 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "surrogates/dynamics/theory/theory.h"
+#include "surrogates/estimator/control/theory.h"
 
 namespace underbody::studio {
 
@@ -23,6 +24,7 @@ struct Arguments {
 std::vector<core::ClosedForm> all_forms() {
     std::vector<core::ClosedForm> all = dynamics::closed_forms();
     all.insert(all.end(), geometry::closed_forms().begin(), geometry::closed_forms().end());
+    all.insert(all.end(), estimator::closed_forms().begin(), estimator::closed_forms().end());
     return all;
 }
 

@@ -69,6 +69,8 @@ void fill_kicks(Equilibrium& e, const Line& force, const std::vector<Equilibrium
     e.kick_gap = std::min(e.kick_gap_up, e.kick_gap_down);
     if (mass > 0) {
         e.kick_velocity = std::sqrt(2 * e.barrier / mass);
+        e.kick_velocity_up = std::sqrt(2 * e.barrier_up / mass);
+        e.kick_velocity_down = std::sqrt(2 * e.barrier_down / mass);
         double highest = 0;  // a body on its way down may have to cross other barriers first
         for (std::size_t j = 0; j < index; ++j) {
             highest = std::max(highest, climb(force, e.gap, all[j].gap));
@@ -169,6 +171,7 @@ Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options
     result.force_at_lower = force.value(force.lower());
     result.force_at_upper = force.value(force.upper());
     result.all = find(force);
+    result.extremes = force.extremes();
     for (std::size_t i = 0; i < result.all.size(); ++i) {
         Equilibrium& e = result.all[i];
         point[axis] = e.gap;
@@ -214,6 +217,8 @@ void to_json(nlohmann::json& json, const Equilibrium& e) {
                           {"barrier_down", e.barrier_down},
                           {"limited_by_range", e.limited_by_range},
                           {"kick_velocity", e.kick_velocity},
+                          {"kick_velocity_up", e.kick_velocity_up},
+                          {"kick_velocity_down", e.kick_velocity_down},
                           {"kick_gap", e.kick_gap},
                           {"kick_gap_up", e.kick_gap_up},
                           {"kick_gap_down", e.kick_gap_down},
@@ -241,10 +246,15 @@ void to_json(nlohmann::json& json, const Equilibria& equilibria) {
     if (!(equilibria.virtual_mass > 0)) {  // nobody said how heavy it is: not known, which is not nought
         for (auto& one : json["equilibria"]) {
             for (const char* name : {"frequency", "angular_frequency", "growth_rate", "damping_ratio", "kick_velocity",
-                                     "contact_velocity"}) {
+                                     "kick_velocity_up", "kick_velocity_down", "contact_velocity"}) {
                 one[name] = nullptr;
             }
         }
+    }
+    json["extremes"] = nlohmann::json::array();
+    for (const auto& extreme : equilibria.extremes) {
+        json["extremes"].push_back(
+            {{"gap", extreme.x}, {"force", extreme.value}, {"kind", extreme.highest ? "highest" : "lowest"}});
     }
     json["held"] = nlohmann::json::object();
     for (const auto& [name, value] : equilibria.held) {

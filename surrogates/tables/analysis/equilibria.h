@@ -46,12 +46,14 @@ struct Equilibrium {
     double barrier_down = 0;  ///< J, downward likewise
     bool limited_by_range = false;
     double kick_velocity =
-        0;                ///< m/s, sqrt(2 barrier/S): the largest sudden heave velocity it survives in either direction
-    double kick_gap = 0;  ///< m, largest displacement either way from which it returns when let go at rest
-    double kick_gap_up = 0;             ///< m
-    double kick_gap_down = 0;           ///< m
-    double contact_velocity = 0;        ///< m/s, downward kick that just reaches the lower end of the table
-    double extent = 0;                  ///< m, > 0: a stretch of balance of that width around `gap`
+        0;  ///< m/s, sqrt(2 barrier/S): the largest sudden heave velocity it survives in either direction
+    double kick_velocity_up = 0;    ///< m/s, sqrt(2 barrier_up/S): upward to the next unstable equilibrium or the end
+    double kick_velocity_down = 0;  ///< m/s, downward likewise
+    double kick_gap = 0;            ///< m, largest displacement either way from which it returns when let go at rest
+    double kick_gap_up = 0;         ///< m
+    double kick_gap_down = 0;       ///< m
+    double contact_velocity = 0;    ///< m/s, downward kick that just reaches the lower end of the table
+    double extent = 0;              ///< m, > 0: a stretch of balance of that width around `gap`
     std::optional<double> probability;  ///< share of the drawn tables that have one like it within 4 sigma
 };
 
@@ -62,7 +64,8 @@ struct Equilibria {
     double virtual_mass = 0;
     double scale = 1;
     Held held;
-    std::vector<Equilibrium> all;  ///< ascending
+    std::vector<Equilibrium> all;         ///< ascending
+    std::vector<Line::Extreme> extremes;  ///< of the net force in the range, ascending
     std::string quantity;
     std::string source;
     double lower = 0, upper = 0;                    ///< range looked at

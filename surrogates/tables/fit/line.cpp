@@ -49,6 +49,12 @@ std::vector<double> held_point(const ForceTable& table, std::optional<std::size_
             if (!std::isfinite(value)) {
                 throw core::UsageError("range", name + " is not finite", {table.source(), {}, {}, {}});
             }
+            if (name == "gap" && value < 0 && axes[k].lower >= 0) {
+                throw core::UsageError("range",
+                                       "a gap of " + core::format_number(1e3 * value, 6) + " mm lies in the ground",
+                                       {table.source(), {}, {}, {}},
+                                       "the table begins at " + core::format_number(1e3 * axes[k].lower, 6) + " mm");
+            }
             point[k] = value;
         }
     }
@@ -209,6 +215,34 @@ double Line::integral(double x) const noexcept {
 }
 
 /// The line is cut into monotone stretches; the signs at their ends tell where zeros lie.
+std::vector<Line::Extreme> Line::extremes() const {
+    // Knots and turning points part the line into pieces that rise or fall throughout.
+    std::vector<std::pair<double, double>> marks;
+    const auto mark = [&](double x, double value) {
+        if (marks.empty() || value != marks.back().second) {
+            marks.emplace_back(x, value);
+        }
+    };
+    for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+        const double h = x_[i + 1] - x_[i];
+        const Cubic c = cubic_of(h, value_[i], value_[i + 1], slope_[i], slope_[i + 1]);
+        mark(x_[i], value_[i]);
+        for (const double t : turning_points(c, h)) {
+            mark(x_[i] + t, c(t));
+        }
+    }
+    mark(x_.back(), value_.back());
+    std::vector<Extreme> found;
+    const double rounding = 1e-13 * size();
+    for (std::size_t i = 1; i + 1 < marks.size(); ++i) {
+        const double before = marks[i].second - marks[i - 1].second, after = marks[i + 1].second - marks[i].second;
+        if (before * after < 0 && std::min(std::abs(before), std::abs(after)) > rounding) {
+            found.push_back({marks[i].first, marks[i].second, before > 0});
+        }
+    }
+    return found;
+}
+
 std::vector<Line::Zero> Line::zeros() const {
     const double tolerance = 1e-14 * size();
     struct Mark {

@@ -52,6 +52,12 @@ public:
     };
     /// All of them, ascending, to rounding; touching ones (before == after) too.
     [[nodiscard]] std::vector<Zero> zeros() const;
+    struct Extreme {
+        double x = 0, value = 0;
+        bool highest = false;  ///< else lowest
+    };
+    /// Inside the range, ascending: where the slope changes its sign.
+    [[nodiscard]] std::vector<Extreme> extremes() const;
     /// Largest size of the value at the points: what rounding is measured by.
     [[nodiscard]] double size() const;
 
