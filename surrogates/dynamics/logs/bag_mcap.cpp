@@ -96,7 +96,7 @@ public:
         }
         if (cut_at_) {
             end.problems.push_back({core::Problem::Severity::warning,
-                                    "the log " + cut_ + ": " + std::to_string(topics_.messages()) +
+                                    "the log " + cut_ + ": " + cut_left_ + "; " + std::to_string(topics_.messages()) +
                                         " messages before it were read, up to " +
                                         core::format_number(topics_.last(), 6) + " s of the log",
                                     core::Place{name_, {}, {}, *cut_at_}});
@@ -121,7 +121,7 @@ private:
     bool next() {
         const std::string_view head = bytes_.peek(head_size);
         if (head.size() < head_size) {
-            cut("ends without its footer");
+            cut("ends without its footer", bytes_left(head.size()));
             return false;
         }
         const auto operation = static_cast<unsigned char>(head[0]);
@@ -130,12 +130,12 @@ private:
             return false;  // footer, end of data: what follows only repeats
         }
         if (operation == 0 || length > largest_record) {
-            cut("is damaged here, where no record begins");
+            cut("is damaged here, where no record begins", "what follows was not read");
             return false;
         }
         const std::string_view record = bytes_.peek(head_size + length);
         if (record.size() < head_size + length) {
-            cut("ends within a record");
+            cut("ends within a record", bytes_left(record.size()));
             if (operation == 0x06) {
                 take_chunk(record.substr(head_size), true);
             }
@@ -147,9 +147,14 @@ private:
         return true;
     }
 
-    void cut(const std::string& how) {
+    static std::string bytes_left(std::size_t count) {
+        return "its last " + std::to_string(count) + (count == 1 ? " byte was left" : " bytes were left");
+    }
+
+    void cut(const std::string& how, const std::string& left) {
         cut_at_ = bytes_.offset();
         cut_ = how;
+        cut_left_ = left;
     }
 
     void bad_chunk(const std::string& what) {
@@ -237,7 +242,7 @@ private:
     std::map<std::uint16_t, std::string> schemas_;
     std::map<std::uint16_t, bool> channels_;
     std::optional<std::int64_t> cut_at_;
-    std::string cut_;
+    std::string cut_, cut_left_;
     std::map<std::string, std::pair<std::size_t, std::int64_t>> bad_chunks_;
 };
 

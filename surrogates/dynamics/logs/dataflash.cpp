@@ -249,7 +249,7 @@ private:
         const bool begins = head.size() == head_size && head.starts_with("\xa3\x95");
         const std::size_t length = begins ? length_of(static_cast<unsigned char>(head[2])) : 0;
         if (head.size() < head_size) {
-            damage_.cut(bytes_.offset(), "a message");
+            damage_.cut(bytes_.offset(), head.size(), "a message");
             return false;
         }
         if (length == 0) {
@@ -258,7 +258,7 @@ private:
         }
         const std::string_view message = bytes_.peek(length);
         if (message.size() < length) {
-            damage_.cut(bytes_.offset(), "a message");
+            damage_.cut(bytes_.offset(), message.size(), "a message");
             return false;
         }
         take(static_cast<unsigned char>(message[2]), message);

@@ -57,7 +57,9 @@ void DamageReport::tell(const std::string& file, double last, core::Problems& pr
     }
     if (cut_at_ >= 0) {
         problems.push_back({core::Problem::Severity::warning,
-                            "the log ends within " + cut_what_ + ": all before it was read, " + upto,
+                            "the log ends within " + cut_what_ + ": its last " + std::to_string(cut_left_) +
+                                (cut_left_ == 1 ? " byte was" : " bytes were") + " left, all before them was read, " +
+                                upto,
                             core::Place{file, {}, {}, cut_at_}});
     }
 }

@@ -77,8 +77,10 @@ public:
         ++places_;
         bytes_ += bytes;
     }
-    void cut(std::int64_t at, std::string what) {
+    /// `left`: the bytes at the end that are no whole one of `what`.
+    void cut(std::int64_t at, std::size_t left, std::string what) {
         cut_at_ = at;
+        cut_left_ = left;
         cut_what_ = std::move(what);
     }
     /// `last`: s, time of the last row that was read.
@@ -86,7 +88,7 @@ public:
 
 private:
     std::int64_t first_ = 0, bytes_ = 0, cut_at_ = -1;
-    std::size_t places_ = 0;
+    std::size_t places_ = 0, cut_left_ = 0;
     std::string cut_what_;
 };
 

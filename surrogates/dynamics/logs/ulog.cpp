@@ -167,7 +167,7 @@ private:
             return false;
         }
         if (head.size() < head_size) {
-            damage_.cut(bytes_.offset(), "a message");
+            damage_.cut(bytes_.offset(), head.size(), "a message");
             return false;
         }
         const std::size_t size = number_at<std::uint16_t>(head, 0);
@@ -183,7 +183,7 @@ private:
         const bool sure = type == 'D' && plausible(head, 0);
         const std::string_view message = bytes_.peek(head_size + size + (sure ? 0 : head_size));
         if (message.size() < head_size + size) {
-            damage_.cut(bytes_.offset(), "a message");
+            damage_.cut(bytes_.offset(), message.size(), "a message");
             return false;
         }
         const bool follows = message.size() < head_size + size + head_size || plausible_head(message, head_size + size);

@@ -239,6 +239,15 @@ TEST(Logs, ACutLogGivesWhatStandsBeforeTheCut) {
     const LogEnd end = read_bytes(bytes.substr(0, bytes.size() - 5), kept);
     ASSERT_EQ(end.problems.size(), 1u);
     EXPECT_THAT(end.problems[0].message, HasSubstr("the log ends within a message"));
+    const auto cut_at = static_cast<std::size_t>(end.problems[0].place.byte.value());
+    EXPECT_THAT(end.problems[0].message,
+                HasSubstr("its last " + std::to_string(bytes.size() - 5 - cut_at) + " bytes were left"));
+    // A bag that ends within its messages says so too, wherever.
+    const std::string bag = test::mcap_bytes(two_sensors(true), "zstd");
+    Kept of_bag;
+    const LogEnd half = read_bytes(bag.substr(0, bag.size() / 2), of_bag);
+    ASSERT_EQ(half.problems.size(), 1u);
+    EXPECT_THAT(half.problems[0].message, HasSubstr("bytes were left"));
     EXPECT_THAT(end.problems[0].message, HasSubstr("s of the log"));
 }
 
