@@ -113,7 +113,8 @@ Trim trim(const MassProperties& body, const Loading& loading, double water_densi
         add_point(result.inertia, p.mass, p.position - result.centre_of_gravity);
     }
     const Vec3 up = result.centre_of_buoyancy - result.centre_of_gravity;
-    result.stable = up.z > 0;
+    result.neutral = norm(up) <= 1e-9 * std::cbrt(body.volume);
+    result.stable = !result.neutral && up.z > 0;
     if (result.stable) {
         result.roll = std::atan2(up.y, up.z);
         result.pitch = std::atan2(up.x, std::hypot(up.y, up.z));
@@ -177,6 +178,7 @@ void to_json(nlohmann::json& json, const Trim& trim) {
             {"net_weight", trim.net_weight},
             {"centre_of_buoyancy", list(trim.centre_of_buoyancy)},
             {"stable", trim.stable},
+            {"neutral", trim.neutral},
             {"pitch", trim.pitch},
             {"roll", trim.roll},
             {"righting_stiffness", trim.righting_stiffness}};

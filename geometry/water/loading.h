@@ -47,6 +47,7 @@ struct Trim {
     double net_weight = 0;    ///< N, weight less buoyancy, positive sinks
     Vec3 centre_of_buoyancy;  ///< m
     bool stable = false;      ///< the centre of buoyancy lies above the centre of gravity
+    bool neutral = false;     ///< the two centres are one, to rounding: it stays as it is turned
     double pitch = 0;         ///< rad, nose up, where the body comes to rest; 0 when not stable
     double roll = 0;          ///< rad, starboard down
     /// N m per rad about the equilibrium: buoyancy times the distance of the two centres; negative: it turns over.

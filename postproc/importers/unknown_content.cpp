@@ -9,6 +9,7 @@
 
 #include "core/text.h"
 #include "postproc/importers/byte_stream.h"
+#include "postproc/importers/importer.h"
 #include "postproc/importers/reports/reports.h"
 
 namespace underbody::postproc {
@@ -86,6 +87,34 @@ std::string without_mesh(const fs::path& path) {
                    "instance, or copy that folder too)";
 }
 
+/// A folder of files that can be read one by one, or of nothing that can.
+std::string of_files(const fs::path& path) {
+    std::vector<std::string> readable;
+    std::size_t others = 0;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(path, error)) {
+        const Importer* importer = entry.is_regular_file(error) ? importer_for(entry.path()) : nullptr;
+        if (importer != nullptr) {
+            readable.push_back(entry.path().filename().string() + " (" + importer->format + ")");
+        } else {
+            ++others;
+        }
+    }
+    if (readable.empty()) {
+        return "a folder, and none of the " + std::to_string(others) +
+               (others == 1 ? " entry in it is" : " entries in it is") + " a file of a known format";
+    }
+    std::sort(readable.begin(), readable.end());
+    std::string names;
+    constexpr std::size_t most = 5;
+    for (std::size_t i = 0; i < std::min(most, readable.size()); ++i) {
+        names += (i == 0 ? "" : ", ") + readable[i];
+    }
+    return "a folder of files: " + names +
+           (readable.size() > most ? " and " + std::to_string(readable.size() - most) + " more" : "") +
+           "; name one of them, or several by a pattern in quotes, such as \"" + (path / "*").string() + "\"";
+}
+
 std::string of_folder(const fs::path& path) {
     std::error_code error;
     if (fs::is_empty(path, error) && !error) {
@@ -113,7 +142,8 @@ std::string of_folder(const fs::path& path) {
                    "): put it together with reconstructPar";
         }
     }
-    return without_mesh(path);
+    const std::string foam = without_mesh(path);
+    return foam.empty() ? of_files(path) : foam;
 }
 
 }  // namespace

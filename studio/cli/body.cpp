@@ -191,7 +191,9 @@ void print_body(const geometry::Body& body, Shell& shell) {
         shell.print("trim        mass " + rounded(t.mass, 5) + " kg, net weight " + rounded(t.net_weight, 4) + " N, " +
                     (t.stable ? "pitch " + degrees(t.pitch) + " deg, roll " + degrees(t.roll) + " deg, righting " +
                                     rounded(t.righting_stiffness, 4) + " N m/rad"
-                              : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));
+                     : t.neutral ? std::string("neutral: the centre of gravity is the centre of buoyancy, it stays as "
+                                               "it is turned")
+                                 : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));
     }
     if (body.added_mass) {
         const auto& a = body.added_mass->matrix;

@@ -202,6 +202,17 @@ int run_motion(Shell& shell, const ExportCommand& command) {
     return done;
 }
 
+/// The first folder on the way to the file that is not there yet; empty when all are.
+std::filesystem::path missing_folder(const std::filesystem::path& file) {
+    std::filesystem::path missing;
+    std::error_code error;
+    for (auto folder = file.parent_path(); !folder.empty() && !std::filesystem::exists(folder, error);
+         folder = folder.parent_path()) {
+        missing = folder;
+    }
+    return missing;
+}
+
 int run_export(Shell& shell, const ExportCommand& command) {
     if (!command.motion.empty()) {
         return run_motion(shell, command);
@@ -216,6 +227,7 @@ int run_export(Shell& shell, const ExportCommand& command) {
     options.lever = lever_of(command);
     const bool several = command.table.quantity.find(',') != std::string::npos || command.table.quantity == "all";
     const auto all = several ? command.table.fit_all(shell) : std::vector<tables::ForceTable>{command.table.fit(shell)};
+    const auto folder = missing_folder(command.out);
     const auto result = tables::export_tables(all, format, command.out, options, shell.progress());
     shell.show(result.remarks);
     std::string grid;
@@ -227,7 +239,19 @@ int run_export(Shell& shell, const ExportCommand& command) {
         shell.print(file.string());
         bytes += std::filesystem::file_size(file);
     }
+    if (!folder.empty()) {
+        shell.info("made the folder " + folder.string());
+    }
     const bool thinned = options.max_error > 0 || !options.points.empty();
+    core::Problems large;
+    if (bytes > 20'000'000) {
+        large.push_back({core::Problem::Severity::warning,
+                         "the export has " + core::format_number(static_cast<double>(bytes) / 1e6, 3) +
+                             " MB, more than most compilers and controllers take" +
+                             (thinned ? "" : ": --max-error 0.5% or --points make it smaller"),
+                         {}});
+        shell.remark(large);
+    }
     shell.info(core::format_number(static_cast<double>(bytes) / 1000, 3) + " kB" +
                (bytes > 50000 && !thinned
                     ? ": every set point and every cell of the table; --max-error 0.5% or --points "
@@ -251,10 +275,16 @@ int run_export(Shell& shell, const ExportCommand& command) {
                                 {"quantities", errors}};
         document["files"] = nlohmann::json::array();
         document["bytes"] = bytes;
+        if (!folder.empty()) {
+            document["made_folder"] = folder.string();
+        }
         for (const auto& file : result.files) {
             document["files"].push_back(file.string());
         }
         command.table.describe(document);
+        for (const auto& problem : large) {
+            document["warnings"].push_back(problem.message);
+        }
         shell.print_json(document);
     }
     return done;

@@ -79,7 +79,7 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
         remarks.push_back(std::move(remark));
     }
     std::erase_if(remarks, [&](const core::Problem& remark) { return !said.insert(remark.message).second; });
-    shell.show(remarks);
+    shell.remark(remarks);
     std::string line = table.quantity() + " " + shown(table, table.quantity(), table.unit(), e.value, 7);
     if (e.sigma > 0) {
         line += " +- " + shown(table, table.quantity(), table.unit(), e.sigma, 3);
@@ -89,14 +89,19 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
         line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " +
                 tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
     }
-    if (e.no_data && !e.outside) {
+    if (e.outside) {
+        line += "   outside the table";
+    } else if (e.no_data) {
         line += "   no points around";
     }
     if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
-        shell.warn(
-            "no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
-            " % of the axes' ranges outside them): the value is an extrapolation, its error says how far to trust "
-            "it");
+        shell.remark(
+            {{core::Problem::Severity::warning,
+              "no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
+                  " % of the axes' ranges outside them): the value is an extrapolation, its error says how far to "
+                  "trust "
+                  "it",
+              {}}});
     }
     shell.print(line);
     return tables::to_json(table, point, e);

@@ -49,7 +49,9 @@ QCPScatterStyle scatter_style(const core::FigurePoints& points) {
     const bool open = points.shape == Shape::circle;
     // A thin white rim keeps filled markers apart from curves of their own colour.
     const bool strokes = points.shape == Shape::cross || points.shape == Shape::plus || open;
-    const QPen pen(strokes ? colour : QColor(255, 255, 255), strokes ? 1.8 : 0.8);
+    // Small or dense ones would rub each other out by it.
+    const bool rim = points.size >= 5 && points.x.size() <= 400;
+    const QPen pen = strokes ? QPen(colour, 1.8) : rim ? QPen(QColor(255, 255, 255), 0.8) : QPen(Qt::NoPen);
     const QBrush brush(open ? QColor(255, 255, 255) : colour);
     return {shapes.at(points.shape), pen, brush, points.size + (strokes ? 0 : 1)};
 }

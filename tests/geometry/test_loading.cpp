@@ -28,6 +28,8 @@ TEST(Trim, OfAUniformBodyIsLevelAndIndifferent) {
     const Trim t = trim(body, loading_of("[mass]\ndensity='998 kg/m^3'\n"));
     EXPECT_NEAR(t.net_weight, 0, 1e-12);
     EXPECT_NEAR(t.righting_stiffness, 0, 1e-12);
+    EXPECT_TRUE(t.neutral);
+    EXPECT_FALSE(t.stable);
     EXPECT_NEAR(t.inertia[1][1], 998 * body.inertia[1][1], 1e-12);
 }
 

@@ -57,10 +57,14 @@ TEST(TableCommand, SaysWhatIsWrong) {
     EXPECT_THAT(swapped.errors, HasSubstr("swapped"));
     const auto outside = run_underbody({"table", "at", "lift.csv", "gap=200mm"}, folder.path());
     EXPECT_EQ(outside.exit_code, 0);
-    EXPECT_THAT(outside.errors, HasSubstr("outside the table by 100 mm"));
+    EXPECT_THAT(outside.output, HasSubstr("outside the table by 100 mm"));
+    EXPECT_THAT(outside.output, HasSubstr("   outside the table"));
+    const auto below = run_underbody({"table", "at", "lift.csv", "gap=-5mm"}, folder.path());
+    EXPECT_EQ(below.exit_code, 2);
+    EXPECT_THAT(below.errors, HasSubstr("a gap of -5 mm lies in the ground"));
     const auto bare = run_underbody({"table", "at", "lift.csv", "gap=5"}, folder.path());
     EXPECT_THAT(
-        bare.errors,
+        bare.output,
         HasSubstr("outside the table by 4900 mm: the end value is held; a bare number is SI, 5 mm would lie inside"));
     ASSERT_EQ(run_underbody({"export", "lift.csv", "--out", "lift.h"}, folder.path()).exit_code, 0);
     const auto header = run_underbody({"table", "at", "lift.h", "gap=5mm"}, folder.path());

@@ -88,6 +88,9 @@ core::FigurePoints points_on(const ForceTable& table, std::size_t axis, const st
             }
         }
     }
+    if (std::any_of(found.y_error.begin(), found.y_error.end(), [](double error) { return error > 0; })) {
+        found.name = "points +- one standard deviation";
+    }
     return found;
 }
 
