@@ -31,32 +31,6 @@ dynamics::Measurements reduced(const dynamics::Measurements& raw) {
 
 }  // namespace
 
-namespace {
-
-/// A model that is better over seconds may be worse over a whole run: who reads the first error is to know of it.
-void warn_of_errors_that_rise(Discovery& result) {
-    for (const ErrorChange& change : result.error) {
-        if (result.verdict == "none" || !(change.after.rmse > 1.02 * change.before.rmse)) {
-            continue;
-        }
-        const std::string over = std::isinf(change.horizon) ? "free runs"
-                                 : change.horizon > 0       ? core::format_number(change.horizon, 3) + " s"
-                                                            : "set points";
-        result.problems.push_back(
-            {core::Problem::Severity::warning,
-             "with what was found the error of " + change.channel + " over " + over +
-                 " is larger than before: " + core::format_number(change.after.rmse, 3) + " after " +
-                 core::format_number(change.before.rmse, 3) + " " + change.unit +
-                 (std::isinf(change.horizon)
-                      ? ". In a free run small errors of the forces add up over the whole record: what is still "
-                        "missing counts there more than what was found"
-                      : ""),
-             {}});
-    }
-}
-
-}  // namespace
-
 Discovery discover(const dynamics::Model& model, const dynamics::Measurements& measured, const DiscoverOptions& options,
                    core::Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
@@ -67,7 +41,6 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
     if (result.verdict == "none") {
         result.depends_on.clear();  // noise depends on nothing
     }
-    warn_of_errors_that_rise(result);
     result.model.lineage.made_from.push_back(
         "made by underbody discover from " + model.name + " and the measurements '" +
         (data.title.empty() ? std::filesystem::weakly_canonical(data.folder).filename().string() : data.title) + "'");
