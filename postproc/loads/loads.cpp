@@ -10,6 +10,7 @@
 #include "postproc/loads/fluid_side.h"
 #include "postproc/loads/loads_reference_point.h"
 #include "postproc/loads/mirror_plane.h"
+#include "postproc/loads/named_loads.h"
 #include "postproc/loads/vehicle_axes.h"
 
 namespace underbody::postproc {
@@ -279,14 +280,7 @@ private:
         return wrench;
     }
 
-    [[nodiscard]] NamedLoads named(const Wrench& wrench) const {
-        const Vector astern = {-axes_.forward[0], -axes_.forward[1], -axes_.forward[2]};
-        const Vector down = {-axes_.up[0], -axes_.up[1], -axes_.up[2]};
-        // 0.0 + makes minus zero plain zero.
-        return {0.0 + dot(wrench.force, axes_.up),        0.0 + dot(wrench.force, astern),
-                0.0 + dot(wrench.force, axes_.starboard), 0.0 + dot(wrench.moment, axes_.starboard),
-                0.0 + dot(wrench.moment, axes_.forward),  0.0 + dot(wrench.moment, down)};
-    }
+    [[nodiscard]] NamedLoads named(const Wrench& wrench) const { return named_loads(wrench, axes_); }
 
     /// Shells of one zone are given as one.
     void add(ZoneLoads&& zone) {

@@ -135,10 +135,8 @@ std::string suspicion(const std::vector<double>& differences) {
            " Pa: is one of the two an absolute pressure?";
 }
 
-}  // namespace
-
-View difference_view(const Field& a, const Field& b, const std::string& array, const ViewOptions& options,
-                     core::Progress& progress) {
+ComposedView composed_difference(const Field& a, const Field& b, const std::string& array, const ViewOptions& options,
+                                 core::Progress& progress) {
     check_ranges(options, {"difference", "difference-" + array});
     ViewOptions named = options;
     named.case_name.clear();
@@ -223,13 +221,16 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
     scene.value_name = "difference";
     scene.value_unit = unit;
     scene.camera = to.from_below();
+    to.take_camera(scene);
     const bool vectors = info != nullptr && info->components > 1;
     scene.title = std::string(vectors ? "difference of the size of " : "difference of ") + view_label(array) +
                   " on the underbody";
     scene.subtitle = options.case_name.empty() ? to.case_name() + "  minus  " + from.case_name() : options.case_name;
     scene.width = options.width;
     scene.height = options.height;
-    composed.caption = "The second case less the first, seen from below, bow to the right; the first was moved by (" +
+    scene.text_size = options.text_size;
+    const std::string seen = options.camera.empty() ? "seen from below, bow to the right" : to.camera_said();
+    composed.caption = "The second case less the first, " + seen + "; the first was moved by (" +
                        core::format_number(1000 * shift[0], 3) + ", " + core::format_number(1000 * shift[1], 3) + ", " +
                        core::format_number(1000 * shift[2], 3) +
                        ") mm so that the bases lie on each other; the surfaces then lie at most " +
@@ -239,7 +240,42 @@ View difference_view(const Field& a, const Field& b, const std::string& array, c
                                          : std::string(".")) +
                        (vectors ? " The sizes of the vectors are compared, not their directions." : "") + level.said +
                        (view_unit(array) == unit ? suspicion(all) : "") + extremes + to.mirror_said();
-    return drawn(composed, "difference-" + array);
+    return composed;
+}
+
+}  // namespace
+
+View difference_view(const Field& a, const Field& b, const std::string& array, const ViewOptions& options,
+                     core::Progress& progress) {
+    return drawn(composed_difference(a, b, array, options, progress), "difference-" + array);
+}
+
+std::vector<DifferenceView> difference_views(const Field& first, const std::vector<const Field*>& others,
+                                             const std::string& array, const ViewOptions& options,
+                                             core::Progress& progress) {
+    std::vector<std::optional<ComposedView>> composed;
+    std::vector<DifferenceView> views;
+    double widest = 0;
+    for (const Field* other : others) {
+        composed.emplace_back();
+        views.emplace_back();
+        try {
+            composed.back() = composed_difference(first, *other, array, options, progress);
+            const auto range = range_of(composed.back()->scene);
+            widest = std::max({widest, std::abs(range.first), std::abs(range.second)});
+        } catch (const core::InputError& error) {
+            views.back().why = error.message();
+        }
+    }
+    for (std::size_t i = 0; i < composed.size(); ++i) {
+        if (composed[i]) {
+            progress.check();
+            Scene& scene = composed[i]->scene;
+            scene.range = options.ranges.empty() ? drawn_range({-widest, widest}, scene.colours) : scene.range;
+            views[i].view = drawn(*composed[i], "difference-" + array);
+        }
+    }
+    return views;
 }
 
 }  // namespace underbody::postproc

@@ -36,7 +36,8 @@ bool has_scale(const Scene& scene) { return scene.scale_bar && scene.camera.para
 
 }  // namespace
 
-PictureLayout::PictureLayout(const Scene& scene) : unit(std::min(scene.height / 800.0, scene.width / 1100.0)) {
+PictureLayout::PictureLayout(const Scene& scene)
+    : unit(scene.text_size * std::min(scene.height / 800.0, scene.width / 1100.0)) {
     bottom = has_scale(scene) ? scale_space * unit : 0;
     width = scene.width - (has_bar(scene) ? bar_space * unit : 0);
     height = scene.height - bottom - (scene.title.empty() ? 0 : title_space * unit);
@@ -149,7 +150,9 @@ void Overlay::add_bar(std::pair<double, double> range, std::pair<double, double>
     }
     shapes(points, polygons, {}, colours, 1);
     std::vector<Vector> greys(lines.size(), {0.3, 0.3, 0.3});
-    for (const double tick : round_ticks(range.first, range.second, 6)) {
+    // As many as have room for their numbers.
+    const int ticks = std::clamp(static_cast<int>((top - bottom) / (1.6 * number_size * unit)), 1, 6);
+    for (const double tick : round_ticks(range.first, range.second, ticks)) {
         const double y = bottom + (top - bottom) * (tick - range.first) / (range.second - range.first);
         const auto first = static_cast<long long>(frame.size());
         frame.insert(frame.end(), {{left + wide, y, 0}, {left + wide + 8 * unit, y, 0}});

@@ -224,11 +224,61 @@ Camera ViewComposer::from_below() const {
     return camera;
 }
 
+const std::vector<std::string>& camera_names() {
+    static const std::vector<std::string> names = {"bottom", "top", "side", "front", "iso"};
+    return names;
+}
+
+NamedCamera named_camera(const std::string& name, const Point& forward, const Point& up) {
+    const VehicleAxes axes = vehicle_axes(forward, up);
+    const auto& f = axes.forward;
+    const auto& s = axes.starboard;
+    const auto& u = axes.up;
+    const auto from = [](const Point& eye) { return Point{-eye[0], -eye[1], -eye[2]}; };
+    if (name == "bottom") {
+        return {u, s};
+    }
+    if (name == "top") {
+        return {from(u), from(s)};
+    }
+    if (name == "side") {
+        return {from(s), u};
+    }
+    if (name == "front") {
+        return {from(f), u};
+    }
+    if (name == "iso") {
+        const Point eye = plus(plus(f, s, 0.8), u, -0.45);
+        const double length = std::sqrt(dot(eye, eye));
+        return {{-eye[0] / length, -eye[1] / length, -eye[2] / length}, u};
+    }
+    throw core::UsageError("unknown", "there is no camera '" + name + "'", {},
+                           core::did_you_mean(name, camera_names()));
+}
+
+void ViewComposer::take_camera(Scene& scene) const {
+    if (!options_.camera.empty()) {
+        const NamedCamera named = named_camera(options_.camera, options_.forward, options_.up);
+        scene.camera.towards = named.towards;
+        scene.camera.up = named.up;
+    }
+}
+
+std::string ViewComposer::camera_said() const {
+    const std::string& name = options_.camera;
+    return name == "bottom"  ? "seen from below, bow to the right"
+           : name == "top"   ? "seen from above, bow to the right"
+           : name == "side"  ? "seen from starboard"
+           : name == "front" ? "seen from ahead"
+                             : "seen from below the bow, starboard side";
+}
+
 void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {
     Scene& scene = composed.scene;
     scene.subtitle = name_;
     scene.width = options_.width;
     scene.height = options_.height;
+    scene.text_size = options_.text_size;
     scene.value_name = view_label(kind.array);
     scene.value_unit = view_unit(kind.array);
     const auto given = [&](const std::string& key) {

@@ -65,6 +65,9 @@ public:
     [[nodiscard]] Point base_centre() const;  ///< m, of what there is of it: half a model has half a base
     [[nodiscard]] Box whole_body() const;     ///< both halves
     [[nodiscard]] Camera from_below() const;  ///< bow to the right
+    /// The camera that the options name, when they do.
+    void take_camera(Scene& scene) const;
+    [[nodiscard]] std::string camera_said() const;  ///< "seen from below"
 
 private:
     /// A view: its name, the array that it shows, how it is composed and when that is possible.

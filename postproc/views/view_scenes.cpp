@@ -75,8 +75,11 @@ DrawnSurface behind(const DrawnSurface& surface, const Point& through, const Poi
 ComposedView ViewComposer::underbody_view(const std::string& array) const {
     ComposedView composed = surface_view(array, true);
     composed.scene.camera = from_below();
+    take_camera(composed.scene);
     composed.scene.title = view_label(array) + " on the underbody";
-    composed.caption = "Seen from below, bow to the right." + composed.caption;
+    composed.caption =
+        (options_.camera.empty() ? "Seen from below, bow to the right." : "The body, " + camera_said() + ".") +
+        composed.caption;
     return composed;
 }
 
@@ -86,8 +89,11 @@ ComposedView ViewComposer::hull_view(const std::string& array) const {
     composed.scene.camera.towards = {-eye[0], -eye[1], -eye[2]};
     composed.scene.camera.up = axes_.up;
     composed.scene.camera.box = options_.box;
+    take_camera(composed.scene);
     composed.scene.title = view_label(array) + " on the hull";
-    composed.caption = "Seen from above the bow, port side." + composed.caption;
+    composed.caption =
+        (options_.camera.empty() ? "Seen from above the bow, port side." : "The body, " + camera_said() + ".") +
+        composed.caption;
     return composed;
 }
 

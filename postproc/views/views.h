@@ -62,6 +62,7 @@ struct Scene {
     Camera camera;
     int width = 1200;
     int height = 800;
+    double text_size = 1;  ///< of the words, as a multiple; 1: those of a picture 800 high, smaller ones in proportion
     bool scale_bar = true;
     bool axes = true;  ///< small arrows of the axes' directions
     std::array<std::string, 3> axis_names{"x", "y", "z"};
@@ -89,6 +90,9 @@ struct ViewOptions {
     double speed = 0;             ///< m/s, for pressure coefficients in subtitles; 0: unknown
     int width = 1200;
     int height = 800;
+    double text_size = 1;  ///< see Scene::text_size
+    /// From where surfaces of the body are seen, one of `camera_names()`; empty: as each view is defined.
+    std::string camera;
     /// Colour ranges to share between cases, SI, by the view's name ("pressure-underbody") or by what it shows
     /// (pressure, wall_shear, velocity; also "speed" and "shear"); a view's own counts over that of all. Other keys are
     /// refused.
@@ -104,6 +108,17 @@ struct View {
     std::string png;
     std::pair<double, double> range;  ///< of the colours, SI
 };
+
+/// "bottom", "top", "side" (from starboard), "front", "iso" (from below the bow, starboard).
+const std::vector<std::string>& camera_names();
+
+/// Where a camera of that name looks and what is up in its picture, unit vectors in file axes.
+/// Throws core::UsageError: no such name (with the nearest); as `vehicle_axes`.
+struct NamedCamera {
+    std::array<double, 3> towards, up;
+};
+NamedCamera named_camera(const std::string& name, const std::array<double, 3>& forward,
+                         const std::array<double, 3>& up);
 
 /// What a colour range may be given for: every view's name, and the arrays pressure, wall_shear, velocity; the unit
 /// that its ends have ("" for a difference, which has that of its array).
@@ -139,5 +154,17 @@ ViewOptions shared_view_options(const std::vector<const Field*>& fields, const V
 /// array is not on both.
 View difference_view(const Field& a, const Field& b, const std::string& array = "pressure",
                      const ViewOptions& options = {}, core::Progress& progress = core::Progress::none());
+
+/// The picture of one of several differences, or why there is none.
+struct DifferenceView {
+    std::optional<View> view;
+    std::string why;
+};
+
+/// Each of `others` minus `first`, as `difference_view`, all with one range of colours: the given one, else the widest
+/// of all. Each is drawn once.
+std::vector<DifferenceView> difference_views(const Field& first, const std::vector<const Field*>& others,
+                                             const std::string& array, const ViewOptions& options = {},
+                                             core::Progress& progress = core::Progress::none());
 
 }  // namespace underbody::postproc

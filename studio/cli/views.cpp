@@ -31,7 +31,7 @@ struct ViewsArguments {
     std::string out = "views";
     std::vector<std::string> names;
     std::vector<std::string> ranges;
-    std::string symmetry, base = "*base*", forward = "+x", up = "+z", difference, density;
+    std::string symmetry, base = "*base*", forward = "+x", up = "+z", difference, density, camera;
     int width = 1200, height = 800;
     bool list = false;
     FieldOptions field;
@@ -55,6 +55,10 @@ postproc::ViewOptions view_options(const ViewsArguments& given) {
     options.symmetry = given.symmetry;
     options.zones = given.field.zones;
     options.base = given.base;
+    options.camera = given.camera;
+    if (!given.camera.empty()) {
+        static_cast<void>(postproc::named_camera(given.camera, options.forward, options.up));
+    }
     options.width = given.width;
     options.height = given.height;
     for (const auto& text : given.ranges) {  // pressure=-100:50, in SI or with units
@@ -305,6 +309,9 @@ void add_views_command(CLI::App& app, Shell& shell) {
     command->add_option(
         "--symmetry", o->symmetry,
         "half model: normal axis of its plane, with its place if that is not where the body is open: y, or y=0.1");
+    command->add_option("--camera", o->camera,
+                        "from where the body is seen: bottom, top, side (starboard), front, iso; default: as each view "
+                        "is defined. Cuts and streamlines keep theirs");
     command->add_option("--base", o->base, "zone that is the base")->capture_default_str();
     command->add_option("--forward", o->forward, "axis of the file that looks forward")->capture_default_str();
     command->add_option("--up", o->up, "axis of the file that looks up")->capture_default_str();
@@ -318,6 +325,7 @@ void add_views_command(CLI::App& app, Shell& shell) {
         "  underbody views case.cas.gz --zones base,hull --symmetry y --view speed-symmetry,streamlines-gap\n"
         "  underbody views case --density \"998 kg/m^3\" --symmetry y      an OpenFOAM case\n"
         "  underbody views h2.csv h5.csv --symmetry y                    one range and camera for both\n"
+        "  underbody views body.csv --symmetry y --view pressure-hull --camera front\n"
         "  underbody views coarse.csv fine.csv --symmetry y --difference pressure");
     shell.on(command, [&shell, o] { return run_views(shell, *o); });
 }

@@ -1,7 +1,9 @@
 // The picture set of real cases.
 #include <gmock/gmock.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
+#include <vtkPolyData.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -372,6 +374,56 @@ TEST(ViewsOfTwoCases, CompareWhereTheBodiesMeet) {
     EXPECT_THAT(wider.caption, testing::HasSubstr("moved by (0, 0, 0) mm"));
     EXPECT_THAT(wider.caption, testing::HasSubstr("grey where"));
     EXPECT_NEAR(wider.range.second, 2, 1e-6);
+}
+
+// Several in one range of colours, which is known before anything is drawn; one that cannot be says why.
+TEST(ViewsOfTwoCases, DrawSeveralDifferencesInOneRange) {
+    const Field first = half_box(0.5, 0);
+    const Field little = half_box(0.5, 2);
+    const Field much = half_box(0.5, 9);
+    const Field elsewhere = [&] {
+        Field field = half_box(0.5, 1);
+        for (auto& zone : field.zones) {
+            zone.surface->GetPointData()->Initialize();
+            zone.surface->GetCellData()->Initialize();
+            zone.arrays.clear();
+        }
+        return field;
+    }();
+    const auto views = difference_views(first, {&little, &much, &elsewhere}, "pressure", with_symmetry("y"));
+    ASSERT_EQ(views.size(), 3U);
+    ASSERT_TRUE(views[0].view && views[1].view);
+    EXPECT_NEAR(views[0].view->range.second, 9, 1e-6);
+    EXPECT_EQ(views[0].view->range, views[1].view->range);
+    EXPECT_EQ(views[1].view->png, difference_view(first, much, "pressure", with_symmetry("y")).png);
+    EXPECT_FALSE(views[2].view);
+    EXPECT_THAT(views[2].why, testing::HasSubstr("not on the surface of both"));
+    ViewOptions given = with_symmetry("y");
+    given.ranges = {{"difference", {-3, 3}}};
+    EXPECT_EQ(difference_views(first, {&little, &much}, "pressure", given)[0].view->range, std::pair(-3.0, 3.0));
+}
+
+// The named cameras look along the vehicle's axes, however these lie in the file.
+TEST(ViewsOfASurface, AreSeenFromWhereItIsAsked) {
+    using Point = std::array<double, 3>;
+    const Point forward = {0, -1, 0}, up = {0, 0, 1};  // starboard is forward x up = (-1, 0, 0)
+    EXPECT_EQ(named_camera("bottom", forward, up).towards, up);
+    EXPECT_EQ(named_camera("side", forward, up).towards, (Point{1, 0, 0}));
+    EXPECT_EQ(named_camera("front", forward, up).towards, (Point{0, 1, 0}));
+    EXPECT_EQ(named_camera("top", forward, up).up, (Point{1, 0, 0}));
+    for (const auto& name : camera_names()) {
+        const NamedCamera camera = named_camera(name, forward, up);
+        EXPECT_NEAR(dot(camera.towards, camera.towards), 1, 1e-12) << name;
+        EXPECT_LT(std::abs(dot(camera.towards, camera.up)), 0.5) << name;
+    }
+    EXPECT_THROW(named_camera("botom", forward, up), core::UsageError);
+    const Field field = half_box(0.5, 0);
+    ViewOptions options = with_symmetry("y");
+    const View usual = view(field, "pressure-hull", options);
+    options.camera = "front";
+    const View front = view(field, "pressure-hull", options);
+    EXPECT_NE(front.png, usual.png);
+    EXPECT_THAT(front.caption, testing::HasSubstr("seen from ahead"));
 }
 
 TEST(ViewsOfTwoCases, ShareRangesAndShowTheirDifference) {
