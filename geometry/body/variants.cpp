@@ -53,10 +53,14 @@ void apply(const Tie& tie, BodyShape& shape) {
 
 namespace {
 
-struct Vary {
-    std::string key;
+std::vector<std::string> even_values(double from, double to, std::int64_t count, const std::string& unit) {
     std::vector<std::string> values;
-};
+    for (std::int64_t i = 0; i < count; ++i) {
+        values.push_back(
+            shown_value(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1), unit, 12));
+    }
+    return values;
+}
 
 Vary vary_from(const core::TomlTable& table) {
     Vary vary;
@@ -75,10 +79,7 @@ Vary vary_from(const core::TomlTable& table) {
             throw core::InputError("range", table.path_of("count") + " is " + std::to_string(count),
                                    table.place("count"), "the nearest allowed value: 2");
         }
-        for (std::int64_t i = 0; i < count; ++i) {
-            vary.values.push_back(
-                shown_value(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1), unit, 12));
-        }
+        vary.values = even_values(from, to, count, unit);
     }
     if (vary.values.empty()) {
         throw core::InputError("empty", table.path_of("values") + " is empty", table.place("values"));
@@ -103,36 +104,56 @@ double base_area(const SurfaceMesh& mesh) {
 
 }  // namespace
 
-VariantSet read_variants(const std::filesystem::path& path) {
-    const core::TomlTable root = core::read_toml(path, shape_format());
+Vary vary_from(const std::string& text) {
+    const auto equal = text.find('=');
+    if (equal == std::string::npos || equal == 0) {
+        throw core::UsageError("parse", "'" + text + "' is not PARAMETER=VALUES", {},
+                               "such as protrusion.height=1mm:3mm:5 or body.base=ellipse,rectangle");
+    }
+    Vary vary;
+    vary.key = core::trimmed(text.substr(0, equal));
+    const std::string unit = parameter_unit(vary.key, {});
+    const std::string values(core::trimmed(text.substr(equal + 1)));
+    const auto parts = core::split(values, ':');
+    if (!unit.empty() && parts.size() > 1) {
+        const auto count = parts.size() == 3 ? core::parse_number(parts[2]) : std::optional<double>();
+        if (!count || *count < 2 || *count > 100000 || *count != std::floor(*count)) {
+            throw core::UsageError("parse", "'" + values + "' is not FROM:TO:COUNT with two values or more", {},
+                                   "such as 1mm:3mm:5");
+        }
+        vary.values =
+            even_values(core::parse_in(core::trimmed(parts[0]), unit), core::parse_in(core::trimmed(parts[1]), unit),
+                        static_cast<std::int64_t>(*count), unit);
+        return vary;
+    }
+    for (const auto& part : core::split(values, ',')) {
+        const std::string one(core::trimmed(part));
+        if (one.empty()) {
+            throw core::UsageError("parse", "a value of '" + vary.key + "' is empty", {},
+                                   "write VALUE,VALUE or FROM:TO:COUNT");
+        }
+        vary.values.push_back(unit.empty() ? one : shown_value(core::parse_in(one, unit), unit, 12));
+    }
+    return vary;
+}
+
+VariantSet variants_of(const BodyShape& shape, const std::string& name, const std::vector<Vary>& varies,
+                       const std::vector<Tie>& ties) {
     VariantSet set;
-    set.name = path.stem().string();
-    std::vector<Vary> varies;
-    std::vector<Tie> ties;
+    set.name = name;
     std::size_t count = 1;
-    for (const core::TomlTable& table : root.tables("vary")) {
-        varies.push_back(vary_from(table));
-        set.keys.push_back(varies.back().key);
-        count *= varies.back().values.size();
+    for (const Vary& vary : varies) {
+        set.keys.push_back(vary.key);
+        count *= vary.values.size();
         if (count > 100000) {
-            throw core::InputError("size", "more than 100000 variants", table.place("key"), "vary less, or in steps");
+            throw core::InputError("size", "more than 100000 variants", {}, "vary less, or in steps");
         }
     }
-    if (varies.empty()) {
-        throw core::InputError("missing", "there is no [[vary]] in it", root.place(),
-                               "add: [[vary]] key = \"protrusion.height\" values = [\"1 mm\", \"2 mm\"]");
-    }
-    for (const core::TomlTable& table : root.tables("tie")) {
-        ties.push_back(tie_from(table));
-    }
-    const BodyShape common = shape_from(root, set.name);
-    static_cast<void>(loading_from(root));  // a typo in [mass] is an error here too
-    root.finish();
     std::map<std::string, std::string> seen;
     for (std::size_t i = 0; i < count; ++i) {
         Variant variant;
-        variant.name = numbered(set.name, i, count);
-        variant.shape = common;
+        variant.name = numbered(name, i, count);
+        variant.shape = shape;
         variant.shape.name = variant.name;
         variant.values.resize(varies.size());
         std::size_t rest = i;
@@ -156,6 +177,32 @@ VariantSet read_variants(const std::filesystem::path& path) {
         set.variants.push_back(std::move(variant));
     }
     return set;
+}
+
+VariantSet read_variants(const std::filesystem::path& path) {
+    const core::TomlTable root = core::read_toml(path, shape_format());
+    const std::string name = path.stem().string();
+    std::vector<Vary> varies;
+    std::vector<Tie> ties;
+    std::size_t count = 1;
+    for (const core::TomlTable& table : root.tables("vary")) {
+        varies.push_back(vary_from(table));
+        count *= varies.back().values.size();
+        if (count > 100000) {
+            throw core::InputError("size", "more than 100000 variants", table.place("key"), "vary less, or in steps");
+        }
+    }
+    if (varies.empty()) {
+        throw core::InputError("missing", "there is no [[vary]] in it", root.place(),
+                               "add: [[vary]] key = \"protrusion.height\" values = [\"1 mm\", \"2 mm\"]");
+    }
+    for (const core::TomlTable& table : root.tables("tie")) {
+        ties.push_back(tie_from(table));
+    }
+    const BodyShape common = shape_from(root, name);
+    static_cast<void>(loading_from(root));  // a typo in [mass] is an error here too
+    root.finish();
+    return variants_of(common, name, varies, ties);
 }
 
 std::vector<MadeVariant> make_variants(VariantSet& set, std::size_t triangles, core::Progress& progress) {
@@ -182,6 +229,30 @@ std::vector<MadeVariant> make_variants(VariantSet& set, std::size_t triangles, c
         },
         progress);
     return made;
+}
+
+namespace {
+
+double value_of(const MadeVariant& m, const std::string& column) {
+    return column == "volume"             ? m.mass.volume
+           : column == "area"             ? m.mass.area
+           : column == "base_area"        ? base_area(m.mesh)
+           : column == "buoyancy"         ? m.mass.buoyancy()
+           : column == "centroid_x"       ? m.mass.centroid.x
+           : column == "centroid_z"       ? m.mass.centroid.z
+           : column == "smallest_angle"   ? m.certificate.smallest_angle
+           : column == "distance_largest" ? m.certificate.exact->distance_largest
+                                          : m.certificate.exact->volume_error;
+}
+
+}  // namespace
+
+const std::vector<VariantColumn>& variant_columns() {
+    static const std::vector<VariantColumn> columns = {
+        {"volume", "m^3", "cm^3"},        {"area", "m^2", "cm^2"},         {"base_area", "m^2", "cm^2"},
+        {"buoyancy", "N", "N"},           {"centroid_x", "m", "mm"},       {"centroid_z", "m", "mm"},
+        {"smallest_angle", "rad", "deg"}, {"distance_largest", "m", "mm"}, {"volume_error", "1", "1"}};
+    return columns;
 }
 
 core::Table table(const VariantSet& set, const std::vector<MadeVariant>& made) {
@@ -211,22 +282,13 @@ core::Table table(const VariantSet& set, const std::vector<MadeVariant>& made) {
             result.add_numbers(set.keys[k], unit, numbers, shown_unit(unit));
         }
     }
-    const auto column = [&](const char* name, const char* unit, const char* written, auto value) {
+    for (const VariantColumn& column : variant_columns()) {
         std::vector<double> numbers;
         for (const MadeVariant& m : made) {
-            numbers.push_back(m.mesh.triangles.empty() ? std::nan("") : value(m));
+            numbers.push_back(m.mesh.triangles.empty() ? std::nan("") : value_of(m, column.name));
         }
-        result.add_numbers(name, unit, numbers, written);
-    };
-    column("volume", "m^3", "cm^3", [](const MadeVariant& m) { return m.mass.volume; });
-    column("area", "m^2", "cm^2", [](const MadeVariant& m) { return m.mass.area; });
-    column("base_area", "m^2", "cm^2", [](const MadeVariant& m) { return base_area(m.mesh); });
-    column("buoyancy", "N", "N", [](const MadeVariant& m) { return m.mass.buoyancy(); });
-    column("centroid_x", "m", "mm", [](const MadeVariant& m) { return m.mass.centroid.x; });
-    column("centroid_z", "m", "mm", [](const MadeVariant& m) { return m.mass.centroid.z; });
-    column("smallest_angle", "rad", "deg", [](const MadeVariant& m) { return m.certificate.smallest_angle; });
-    column("distance_largest", "m", "mm", [](const MadeVariant& m) { return m.certificate.exact->distance_largest; });
-    column("volume_error", "1", "1", [](const MadeVariant& m) { return m.certificate.exact->volume_error; });
+        result.add_numbers(column.name, column.unit, numbers, column.shown);
+    }
     result.add_text("same_as", same);
     result.add_text("refused", refused);
     return result;

@@ -49,6 +49,16 @@ struct Tie {
 Tie tie_from(const core::TomlTable& table);
 void apply(const Tie& tie, BodyShape& shape);
 
+/// [[vary]]: a parameter and the values that it takes, as written.
+struct Vary {
+    std::string key;
+    std::vector<std::string> values;
+    bool operator==(const Vary&) const = default;
+};
+/// "protrusion.height=1mm:3mm:5" (five values from 1 to 3 mm) or "body.base=ellipse,rectangle" (a list; numbers may
+/// carry units). Throws core::UsageError: no '=', fewer than two values in a range; core::InputError as set_parameter.
+Vary vary_from(const std::string& text);
+
 struct Variant {
     std::string name;  ///< of the file, and a number: "evie-007"
     BodyShape shape;
@@ -76,6 +86,10 @@ struct VariantSet {
     std::vector<Variant> variants;
 };
 VariantSet read_variants(const std::filesystem::path& path);
+/// The same of a shape and what varies; names are those of `name` with a number. Throws core::InputError: beyond 100000
+/// variants.
+VariantSet variants_of(const BodyShape& shape, const std::string& name, const std::vector<Vary>& varies,
+                       const std::vector<Tie>& ties = {});
 
 struct MadeVariant {
     const Variant* variant = nullptr;
@@ -86,6 +100,12 @@ struct MadeVariant {
 /// In parallel; every surface certified, a failing one is recorded as refused with its place.
 std::vector<MadeVariant> make_variants(VariantSet& set, std::size_t triangles,
                                        core::Progress& progress = core::Progress::none());
+
+/// What `table` says of each variant besides what was varied, with SI unit and the one that people read.
+struct VariantColumn {
+    std::string name, unit, shown;
+};
+const std::vector<VariantColumn>& variant_columns();
 
 /// One row a variant: name, the varied parameters (mm, degrees, or words), volume, area, buoyancy, centroid, base area,
 /// smallest angle, largest distance to the exact shape, volume error, `same_as`, `refused`.

@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/table.h"
+#include "core/text.h"
 #include "tests/support/support.h"
 
 namespace underbody::test {
@@ -184,6 +185,43 @@ TEST(BodyCommand, ComparesTablesAndSweeps) {
     EXPECT_THAT(sweep.output, testing::HasSubstr("2 made, 1 equal"));
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "v/sheet.png"));
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "v/v-002.stl"));
+}
+
+// What the options vary and keep is what a file with [[vary]] gives, row by row.
+TEST(BodyCommand, SweepsByOptionsAndKeepsWhatLiesWithin) {
+    const core::TemporaryFolder folder;
+    std::ofstream(folder.path() / "hull.toml") << core::read_file(shape("rectangle"));
+    std::filesystem::create_directories(folder.path() / "v");
+    std::ofstream(folder.path() / "v" / "hull.toml")
+        << core::read_file(shape("rectangle"))
+        << "\n[[vary]]\nkey = 'body.base_cut'\nfrom = 0.6\nto = 0.8\ncount = 3\n";
+    const auto sweep = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"body", "sweep"});
+        more.insert(more.end(), {"--triangles", "2000"});
+        return run_underbody(more, folder.path());
+    };
+    const auto of_file = sweep({"v/hull.toml"});
+    ASSERT_EQ(of_file.exit_code, 0) << of_file.errors;
+    const auto of_options = sweep({"hull.toml", "--vary", "body.base_cut=0.6:0.8:3"});
+    EXPECT_EQ(of_options.output, of_file.output) << of_options.errors;
+    EXPECT_EQ(sweep({"hull.toml", "--vary", "body.base_cut=0.6,0.7,0.8"}).output, of_file.output);
+
+    const core::Table all = core::read_csv(of_file.output, "all");
+    const double middle = all.numbers("volume")[1];
+    const auto kept = sweep({"hull.toml", "--vary", "body.base_cut=0.6:0.8:3", "--where",
+                             "volume=" + core::format_number(1e6 * (middle - 1e-6)) +
+                                 "cm^3:" + core::format_number(1e6 * (middle + 1e-6)) + "cm^3"});
+    ASSERT_EQ(kept.exit_code, 0) << kept.errors;
+    const core::Table one = core::read_csv(kept.output, "kept");
+    ASSERT_EQ(one.rows(), 1U);
+    EXPECT_EQ(one.text("name")[0], "hull-002");
+    EXPECT_EQ(sweep({"hull.toml", "--vary", "body.base_cut=0.6:0.8:3", "--where", "volume=1:2"}).exit_code, 4);
+    const auto wrong = sweep({"hull.toml", "--vary", "body.base_cut=0.6:0.8:3", "--where", "volme=1:2"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.errors, testing::HasSubstr("volume"));
+    EXPECT_EQ(sweep({"hull.toml", "--vary", "body.base_cut=0.6:0.8:1"}).exit_code, 2);
+    EXPECT_EQ(sweep({"hull.toml", "--vary", "body.base_cut"}).exit_code, 2);
+    EXPECT_EQ(sweep({"hull.toml", "--set", "body.base_cut=0.7"}).exit_code, 2);
 }
 
 TEST(BodyCommand, WritesACaseForASolver) {
