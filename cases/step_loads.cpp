@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cases/case_loads.h"
 #include "cases/engine.h"
 #include "cases/names_in_study.h"
 #include "cases/time_means.h"
@@ -19,21 +20,6 @@ namespace underbody::cases {
 namespace {
 
 using nlohmann::json;
-
-postproc::LoadsOptions loads_options(const Study& study, const Case& entry) {
-    postproc::LoadsOptions options;
-    options.zones = entry.zones;
-    options.forward = postproc::axis_from(study.forward);
-    options.up = postproc::axis_from(study.up);
-    options.symmetry = study.symmetry;
-    options.reference = study.moments_about;
-    options.references.density = study.density_of(entry);
-    options.references.length = study.reference.number("length");
-    options.references.width = study.reference.number("width");
-    options.references.height = study.reference.number("height");
-    options.references.speed = study.speed_of(entry);
-    return options;
-}
 
 Key loads_key(const Study& study, const Case& entry) {
     Key key("loads", {"postproc"});

@@ -1,11 +1,14 @@
 // underbody solve CASE: runs an OpenFOAM case. underbody sweep STUDY: CFD of the cases that a study misses.
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cases/ask_cfd.h"
 #include "cases/openfoam_result.h"
 #include "cases/openfoam_run.h"
 #include "cases/sweep.h"
@@ -14,6 +17,7 @@
 #include "core/own_files.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "geometry/body/body_shape.h"
 #include "postproc/importers/reports/openfoam_forces.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
@@ -108,7 +112,7 @@ int solve(Shell& shell, const std::string& folder, bool again) {
 
 struct SweepArguments {
     std::string study, engine = "local", only, script, stale = "redo", submission;
-    std::string partition, time, memory, account;
+    std::string partition, time, memory, account, add, add_as;
     std::optional<int> throttle, max_array;
     int jobs = 0;
     bool list = false;
@@ -183,8 +187,28 @@ int submit(Shell& shell, const cases::Study& study, const SweepArguments& given)
     return done;
 }
 
+/// A shape more in the sweep: its file, its [[body]], and what its cases cost.
+int add_shape(Shell& shell, const cases::Study& study, const SweepArguments& given) {
+    const std::string name = given.add_as.empty() ? std::filesystem::path(given.add).stem().string() : given.add_as;
+    constexpr double usual_gap = 0.005;  // m, of a study that has no [sweep]
+    const auto asked = cases::ask_for_cfd(study, geometry::read_shape(given.add), name, usual_gap);
+    cases::write_asked(study, asked);
+    shell.print(name + ": " + asked.cost() + "; underbody sweep " + given.study + " makes them");
+    if (shell.json) {
+        shell.print_json({{"name", asked.name},
+                          {"shape", asked.shape_file.string()},
+                          {"cases", asked.cases},
+                          {"seconds", std::isfinite(asked.seconds) ? nlohmann::json(asked.seconds) : nlohmann::json()},
+                          {"solved", asked.solved}});
+    }
+    return done;
+}
+
 int sweep(Shell& shell, const SweepArguments& given) {
     const auto study = cases::Study::open(given.study);
+    if (!given.add.empty()) {
+        return add_shape(shell, study, given);
+    }
     if (given.list) {
         return list_cases(shell, study);
     }
@@ -286,12 +310,17 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
         ->add_option("--max-array", o->max_array,
                      "slurm: cases in one job array; more make several (default: what scontrol says, else 1000)")
         ->check(CLI::Range(1, 4000000));
+    auto* add = command->add_option("--add", o->add,
+                                    "SHAPE.toml: adds this shape to the study and its sweep, and says what its cases "
+                                    "cost; solves nothing");
+    command->add_option("--as", o->add_as, "with --add: its name (default: that of the file)")->needs(add);
     command->add_option("--submission", o->submission, "of the Slurm job whose task this is")->group("");
     command->add_flag("--list", o->list,
                       "only say how far each case is: missing, waiting, running, solved, stale, failed, present");
     command->footer(
         "Examples:\n"
         "  underbody sweep mystudy --list\n"
+        "  underbody sweep mystudy --add hull.toml --as hull-2\n"
         "  underbody sweep mystudy --jobs 2\n"
         "  underbody sweep mystudy --engine slurm\n"
         "In study.toml:\n"

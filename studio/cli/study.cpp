@@ -275,6 +275,7 @@ void add_study_command(CLI::App& app, Shell& shell) {
     add_study_why(study, arguments, shell);
     add_study_add(study, arguments, shell);
     add_study_set(*study, shell);
+    add_study_accept(*study, shell);
 }
 
 }  // namespace underbody::studio

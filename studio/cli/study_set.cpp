@@ -5,87 +5,18 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cases/accept.h"
 #include "cases/study.h"
+#include "cases/study_text.h"
 #include "core/file.h"
 #include "core/own_files.h"
 #include "core/text.h"
-#include "core/toml.h"
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 
 namespace underbody::studio {
 
 namespace {
-
-/// A number stays one; all else becomes a string ("0.28 N").
-std::string toml_value(const std::string& text) {
-    const bool word = text == "true" || text == "false";
-    return word || core::parse_number(text) ? text : core::toml_string(text);
-}
-
-std::string key_of_line(std::string_view line) {
-    const auto equal = line.find('=');
-    return equal == std::string_view::npos ? std::string() : std::string(core::trimmed(line.substr(0, equal)));
-}
-
-/// The comment behind a value, with the space before it; "" when there is none.
-std::string comment_of(std::string_view line) {
-    char quote = 0;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (quote != 0) {
-            quote = line[i] == quote ? char(0) : quote;
-        } else if (line[i] == '"' || line[i] == '\'') {
-            quote = line[i];
-        } else if (line[i] == '#') {
-            const auto end = line.find_last_not_of(" \t", i - 1);
-            return std::string(line.substr(end + 1));
-        }
-    }
-    return {};
-}
-
-/// The text with `key = value` in the [[kind]] of that name; everything else, comments too, stays as it is.
-std::string with_value(const std::string& text, const std::string& kind, const std::string& name,
-                       const std::string& key, const std::string& value) {
-    std::vector<std::string> lines;
-    for (const auto line : core::split(text, '\n')) {
-        lines.emplace_back(line);
-    }
-    std::vector<std::string> names;
-    const std::string head = "[[" + kind + "]]";
-    for (std::size_t begin = 0; begin < lines.size(); ++begin) {
-        if (!core::trimmed(lines[begin]).starts_with(head)) {
-            continue;
-        }
-        std::size_t end = begin + 1, at = 0, last = begin;
-        std::string found;
-        for (; end < lines.size() && !core::trimmed(lines[end]).starts_with("["); ++end) {
-            const std::string here = key_of_line(lines[end]);
-            last = core::trimmed(lines[end]).empty() || core::trimmed(lines[end]).starts_with("#") ? last : end;
-            at = here == key ? end : at;
-            if (here == "name") {
-                const auto quoted = core::split(lines[end], lines[end].find('"') != std::string::npos ? '"' : '\'');
-                found = quoted.size() > 1 ? std::string(quoted[1]) : std::string();
-            }
-        }
-        names.push_back(found);
-        if (found != name) {
-            continue;
-        }
-        if (at > 0) {
-            lines[at] = key + " = " + toml_value(value) + comment_of(lines[at]);
-        } else {
-            lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(last) + 1, key + " = " + toml_value(value));
-        }
-        std::string result;
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            result += (i > 0 ? "\n" : "") + lines[i];
-        }
-        return result;
-    }
-    throw core::UsageError("missing", "the study has no [[" + kind + "]] '" + name + "'", {},
-                           core::did_you_mean(name, names));
-}
 
 /// KIND.NAME.KEY=VALUE; a name may hold dots.
 std::string with_assignment(const std::string& text, const std::string& assignment) {
@@ -96,8 +27,8 @@ std::string with_assignment(const std::string& text, const std::string& assignme
         throw core::UsageError("parse", "'" + path + "' is not KIND.NAME.KEY", {},
                                "such as table.lift.net_weight=0.28N");
     }
-    return with_value(text, path.substr(0, first), path.substr(first + 1, last - first - 1), path.substr(last + 1),
-                      value);
+    return cases::with_value(text, path.substr(0, first), path.substr(first + 1, last - first - 1),
+                             path.substr(last + 1), value);
 }
 
 int set_values(Shell& shell, const std::string& folder, const std::vector<std::string>& assignments) {
@@ -117,7 +48,37 @@ int set_values(Shell& shell, const std::string& folder, const std::vector<std::s
     return done;
 }
 
+int accept_model(Shell& shell, const std::string& folder, const std::string& measurement) {
+    const auto study = cases::Study::open(folder);
+    const auto accepted = cases::accept_model(study, cases::stored_results(study, {}), measurement);
+    cases::write_accepted(study, accepted);
+    std::string users;
+    for (const auto& user : accepted.users) {
+        users += (users.empty() ? "" : ", ") + user;
+    }
+    shell.print(accepted.sentence + "\n" + (study.folder() / accepted.model).string() + " is now the model of " +
+                users + "; underbody study run " + folder + " makes what rests on it");
+    if (shell.json) {
+        shell.print_json({{"measurement", measurement},
+                          {"model", (study.folder() / accepted.model).string()},
+                          {"users", accepted.users},
+                          {"sentence", accepted.sentence}});
+    }
+    return done;
+}
+
 }  // namespace
+
+void add_study_accept(CLI::App& study, Shell& shell) {
+    auto* command = study.add_subcommand(
+        "accept", "takes the model that `discover` found for a measurement as the study's own; the old one stays");
+    auto folder = std::make_shared<std::string>();
+    auto measurement = std::make_shared<std::string>();
+    command->add_option("study", *folder, "folder of the study")->required();
+    command->add_option("measurement", *measurement, "name of the [[measurement]]")->required();
+    command->footer("Example:\n  underbody study accept cases/evie 'heave test'");
+    shell.on(command, [folder, measurement, &shell] { return accept_model(shell, *folder, *measurement); });
+}
 
 void add_study_set(CLI::App& study, Shell& shell) {
     auto* command = study.add_subcommand("set", "change values in study.toml; comments and order stay");

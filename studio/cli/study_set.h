@@ -1,4 +1,4 @@
-// underbody study set: changes a value in study.toml.
+// underbody study set: changes a value in study.toml. underbody study accept: a found model becomes the study's own.
 #pragma once
 
 namespace CLI {
@@ -9,5 +9,6 @@ namespace underbody::studio {
 
 class Shell;
 void add_study_set(CLI::App& study, Shell& shell);
+void add_study_accept(CLI::App& study, Shell& shell);
 
 }  // namespace underbody::studio

@@ -159,6 +159,7 @@ const std::vector<std::vector<std::string>> with_file = {
     {"table", "fit", "FILE"},
     {"export", "FILE", "--format", "c", "--out", "out.h"},
     {"study", "run", "FILE"},
+    {"study", "accept", "FILE", "x"},
     {"solve", "FILE"},
     {"sweep", "FILE"},
     {"design", "plan", "FILE"},

@@ -1,0 +1,114 @@
+#include "cases/accept.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cases/study_text.h"
+#include "core/file.h"
+#include "core/own_files.h"
+#include "core/text.h"
+
+namespace underbody::cases {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const MeasurementSpec& measurement_named(const Study& study, const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& spec : study.measurements) {
+        names.push_back(spec.name);
+        if (spec.name == name) {
+            return spec;
+        }
+    }
+    throw core::UsageError("missing", "the study has no [[measurement]] '" + name + "'", {},
+                           core::did_you_mean(name, names));
+}
+
+/// The folder of the last report, whose verdict must be the stored one.
+fs::path found_folder(const Study& study, const StudyResults& results, const std::string& measurement,
+                      std::string& sentence) {
+    static_cast<void>(measurement_named(study, measurement));
+    const std::string* stored = results.document("discovery/" + measurement);
+    if (stored == nullptr) {
+        throw core::InputError("missing", "nothing was discovered of the measurement '" + measurement + "'", {},
+                               "discover = true in its [[measurement]], then run the study");
+    }
+    const auto document = nlohmann::json::parse(*stored);
+    sentence = document.value("sentence", "");
+    if (document.value("verdict", "") == "none") {
+        throw core::InputError("nothing", "the model of '" + measurement + "' lacks nothing: " + sentence);
+    }
+    const fs::path folder = study.folder() / "report" / "discovery" / measurement;
+    const fs::path said = folder / "discovery.json";
+    if (!fs::exists(folder / "model.toml") || !fs::exists(said) ||
+        nlohmann::json::parse(core::read_file(said), nullptr, false).value("sentence", "") != sentence) {
+        throw core::InputError("stale", "the report of the discovery is not there, or of another result",
+                               {said.string(), {}, {}, {}}, "run the study, with its report");
+    }
+    return folder;
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+    return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+}
+
+}  // namespace
+
+Accepted accept_model(const Study& study, const StudyResults& results, const std::string& measurement) {
+    Accepted accepted;
+    const fs::path folder = found_folder(study, results, measurement, accepted.sentence);
+    const fs::path to = fs::path("models") / measurement;
+    accepted.model = to / "model.toml";
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        const bool of_the_model =
+            name == "model.toml" || (entry.path().extension() == ".csv" && name != "next-experiment.csv");
+        if (of_the_model) {
+            accepted.files.emplace_back(to / name, core::read_file(entry.path()));
+        }
+    }
+    const fs::path old = measurement_named(study, measurement).model;
+    accepted.study_text = core::read_file(study.folder() / "study.toml");
+    const auto take = [&](const char* kind, const std::string& name) {
+        accepted.study_text = with_value(accepted.study_text, kind, name, "model", accepted.model.generic_string());
+        accepted.users.push_back(std::string(kind) + " '" + name + "'");
+    };
+    for (const auto& spec : study.measurements) {
+        if (same_file(spec.model, old)) {
+            take("measurement", spec.name);
+        }
+    }
+    for (const auto& spec : study.regions) {
+        if (same_file(spec.model, old)) {
+            take("region", spec.name);
+        }
+    }
+    return accepted;
+}
+
+void write_accepted(const Study& study, const Accepted& accepted) {
+    const core::ReplacingAllowed of_the_user;  // who asked for it
+    for (const auto& [file, text] : accepted.files) {
+        core::write_file(study.folder() / file, text);
+    }
+    static_cast<void>(Study::from_text(accepted.study_text, study.folder() / "study.toml"));
+    core::write_file(study.folder() / "study.toml", accepted.study_text);
+}
+
+Study with_accepted(const Study& study, const StudyResults& results, const std::string& measurement) {
+    std::string sentence;
+    const fs::path found = found_folder(study, results, measurement, sentence) / "model.toml";
+    const fs::path old = measurement_named(study, measurement).model;
+    Study changed = study;
+    for (auto& spec : changed.measurements) {
+        spec.model = same_file(spec.model, old) ? found : spec.model;
+    }
+    for (auto& spec : changed.regions) {
+        spec.model = same_file(spec.model, old) ? found : spec.model;
+    }
+    return changed;
+}
+
+}  // namespace underbody::cases

@@ -1,0 +1,33 @@
+// The model that discovery found for a measurement, taken as the study's own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cases/study.h"
+
+namespace underbody::cases {
+
+struct Accepted {
+    std::filesystem::path model;  ///< relative to the study: models/NAME/model.toml
+    std::vector<std::pair<std::filesystem::path, std::string>> files;  ///< with their text, relative likewise
+    std::vector<std::string> users;  ///< "measurement 'heave test'", "region 'glide'": whose model it becomes
+    std::string study_text;          ///< of study.toml then
+    std::string sentence;            ///< the verdict
+};
+
+/// What accepting would change; nothing is written. The files are those of the last report of the discovery; the model
+/// becomes that of the measurement and of each [[region]] and [[measurement]] that had the same. Throws
+/// core::UsageError: no such measurement; core::InputError: nothing was discovered of it, or nothing is missing in its
+/// model, or the report is of an older result.
+Accepted accept_model(const Study& study, const StudyResults& results, const std::string& measurement);
+
+/// Writes the files and study.toml; the old model stays where it is.
+void write_accepted(const Study& study, const Accepted& accepted);
+
+/// The study with the found model in place, as it is in the report, for looking at what rests on it.
+Study with_accepted(const Study& study, const StudyResults& results, const std::string& measurement);
+
+}  // namespace underbody::cases

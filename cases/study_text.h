@@ -1,0 +1,14 @@
+// Changes in the text of study.toml that leave comments and order as they are.
+#pragma once
+
+#include <string>
+
+namespace underbody::cases {
+
+/// The text with `key = value` in the [[kind]] of that name, at the place where the key stands, else behind its last.
+/// A number or true and false stay what they are, all else becomes a string. Throws core::UsageError: there is no such
+/// [[kind]] (with the nearest name).
+std::string with_value(const std::string& text, const std::string& kind, const std::string& name,
+                       const std::string& key, const std::string& value);
+
+}  // namespace underbody::cases
