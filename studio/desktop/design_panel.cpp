@@ -95,13 +95,18 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     side.addWidget(area, 3);
     make_rows();
     auto* buttons = new QHBoxLayout;
-    auto* keep = new QPushButton("&Keep as variant …");
+    auto* keep = new QPushButton("&Keep …");
     auto* reset = new QPushButton("&As in the file");
+    keep->setToolTip("Keeps the changed shape as a variant of its own");
     auto* pin = new QPushButton("&Pin as before");
     pin->setToolTip("The column `before` holds what is now (Ctrl+D)");
     buttons->addWidget(keep);
     buttons->addWidget(reset);
     buttons->addWidget(pin);
+    auto* cfd = new QPushButton("CF&D …");
+    cfd->setToolTip("Adds the shape as it is now to the study's sweep, and says first what its cases cost");
+    buttons->addWidget(cfd);
+    connect(cfd, &QPushButton::clicked, this, &DesignPanel::cfd_wanted);
     side.addLayout(buttons);
     connect(keep, &QPushButton::clicked, this, [this] {
         const QString name = QInputDialog::getText(this, "Keep as variant", "Name of the new shape", QLineEdit::Normal,

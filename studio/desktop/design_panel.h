@@ -37,6 +37,10 @@ public:
     /// What the lift that is drawn rests on.
     [[nodiscard]] const cases::KnownLift& lift() const { return lift_; }
 
+Q_SIGNALS:
+    /// CFD of the shape that is shown is asked for.
+    void cfd_wanted();
+
 protected:
     void draw_again(bool session) override;
 

@@ -65,7 +65,15 @@ void Desk::go_to(std::size_t position) {
     Q_EMIT changed();
 }
 
-void Desk::take_session(const SessionPointer& session) {
+void Desk::take_session(const SessionPointer& fresh) {
+    SessionPointer session = fresh;
+    if (fs::path(state().study) == fresh->folder) {
+        try {
+            session = with_models(fresh, state().accepted);
+        } catch (const core::Error& error) {  // the result that was accepted is gone
+            Q_EMIT found({core::Problem::Severity::warning, error.message(), error.place()});
+        }
+    }
     std::erase_if(earlier_, [&](const SessionPointer& one) { return one->folder == session->folder; });
     earlier_.push_back(session);
     if (earlier_.size() > 3) {
@@ -103,6 +111,8 @@ void Desk::follow_state() {
         }
         if (!all) {
             take_session(with_files(*known, wanted.files));
+        } else if (known->accepted != wanted.accepted) {
+            take_session(known);
         }
         return;
     }
@@ -122,7 +132,10 @@ void Desk::open_study(const fs::path& folder) {
             act({"open", session->folder.string()});
             Q_EMIT noted(QString("Opened %1: %2 cases").arg(name).arg(session->study.cases.size()));
             if (session->results.loads.rows() == 0 && !session->study.cases.empty()) {
-                Q_EMIT noted("Nothing of this study is computed yet: Study > Compute what changed (Ctrl+R).");
+                Q_EMIT noted(session->results.changed > 0
+                                 ? "What was computed of this study rests on other files, options or another version "
+                                   "of the program: Study > Compute what changed (Ctrl+R) makes it anew."
+                                 : "Nothing of this study is computed yet: Study > Compute what changed (Ctrl+R).");
             }
             Q_EMIT opened(qt(session->folder.string()));
         };

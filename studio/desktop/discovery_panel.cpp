@@ -31,7 +31,7 @@ QString value(const json& object, const char* key, int digits = 3) {
         return {};
     }
     if (at->is_string()) {
-        return html(at->get<std::string>());
+        return html(at->get<std::string>()).replace("+-", "±");
     }
     return at->is_number() ? html(core::format_number(at->get<double>(), digits)) : html(at->dump());
 }
@@ -58,6 +58,7 @@ QString probability(const json& effect) {
     const double chance = effect.value("probability", std::nan(""));
     return std::isnan(chance) ? QString()
            : chance < 0.001   ? QString("&lt; 0.001")
+           : chance > 0.999   ? QString("&gt; 0.999")
                               : html(core::format_number(chance, 3));
 }
 
@@ -82,8 +83,8 @@ QString effect_rows(const json& effects, const char* last_key, const QString& la
         "<tr><th align=left>effect</th><th align=left>parameters</th><th align=right>probability</th><th align=left>" +
         last_title + "</th></tr>";
     for (const auto& effect : effects) {
-        text += "<tr><td><b>" + value(effect, "name") + "</b></td><td>" + parameters(effect) + "</td><td align=right>" +
-                probability(effect) + "</td><td>" + value(effect, last_key) + "</td></tr>";
+        text += "<tr><td><b>" + value(effect, "name").replace('_', ' ') + "</b></td><td>" + parameters(effect) +
+                "</td><td align=right>" + probability(effect) + "</td><td>" + value(effect, last_key) + "</td></tr>";
     }
     return text + "</table>";
 }
@@ -151,6 +152,18 @@ DiscoveryPanel::DiscoveryPanel(Desk& desk, QWidget* parent) : Panel(desk, parent
     choice_ = new QComboBox;
     choice_->setMinimumWidth(260);
     row->addWidget(choice_);
+    accept_ = new QPushButton("&Accept");
+    accept_->setToolTip(
+        "The model that was found counts as the declared one, in Stability too; undone as anything else");
+    row->addWidget(accept_);
+    write_ = new QPushButton("&Write into the study …");
+    write_->setToolTip("Copies the found model into the study and names it in study.toml; the old one stays");
+    row->addWidget(write_);
+    connect(accept_, &QPushButton::clicked, this, [this] {
+        const std::string name = choice_->currentText().toStdString();
+        desk_.act({state().accepted.contains(name) ? "unaccept" : "accept", name});
+    });
+    connect(write_, &QPushButton::clicked, this, [this] { Q_EMIT write_wanted(choice_->currentText()); });
     row->addStretch(1);
     auto* effects = new QPushButton("&Effects …");
     effects->setToolTip("Every effect that a model may lack");
@@ -179,6 +192,8 @@ void DiscoveryPanel::draw_again(bool) {
 
 void DiscoveryPanel::show_measurement() {
     const std::string name = choice_->currentText().toStdString();
+    accept_->setEnabled(false);
+    write_->setEnabled(false);
     if (name.empty()) {
         page_->setHtml(desk_.has_study() ? "<p style='color: gray'>This study has no measurements</p>"
                                          : "<p style='color: gray'>Open a study with measurements</p>");
@@ -187,7 +202,13 @@ void DiscoveryPanel::show_measurement() {
     QString page = "<h1>" + html(name) + "</h1>";
     const auto* found = session().results.document("discovery/" + name);
     const auto* residual = session().results.document("residual/" + name);
+    const bool accepted = state().accepted.contains(name);
     if (found != nullptr) {
+        const json document = json::parse(*found, nullptr, false);
+        const bool missing = document.is_object() && document.value("verdict", "none") != "none";
+        accept_->setEnabled(missing || accepted);
+        write_->setEnabled(missing);
+        page += accepted ? "<p><b>Accepted: the found model counts as the declared one.</b></p>" : "";
         page += discovery_page(*found);
     } else if (residual == nullptr) {
         page += "<p>Not computed yet: Study &gt; Compute what changed (Ctrl+R).</p>";
@@ -204,6 +225,7 @@ void DiscoveryPanel::show_measurement() {
                                        image.scaledToWidth(std::min(width, 900), Qt::SmoothTransformation));
         page += QString("<p><img src='%1'></p>").arg(url);
     }
+    accept_->setText(accepted ? "&Take back" : "&Accept");
     page_->setHtml(page);
 }
 

@@ -4,6 +4,7 @@
 #include "studio/desktop/panel.h"
 
 class QComboBox;
+class QPushButton;
 class QTextBrowser;
 
 namespace underbody::studio {
@@ -18,12 +19,20 @@ public:
     /// The catalogue of effects, in a window of its own.
     void show_catalogue();
 
+    [[nodiscard]] const QTextBrowser* page() const { return page_; }
+
+Q_SIGNALS:
+    /// The found model of this measurement is to be written into the study.
+    void write_wanted(const QString& measurement);
+
 protected:
     void draw_again(bool session) override;
 
 private:
     void show_measurement();
     QComboBox* choice_ = nullptr;
+    QPushButton* accept_ = nullptr;
+    QPushButton* write_ = nullptr;
     QTextBrowser* page_ = nullptr;
 };
 

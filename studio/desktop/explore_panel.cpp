@@ -4,15 +4,20 @@
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QSplitter>
+#include <QTabWidget>
 #include <QTableWidget>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
-#include "core/table.h"
+#include "core/table_rows.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "geometry/body/body_figures.h"
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
@@ -22,13 +27,17 @@ namespace underbody::studio {
 
 namespace {
 
-/// Columns of numbers that are looked at: conditions and the main loads, not their errors.
-std::vector<const core::Column*> columns_of(const core::Table& loads) {
+constexpr std::size_t most_pictures = 60;  ///< more than a sheet can show
+
+/// Columns of numbers that are looked at: conditions and the main loads, what was varied; not their errors.
+std::vector<const core::Column*> columns_of(const core::Table& table) {
     std::vector<const core::Column*> columns;
-    for (const auto& column : loads.columns()) {
-        const bool wanted = !column.is_text() && column.name.find("_sigma") == std::string::npos &&
-                            column.name.find("coefficient") == std::string::npos &&
-                            column.name.find("closure") == std::string::npos;
+    for (const auto& column : table.columns()) {
+        bool wanted = !column.is_text();
+        for (const char* part :
+             {"_sigma", "coefficient", "closure", "smallest_angle", "distance_largest", "volume_error"}) {
+            wanted = wanted && column.name.find(part) == std::string::npos;
+        }
         if (!wanted) {
             continue;
         }
@@ -46,7 +55,22 @@ std::vector<const core::Column*> columns_of(const core::Table& loads) {
 }
 
 std::string unit_of(const core::Column& column) {
-    return column.unit == "m" ? "mm" : column.unit == "rad" ? "deg" : column.unit;
+    const bool written = column.unit == "m^3" || column.unit == "m^2";
+    return written && !column.written_unit.empty() ? column.written_unit : geometry::shown_unit(column.unit);
+}
+
+QString in_unit(double value, const core::Column& column) {
+    const std::string unit = unit_of(column);
+    return qt(core::format_number(core::convert(value, column.unit, unit), 4)) + (unit == "1" ? "" : qt(unit));
+}
+
+std::string written(const geometry::Vary& vary) {
+    std::string values;
+    for (const auto& value : vary.values) {
+        values += (values.empty() ? "" : ",") + value;
+    }
+    values.erase(std::remove(values.begin(), values.end(), ' '), values.end());
+    return vary.key + "=" + values;
 }
 
 }  // namespace
@@ -54,69 +78,269 @@ std::string unit_of(const core::Column& column) {
 ExplorePanel::ExplorePanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     setObjectName("explore");
     auto* column = new QVBoxLayout(this);
+    build_head(*column);
+    build_views(*column);
+}
+
+void ExplorePanel::build_head(QVBoxLayout& column) {
     auto* row = new QHBoxLayout;
+    what_ = new QComboBox;
+    what_->addItems({"Cases of the study", "Shapes that vary"});
+    what_->setAccessibleName("What is explored");
     x_ = new QComboBox;
     y_ = new QComboBox;
+    for (auto* box : {x_, y_}) {
+        box->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+    }
     x_->setAccessibleName("Along the scatter plot");
     y_->setAccessibleName("Up the scatter plot");
+    brush_ = new QLineEdit;
+    brush_->setPlaceholderText("all; or gap=2mm:5mm, lift_force=0:0.3");
+    brush_->setAccessibleName("Ranges that are kept");
+    brush_->setToolTip("The ranges that are dragged on the axes, as numbers: change them and press Enter");
+    brush_->setClearButtonEnabled(true);
     count_ = new QLabel;
-    auto* clear = new QPushButton("&All cases");
+    auto* clear = new QPushButton("&All");
+    clear->setToolTip("Takes every range away");
+    row->addWidget(what_);
+    row->addWidget(new QLabel("Kept"));
+    row->addWidget(brush_, 1);
+    row->addWidget(count_);
+    row->addWidget(clear);
     row->addWidget(new QLabel("Scatter of"));
     row->addWidget(y_);
     row->addWidget(new QLabel("over"));
     row->addWidget(x_);
-    row->addStretch(1);
-    row->addWidget(count_);
-    row->addWidget(clear);
-    column->addLayout(row);
-    auto* halves = new QSplitter(Qt::Vertical);
-    column->addWidget(halves, 1);
-    parallel_ = new ParallelView(this);
-    halves->addWidget(parallel_);
-    auto* lower = new QSplitter(Qt::Horizontal);
-    table_ = new QTableWidget;
-    table_->setAccessibleName("Cases that are kept");
-    table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
-    table_->setSelectionBehavior(QAbstractItemView::SelectRows);
-    table_->verticalHeader()->setDefaultSectionSize(21);
-    scatter_ = new PlotView(this);
-    lower->addWidget(table_);
-    lower->addWidget(scatter_);
-    halves->addWidget(lower);
-    halves->setSizes({260, 340});
-    connect(scatter_, &PlotView::hovered, this, &Panel::remark);
+    column.addLayout(row);
+    vary_row_ = new QWidget;
+    auto* second = new QHBoxLayout(vary_row_);
+    second->setContentsMargins(0, 0, 0, 0);
+    vary_ = new QLineEdit;
+    vary_->setPlaceholderText("protrusion.height=1mm:3mm:5 body.base_cut=0.6:0.8:4");
+    vary_->setAccessibleName("What varies");
+    vary_->setToolTip("PARAMETER=FROM:TO:COUNT or PARAMETER=VALUE,VALUE, several with spaces; Enter makes the shapes");
+    parameter_ = new QComboBox;
+    parameter_->setAccessibleName("Parameter to vary");
+    parameter_->addItem("Add a parameter …");
+    for (const auto& parameter : geometry::parameter_names()) {
+        if (!parameter.unit.empty()) {
+            parameter_->addItem(qt(parameter.name));
+        }
+    }
+    take_ = new QPushButton("Take into &Design");
+    take_->setToolTip("The numbers of the selected shape, in Design");
+    second->addWidget(new QLabel("Vary"));
+    second->addWidget(vary_, 1);
+    second->addWidget(parameter_);
+    second->addWidget(take_);
+    column.addWidget(vary_row_);
     const auto axes = [this] { desk_.act({"axes", x_->currentText().toStdString(), y_->currentText().toStdString()}); };
     connect(x_, QOverload<int>::of(&QComboBox::activated), this, axes);
     connect(y_, QOverload<int>::of(&QComboBox::activated), this, axes);
     connect(clear, &QPushButton::clicked, this, [this] { desk_.act({"brush"}); });
+    connect(brush_, &QLineEdit::editingFinished, this, &ExplorePanel::type_brush);
+    connect(vary_, &QLineEdit::returnPressed, this, &ExplorePanel::type_vary);
+    connect(take_, &QPushButton::clicked, this, &ExplorePanel::take_selected);
+    connect(what_, QOverload<int>::of(&QComboBox::activated), this, [this](int chosen) {
+        desk_.act({"rows", chosen == 0 ? "cases" : "shapes"});
+    });
+    connect(parameter_, QOverload<int>::of(&QComboBox::activated), this, [this](int chosen) {
+        if (chosen > 0) {
+            add_parameter(parameter_->itemText(chosen));
+            parameter_->setCurrentIndex(0);
+        }
+    });
+}
+
+void ExplorePanel::build_views(QVBoxLayout& column) {
+    auto* halves = new QSplitter(Qt::Vertical);
+    column.addWidget(halves, 1);
+    parallel_ = new ParallelView(this);
+    halves->addWidget(parallel_);
+    auto* lower = new QSplitter(Qt::Horizontal);
+    table_ = new QTableWidget;
+    table_->setAccessibleName("What is kept");
+    table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    table_->setSelectionBehavior(QAbstractItemView::SelectRows);
+    table_->verticalHeader()->setDefaultSectionSize(21);
+    scatter_ = new PlotView(this);
+    pictures_ = new PlotView(this);
+    pictures_or_points_ = new QTabWidget;
+    pictures_or_points_->setDocumentMode(true);
+    pictures_or_points_->addTab(scatter_, "Points");
+    pictures_or_points_->addTab(pictures_, "Bodies from below");
+    lower->addWidget(table_);
+    lower->addWidget(pictures_or_points_);
+    halves->addWidget(lower);
+    halves->setSizes({260, 340});
+    connect(scatter_, &PlotView::hovered, this, &Panel::remark);
+    connect(pictures_or_points_, &QTabWidget::currentChanged, this, [this] { draw_pictures(); });
     connect(parallel_, &ParallelView::brushed, this, [this](const QString& name, double low, double high) {
         desk_.act({"brush", name.toStdString() + "=" +
                                 (low < high ? core::format_number(low, 6) + ":" + core::format_number(high, 6)
                                             : std::string())});
     });
     connect(table_, &QTableWidget::itemSelectionChanged, this, [this] {
+        take_->setEnabled(state().explore.shapes && !table_->selectionModel()->selectedRows().isEmpty());
         Words words = {"select"};
         for (const auto& index : table_->selectionModel()->selectedRows()) {
             words.push_back("case/" + table_->item(index.row(), 0)->text().toStdString());
         }
-        if (words.size() > 1) {
+        if (words.size() > 1 && !state().explore.shapes) {
             desk_.act(words);
         }
     });
 }
 
-void ExplorePanel::draw_again(bool fresh) {
-    const core::Table& loads = session().results.loads;
-    const auto columns = columns_of(loads);
-    if (fresh) {
-        std::vector<ParallelView::Axis> axes;
-        for (const auto* column : columns) {
-            const std::string unit = unit_of(*column);
-            axes.push_back({column->name, qt(axis_title(column->name, unit)), core::convert(1, column->unit, unit),
-                            column->numbers, 0, 1});
-        }
-        parallel_->show_axes(std::move(axes));
+const core::Table& ExplorePanel::rows() const {
+    static const core::Table none;
+    return !state().explore.shapes ? session().results.loads : shapes_ ? shapes_->table : none;
+}
+
+std::string ExplorePanel::name_of_row(std::size_t row) const {
+    const auto* names = rows().find(state().explore.shapes ? "name" : "case");
+    return names != nullptr && names->is_text() ? names->text[row] : std::to_string(row);
+}
+
+void ExplorePanel::type_brush() {
+    if (!brush_->isModified()) {
+        return;
     }
+    brush_->setModified(false);
+    Words words = {"brush"};
+    for (const auto& part : brush_->text().split(',', Qt::SkipEmptyParts)) {
+        words.push_back(part.trimmed().toStdString());
+    }
+    try {  // what is wrong with it is said before what is kept is taken away
+        static_cast<void>(applied(state(), words, session()));
+        desk_.act({"brush"});
+    } catch (const core::Error&) {
+    }
+    if (words.size() > 1) {
+        desk_.act(words);
+    }
+}
+
+void ExplorePanel::type_vary() {
+    Words words = {"vary"};
+    for (const auto& part : vary_->text().split(' ', Qt::SkipEmptyParts)) {
+        words.push_back(part.toStdString());
+    }
+    desk_.act(words);
+}
+
+/// A fifth to either side of what the shape has, in five steps.
+void ExplorePanel::add_parameter(const QString& name) {
+    const std::string shape = shown_shape(state(), session());
+    double value = NAN;
+    try {
+        value = geometry::parameter(shape_of(state(), session(), shape), name.toStdString());
+    } catch (const core::Error&) {  // the part is not there
+    }
+    const std::string unit = geometry::parameter_unit(name.toStdString(), {});
+    const double step = std::isfinite(value) && value != 0 ? 0.2 * std::abs(value) : unit == "m" ? 0.001 : 0.05;
+    const double from = std::isfinite(value) && value != 0 ? value - step : unit == "m" ? step : 0;
+    const auto text = [&](double number) {
+        std::string written_value = geometry::shown_value(number, unit, 4);
+        written_value.erase(std::remove(written_value.begin(), written_value.end(), ' '), written_value.end());
+        return qt(written_value);
+    };
+    vary_->setText(
+        (vary_->text().trimmed() + " " + name + "=" + text(from) + ":" + text(from + 2 * step) + ":5").trimmed());
+    vary_->setFocus();
+}
+
+/// Only the shape's numbers: the parameters that vary and were changed.
+void ExplorePanel::take_selected() {
+    const auto chosen = table_->selectionModel()->selectedRows();
+    if (chosen.isEmpty() || !shapes_) {
+        return;
+    }
+    const std::size_t row = kept_.at(static_cast<std::size_t>(chosen.front().row()));
+    Words words = {"set"};
+    for (std::size_t k = 0; k < shapes_->set.keys.size(); ++k) {
+        words.push_back(shapes_->set.keys[k] + "=" + shapes_->set.variants.at(row).values[k]);
+    }
+    if (desk_.act(words)) {
+        desk_.act({"workspace", "design"});
+    }
+}
+
+/// The shapes are those of the state; another shape or range, other shapes.
+void ExplorePanel::ask_shapes() {
+    const auto& wanted = state().explore;
+    if (!wanted.shapes) {
+        return;  // those that were made stay for the way back
+    }
+    const std::string name = shown_shape(state(), session());
+    std::string key;
+    geometry::BodyShape shape;
+    if (!wanted.vary.empty() && !name.empty()) {
+        try {
+            shape = shape_of(state(), session(), name);
+            key = geometry::shape_hash(shape);
+        } catch (const core::Error&) {  // Design says why
+        }
+        for (const auto& one : wanted.vary) {
+            key += "\n" + written(one);
+        }
+    }
+    if (key == shapes_of_) {
+        return;
+    }
+    shapes_of_ = key;
+    shapes_.reset();
+    jobs_.cancel("explore shapes");
+    if (key.empty()) {
+        return;
+    }
+    jobs_.start("explore shapes", "shapes of " + qt(name),
+                [this, shape, name, varies = wanted.vary, key](core::Progress& progress) {
+                    auto made = std::make_shared<MadeShapes>();
+                    made->set = geometry::variants_of(shape, name, varies);
+                    made->made = geometry::make_variants(made->set, 3000, progress);
+                    made->table = geometry::table(made->set, made->made);
+                    return [this, made, key] {
+                        if (key == shapes_of_) {
+                            shapes_ = made;
+                            draw_again(false);
+                        }
+                    };
+                });
+}
+
+void ExplorePanel::show_axes() {
+    std::string key = state().explore.shapes ? shapes_of_ + (shapes_ ? " made" : "") : "cases";
+    key += " " + std::to_string(reinterpret_cast<std::uintptr_t>(desk_.session_pointer().get()));
+    if (key == axes_of_) {
+        return;
+    }
+    axes_of_ = key;
+    std::vector<ParallelView::Axis> axes;
+    for (const auto* column : columns_of(rows())) {
+        const std::string unit = unit_of(*column);
+        axes.push_back({column->name, qt(axis_title(column->name, unit)), core::convert(1, column->unit, unit),
+                        column->numbers, 0, 1});
+    }
+    parallel_->show_axes(std::move(axes));
+}
+
+void ExplorePanel::draw_again(bool) {
+    ask_shapes();
+    const bool shapes = state().explore.shapes;
+    what_->setCurrentIndex(shapes ? 1 : 0);
+    vary_row_->setVisible(shapes);
+    pictures_or_points_->setTabEnabled(1, shapes);
+    if (!vary_->hasFocus() || vary_->text().isEmpty()) {
+        QStringList parts;
+        for (const auto& one : state().explore.vary) {
+            parts << qt(written(one));
+        }
+        vary_->setText(parts.join(' '));
+    }
+    show_axes();
+    const core::Table& table = rows();
+    const auto columns = columns_of(table);
     const QSignalBlocker quiet_x(x_), quiet_y(y_);
     for (auto* box : {x_, y_}) {
         box->clear();
@@ -126,43 +350,69 @@ void ExplorePanel::draw_again(bool fresh) {
     }
     x_->setCurrentText(qt(state().explore.x));
     y_->setCurrentText(qt(state().explore.y));
-    kept_.clear();
-    for (std::size_t row = 0; row < loads.rows(); ++row) {
-        bool in = true;
-        for (const auto& [name, range] : state().explore.brush) {
-            const auto* column = loads.find(name);
-            const double value = column != nullptr && !column->is_text() ? column->numbers[row] : NAN;
-            in = in && value >= range[0] && value <= range[1];
-        }
-        if (in) {
-            kept_.push_back(row);
+    if (y_->currentIndex() == x_->currentIndex() && y_->count() > 1) {  // what was chosen is not there
+        y_->setCurrentIndex(x_->currentIndex() == y_->count() - 1 ? 0 : y_->count() - 1);
+    }
+    std::vector<core::NamedRange> ranges;  // those of other columns are of the other rows
+    QStringList said;
+    for (const auto& [name, range] : state().explore.brush) {
+        if (const auto* column = table.find(name); column != nullptr && !column->is_text()) {
+            ranges.push_back({name, range[0], range[1]});
+            said << qt(name) + "=" + in_unit(range[0], *column) + ":" + in_unit(range[1], *column);
         }
     }
+    kept_ = core::rows_within(table, ranges);
+    if (!brush_->isModified()) {
+        brush_->setText(said.join(", "));
+        brush_->setModified(false);
+    }
     parallel_->show_brush(state().explore.brush, kept_);
-    count_->setText(QString("%1 of %2 cases").arg(kept_.size()).arg(loads.rows()));
+    show_count();
     fill_table();
     draw_scatter();
+    draw_pictures();
+}
+
+void ExplorePanel::show_count() {
+    const core::Table& table = rows();
+    QString text = QString("%1 of %2").arg(kept_.size()).arg(table.rows());
+    if (state().explore.shapes) {
+        std::size_t refused = 0;
+        for (const auto& variant : shapes_ ? shapes_->set.variants : std::vector<geometry::Variant>{}) {
+            refused += variant.refused.empty() ? 0 : 1;
+        }
+        text += " shapes";
+        text += refused > 0 ? QString(", %1 cannot be made").arg(refused) : QString();
+        parallel_->say(state().explore.vary.empty() ? "Add parameters that vary, and press Enter"
+                       : shapes_of_.empty()         ? "The shape cannot be made"
+                                                    : "The shapes are being made …");
+    } else {
+        text += " cases";
+        parallel_->say("No loads are computed yet: Study > Compute what changed (Ctrl+R)");
+    }
+    count_->setText(text);
 }
 
 void ExplorePanel::fill_table() {
     const QSignalBlocker quiet(table_);
-    const core::Table& loads = session().results.loads;
-    const auto columns = columns_of(loads);
-    const auto* names = loads.find("case");
-    QStringList titles = {"case"};
+    const core::Table& all = rows();
+    const auto columns = columns_of(all);
+    QStringList titles = {state().explore.shapes ? "shape" : "case"};
     for (const auto* column : columns) {
         titles << qt(axis_title(column->name, unit_of(*column)));
     }
+    const auto* refused = state().explore.shapes ? all.find("refused") : nullptr;
     table_->setColumnCount(titles.size());
     table_->setHorizontalHeaderLabels(titles);
-    const std::size_t rows = std::min<std::size_t>(kept_.size(), 2000);
-    table_->setRowCount(static_cast<int>(rows));
-    for (std::size_t i = 0; i < rows; ++i) {
-        const std::string name = names != nullptr && names->is_text() ? names->text[kept_[i]] : std::to_string(i);
+    const std::size_t count = std::min<std::size_t>(kept_.size(), 2000);
+    table_->setRowCount(static_cast<int>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string name = name_of_row(kept_[i]);
         const bool starred = state().stars.contains("case/" + name);
         auto* first = new QTableWidgetItem(qt(name));
-        first->setIcon({});
-        first->setToolTip(starred ? "starred" : "");
+        first->setToolTip(refused != nullptr && refused->text[kept_[i]] != "-" ? qt(refused->text[kept_[i]])
+                          : starred                                            ? QString("starred")
+                                                                               : QString());
         QFont font = table_->font();
         font.setBold(starred);
         first->setFont(font);
@@ -175,14 +425,15 @@ void ExplorePanel::fill_table() {
         }
     }
     table_->resizeColumnsToContents();
+    take_->setEnabled(false);
 }
 
 void ExplorePanel::draw_scatter() {
-    const core::Table& loads = session().results.loads;
-    const auto* x = loads.find(state().explore.x);
-    const auto* y = loads.find(state().explore.y);
+    const core::Table& table = rows();
+    const auto* x = table.find(x_->currentText().toStdString());
+    const auto* y = table.find(y_->currentText().toStdString());
     if (x == nullptr || y == nullptr || x->is_text() || y->is_text()) {
-        scatter_->show_text("Choose two columns above");
+        scatter_->show_text(table.rows() == 0 ? QString() : "Choose two columns above");
         return;
     }
     core::Figure figure;
@@ -191,15 +442,15 @@ void ExplorePanel::draw_scatter() {
     const auto to_x = core::conversion(x->unit, unit_of(*x));
     const auto to_y = core::conversion(y->unit, unit_of(*y));
     core::FigurePoints all, kept;
-    all.name = kept_.size() == loads.rows() ? "" : "others";
+    all.name = kept_.size() == table.rows() ? "" : "others";
     all.colour = {150, 150, 150, 110};
-    kept.name = kept_.size() == loads.rows() ? "" : "kept";
+    kept.name = kept_.size() == table.rows() ? "" : "kept";
     kept.colour = core::palette(0);
-    std::vector<bool> in(loads.rows(), false);
+    std::vector<bool> in(table.rows(), false);
     for (const std::size_t row : kept_) {
         in[row] = true;
     }
-    for (std::size_t row = 0; row < loads.rows(); ++row) {
+    for (std::size_t row = 0; row < table.rows(); ++row) {
         auto& points = in[row] ? kept : all;
         if (std::isfinite(x->numbers[row]) && std::isfinite(y->numbers[row])) {
             points.x.push_back(to_x(x->numbers[row]));
@@ -215,10 +466,31 @@ void ExplorePanel::draw_scatter() {
     scatter_->show_figure(figure, true);
 }
 
-bool ExplorePanel::has_picture() const { return scatter_->has_figure(); }
-void ExplorePanel::export_picture(const std::filesystem::path& path) { scatter_->write(path); }
-void ExplorePanel::export_table(const std::filesystem::path& path) {
-    core::write_csv(path, session().results.loads.selected(kept_));
+/// The kept bodies, seen from below.
+void ExplorePanel::draw_pictures() {
+    if (!state().explore.shapes || pictures_or_points_->currentIndex() != 1) {
+        return;
+    }
+    std::vector<geometry::NamedBody> bodies;
+    for (const std::size_t row : shapes_ ? kept_ : std::vector<std::size_t>{}) {
+        const auto& made = shapes_->made.at(row);
+        if (!made.mesh.triangles.empty() && bodies.size() < most_pictures) {
+            bodies.push_back({made.variant->name.substr(made.variant->name.rfind('-') + 1), &made.mesh});
+        }
+    }
+    if (bodies.empty()) {
+        pictures_->show_text("No shape is kept");
+        return;
+    }
+    const std::string more = kept_.size() > bodies.size() ? ", the first " + std::to_string(bodies.size()) : "";
+    pictures_->show_figure(geometry::sheet_figure(bodies, "kept" + more), true);
 }
+
+bool ExplorePanel::has_picture() const { return scatter_->has_figure(); }
+void ExplorePanel::export_picture(const std::filesystem::path& path) {
+    const bool bodies = pictures_or_points_->currentIndex() == 1 && pictures_->has_figure();
+    (bodies ? pictures_ : scatter_)->write(path);
+}
+void ExplorePanel::export_table(const std::filesystem::path& path) { core::write_csv(path, rows().selected(kept_)); }
 
 }  // namespace underbody::studio

@@ -226,6 +226,18 @@ void ExportDialog::write(const fs::path& path) {
     tables::ExportOptions wanted = options();
     wanted.overwrite = true;  // the person was asked
     tables::export_table(table(), format(), path, wanted);
+    ExportRecord record;
+    record.format = format();
+    record.name = wanted.name;
+    record.frame = frame_->currentIndex() == 1 ? "ned" : "up";
+    record.number = wanted.single_precision ? "float" : "double";
+    if (wanted.max_error > 0) {
+        record.max_error = wanted.max_error;
+    }
+    for (const auto& [axis, box] : policies_) {
+        record.range[axis] = box->currentData().toString().toStdString();
+    }
+    Q_EMIT exported(qt(path.string()), record);
     Q_EMIT written(command(qt(path.string())));
 }
 

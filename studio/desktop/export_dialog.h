@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "studio/desktop/jobs.h"
+#include "studio/desktop/state/state.h"
 #include "surrogates/tables/exports/export.h"
 
 class QCheckBox;
@@ -34,6 +35,8 @@ public:
 
 Q_SIGNALS:
     void written(const QString& command);
+    /// What was written, and how; its table and digest are not known here.
+    void exported(const QString& path, const ExportRecord& record);
     void failed(const QString& what, std::exception_ptr error);
     void proved(bool equal);
 

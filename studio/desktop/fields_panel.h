@@ -5,22 +5,23 @@
 #include <vector>
 
 #include "core/inputs.h"
+#include "postproc/loads/loads.h"
 #include "studio/desktop/panel.h"
 #include "studio/desktop/scene.h"
 
 class QCheckBox;
 class QComboBox;
 class QGridLayout;
-class QImage;
 class QLabel;
 class QLineEdit;
 class QListWidget;
 class QStackedLayout;
-class QTableWidget;
 
 namespace underbody::studio {
 
+class CompareNumbers;
 class FittedPicture;
+struct Sheet;
 
 class FieldsPanel : public Panel {
     Q_OBJECT
@@ -29,7 +30,7 @@ public:
     ~FieldsPanel() override;
 
     [[nodiscard]] bool has_picture() const override;
-    [[nodiscard]] QStringList picture_endings() const override { return {".png"}; }
+    [[nodiscard]] QStringList picture_endings() const override { return {".png", ".pdf", ".svg"}; }
     void export_picture(const std::filesystem::path& path) override;
     [[nodiscard]] bool has_table() const override;
     void export_table(const std::filesystem::path& path) override;
@@ -37,7 +38,9 @@ public:
     [[nodiscard]] std::size_t drawn() const;
     /// How many cells show their difference to the first.
     [[nodiscard]] std::size_t differences() const;
-    [[nodiscard]] QImage sheet() const;
+    [[nodiscard]] Sheet sheet() const;
+    [[nodiscard]] QImage picture_to_copy() const override;
+    [[nodiscard]] CompareNumbers* numbers() const { return numbers_; }
 
 protected:
     void draw_again(bool session) override;
@@ -55,6 +58,8 @@ private:
         std::unique_ptr<Scene> scene;
         FittedPicture* difference = nullptr;  ///< in place of the scene
         std::shared_ptr<const postproc::Field> field;
+        std::shared_ptr<const postproc::LoadsResult> loads;
+        std::string no_loads;  ///< why there are none
         Source source;
         core::FileStamp stamp;
         bool ready = false;
@@ -66,11 +71,13 @@ private:
     [[nodiscard]] Source source_of(const cases::Case& one) const;
     void lay_out(const std::vector<Source>& sources);
     void read(std::size_t cell);
-    void taken(std::size_t cell, const Source& source, const std::shared_ptr<const postproc::Field>& field,
+    void taken(std::size_t cell, const std::shared_ptr<const postproc::Field>& field,
                const std::shared_ptr<const Scene::Prepared>& prepared);
+    [[nodiscard]] postproc::LoadsOptions loads_options(const Source& source) const;
+    void show_numbers();
+    [[nodiscard]] bool dark() const;
     void fill_controls();
     void recolour();
-    void fill_loads(const std::vector<Source>& sources);
     void look_from(const std::string& camera);
     void show_differences();
     void draw_differences(const std::vector<std::size_t>& cells, const std::string& array);
@@ -90,7 +97,8 @@ private:
     QCheckBox* mirror_ = nullptr;
     QCheckBox* difference_ = nullptr;
     std::string differences_of_;  ///< what is drawn as differences, or being drawn
-    QTableWidget* loads_ = nullptr;
+    CompareNumbers* numbers_ = nullptr;
+    QString unit_;  ///< of the colours
 };
 
 }  // namespace underbody::studio

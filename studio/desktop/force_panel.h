@@ -36,6 +36,9 @@ public:
     /// The table that is shown; nullptr while there is none.
     [[nodiscard]] std::shared_ptr<const tables::ForceTable> table() const { return table_; }
 
+    /// Name of the [[table]] that is shown.
+    [[nodiscard]] const std::string& table_name() const { return spec_.name; }
+
 protected:
     void draw_again(bool session) override;
 

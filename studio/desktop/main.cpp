@@ -18,6 +18,7 @@
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/screenshots.h"
 #include "studio/desktop/state/action_log.h"
+#include "studio/desktop/theme.h"
 
 namespace {
 
@@ -25,6 +26,7 @@ struct Options {
     std::string study;
     std::string screenshots;
     std::string log;
+    std::string theme;
     int width = 1440;
     int height = 900;
 };
@@ -48,6 +50,8 @@ int parse(int argc, char** argv, Options& options) {
                    "carry out the lines of a log (Commands > Copy all) without a window, print the state that comes of "
                    "it as JSON, and end; with --screenshot: in a window, and save pictures of it")
         ->type_name("FILE");
+    app.add_option("--theme", options.theme, "light, dark, or system: the desktop's own (default: as the last time)")
+        ->check(CLI::IsMember({"light", "dark", "system"}));
     app.add_option("--width", options.width, "of the window, px")->check(CLI::Range(600, 8000));
     app.add_option("--height", options.height, "of the window, px")->check(CLI::Range(400, 8000));
     app.footer(
@@ -131,7 +135,11 @@ int run(int argc, char** argv) {
     QApplication::setOrganizationName("Underbody");
     QApplication::setApplicationName("studio");
     QApplication::setStyle(QStyleFactory::create("Fusion"));
+    set_theme("system");
     MainWindow window(options.screenshots.empty());
+    if (!options.theme.empty()) {
+        set_theme(QString::fromStdString(options.theme));
+    }
     window.resize(options.width, options.height);
     if (!options.screenshots.empty()) {
         return take_screenshots(window, options.study, options.log, options.screenshots);

@@ -8,14 +8,18 @@
 #include <QDockWidget>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QInputDialog>
 #include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QSettings>
 #include <QStackedWidget>
 #include <QTabWidget>
 #include <QToolBar>
 #include <QUrl>
 
+#include "cases/accept.h"
+#include "cases/ask_cfd.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "geometry/body/body_shape.h"
@@ -27,7 +31,9 @@
 #include "studio/desktop/panel.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/exports.h"
 #include "studio/desktop/study_tree.h"
+#include "studio/desktop/theme.h"
 
 namespace underbody::studio {
 
@@ -96,11 +102,13 @@ void MainWindow::build_study_menu() {
     auto* menu = menuBar()->addMenu("&Study");
     need_study_.push_back(add(menu, "&Compute what changed", "Ctrl+R", [this] { desk_->run_study(); }));
     need_study_.push_back(add(menu, "Re&load", "F5", [this] { desk_->reload(); }));
+    need_study_.push_back(add(menu, "&Export again what is stale", "Ctrl+Shift+R", [this] { export_stale(); }));
     need_study_.push_back(add(menu, "Open re&port", "Ctrl+P", [this] { open_report(); }));
     menu->addSeparator();
     need_study_.push_back(add(menu, "&Next case", "Ctrl+PgDown", [this] { tree_->step(1); }));
     need_study_.push_back(add(menu, "Pre&vious case", "Ctrl+PgUp", [this] { tree_->step(-1); }));
     menu->addSeparator();
+    need_study_.push_back(add(menu, "&Ask for CFD of this shape …", "", [this] { ask_for_cfd(); }));
     add(menu, "Compare &results with those of now", "Ctrl+D", [this] { desk_->act({"pin"}); });
 }
 
@@ -133,6 +141,23 @@ void MainWindow::build_view_menu() {
             below_dock_->show();
             below_->setCurrentIndex(i);
         });
+    }
+    auto* themes = menu->addMenu("&Colours");
+    auto* theme_group = new QActionGroup(this);
+    for (const auto& name : theme_names()) {
+        auto* action = add(themes,
+                           name == "system"  ? "As the d&esktop"
+                           : name == "light" ? "L&ight"
+                                             : "Da&rk",
+                           "", [this, name] {
+                               set_theme(name);
+                               if (remember_) {
+                                   QSettings().setValue("theme", name);
+                               }
+                           });
+        action->setCheckable(true);
+        action->setChecked(remember_ ? QSettings().value("theme", "system").toString() == name : name == "system");
+        theme_group->addAction(action);
     }
     auto* full = add(menu, "&Full screen", "F11", [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
     full->setCheckable(true);
@@ -243,6 +268,12 @@ void MainWindow::export_controller() {
                 auto* dialog = new ExportDialog(*jobs_, {forces->table()}, this);
                 connect(dialog, &ExportDialog::written, this,
                         [this](const QString& command) { problems_->note("Wrote it. The same: " + command); });
+                connect(dialog, &ExportDialog::exported, this,
+                        [this, table = forces->table_name()](const QString& path, ExportRecord record) {
+                            record.table = table;
+                            record.made_of = table_digest(desk_->session(), table);
+                            desk_->act(words_of_export(path.toStdString(), record));
+                        });
                 connect(dialog, &ExportDialog::failed, this, &MainWindow::show_failure);
                 dialog->show();
                 return;
@@ -252,7 +283,91 @@ void MainWindow::export_controller() {
     });
 }
 
-void MainWindow::copy_picture() { QApplication::clipboard()->setPixmap(middle_->grab()); }
+/// All that is stale, in one job; each is remembered as made of what the table is now.
+void MainWindow::export_stale() {
+    const auto stale = stale_exports(desk_->state(), desk_->session());
+    if (stale.empty()) {
+        problems_->note("No exported file is stale.");
+        return;
+    }
+    jobs_->start(
+        "export again", "exporting again",
+        [this, stale, session = desk_->session_pointer(), records = desk_->state().exports](core::Progress& progress) {
+            std::vector<Words> done;
+            for (const auto& file : stale) {
+                ExportRecord record = records.at(file);
+                export_again(*session, file, record, progress);
+                record.made_of = table_digest(*session, record.table);
+                done.push_back(words_of_export(file, record));
+            }
+            return [this, done] {
+                for (const auto& words : done) {
+                    desk_->act(words);
+                    problems_->note("Exported " + qt(words[1]) + " again.");
+                }
+            };
+        });
+}
+
+void MainWindow::ask_for_cfd() {
+    guarded("asking for CFD", [&] {
+        const std::string shape = shown_shape(desk_->state(), desk_->session());
+        if (!desk_->has_study() || shape.empty()) {
+            throw core::InputError("missing", "there is no study or no shape to ask for");
+        }
+        const QString name = QInputDialog::getText(this, "CFD of this shape", "Name of the new body in the study",
+                                                   QLineEdit::Normal, qt(shape) + "-2");
+        if (!name.isEmpty()) {
+            add_to_sweep(name.toStdString());
+        }
+    });
+}
+
+bool MainWindow::add_to_sweep(const std::string& name) {
+    const State& state = desk_->state();
+    const std::string of = shown_shape(state, desk_->session());
+    const auto asked = cases::ask_for_cfd(desk_->session().study, shape_of(state, desk_->session(), of), name,
+                                          state.design.gap, state.design.speed);
+    if (!ask("CFD of " + qt(name),
+             "Adds " + qt(asked.shape_file.filename().string()) +
+                 " and a [[body]] to the study and its [sweep]: " + qt(asked.cost()) + ". Nothing is solved yet.",
+             "Add it")) {
+        return false;
+    }
+    cases::write_asked(desk_->session().study, asked);
+    Words shape = shape_command(state, desk_->session(), of);
+    shape.insert(shape.end(), {"--as", name + ".toml"});
+    problems_->note("Added. The same: " + qt(line_of(shape)) + "; " +
+                    qt(line_of({"underbody", "sweep", state.study, "--add", name + ".toml"})) +
+                    "; solve: " + qt(line_of({"underbody", "sweep", state.study})));
+    desk_->reload();
+    return true;
+}
+
+bool MainWindow::write_found_model(const std::string& measurement) {
+    const SessionPointer session = desk_->session().declared ? desk_->session().declared : desk_->session_pointer();
+    const auto accepted = cases::accept_model(session->study, session->results, measurement);
+    QStringList users;
+    for (const auto& user : accepted.users) {
+        users << qt(user);
+    }
+    if (!ask("Write into the study",
+             qt(accepted.sentence) + "\n\nWrites " + qt(accepted.model.string()) + " and makes it the model of " +
+                 users.join(", ") + ". The old model stays where it is.",
+             "Write it")) {
+        return false;
+    }
+    cases::write_accepted(session->study, accepted);
+    problems_->note("Written. The same: " +
+                    qt(line_of({"underbody", "study", "accept", desk_->state().study, measurement})));
+    if (desk_->state().accepted.contains(measurement)) {
+        desk_->act({"unaccept", measurement});
+    }
+    desk_->reload();
+    return true;
+}
+
+void MainWindow::copy_picture() { QApplication::clipboard()->setImage(current()->picture_to_copy()); }
 
 void MainWindow::open_report() {
     const Session& session = desk_->session();

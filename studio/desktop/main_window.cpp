@@ -38,7 +38,9 @@
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/region_panel.h"
+#include "studio/desktop/state/exports.h"
 #include "studio/desktop/study_tree.h"
+#include "studio/desktop/theme.h"
 
 namespace underbody::studio {
 
@@ -90,6 +92,7 @@ MainWindow::MainWindow(bool remember)
         QSettings settings;
         restoreGeometry(settings.value("geometry").toByteArray());
         restoreState(settings.value("layout").toByteArray());
+        set_theme(settings.value("theme", "system").toString());
     }
     fill_recent();
     follow_state();
@@ -118,6 +121,14 @@ void MainWindow::build_workspaces() {
                                                       new PicturesPanel(*desk_, this)}) {
         panels_.push_back(panel);
         middle_->addWidget(panel);
+        if (auto* design = qobject_cast<DesignPanel*>(panel)) {
+            connect(design, &DesignPanel::cfd_wanted, this, &MainWindow::ask_for_cfd);
+        }
+        if (auto* loop = qobject_cast<DiscoveryPanel*>(panel)) {
+            connect(loop, &DiscoveryPanel::write_wanted, this, [this](const QString& measurement) {
+                guarded("writing the found model", [&] { write_found_model(measurement.toStdString()); });
+            });
+        }
         connect(panel, &Panel::remark, this, [this](const QString& text) { statusBar()->showMessage(text); });
         connect(panel, &Panel::problem, this, [this](const core::Problem& found) { problems_->add(found); });
     }
@@ -142,7 +153,7 @@ void MainWindow::build_tree() {
     tree_dock_->setObjectName("study_dock");
     tree_dock_->setWidget(holder);
     addDockWidget(Qt::LeftDockWidgetArea, tree_dock_);
-    resizeDocks({tree_dock_}, {470}, Qt::Horizontal);
+    resizeDocks({tree_dock_}, {490}, Qt::Horizontal);
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
 }
 
@@ -238,6 +249,20 @@ void MainWindow::follow_session() {
     }
     watch_files();
     follow_state();
+    say_what_is_stale();
+}
+
+void MainWindow::say_what_is_stale() {
+    if (desk_->computing() || !desk_->has_study()) {
+        return;
+    }
+    for (const auto& file : stale_exports(desk_->state(), desk_->session())) {
+        problems_->add({core::Problem::Severity::warning,
+                        "the exported file is stale: table '" + desk_->state().exports.at(file).table +
+                            "' has changed since, or the file is gone",
+                        {file, {}, {}, {}}},
+                       "Study > Export again what is stale (Ctrl+Shift+R)");
+    }
 }
 
 /// Says once when something that is shown has changed on disk.

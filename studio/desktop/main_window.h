@@ -50,6 +50,17 @@ public:
     bool write_chosen(QString path, const QStringList& endings,
                       const std::function<void(const std::filesystem::path&)>& write);
 
+    /// Adds the shape that Design shows to the study's sweep under a name; asks first, with the cost. False when it was
+    /// not added. Throws core::Error.
+    bool add_to_sweep(const std::string& name);
+
+    /// Writes the exported files again whose table has changed since, or that are gone.
+    void export_stale();
+
+    /// Copies the found model of a measurement into the study and names it there; asks first. False when it was not
+    /// written. Throws core::Error.
+    bool write_found_model(const std::string& measurement);
+
     /// Asks the person; replaced where nobody is there. Title, text, what "yes" does.
     std::function<bool(const QString& title, const QString& text, const QString& yes)> ask;
 
@@ -78,6 +89,8 @@ private:
     void export_picture();
     void export_table();
     void export_controller();
+    void ask_for_cfd();
+    void say_what_is_stale();
     void save_session(bool elsewhere);
     void copy_picture();
     void guarded(const QString& what, const std::function<void()>& work);

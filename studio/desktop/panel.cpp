@@ -19,6 +19,16 @@ void Panel::out_of_date(bool session) {
     }
 }
 
+/// Another theme: colours that are not the style's own are drawn anew.
+void Panel::changeEvent(QEvent* event) {
+    QWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange) {
+        out_of_date(false);
+    }
+}
+
+QImage Panel::picture_to_copy() const { return const_cast<Panel*>(this)->grab().toImage(); }
+
 void Panel::showEvent(QShowEvent* event) {
     QWidget::showEvent(event);
     if (old_state_ || old_session_) {

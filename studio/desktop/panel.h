@@ -1,6 +1,7 @@
 // What the window knows of its panels: each is drawn from the state and the session alone.
 #pragma once
 
+#include <QImage>
 #include <QWidget>
 #include <filesystem>
 #include <functional>
@@ -18,6 +19,8 @@ public:
     [[nodiscard]] virtual bool has_picture() const { return false; }
     [[nodiscard]] virtual QStringList picture_endings() const { return {".png", ".pdf"}; }
     virtual void export_picture(const std::filesystem::path&) {}
+    /// Edit > Copy picture; by default what is seen of the panel.
+    [[nodiscard]] virtual QImage picture_to_copy() const;
     /// File > Export table (CSV).
     [[nodiscard]] virtual bool has_table() const { return false; }
     virtual void export_table(const std::filesystem::path&) {}
@@ -32,6 +35,7 @@ protected:
     /// Draws everything again. `session`: what is open is new, not only the state. Called when the panel is seen only.
     virtual void draw_again(bool session) = 0;
     void showEvent(QShowEvent* event) override;
+    void changeEvent(QEvent* event) override;
 
     [[nodiscard]] const State& state() const { return desk_.state(); }
     [[nodiscard]] const Session& session() const { return desk_.session(); }

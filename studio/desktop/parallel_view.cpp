@@ -20,6 +20,11 @@ ParallelView::ParallelView(QWidget* parent) : QWidget(parent) {
     setToolTip("Drag along an axis to keep a range; click on the axis to take it away");
 }
 
+void ParallelView::say(const QString& text) {
+    empty_ = text;
+    update();
+}
+
 void ParallelView::show_axes(std::vector<Axis> axes) {
     axes_ = std::move(axes);
     for (auto& axis : axes_) {
@@ -83,7 +88,7 @@ void ParallelView::paintEvent(QPaintEvent*) {
     painter.fillRect(rect(), palette().base());
     if (axes_.empty()) {
         painter.setPen(palette().placeholderText().color());
-        painter.drawText(rect(), Qt::AlignCenter, "No loads are computed yet: Study > Compute what changed (Ctrl+R)");
+        painter.drawText(rect(), Qt::AlignCenter, empty_);
         return;
     }
     if (pale_.size() != size() * devicePixelRatioF()) {
@@ -111,7 +116,7 @@ void ParallelView::paintEvent(QPaintEvent*) {
         painter.drawLine(QPointF(x, top), QPointF(x, height() - bottom));
         const double room = axes_.size() < 2 ? 140 : std::min(140.0, x_of(1) - x_of(0) - 4);
         painter.drawText(QRectF(x - room / 2, 2, room, 34), Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap,
-                         QString(axis.title).replace('_', ' '));
+                         QString(axis.title).replace('_', ' ').replace('.', ' '));
         const auto text = [&](double value) { return qt(core::format_number(axis.factor * value, 4)); };
         painter.drawText(QRectF(x - 60, 38, 120, 18), Qt::AlignCenter, text(axis.upper));
         painter.drawText(QRectF(x - 60, height() - bottom + 2, 120, 18), Qt::AlignCenter, text(axis.lower));

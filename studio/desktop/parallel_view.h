@@ -24,6 +24,8 @@ public:
     explicit ParallelView(QWidget* parent);
     void show_axes(std::vector<Axis> axes);
     void show_brush(const std::map<std::string, std::array<double, 2>>& brush, const std::vector<std::size_t>& kept);
+    /// What stands there while there is nothing to show.
+    void say(const QString& text);
     [[nodiscard]] QSize minimumSizeHint() const override { return {300, 150}; }
 
 Q_SIGNALS:
@@ -48,6 +50,7 @@ private:
     std::map<std::string, std::array<double, 2>> brush_;
     std::vector<std::size_t> kept_;
     QPixmap pale_;  ///< all lines, drawn once
+    QString empty_;
     int pressed_ = -1;
     double from_ = 0, to_ = 0;
 };

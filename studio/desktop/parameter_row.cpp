@@ -139,6 +139,7 @@ void ParameterRow::show_value(std::optional<double> value, double lower, double 
     upper_ = upper > lower ? upper : lower + 1;
     number_->show_number(value);
     reset_->setEnabled(changed);
+    slider_->setEnabled(upper > lower);  // what cannot move is seen not to
     QFont font = name_->font();
     font.setBold(changed);
     name_->setFont(font);

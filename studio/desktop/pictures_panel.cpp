@@ -25,6 +25,19 @@ QString caption_of(const cases::StudyResults& results, const std::string& key) {
 
 }  // namespace
 
+QString picture_title(const cases::StudyResults& results, const std::string& key) {
+    const QStringList parts = qt(key).split('/');
+    const auto* text = results.document(key);
+    const auto document = text != nullptr ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    const QString title = document.is_object() ? qt(document.value("title", "")) : QString();
+    if (title.isEmpty()) {
+        return parts.mid(1).join(", ");
+    }
+    // Of whom: the case, or the table, map or measurement that it is made of.
+    const QString of = parts.size() > 2 && parts.front() == "picture" ? parts[2] : parts.value(1);
+    return of.isEmpty() || title.contains(of) ? title : title + ": " + of;
+}
+
 PicturesPanel::PicturesPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     setObjectName("pictures");
     auto* row = new QHBoxLayout(this);
@@ -63,7 +76,7 @@ void PicturesPanel::draw_again(bool fresh) {
     if (fresh) {
         list_->clear();
         for (const auto& key : keys) {
-            auto* item = new QListWidgetItem(qt(key).replace("/", " · "), list_);
+            auto* item = new QListWidgetItem(picture_title(session().results, key), list_);
             item->setData(Qt::UserRole, qt(key));
             item->setToolTip(item->text());
         }

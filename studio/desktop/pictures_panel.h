@@ -11,6 +11,9 @@ class QScrollArea;
 
 namespace underbody::studio {
 
+/// What a stored picture shows, for people: "pressure on the underbody: ellipse-h5-p0".
+QString picture_title(const cases::StudyResults& results, const std::string& key);
+
 class PicturesPanel : public Panel {
     Q_OBJECT
 public:

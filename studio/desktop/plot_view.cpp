@@ -118,6 +118,24 @@ QString in_lines(const QString& text) {
 }  // namespace
 
 void PlotView::show_text(const QString& text) {
+    sentence_ = text;
+    show_sentence();
+}
+
+/// Another theme.
+void PlotView::changeEvent(QEvent* event) {
+    QWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange && plot_ != nullptr) {
+        plot_->setBackground(palette().color(QPalette::Base));
+        if (shown_) {
+            show_figure(core::Figure(figure_), true);
+        } else {
+            show_sentence();
+        }
+    }
+}
+
+void PlotView::show_sentence() {
     core::Figure empty;
     draw(empty, *plot_);
     dress(*plot_, palette());
@@ -130,10 +148,12 @@ void PlotView::show_text(const QString& text) {
     label->position->setType(QCPItemPosition::ptAxisRectRatio);
     label->position->setCoords(0.5, 0.5);
     label->setTextAlignment(Qt::AlignCenter);
-    label->setText(in_lines(text));
+    label->setText(in_lines(sentence_));
     label->setColor(palette().color(QPalette::PlaceholderText));
     plot_->replot(QCustomPlot::rpQueuedReplot);
 }
+
+void PlotView::set_least(const QSize& size) { plot_->setMinimumSize(size); }
 
 void PlotView::write(const std::filesystem::path& path) const { write_picture(figure_, path); }
 

@@ -20,6 +20,8 @@ public:
     void show_figure(const core::Figure& figure, bool keep_zoom = false);
     void show_text(const QString& text);
     [[nodiscard]] bool has_figure() const { return shown_; }
+    /// The least room that it asks for, px.
+    void set_least(const QSize& size);
     /// As drawn in a file, by the ending.
     void write(const std::filesystem::path& path) const;
 
@@ -29,10 +31,15 @@ Q_SIGNALS:
     /// A click (not a drag) inside the axes.
     void clicked(double x, double y);
 
+protected:
+    void changeEvent(QEvent* event) override;
+
 private:
+    void show_sentence();
     void show_all();
     QCustomPlot* plot_ = nullptr;
     core::Figure figure_;
+    QString sentence_;
     bool shown_ = false;
     bool zoomed_ = false;
     QPoint pressed_;

@@ -8,10 +8,13 @@
 #include "studio/desktop/region_panel.h"
 
 #include <QBoxLayout>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QFormLayout>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSignalBlocker>
 #include <QSpinBox>
 #include <QSplitter>
@@ -25,6 +28,7 @@
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
+#include "surrogates/tables/analysis/figures.h"
 
 namespace underbody::studio {
 
@@ -95,10 +99,15 @@ RegionPanel::~RegionPanel() = default;
 void RegionPanel::build() {
     auto* all = new QHBoxLayout(this);
     auto* controls = new QWidget;
-    controls->setFixedWidth(300);
+    auto* scroll = new QScrollArea;  // also where the window is low
+    scroll->setWidget(controls);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    scroll->setFixedWidth(310);
     auto* left = new QVBoxLayout(controls);
     left->setContentsMargins(0, 0, 0, 0);
-    all->addWidget(controls, 0);
+    all->addWidget(scroll, 0);
     form_ = new QFormLayout;
     form_->setRowWrapPolicy(QFormLayout::WrapAllRows);
     left->addLayout(form_);
@@ -147,6 +156,27 @@ void RegionPanel::build_controls(QFormLayout& form) {
     sizes->addWidget(cells_);
     sizes->addWidget(duration_);
     form.addRow("Starts and time", sizes);
+    show_ = new QComboBox;
+    show_->addItem("where each start ends", "ends");
+    show_->addItem("how surely it ends well", "probability");
+    show_->addItem("the shares over a condition", "sweep");
+    show_->setAccessibleName("Kind of map");
+    show_->setToolTip(
+        "How surely: the share of draws of the force tables, from their errors, after which a start ends at an "
+        "attractor");
+    form.addRow("&Map of", show_);
+    axes_ = new QLineEdit;
+    axes_->setAccessibleName("Axes of the map");
+    axes_->setToolTip("Two of gap, heave_velocity, pitch, pitch_rate with their ranges; empty: as the study says");
+    form.addRow("A&xes", axes_);
+    logarithmic_ = new QCheckBox("lo&garithmic gap");
+    form.addRow(logarithmic_);
+    connect(logarithmic_, &QCheckBox::clicked, this,
+            [this](bool on) { act(on ? "logarithmic=on" : "logarithmic=off"); });
+    sweep_text_ = new QLineEdit;
+    sweep_text_->setAccessibleName("Condition that is swept");
+    sweep_text_->setPlaceholderText("speed=0.3:0.7");
+    form.addRow("S&wept condition", sweep_text_);
     parameter_ = new QComboBox;
     parameter_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     parameter_->setToolTip("Any number that the model declares can be changed here; the model file stays as it is");
@@ -163,6 +193,18 @@ void RegionPanel::build_controls(QFormLayout& form) {
     connect(duration_, &NumberEdit::entered, this,
             [this](double value) { act("duration=" + core::format_number(value) + "s"); });
     connect(parameter_, QOverload<int>::of(&QComboBox::activated), this, [this] { show_parameter(); });
+    connect(show_, QOverload<int>::of(&QComboBox::activated), this,
+            [this] { act("show=" + show_->currentData().toString().toStdString()); });
+    const auto text = [this](QLineEdit* field, const char* key) {
+        connect(field, &QLineEdit::editingFinished, this, [this, field, key] {
+            if (field->isModified()) {
+                field->setModified(false);
+                act(std::string(key) + "=" + field->text().remove(' ').toStdString());
+            }
+        });
+    };
+    text(axes_, "axes");
+    text(sweep_text_, "sweep");
 }
 
 void RegionPanel::act(const std::string& assignment) {
@@ -180,6 +222,8 @@ const RegionView& RegionPanel::settings() const {
 void RegionPanel::say(const QString& text) {
     model_.reset();
     region_.reset();
+    probability_.reset();
+    sweep_.reset();
     trajectory_.reset();
     map_of_.clear();
     motion_of_.clear();
@@ -210,6 +254,7 @@ void RegionPanel::draw_again(bool) {
                           [&](const auto& region) { return region.name == name; });
     cells_->setValue(settings().cells);
     duration_->show_number(duration());
+    fill_kinds();
     if (!spec_.forces.empty() && session().results.loads.rows() == 0) {
         say("The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)");
     } else if (other || !model_) {
@@ -303,7 +348,12 @@ dynamics::Model RegionPanel::changed_model() const {
 }
 
 std::string RegionPanel::map_key() const {
-    std::string key = spec_.name + " " + std::to_string(settings().cells) + " " + core::format_number(duration());
+    const RegionView& view = settings();
+    std::string key = spec_.name + " " + std::to_string(view.cells) + " " + core::format_number(duration()) + " " +
+                      view.show + " " + view.axes;
+    key += view.show == "sweep"         ? " " + view.sweep + " " + std::to_string(view.steps)
+           : view.show == "probability" ? " " + std::to_string(view.draws)
+                                        : "";
     for (const auto& [name, value] : settings().set) {
         key += " " + name + "=" + core::format_number(value);
     }
@@ -316,19 +366,63 @@ std::string RegionPanel::motion_key() const {
                  : std::string();
 }
 
+void RegionPanel::fill_kinds() {
+    const RegionView& view = settings();
+    show_->setCurrentIndex(show_->findData(qt(view.show)));
+    for (const auto& [field, text] : {std::pair{axes_, view.axes}, {sweep_text_, view.sweep}}) {
+        if (!field->isModified()) {
+            field->setText(qt(text));
+            field->setModified(false);
+        }
+    }
+    axes_->setPlaceholderText(qt(spec_.axes));
+    sweep_text_->setEnabled(view.show == "sweep");
+    if (QWidget* label = form_->labelForField(sweep_text_)) {
+        label->setEnabled(view.show == "sweep");
+    }
+}
+
+bool RegionPanel::has_motions() const {
+    return region_ && region_->axes.size() == 2 && region_->axes[0].name == "gap" &&
+           region_->axes[1].name == "heave_velocity";
+}
+
 void RegionPanel::compute() {
     if (map_of_ == map_key()) {
+        if (region_ && settings().logarithmic != drawn_logarithmic_) {  // the same map on another scale
+            show_region();
+        } else if (probability_ && settings().logarithmic != drawn_logarithmic_) {
+            show_map(dynamics::probability_figure(*probability_));
+        }
         return;
     }
     map_of_ = map_key();
     region_.reset();
+    probability_.reset();
+    sweep_.reset();
     trajectory_.reset();
     motion_of_.clear();
+    about_->clear();
     dynamics::RegionOptions options = cases::region_options(spec_);
+    if (!settings().axes.empty()) {
+        options.axes = core::parse_ranges(settings().axes);
+    }
     options.columns = options.rows = static_cast<std::size_t>(settings().cells);
     options.duration = duration();
+    motion_->show_text("Click a start in a map of where starts end to see its motion");
+    if (settings().show == "probability") {
+        compute_probability(options);
+    } else if (settings().show == "sweep") {
+        compute_sweep(options);
+    } else {
+        compute_map(options);
+    }
+}
+
+void RegionPanel::compute_map(const dynamics::RegionOptions& options) {
     jobs_.start(
-        "region", "stability map", [this, model = changed_model(), options, key = map_of_](core::Progress& progress) {
+        "region", "stability map",
+        [this, model = changed_model(), options, key = map_of_](core::Progress& progress) {
             auto region =
                 std::make_shared<const dynamics::StabilityRegion>(dynamics::stability_region(model, options, progress));
             return [this, region, key] {
@@ -338,7 +432,70 @@ void RegionPanel::compute() {
                     compute_motion();
                 }
             };
-        });
+        },
+        false, [this] { say_when_nothing(); });
+}
+
+/// A map that failed or was cancelled is not waited for.
+void RegionPanel::say_when_nothing() {
+    if (!region_ && !probability_ && !sweep_ && !jobs_.busy("region")) {
+        map_->show_text("There is no map: what is missing stands under Problems");
+    }
+}
+
+/// Draws of the tables are many maps: at most 80 starts a side.
+void RegionPanel::compute_probability(const dynamics::RegionOptions& wanted) {
+    dynamics::RegionOptions options = wanted;
+    options.columns = options.rows = std::min<std::size_t>(wanted.rows, 80);
+    options.refine = false;
+    map_->show_text("…");
+    jobs_.start(
+        "region", "chance of a safe end",
+        [this, model = changed_model(), options, draws = static_cast<std::size_t>(settings().draws),
+         key = map_of_](core::Progress& progress) {
+            auto found = std::make_shared<const dynamics::ProbabilityMap>(
+                dynamics::probability_map(model, options, draws, 1, progress));
+            return [this, found, key] {
+                if (key == map_of_) {
+                    probability_ = found;
+                    about_->setText(
+                        QString("%1 ± %2 % of the starts end well, over %3 draws of the tables.")
+                            .arg(map_number(100 * found->area_mean, 3), map_number(100 * found->area_sigma, 2))
+                            .arg(found->draws));
+                    for (const auto& remark : found->remarks) {
+                        Q_EMIT problem(remark);
+                    }
+                    show_map(dynamics::probability_figure(*found));
+                }
+            };
+        },
+        false, [this] { say_when_nothing(); });
+}
+
+void RegionPanel::compute_sweep(const dynamics::RegionOptions& wanted) {
+    if (settings().sweep.empty()) {
+        jobs_.cancel("region");
+        map_->show_text("Name the condition that is swept, such as speed=0.3:0.7");
+        return;
+    }
+    dynamics::RegionOptions options = wanted;
+    options.columns = options.rows = std::min<std::size_t>(wanted.rows, 120);
+    const core::NamedRange range = core::parse_ranges(settings().sweep).front();
+    map_->show_text("…");
+    jobs_.start(
+        "region", "stability maps over " + qt(range.name),
+        [this, model = changed_model(), options, range, steps = static_cast<std::size_t>(settings().steps),
+         key = map_of_](core::Progress& progress) {
+            auto found = std::make_shared<const dynamics::RegionSweep>(
+                dynamics::swept_regions(model, options, range, steps, progress));
+            return [this, found, key] {
+                if (key == map_of_) {
+                    sweep_ = found;
+                    map_->show_figure(dynamics::sweep_figure(*found), true);
+                }
+            };
+        },
+        false, [this] { say_when_nothing(); });
 }
 
 /// The motion is always that of the model and the start that stand in the state.
@@ -349,8 +506,9 @@ void RegionPanel::compute_motion() {
     motion_of_ = motion_key();
     trajectory_.reset();
     jobs_.cancel("trajectory");
-    if (!settings().start) {
-        motion_->show_text("Click a start in the map to see its motion");
+    if (!settings().start || !has_motions()) {
+        motion_->show_text(has_motions() ? "Click a start in the map to see its motion"
+                                         : "Motions are drawn over gap and heave velocity");
         show_region();
         return;
     }
@@ -385,6 +543,16 @@ void RegionPanel::show_region() {
     if (trajectory_) {
         overlay(figure, *region_, *trajectory_);
     }
+    show_map(std::move(figure));
+}
+
+void RegionPanel::show_map(core::Figure figure) {
+    drawn_logarithmic_ = settings().logarithmic;
+    const core::FigureAxis& x = figure.x;
+    const bool can = x.label == "gap" && x.lower > 0 && x.upper > x.lower;
+    logarithmic_->setEnabled(can);
+    figure.x.logarithmic = can && settings().logarithmic.value_or(tables::spans_decades(x.lower, x.upper));
+    logarithmic_->setChecked(figure.x.logarithmic);
     map_->show_figure(figure, true);
 }
 
@@ -404,8 +572,8 @@ void RegionPanel::start_from(double x, double y) {
     };
     take(region_->axes[0].name, x, figure.x.unit);
     take(region_->axes[1].name, y, figure.y.unit);
-    if (std::isnan(gap)) {
-        Q_EMIT remark("motions are shown for maps over the gap");
+    if (std::isnan(gap) || !has_motions()) {
+        Q_EMIT remark("motions are drawn over gap and heave velocity");
         return;
     }
     act("start=" + core::format_number(gap) + "m," + core::format_number(velocity) + "m/s");

@@ -6,14 +6,23 @@
 
 #include "studio/desktop/panel.h"
 
+class QCheckBox;
 class QComboBox;
 class QFormLayout;
 class QLabel;
+class QLineEdit;
 class QPushButton;
 class QSpinBox;
 
+namespace underbody::core {
+struct Figure;
+}
+
 namespace underbody::dynamics {
 struct Model;
+struct ProbabilityMap;
+struct RegionOptions;
+struct RegionSweep;
 struct StabilityRegion;
 struct Trajectory;
 }  // namespace underbody::dynamics
@@ -36,6 +45,8 @@ public:
     /// The motion that is shown; nullptr while there is none.
     [[nodiscard]] std::shared_ptr<const dynamics::Trajectory> trajectory() const { return trajectory_; }
     [[nodiscard]] std::shared_ptr<const dynamics::StabilityRegion> region() const { return region_; }
+    [[nodiscard]] std::shared_ptr<const dynamics::ProbabilityMap> probability() const { return probability_; }
+    [[nodiscard]] std::shared_ptr<const dynamics::RegionSweep> sweep() const { return sweep_; }
 
 protected:
     void draw_again(bool session) override;
@@ -49,7 +60,16 @@ private:
     void fill_parameters();
     void show_parameter();
     void compute();
+    void compute_map(const dynamics::RegionOptions& options);
+    void compute_probability(const dynamics::RegionOptions& options);
+    void compute_sweep(const dynamics::RegionOptions& options);
     void compute_motion();
+    void say_when_nothing();
+    void fill_kinds();
+    /// With the scale of the gap that the state wants.
+    void show_map(core::Figure figure);
+    /// Whether motions of the map that is shown can be drawn: a map of ends over gap and heave velocity.
+    [[nodiscard]] bool has_motions() const;
     void show_region();
     void start_from(double x, double y);
     void show_trajectory();
@@ -65,11 +85,18 @@ private:
     SessionPointer read_;  ///< what the model was read of
     std::shared_ptr<const dynamics::Model> model_;
     std::shared_ptr<const dynamics::StabilityRegion> region_;
+    std::shared_ptr<const dynamics::ProbabilityMap> probability_;
+    std::shared_ptr<const dynamics::RegionSweep> sweep_;
     std::shared_ptr<const dynamics::Trajectory> trajectory_;
     std::string map_of_, motion_of_;
+    std::optional<bool> drawn_logarithmic_;  ///< what was asked of the map that is drawn
     QComboBox* choice_ = nullptr;
     QSpinBox* cells_ = nullptr;
     NumberEdit* duration_ = nullptr;
+    QComboBox* show_ = nullptr;
+    QLineEdit* axes_ = nullptr;
+    QCheckBox* logarithmic_ = nullptr;
+    QLineEdit* sweep_text_ = nullptr;
     QComboBox* parameter_ = nullptr;
     NumberEdit* value_ = nullptr;
     QFormLayout* form_ = nullptr;

@@ -40,6 +40,19 @@ void save(QWidget& widget, const std::filesystem::path& file) {
     std::printf("%s\n", file.c_str());
 }
 
+/// The comparison as it is exported.
+void save_sheets(MainWindow& window, const std::filesystem::path& folder) {
+    for (Panel* panel : window.panels()) {
+        if (panel->isVisible() && panel->has_picture()) {
+            for (const auto& ending : panel->picture_endings()) {
+                const auto file = folder / ("sheet" + ending.toStdString());
+                panel->export_picture(file);
+                std::printf("%s\n", file.c_str());
+            }
+        }
+    }
+}
+
 /// For each workspace, what shows what it is for.
 Words use_of(const MainWindow& window, const std::string& workspace) {
     const auto& study = const_cast<MainWindow&>(window).desk().session().study;
@@ -90,6 +103,9 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& study, con
             settle(window);
         }
         save(window, folder / (name + "-used.png"));
+        if (name == "compare") {
+            save_sheets(window, folder);
+        }
     }
     show_effect_catalogue(&window);
     settle(window);

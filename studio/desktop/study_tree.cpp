@@ -10,7 +10,9 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/pictures_panel.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/exports.h"
 
 namespace underbody::studio {
 
@@ -56,7 +58,7 @@ void StudyModel::read() {
     const auto& study = session_->study;
     groups_.clear();
     const auto add = [&](const char* kind, const char* title, auto&& things, auto&& name_of_thing) {
-        Group group{kind, title, {}};
+        Group group{kind, title, {}, {}};
         for (const auto& thing : things) {
             group.names.push_back(name_of_thing(thing));
         }
@@ -71,9 +73,25 @@ void StudyModel::read() {
     add("region", "Stability", study.regions, named);
     add("measurement", "Measurements", study.measurements, named);
     add("picture", "Pictures", session_->results.pictures, [](const auto& one) { return one.first; });
+    if (!groups_.empty() && groups_.back().kind == "picture") {
+        for (const auto& key : groups_.back().names) {
+            groups_.back().titles.push_back(picture_title(session_->results, key));
+        }
+    }
     add("field", "Files", desk_.state().files, [](const std::string& entry) {
         return entry.starts_with("field:") ? entry.substr(6) : entry.substr(entry.find(':') + 1);
     });
+    add("export", "Exports", desk_.state().exports, [](const auto& one) { return one.first; });
+    if (!groups_.empty() && groups_.back().kind == "export") {
+        for (const auto& file : groups_.back().names) {
+            const auto& record = desk_.state().exports.at(file);
+            const auto found = state_of(*session_, file, record);
+            groups_.back().titles.push_back(qt(file).section('/', -1) + ", of " + qt(record.table) +
+                                            (found == ExportState::stale     ? "  –  STALE"
+                                             : found == ExportState::missing ? "  –  GONE"
+                                                                             : ""));
+        }
+    }
     endResetModel();
     places_.clear();
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -143,8 +161,8 @@ QVariant StudyModel::cell(const Group& group, std::size_t row, int column, int r
             const bool changed = group.kind == "shape" && desk_.state().design.changes.contains(group.names[row]);
             const bool starred = role == Qt::DisplayRole && desk_.state().stars.contains(id);
             QString text = qt(group.names[row]);
-            if (group.kind == "picture") {
-                text.replace("/", " · ");
+            if (group.kind == "picture" || group.kind == "export") {
+                text = group.titles.at(row);
             } else if (group.kind == "field") {
                 text = text.section('/', -1);
             }
@@ -238,10 +256,16 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
     sortByColumn(StudyModel::name, Qt::AscendingOrder);
     header()->setDefaultAlignment(Qt::AlignCenter);
     header()->setMinimumSectionSize(30);
-    header()->setStretchLastSection(true);
-    header()->resizeSection(StudyModel::name, 172);
+    setTextElideMode(Qt::ElideMiddle);  // names of cases differ at their end
+    header()->setStretchLastSection(false);
+    header()->setSectionResizeMode(StudyModel::name, QHeaderView::Stretch);
+    const QFontMetrics metrics(font());
     for (int column = StudyModel::gap; column < StudyModel::column_count; ++column) {
-        header()->resizeSection(column, column < StudyModel::lift ? 41 : 56);
+        const QString widest = column == StudyModel::status  ? "not run."
+                               : column == StudyModel::speed ? "speed"
+                               : column < StudyModel::lift   ? "-100"
+                                                             : "-0.01234";
+        header()->resizeSection(column, std::max(metrics.horizontalAdvance(widest), 28) + 8);
     }
     connect(selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { take_selection(); });
     connect(&desk, &Desk::session_changed, this, &StudyTree::read_again);
@@ -257,6 +281,9 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
 StudyTree::Look StudyTree::look() const {
     const studio::State& state = desk_.state();
     Look look{state.stars, state.files, {}};
+    for (const auto& [file, record] : state.exports) {
+        look.shapes.push_back(file + "\n" + record.made_of);
+    }
     for (const auto& [name, changes] : state.design.changes) {
         look.shapes.push_back("*" + name);
     }
@@ -280,6 +307,11 @@ void StudyTree::read_again() {
     look_ = look();
     for (int row = 0; row < proxy_->rowCount(); ++row) {
         const QString title = proxy_->index(row, 0).data().toString().section(' ', 0, 0);
+        const QModelIndex group = proxy_->index(row, 0);
+        setFirstColumnSpanned(row, {}, true);
+        for (int i = 0; title != "Cases" && i < proxy_->rowCount(group); ++i) {  // their names are all that they have
+            setFirstColumnSpanned(i, group, true);
+        }
         setExpanded(proxy_->index(row, 0), other ? title != "Pictures" : closed.count(title) == 0);
     }
     shown_ = desk_.session_pointer();

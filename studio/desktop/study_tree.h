@@ -35,6 +35,7 @@ private:
         std::string kind;
         QString title;
         std::vector<std::string> names;
+        std::vector<QString> titles;  ///< of pictures
     };
     [[nodiscard]] QVariant cell(const Group& group, std::size_t row, int column, int role) const;
     [[nodiscard]] double number(std::size_t entry, int column) const;

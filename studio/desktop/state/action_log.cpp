@@ -73,7 +73,7 @@ std::vector<fs::path> left_over_logs(const fs::path& folder) {
 
 SessionPointer load_session(const State& state, const SessionPointer& known) {
     const bool same = known && known->folder == fs::path(state.study);
-    return same ? with_files(*known, state.files) : open_session(state.study, state.files);
+    return with_models(same ? with_files(*known, state.files) : open_session(state.study, state.files), state.accepted);
 }
 
 void replay(std::string_view text, const std::string& source, History& history, SessionPointer& session,
@@ -98,7 +98,8 @@ void replay(std::string_view text, const std::string& source, History& history, 
             } else {
                 history.act(words, *session);
             }
-            if (history.state()->study != before->study || history.state()->files != before->files) {
+            if (history.state()->study != before->study || history.state()->files != before->files ||
+                history.state()->accepted != before->accepted) {
                 session = load(*history.state());
             }
         } catch (const core::Error& error) {

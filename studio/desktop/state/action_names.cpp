@@ -32,16 +32,26 @@ std::string file_of(const State& state, const Session& session, const std::strin
     return known == session.shape_files.end() ? name + ".toml" : known->second.string();
 }
 
-/// `underbody body FILE --set ...` of a shape as it is in the state.
-Words body_command(const State& state, const Session& session, const std::string& name) {
-    const auto changed = state.design.changes.find(name);
-    ShapeChanges changes = changed == state.design.changes.end() ? ShapeChanges{} : changed->second;
-    Words words = {"underbody", "body", file_of(state, session, name, changes)};
-    for (const auto& [parameter, text] : changes) {
-        words.push_back("--set");
-        words.push_back(parameter + "=" + text);
+/// A unit-less number of a brush is SI there as here.
+std::string sweep_command(const State& state, const Session& session) {
+    const std::string name = shown_shape(state, session);
+    if (name.empty() || state.explore.vary.empty() || !state.explore.shapes) {
+        return {};
     }
-    return words;
+    Words line = shape_command(state, session, name);
+    line.insert(line.begin() + 2, "sweep");
+    for (const auto& one : state.explore.vary) {
+        std::string values;
+        for (const auto& value : one.values) {
+            values += (values.empty() ? "" : ",") + value;
+        }
+        line.insert(line.end(), {"--vary", one.key + "=" + values});
+    }
+    for (const auto& [column, range] : state.explore.brush) {
+        line.insert(line.end(),
+                    {"--where", column + "=" + core::format_number(range[0]) + ":" + core::format_number(range[1])});
+    }
+    return line_of(line);
 }
 
 void add_operation(const State& state, Words& words) {
@@ -49,6 +59,35 @@ void add_operation(const State& state, Words& words) {
     if (state.design.pitch != 0) {
         words.insert(words.end(), {"--pitch", core::format_number(state.design.pitch) + "rad"});
     }
+}
+
+/// Of the table as `study run` writes it.
+std::string export_command(const State& state, const Words& words) {
+    const auto at = state.exports.find(words.at(1));
+    if (at == state.exports.end()) {
+        return {};
+    }
+    const ExportRecord& record = at->second;
+    Words line = {"underbody", "export",      state.study + "/report/exports/" + record.table + ".csv",
+                  "--format",  record.format, "--out",
+                  words[1],    "--name",      record.name};
+    if (record.frame != "up") {
+        line.insert(line.end(), {"--frame", record.frame});
+    }
+    if (record.number != "double") {
+        line.insert(line.end(), {"--number", record.number});
+    }
+    if (record.max_error) {
+        line.insert(line.end(), {"--max-error", core::format_number(100 * *record.max_error) + "%"});
+    }
+    std::string range;
+    for (const auto& [axis, policy] : record.range) {
+        range += (range.empty() ? "" : ",") + axis + "=" + policy;
+    }
+    if (!range.empty()) {
+        line.insert(line.end(), {"--range", range});
+    }
+    return line_of(line);
 }
 
 std::string table_command(const State& state, const Words& words) {
@@ -71,13 +110,19 @@ std::string region_command(const State& state, const Session& session, const std
         return {};
     }
     // The model with the study's tables, as `study run` writes it.
-    Words line = {"underbody", "region", state.study + "/report/models/" + name + "/model.toml", "--axes", spec->axes};
+    Words line = {"underbody", "region", state.study + "/report/models/" + name + "/model.toml", "--axes",
+                  view->second.axes.empty() ? spec->axes : view->second.axes};
     const std::string cells = std::to_string(view->second.cells);
     line.insert(line.end(), {"--grid", cells + "x" + cells});
     if (view->second.duration) {
         line.insert(line.end(), {"--for", core::format_number(*view->second.duration) + "s"});
     } else {
         line.insert(line.end(), {"--for", core::format_number(spec->duration) + "s"});
+    }
+    if (view->second.show == "probability") {
+        line.insert(line.end(), {"--draws", std::to_string(view->second.draws)});
+    } else if (view->second.show == "sweep" && !view->second.sweep.empty()) {
+        line.insert(line.end(), {"--sweep", view->second.sweep, "--steps", std::to_string(view->second.steps)});
     }
     for (const auto& [parameter, value] : view->second.set) {
         line.insert(line.end(), {"--set", parameter + "=" + core::format_number(value)});
@@ -86,6 +131,17 @@ std::string region_command(const State& state, const Session& session, const std
 }
 
 }  // namespace
+
+Words shape_command(const State& state, const Session& session, const std::string& name) {
+    const auto changed = state.design.changes.find(name);
+    ShapeChanges changes = changed == state.design.changes.end() ? ShapeChanges{} : changed->second;
+    Words words = {"underbody", "body", file_of(state, session, name, changes)};
+    for (const auto& [parameter, text] : changes) {
+        words.push_back("--set");
+        words.push_back(parameter + "=" + text);
+    }
+    return words;
+}
 
 std::string name_of(const Words& words) {
     const std::string verb = kind_of(words).verb;
@@ -102,6 +158,12 @@ std::string name_of(const Words& words) {
     }
     if (verb == "reset") {
         return first.empty() ? "reset the shape" : "reset " + first + more;
+    }
+    if (verb == "exported") {
+        return "export " + first.substr(first.rfind('/') + 1);
+    }
+    if (verb == "vary") {
+        return first.empty() ? "vary nothing" : "vary " + key_of(first) + more;
     }
     if (verb == "pin") {
         return "compare with this";
@@ -133,14 +195,23 @@ std::string command_of(const State& after, const Words& words, const Session& se
         if (name.empty()) {
             return {};
         }
-        Words line = body_command(after, session, name);
+        Words line = shape_command(after, session, name);
         add_operation(after, line);
         return line_of(line);
     }
     if (verb == "keep") {
-        Words line = body_command(after, session, words.at(1));
+        Words line = shape_command(after, session, words.at(1));
         line.insert(line.end(), {"--as", words.at(1) + ".toml"});
         return line_of(line);
+    }
+    if (verb == "accept") {
+        return line_of({"underbody", "study", "accept", after.study, words.at(1)});
+    }
+    if (verb == "exported") {
+        return export_command(after, words);
+    }
+    if (verb == "vary" || verb == "brush") {
+        return sweep_command(after, session);
     }
     if (verb == "table") {
         return table_command(after, words);

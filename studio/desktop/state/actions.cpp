@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cases/accept.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/variants.h"
@@ -344,6 +345,30 @@ State look_at_region(State state, const Words& words, const Session& session) {
         const auto [key, text] = assignment(words[i]);
         if (key == "cells") {
             view.cells = static_cast<int>(within(core::parse_in(text, "1"), 20, 1000, "starts a side"));
+        } else if (key == "show") {
+            const std::vector<std::string> known = {"ends", "probability", "sweep"};
+            if (std::find(known.begin(), known.end(), text) == known.end()) {
+                unknown_key(text, known);
+            }
+            view.show = text;
+        } else if (key == "axes") {
+            if (!text.empty() && core::parse_ranges(text).size() != 2) {
+                throw UsageError("range", "a map has two axes, not those of '" + text + "'", {},
+                                 "such as gap=1mm:20mm,pitch=-3deg:3deg");
+            }
+            view.axes = text;
+            view.start.reset();
+        } else if (key == "sweep") {
+            if (!text.empty() && core::parse_ranges(text).size() != 1) {
+                throw UsageError("range", "one condition is swept, not '" + text + "'", {}, "such as speed=0.3:0.7");
+            }
+            view.sweep = text;
+        } else if (key == "steps") {
+            view.steps = static_cast<int>(within(core::parse_in(text, "1"), 2, 50, "maps of the sweep"));
+        } else if (key == "draws") {
+            view.draws = static_cast<int>(within(core::parse_in(text, "1"), 2, 1000, "draws"));
+        } else if (key == "logarithmic") {
+            view.logarithmic = text.empty() ? std::optional<bool>() : yes_or_no(text);
         } else if (key == "duration") {
             view.duration = number_or_none(text, "s");
             within(view.duration.value_or(1), 1e-3, 1e6, "duration (s)");
@@ -366,7 +391,8 @@ State look_at_region(State state, const Words& words, const Session& session) {
                 view.set[key.substr(4)] = core::parse_in(text, "1");
             }
         } else {
-            unknown_key(key, {"cells", "duration", "start", "as_declared", "set.PARAMETER"});
+            unknown_key(key, {"cells", "duration", "start", "show", "axes", "sweep", "steps", "draws", "logarithmic",
+                              "as_declared", "set.PARAMETER"});
         }
     }
     return state;
@@ -379,7 +405,28 @@ State explore_axes(State state, const Words& words, const Session&) {
     return state;
 }
 
-State brush(State state, const Words& words, const Session&) {
+/// SI unit of what is explored: a known quantity, a column of the loads, a parameter or number of a shape.
+std::string unit_of_column(const std::string& name, const Session& session) {
+    if (const auto* quantity = core::find_quantity(name)) {
+        return quantity->unit;
+    }
+    if (const auto* column = session.results.loads.find(name); column != nullptr && !column->is_text()) {
+        return column->unit;
+    }
+    for (const auto& column : geometry::variant_columns()) {
+        if (column.name == name) {
+            return column.unit;
+        }
+    }
+    for (const auto& parameter : geometry::parameter_names()) {
+        if (parameter.name == name && !parameter.unit.empty()) {
+            return parameter.unit;
+        }
+    }
+    return "1";
+}
+
+State brush(State state, const Words& words, const Session& session) {
     need(words, 0, 100, "brush COLUMN=LOW:HIGH ...");
     if (words.empty()) {
         state.explore.brush.clear();
@@ -389,10 +436,86 @@ State brush(State state, const Words& words, const Session&) {
         if (text.empty()) {
             state.explore.brush.erase(column);
         } else {
-            const auto* quantity = core::find_quantity(column);
-            state.explore.brush[column] = range_of(text, quantity != nullptr ? quantity->unit.c_str() : "1");
+            state.explore.brush[column] = range_of(text, unit_of_column(column, session).c_str());
         }
     }
+    return state;
+}
+
+State vary(State state, const Words& words, const Session& session) {
+    need(words, 0, 12, "vary PARAMETER=FROM:TO:COUNT ...");
+    std::vector<geometry::Vary> varied;
+    std::size_t count = 1;
+    for (const auto& word : words) {
+        varied.push_back(geometry::vary_from(word));
+        count *= varied.back().values.size();
+        const bool twice = std::count_if(varied.begin(), varied.end(),
+                                         [&](const auto& one) { return one.key == varied.back().key; }) > 1;
+        if (twice) {
+            throw UsageError("words", "'" + varied.back().key + "' is varied twice", {}, "name it once");
+        }
+    }
+    constexpr std::size_t most = 5000;  // made while somebody waits
+    if (count > most) {
+        throw UsageError("range", std::to_string(count) + " shapes are more than the window makes", {},
+                         "at most " + std::to_string(most) + "; `underbody body sweep` makes more");
+    }
+    if (!varied.empty()) {
+        static_cast<void>(shape_of(state, session, need_shape(state, session)));
+    }
+    state.explore.vary = std::move(varied);
+    state.explore.shapes = !state.explore.vary.empty();
+    return state;
+}
+
+State rows(State state, const Words& words, const Session&) {
+    need(words, 1, 1, "rows cases|shapes");
+    if (words[0] != "cases" && words[0] != "shapes") {
+        throw UsageError("unknown", "rows are cases or shapes, not '" + words[0] + "'", {},
+                         core::did_you_mean(words[0], {"cases", "shapes"}));
+    }
+    state.explore.shapes = words[0] == "shapes";
+    return state;
+}
+
+State accept(State state, const Words& words, const Session& session) {
+    need(words, 1, 1, "accept MEASUREMENT");
+    static_cast<void>(cases::with_accepted(session.study, session.results, words[0]));  // says why it cannot be
+    state.accepted.insert(words[0]);
+    return state;
+}
+
+State unaccept(State state, const Words& words, const Session&) {
+    need(words, 1, 1, "unaccept MEASUREMENT");
+    if (state.accepted.erase(words[0]) == 0) {
+        throw UsageError("missing", "no model of '" + words[0] + "' is accepted", {},
+                         core::did_you_mean(words[0], {state.accepted.begin(), state.accepted.end()}));
+    }
+    return state;
+}
+
+State exported(State state, const Words& words, const Session&) {
+    need(words, 2, 100, "exported FILE TABLE KEY=VALUE ...");
+    ExportRecord record;
+    record.table = words[1];
+    const std::map<std::string, std::string*> texts = {{"made_of", &record.made_of},
+                                                       {"format", &record.format},
+                                                       {"name", &record.name},
+                                                       {"frame", &record.frame},
+                                                       {"number", &record.number}};
+    for (std::size_t i = 2; i < words.size(); ++i) {
+        const auto [key, text] = assignment(words[i]);
+        if (const auto known = texts.find(key); known != texts.end()) {
+            *known->second = text;
+        } else if (key == "max_error") {
+            record.max_error = within(core::parse_in(text, "1"), 0, 1, "error allowed");
+        } else if (key.starts_with("range.")) {
+            record.range[key.substr(6)] = text;
+        } else {
+            unknown_key(key, {"made_of", "format", "name", "frame", "number", "max_error", "range.AXIS"});
+        }
+    }
+    state.exports[std::filesystem::absolute(words[0]).lexically_normal().string()] = record;
     return state;
 }
 
@@ -424,8 +547,16 @@ const std::vector<ActionKind>& action_kinds() {
          look_at_table},
         {"region", "NAME KEY=VALUE ...", "changes numbers and view of a stability map", "region glide cells=100", false,
          look_at_region},
+        {"accept", "MEASUREMENT", "the model that was found counts as the declared one", "accept 'heave test'", false,
+         accept},
+        {"unaccept", "MEASUREMENT", "the declared model counts again", "unaccept 'heave test'", false, unaccept},
+        {"exported", "FILE TABLE KEY=VALUE ...", "remembers a file that was exported, and how",
+         "exported lift.h lift format=c", false, exported},
         {"axes", "X Y", "chooses what the scatter plot shows", "axes gap lift_force", true, explore_axes},
         {"brush", "COLUMN=LOW:HIGH ...", "keeps cases within ranges; no range: all", "brush gap=2mm:5mm", true, brush},
+        {"vary", "PARAMETER=FROM:TO:COUNT ...", "makes the shapes between; no parameter: none",
+         "vary protrusion.height=1mm:3mm:5", false, vary},
+        {"rows", "cases|shapes", "explores the cases of the study or the shapes that vary", "rows cases", true, rows},
     };
     return kinds;
 }

@@ -34,6 +34,9 @@ std::string name_of(const Words& words);
 /// one step.
 std::string merge_key(const Words& words);
 
+/// `underbody body FILE --set ...` of a shape as it is in the state.
+Words shape_command(const State& state, const Session& session, const std::string& name);
+
 /// The command line that does the same outside the window, of the state after the action; empty for what changes the
 /// view only.
 std::string command_of(const State& after, const Words& words, const Session& session);

@@ -1,5 +1,7 @@
 #include "studio/desktop/state/session.h"
 
+#include "cases/accept.h"
+
 namespace underbody::studio {
 
 namespace fs = std::filesystem;
@@ -45,6 +47,23 @@ SessionPointer open_session(const fs::path& folder, const std::vector<std::strin
     add_bodies(*session);
     add_files(*session, files);
     return session;
+}
+
+SessionPointer with_models(const SessionPointer& session, const std::set<std::string>& accepted) {
+    if (session->accepted == accepted) {
+        return session;
+    }
+    const SessionPointer declared = session->declared ? session->declared : session;
+    if (accepted.empty()) {
+        return declared;
+    }
+    auto newer = std::make_shared<Session>(*declared);
+    for (const auto& name : accepted) {
+        newer->study = cases::with_accepted(newer->study, newer->results, name);
+    }
+    newer->accepted = accepted;
+    newer->declared = declared;
+    return newer;
 }
 
 SessionPointer with_files(const Session& session, const std::vector<std::string>& files) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,10 +21,16 @@ struct Session {
     /// By name: the [[body]]s of the study, and shapes from outside by the name of their file.
     std::map<std::string, geometry::BodyShape> shapes;
     std::map<std::string, std::filesystem::path> shape_files;
-    core::Problems problems;  ///< shapes that cannot be read
+    core::Problems problems;                  ///< shapes that cannot be read
+    std::set<std::string> accepted;           ///< measurements whose found model stands in `study`
+    std::shared_ptr<const Session> declared;  ///< without them; nullptr: this one
 };
 
 using SessionPointer = std::shared_ptr<const Session>;
+
+/// The same with the found models of these measurements in the place of their declared ones. Throws as
+/// cases::with_accepted.
+SessionPointer with_models(const SessionPointer& session, const std::set<std::string>& accepted);
 
 /// Reads the study and what its store holds; computes nothing. Throws as cases::Study::open. A shape that cannot be
 /// read is a problem of the session. An empty `folder`: no study, only the shapes of `files`.

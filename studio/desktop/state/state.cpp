@@ -174,17 +174,63 @@ TableView table_from(const json& object) {
 }
 
 json json_of(const RegionView& v) {
-    return {
-        {"set", v.set}, {"cells", v.cells}, {"duration", optional_json(v.duration)}, {"start", optional_json(v.start)}};
+    return {{"set", v.set},
+            {"cells", v.cells},
+            {"show", v.show},
+            {"axes", v.axes},
+            {"sweep", v.sweep},
+            {"steps", v.steps},
+            {"draws", v.draws},
+            {"logarithmic", optional_json(v.logarithmic)},
+            {"duration", optional_json(v.duration)},
+            {"start", optional_json(v.start)}};
 }
 
 RegionView region_from(const json& object) {
     RegionView v;
     take(object, "set", v.set);
     take(object, "cells", v.cells);
+    take(object, "show", v.show);
+    take(object, "axes", v.axes);
+    take(object, "sweep", v.sweep);
+    take(object, "steps", v.steps);
+    take(object, "draws", v.draws);
+    take(object, "logarithmic", v.logarithmic);
     take(object, "duration", v.duration);
     take(object, "start", v.start);
     return v;
+}
+
+json json_of(const ExportRecord& v) {
+    return {{"table", v.table},
+            {"made_of", v.made_of},
+            {"format", v.format},
+            {"name", v.name},
+            {"frame", v.frame},
+            {"number", v.number},
+            {"max_error", optional_json(v.max_error)},
+            {"range", v.range}};
+}
+
+ExportRecord export_from(const json& object) {
+    ExportRecord v;
+    take(object, "table", v.table);
+    take(object, "made_of", v.made_of);
+    take(object, "format", v.format);
+    take(object, "name", v.name);
+    take(object, "frame", v.frame);
+    take(object, "number", v.number);
+    take(object, "max_error", v.max_error);
+    take(object, "range", v.range);
+    return v;
+}
+
+json json_of(const ExploreView& v) {
+    json vary = json::array();
+    for (const auto& one : v.vary) {
+        vary.push_back({{"key", one.key}, {"values", one.values}});
+    }
+    return {{"x", v.x}, {"y", v.y}, {"brush", v.brush}, {"vary", vary}, {"shapes", v.shapes}};
 }
 
 State read_state(const json& object) {
@@ -195,15 +241,25 @@ State read_state(const json& object) {
     take(object, "selection", state.selection);
     take(object, "last", state.last);
     take(object, "stars", state.stars);
+    take(object, "accepted", state.accepted);
     state.design = design_from(object.value("design", json::object()));
     state.fields = fields_from(object.value("fields", json::object()));
     const json explore = object.value("explore", json::object());
     take(explore, "x", state.explore.x);
     take(explore, "y", state.explore.y);
     take(explore, "brush", state.explore.brush);
+    take(explore, "shapes", state.explore.shapes);
+    for (const auto& one : explore.value("vary", json::array())) {
+        state.explore.vary.push_back(
+            {one.at("key").get<std::string>(), one.at("values").get<std::vector<std::string>>()});
+    }
     const json tables = object.value("tables", json::object());
     for (const auto& [name, one] : tables.items()) {
         state.tables[name] = table_from(one);
+    }
+    const json exports = object.value("exports", json::object());
+    for (const auto& [file, one] : exports.items()) {
+        state.exports[file] = export_from(one);
     }
     const json regions = object.value("regions", json::object());
     for (const auto& [name, one] : regions.items()) {
@@ -221,11 +277,16 @@ void to_json(json& object, const State& state) {
               {"selection", state.selection},
               {"last", state.last},
               {"stars", state.stars},
+              {"accepted", state.accepted},
               {"design", json_of(state.design)},
               {"fields", json_of(state.fields)},
-              {"explore", {{"x", state.explore.x}, {"y", state.explore.y}, {"brush", state.explore.brush}}},
+              {"explore", json_of(state.explore)},
               {"tables", json::object()},
-              {"regions", json::object()}};
+              {"regions", json::object()},
+              {"exports", json::object()}};
+    for (const auto& [file, one] : state.exports) {
+        object["exports"][file] = json_of(one);
+    }
     for (const auto& [name, one] : state.tables) {
         object["tables"][name] = json_of(one);
     }

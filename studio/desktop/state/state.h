@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/body/body_shape.h"
+#include "geometry/body/variants.h"
 #include "studio/desktop/state/session.h"
 
 namespace underbody::studio {
@@ -40,6 +41,12 @@ struct TableView {
 struct RegionView {
     std::map<std::string, double> set;           ///< declared parameters, SI
     int cells = 200;                             ///< starts a side
+    std::string show = "ends";                   ///< "ends", "probability", "sweep"
+    std::string axes;                            ///< "gap=1mm:20mm,pitch=-3deg:3deg"; empty: as the study says
+    std::string sweep;                           ///< "jet_voltage=0:10": what the maps of a sweep differ in
+    int steps = 5;                               ///< maps of the sweep
+    std::optional<bool> logarithmic;             ///< gap axis; none: where it spans decades
+    int draws = 30;                              ///< of the tables, for the probability
     std::optional<double> duration;              ///< s; none: as the study says
     std::optional<std::array<double, 2>> start;  ///< gap (m) and heave velocity (m/s) of the motion that is shown
     bool operator==(const RegionView&) const = default;
@@ -62,6 +69,8 @@ struct ExploreView {
     std::string x = "gap";
     std::string y = "lift_force";
     std::map<std::string, std::array<double, 2>> brush;  ///< column -> kept range, SI
+    std::vector<geometry::Vary> vary;                    ///< of the shape that Design shows
+    bool shapes = false;                                 ///< these shapes are explored, not the cases
     bool operator==(const ExploreView&) const = default;
 };
 
@@ -77,6 +86,16 @@ struct DesignView {
     bool operator==(const DesignView&) const = default;
 };
 
+/// A file that was exported for a controller, and how.
+struct ExportRecord {
+    std::string table;    ///< [[table]] of the study
+    std::string made_of;  ///< table_digest when it was written
+    std::string format = "c", name, frame = "up", number = "double";
+    std::optional<double> max_error;           ///< share of the range
+    std::map<std::string, std::string> range;  ///< axis -> policy beyond its ends
+    bool operator==(const ExportRecord&) const = default;
+};
+
 struct State {
     std::string study;               ///< folder, absolute; empty: none
     std::vector<std::string> files;  ///< from outside the study: "field:PATH", "shape:PATH"
@@ -90,6 +109,8 @@ struct State {
     ExploreView explore;
     std::map<std::string, TableView> tables;
     std::map<std::string, RegionView> regions;
+    std::set<std::string> accepted;               ///< measurements whose found model counts as theirs
+    std::map<std::string, ExportRecord> exports;  ///< by path, absolute
     bool operator==(const State&) const = default;
 
     /// Names of the selected things of a kind ("case"), in the order in which they were chosen.

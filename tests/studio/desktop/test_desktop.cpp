@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QImage>
+#include <QXmlStreamReader>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -138,6 +139,31 @@ TEST(Desktop, ComparesByDifferences) {
     const QImage differences = picture(folder.path() / "differences" / "compare.png");
     EXPECT_GT(difference(fields, differences), 0.03);
     EXPECT_GT(colours(differences), 200U);
+}
+
+// What the entry of the menu says it opens is declared as a type of file, and the AppStream page names the same.
+TEST(Desktop, ItsTypesOfFilesAreDeclared) {
+    const fs::path folder = test::source_folder() / "studio" / "desktop";
+    const auto words_of = [&](const char* file, const char* element, const char* attribute) {
+        QXmlStreamReader xml(QByteArray::fromStdString(core::read_file(folder / file)));
+        std::set<std::string> words;
+        while (!xml.atEnd()) {
+            xml.readNext();
+            if (xml.isStartElement() && xml.name() == element) {
+                words.insert(
+                    (attribute == nullptr ? xml.readElementText() : xml.attributes().value(attribute).toString())
+                        .toStdString());
+            }
+        }
+        EXPECT_FALSE(xml.hasError()) << file << xml.errorString().toStdString();
+        return words;
+    };
+    const auto declared = words_of("org.underbody.studio.mime.xml", "mime-type", "type");
+    EXPECT_EQ(declared, words_of("org.underbody.studio.metainfo.xml", "mediatype", nullptr));
+    const std::string entry = core::read_file(folder / "org.underbody.studio.desktop");
+    for (const auto& type : declared) {
+        EXPECT_NE(entry.find(type + ";"), std::string::npos) << type;
+    }
 }
 
 TEST(Desktop, ReplaysALogWithoutAWindow) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "cases/accept.h"
 #include "core/file.h"
 #include "studio/desktop/state/action_log.h"
 #include "studio/desktop/state/session_file.h"
@@ -47,6 +48,11 @@ std::vector<std::string> every_action() {
             "region glide as_declared=",
             "axes pitch drag_force",
             "brush gap=2mm:5mm lift_force=0:0.4",
+            "vary protrusion.height=1mm:3mm:3 body.base=ellipse,rectangle",
+            "brush volume=2000cm^3:2300cm^3",
+            "rows cases",
+            "exported /tmp/lift.h lift made_of=abc format=c name=lift frame=ned number=float max_error=0.01 "
+            "range.gap=clamp",
             "add shape " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
             "remove " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
             "locate " + evie().string() + " /elsewhere/evie",
@@ -102,6 +108,7 @@ TEST(StudioActions, EachIsDoneUndoneAndRedone) {
         EXPECT_EQ(state_hash(*history.state()), after) << line;
         EXPECT_FALSE(history.steps().back().name.empty()) << line;
     }
+    verbs.insert({"accept", "unaccept"});  // AcceptedModels: they need a discovery
     for (const auto& kind : action_kinds()) {
         EXPECT_TRUE(verbs.contains(kind.verb)) << "no test of '" << kind.verb << "'";
     }
@@ -116,14 +123,31 @@ TEST(StudioActions, EachIsDoneUndoneAndRedone) {
 TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
     History history(opened());
     const std::vector<std::pair<std::string, std::string>> wrong = {
-        {"worspace tables", "workspace"},        {"workspace tabels", "tables"},
-        {"set protrusion.heigth=2mm", "height"}, {"set body.base_cut=7", "base_cut"},
-        {"table lft net_weight=1N", "lift"},     {"table lift net_wait=1N", "net_weight"},
-        {"region glid cells=30", "glide"},       {"region glide cells=3", "20"},
-        {"fields camera=botom", "bottom"},       {"operation gap=-3mm", "gap"},
-        {"brush gap=5mm:2mm", "smaller"},        {"keep ellipse", "another name"},
-        {"forget nothing", "nothing"},           {"shape elipse", "ellipse"},
-        {"select nonsense", "KIND/NAME"},        {"", "action"}};
+        {"worspace tables", "workspace"},
+        {"workspace tabels", "tables"},
+        {"set protrusion.heigth=2mm", "height"},
+        {"set body.base_cut=7", "base_cut"},
+        {"table lft net_weight=1N", "lift"},
+        {"table lift net_wait=1N", "net_weight"},
+        {"region glid cells=30", "glide"},
+        {"region glide cells=3", "20"},
+        {"fields camera=botom", "bottom"},
+        {"operation gap=-3mm", "gap"},
+        {"brush gap=5mm:2mm", "smaller"},
+        {"keep ellipse", "another name"},
+        {"forget nothing", "nothing"},
+        {"shape elipse", "ellipse"},
+        {"vary body.base_cut", "PARAMETER=VALUES"},
+        {"vary body.bas_cut=0.6:0.8:3", "base_cut"},
+        {"vary body.base_cut=0.6:0.8:9999", "5000"},
+        {"vary body.base_cut=0.6,0.7 body.base_cut=0.8,0.9", "twice"},
+        {"rows shape", "shapes"},
+        {"exported lift.h lift fromat=c", "format"},
+        {"accept 'heave tst'", "heave test"},
+        {"accept 'heave test'", "discovered"},
+        {"unaccept x", "accepted"},
+        {"select nonsense", "KIND/NAME"},
+        {"", "action"}};
     const StatePointer before = history.state();
     for (const auto& [line, told] : wrong) {
         try {
@@ -172,6 +196,90 @@ TEST(StudioActions, ShapesAreTheLibrarys) {
     EXPECT_NE(command.find("--set body.base_cut=0.7 --set 'protrusion.height=2 mm' --as bumped.toml"),
               std::string::npos)
         << command;
+}
+
+// What Explore varies and keeps stands in the session, and the line of it makes the same shapes.
+TEST(StudioActions, WhatIsVariedIsSavedAndHasACommand) {
+    State state = opened();
+    state = applied(state, words_of("set body.base_cut=0.7"), *evie_session());
+    state = applied(state, words_of("vary protrusion.height=1mm:3mm:3"), *evie_session());
+    state = applied(state, words_of("brush volume=2000cm^3:2300cm^3"), *evie_session());
+    ASSERT_EQ(state.explore.vary.size(), 1U);
+    EXPECT_EQ(state.explore.vary[0].values, (std::vector<std::string>{"1 mm", "2 mm", "3 mm"}));
+    EXPECT_TRUE(state.explore.shapes);
+    EXPECT_DOUBLE_EQ(state.explore.brush.at("volume")[0], 2000e-6);
+    EXPECT_EQ(state_from_json(nlohmann::json(state)), state);
+    const std::string command = command_of(state, words_of("brush volume=2000cm^3:2300cm^3"), *evie_session());
+    EXPECT_NE(command.find("underbody body sweep "), std::string::npos) << command;
+    EXPECT_NE(
+        command.find("--set body.base_cut=0.7 --vary 'protrusion.height=1 mm,2 mm,3 mm' --where volume=0.002"),
+        std::string::npos)
+        << command;
+    state = applied(state, words_of("rows cases"), *evie_session());
+    EXPECT_TRUE(command_of(state, words_of("brush gap=2mm:5mm"), *evie_session()).empty());
+    state = applied(state, words_of("vary"), *evie_session());
+    EXPECT_TRUE(state.explore.vary.empty());
+}
+
+/// The shipped study as if an effect had been found in its measurement.
+struct Discovered {
+    explicit Discovered(const fs::path& folder) {
+        fs::copy(evie() / "study.toml", folder / "study.toml");
+        for (const char* part : {"heave", "fields", "shapes", "tables"}) {
+            fs::create_directory_symlink(evie() / part, folder / part);
+        }
+        for (const char* part : {"glide.toml", "model.toml", "forces.csv"}) {
+            fs::copy(evie() / part, folder / part);
+        }
+        const fs::path report = folder / "report" / "discovery" / "heave test";
+        const std::string said = R"({"verdict": "effect", "sentence": "The model lacks coulomb_friction."})";
+        core::write_file(report / "discovery.json", said);
+        core::write_file(report / "model.toml", core::read_file(evie() / "heave" / "model.toml") +
+                                                    "\n[[effect]]\nname = \"coulomb_friction\"\nforce = \"0.01 N\"\n");
+        core::write_file(report / "jet_lift.csv", core::read_file(evie() / "heave" / "jet_lift.csv"));
+        core::write_file(report / "next-experiment.csv", "time [s]\n0\n");
+        auto made = std::make_shared<Session>(*open_session(folder));
+        made->results.documents.emplace_back("discovery/heave test", said);
+        session = made;
+        state.study = session->folder.string();
+    }
+    SessionPointer session;
+    State state;
+};
+
+TEST(AcceptedModels, CountAsTheDeclaredOnesAndAreTakenBack) {
+    const core::TemporaryFolder folder;
+    const Discovered found(folder.path());
+    const fs::path declared = found.session->study.measurements.front().model;
+    const State accepted = applied(found.state, words_of("accept 'heave test'"), *found.session);
+    const SessionPointer with = with_models(found.session, accepted.accepted);
+    EXPECT_EQ(with->study.measurements.front().model.filename(), "model.toml");
+    EXPECT_NE(with->study.measurements.front().model, declared);
+    EXPECT_EQ(with->study.regions.front().model, found.session->study.regions.front().model) << "of another model";
+    EXPECT_EQ(with_models(with, {})->study.measurements.front().model, declared);
+    EXPECT_EQ(applied(accepted, words_of("unaccept 'heave test'"), *with), found.state);
+    EXPECT_EQ(state_from_json(nlohmann::json(accepted)), accepted);
+    EXPECT_NE(command_of(accepted, words_of("accept 'heave test'"), *with).find("underbody study accept"),
+              std::string::npos);
+}
+
+TEST(AcceptedModels, AreWrittenIntoTheStudyWhichKeepsItsComments) {
+    const core::TemporaryFolder folder;
+    const Discovered found(folder.path());
+    const auto accepted = cases::accept_model(found.session->study, found.session->results, "heave test");
+    EXPECT_EQ(accepted.users, (std::vector<std::string>{"measurement 'heave test'"}));
+    EXPECT_FALSE(fs::exists(folder.path() / accepted.model)) << "nothing is written yet";
+    cases::write_accepted(found.session->study, accepted);
+    const auto study = cases::Study::open(folder.path());
+    EXPECT_EQ(study.measurements.front().model.lexically_normal(),
+              (folder.path() / "models" / "heave test" / "model.toml").lexically_normal());
+    EXPECT_TRUE(fs::exists(folder.path() / "models" / "heave test" / "jet_lift.csv"));
+    EXPECT_FALSE(fs::exists(folder.path() / "models" / "heave test" / "next-experiment.csv"));
+    const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '#'); };
+    EXPECT_EQ(lines(core::read_file(folder.path() / "study.toml")), lines(core::read_file(evie() / "study.toml")));
+    // An older report is none of this result.
+    core::write_file(folder.path() / "report" / "discovery" / "heave test" / "discovery.json", "{}");
+    EXPECT_THROW(cases::accept_model(found.session->study, found.session->results, "heave test"), core::InputError);
 }
 
 /// `count` lines of actions, of which most fit the shipped study.

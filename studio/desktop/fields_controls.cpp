@@ -1,0 +1,171 @@
+// Compare: the controls at its side, and what they say of what is shown.
+#include <QBoxLayout>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPushButton>
+#include <QShortcut>
+#include <QSignalBlocker>
+#include <algorithm>
+
+#include "core/text.h"
+#include "postproc/loads/body_zones.h"
+#include "studio/desktop/fields_panel.h"
+#include "studio/desktop/qt_text.h"
+
+namespace underbody::studio {
+
+namespace {
+
+/// Zones that are the body: those of the case's patterns, else what may be a wall but not the ground.
+bool is_body(const postproc::Field& field, const postproc::Zone& zone, const std::vector<std::string>& patterns) {
+    if (!patterns.empty()) {
+        return postproc::matches_any(patterns, zone.name);
+    }
+    std::vector<const postproc::Zone*> said_otherwise;
+    const auto walls = postproc::possible_walls(field, said_otherwise);
+    return std::find(walls.begin(), walls.end(), &zone) != walls.end() && !postproc::matches("*ground*", zone.name);
+}
+
+}  // namespace
+
+void FieldsPanel::build_controls(QWidget& side) {
+    auto* left = new QVBoxLayout(&side);
+    left->setContentsMargins(0, 0, 0, 0);
+    auto* colour = new QLabel("&Colour by");
+    left->addWidget(colour);
+    array_ = new QComboBox;
+    array_->setToolTip("Which array of the field colours the surface");
+    array_->setAccessibleName("Colour by");
+    colour->setBuddy(array_);
+    left->addWidget(array_);
+    left->addWidget(new QLabel("Range, the same for all cells"));
+    range_ = new QLineEdit;
+    range_->setPlaceholderText("from what is seen; or -120:120");
+    range_->setAccessibleName("Range of the colours");
+    range_->setClearButtonEnabled(true);
+    left->addWidget(range_);
+    range_shown_ = new QLabel;
+    left->addWidget(range_shown_);
+    whole_range_ = new QCheckBox("&whole range of colours");
+    whole_range_->setToolTip(
+        "Off: colours span the 1st to the 99th hundredth of the values, so that single points at an\n"
+        "edge do not take all the colours");
+    edges_ = new QCheckBox("mesh &lines");
+    mirror_ = new QCheckBox("&mirror half model");
+    difference_ = new QCheckBox("&difference to the first");
+    difference_->setToolTip(
+        "The cells after the first show their case less the first, seen from below, as `underbody views difference` "
+        "draws it");
+    for (auto* box : {whole_range_, edges_, mirror_, difference_}) {
+        left->addWidget(box);
+    }
+    left->addWidget(new QLabel("Zones"));
+    zones_ = new QListWidget;
+    zones_->setAccessibleName("Zones");
+    zones_->setToolTip("Ticked zones are drawn, and set the range of the colours");
+    left->addWidget(zones_, 1);
+    auto* views = new QGridLayout;
+    const std::vector<std::tuple<QString, std::string, QString>> buttons = {{"Underbody", "bottom", "U"},
+                                                                            {"Top", "top", "T"},
+                                                                            {"Side", "side", "S"},
+                                                                            {"Front", "front", "R"},
+                                                                            {"Oblique", "iso", "O"}};
+    int place = 0;
+    for (const auto& [text, view, key] : buttons) {
+        auto* button = new QPushButton(text);
+        button->setToolTip("Look from there (" + key + ")");
+        views->addWidget(button, place / 2, place % 2);
+        ++place;
+        const auto act = [this, v = view] {
+            camera_.clear();  // also back to it after turning by hand
+            if (state().fields.camera == v) {
+                look_from(v);
+            }
+            desk_.act({"fields", "camera=" + v});
+        };
+        connect(button, &QPushButton::clicked, this, act);
+        auto* shortcut = new QShortcut(QKeySequence(key), this);
+        shortcut->setContext(Qt::WidgetWithChildrenShortcut);
+        connect(shortcut, &QShortcut::activated, this, act);
+    }
+    left->addLayout(views);
+    const auto on_off = [this](const char* key, bool on) {
+        desk_.act({"fields", std::string(key) + (on ? "=on" : "=off")});
+    };
+    connect(array_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+        desk_.act({"fields", "array=" + array_->currentText().toStdString()});
+    });
+    connect(range_, &QLineEdit::editingFinished, this, [this] {
+        if (range_->isModified()) {
+            range_->setModified(false);
+            desk_.act({"fields", "range=" + range_->text().trimmed().toStdString()});
+        }
+    });
+    connect(whole_range_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("whole_range", on); });
+    connect(edges_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("edges", on); });
+    connect(mirror_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("mirror", on); });
+    connect(difference_, &QCheckBox::clicked, this, [on_off](bool on) { on_off("difference", on); });
+    connect(zones_, &QListWidget::itemChanged, this, [this](QListWidgetItem* item) {
+        const bool on = item->checkState() == Qt::Checked;
+        desk_.act({"fields", "zone." + item->text().toStdString() + (on ? "=on" : "=off")});
+    });
+}
+
+void FieldsPanel::fill_controls() {
+    const QSignalBlocker quiet_zones(zones_), quiet_array(array_);
+    std::map<std::string, std::pair<bool, std::size_t>> zones;
+    std::vector<QString> arrays;
+    for (const auto& cell : cells_) {
+        if (!cell->ready) {
+            continue;
+        }
+        const auto& field = *cell->scene->field();
+        // Where no zone looks like a body (an inlet alone, a blade without walls) all are shown.
+        const bool any = std::any_of(field.zones.begin(), field.zones.end(), [&](const auto& zone) {
+            return zone.surface && is_body(field, zone, cell->source.zones);
+        });
+        for (const auto& zone : field.zones) {
+            if (zone.surface && zone.surface->GetNumberOfCells() > 0) {
+                const bool body = !any || is_body(field, zone, cell->source.zones);
+                const auto typed = state().fields.zones.find(zone.name);
+                auto& entry = zones[zone.name];
+                entry.first = typed != state().fields.zones.end() ? typed->second : entry.first || body;
+                entry.second += static_cast<std::size_t>(zone.surface->GetNumberOfCells());
+            }
+        }
+        for (const auto& choice : cell->scene->choices()) {
+            if (std::find(arrays.begin(), arrays.end(), qt(choice.label)) == arrays.end()) {
+                arrays.push_back(qt(choice.label));
+            }
+        }
+    }
+    zones_->clear();
+    for (const auto& [name, entry] : zones) {
+        auto* item = new QListWidgetItem(qt(name), zones_);
+        item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable | Qt::ItemIsSelectable);
+        item->setCheckState(entry.first ? Qt::Checked : Qt::Unchecked);
+        item->setToolTip(QString("%1 faces").arg(entry.second));
+    }
+    array_->clear();
+    for (const auto& label : arrays) {
+        array_->addItem(label);
+    }
+    array_->addItem("(plain)");
+    const int kept = array_->findText(qt(state().fields.array));
+    array_->setCurrentIndex(kept >= 0 ? kept : 0);
+    whole_range_->setChecked(state().fields.whole_range);
+    edges_->setChecked(state().fields.edges);
+    difference_->setChecked(state().fields.difference);
+    mirror_->setEnabled(!session().study.symmetry.empty());
+    mirror_->setChecked(state().fields.mirror.value_or(true) && !session().study.symmetry.empty());
+    if (!range_->hasFocus()) {
+        const auto& range = state().fields.range;
+        range_->setText(range ? qt(core::format_number((*range)[0]) + ":" + core::format_number((*range)[1])) : "");
+        range_->setModified(false);
+    }
+}
+
+}  // namespace underbody::studio

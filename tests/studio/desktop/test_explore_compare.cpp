@@ -1,0 +1,336 @@
+// Explore, Compare, kinds of stability maps and themes in the real window, without a display.
+// First, because Qt makes `signals` a keyword and the dynamics room has a member of that name.
+// clang-format off
+#include "surrogates/dynamics/basin/region.h"
+// clang-format on
+
+#include <QCheckBox>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QTableWidget>
+#include <QTest>
+#include <QXmlStreamReader>
+#include <nlohmann/json.hpp>
+
+#include "cases/case_loads.h"
+#include "core/table.h"
+#include "core/text.h"
+#include "geometry/body/body_report.h"
+#include "studio/desktop/compare_numbers.h"
+#include "studio/desktop/compare_sheet.h"
+#include "studio/desktop/explore_panel.h"
+#include "studio/desktop/force_panel.h"
+#include "studio/desktop/pictures_panel.h"
+#include "studio/desktop/plot_view.h"
+#include "studio/desktop/problems_panel.h"
+#include "studio/desktop/region_panel.h"
+#include "studio/desktop/state/exports.h"
+#include "studio/desktop/theme.h"
+#include "tests/studio/desktop/window_fixture.h"
+
+namespace underbody::studio {
+namespace {
+
+// Another kind of rows has other columns: what is kept of the one says nothing of the other.
+TEST_F(Window, ShapesThatVaryAreMadeBrushedAndTakenIntoDesign) {
+    open(computed_study());
+    act("workspace explore");
+    act("vary body.base_cut=0.6:0.8:3");
+    settle(*window_);
+    auto& explore = panel<ExplorePanel>();
+    ASSERT_TRUE(explore.shapes());
+    ASSERT_EQ(explore.rows().rows(), 3U);
+    geometry::BodyOptions options;
+    options.set = {{"body.base_cut", "0.7"}};
+    options.panels = 0;
+    const auto body = geometry::read_body(computed_study() / "shapes" / "ellipse.toml", options);
+    const double volume = explore.rows().numbers("volume")[1];
+    EXPECT_NEAR(volume, body.mass.volume, 1e-12) << "the numbers of the library";
+    act("brush volume=" + core::format_number(0.999 * volume) + ":" + core::format_number(1.001 * volume));
+    EXPECT_EQ(explore.kept(), (std::vector<std::size_t>{1}));
+    act("rows cases");
+    EXPECT_EQ(explore.kept().size(), 5U);
+    act("rows shapes");
+    EXPECT_EQ(explore.kept().size(), 1U);
+    for (auto* table : explore.findChildren<QTableWidget*>()) {
+        table->selectRow(0);
+    }
+    for (auto* button : explore.findChildren<QPushButton*>()) {
+        if (button->text().contains("Design")) {
+            EXPECT_TRUE(button->isEnabled());
+            button->click();
+        }
+    }
+    EXPECT_EQ(window_->desk().state().workspace, "design");
+    EXPECT_EQ(window_->desk().state().design.changes.at("ellipse").at("body.base_cut"), "0.7");
+    window_->desk().undo();
+    window_->desk().undo();
+    EXPECT_TRUE(window_->desk().state().design.changes.empty());
+}
+
+TEST_F(Window, ARangeIsTypedAsWellAsDragged) {
+    open(computed_study());
+    act("workspace explore");
+    settle(*window_);
+    auto& explore = panel<ExplorePanel>();
+    QLineEdit* kept = nullptr;
+    for (auto* edit : explore.findChildren<QLineEdit*>()) {
+        kept = edit->accessibleName() == "Ranges that are kept" ? edit : kept;
+    }
+    ASSERT_NE(kept, nullptr);
+    kept->setFocus();
+    QTest::keyClicks(kept, "gap=2.5mm:10mm");
+    QTest::keyClick(kept, Qt::Key_Return);
+    EXPECT_EQ(explore.kept().size(), 3U);
+    EXPECT_DOUBLE_EQ(window_->desk().state().explore.brush.at("gap")[0], 0.0025);
+    kept->selectAll();
+    QTest::keyClicks(kept, "gap=2.5mm");
+    QTest::keyClick(kept, Qt::Key_Return);
+    EXPECT_NE(window_->last_error().indexOf("LOW:HIGH"), -1) << "said";
+    EXPECT_EQ(explore.kept().size(), 3U) << "and nothing changed";
+}
+
+// Forces of the library, with the errors of the study's tables; what differs by more than twice the joint one is bold.
+TEST_F(Window, ComparesForcesByZoneAndAlongTheBody) {
+    const fs::path folder = copy_of_study();
+    std::string text = core::read_file(folder / "study.toml");
+    text.insert(text.find("net_weight"), "relative_sigma = 0.01\n");
+    core::write_file(folder / "study.toml", text);
+    open(folder);
+    std::vector<ComparedCase> cases;
+    for (const auto& one : window_->desk().session().study.cases) {
+        postproc::LoadsOptions options = cases::loads_options(window_->desk().session().study, one);
+        options.stations = 40;
+        if (one.name == "ellipse-h5-p0" || one.name == "ellipse-h2-p0") {
+            postproc::ReadOptions reading;
+            reading.surfaces_only = true;
+            cases.push_back({"case/" + one.name,
+                             one.name,
+                             std::make_shared<const postproc::LoadsResult>(
+                                 postproc::loads(postproc::read_field(one.file, reading), options)),
+                             {}});
+        }
+    }
+    ASSERT_EQ(cases.size(), 2U);
+    CompareNumbers numbers(window_->desk(), nullptr);
+    numbers.show_cases(cases, false);
+    const double first = cases[0].loads->named.lift_force, second = cases[1].loads->named.lift_force;
+    const auto shown = [](double value, int digits) {
+        return QString::fromStdString(core::format_number(value, digits)).replace('-', QChar(0x2212));
+    };
+    EXPECT_EQ(numbers.forces()->item(0, 0)->text(), shown(first, 4));
+    EXPECT_EQ(numbers.forces()->item(1, 1)->text(), shown(0.01 * std::abs(second), 2));
+    EXPECT_EQ(numbers.forces()->item(1, 2)->text(), shown(second - first, 3));
+    EXPECT_EQ(numbers.forces()->item(1, 2)->font().bold(),
+              std::abs(second - first) > 2 * std::hypot(0.01 * first, 0.01 * second));
+    const auto sum = [&](int row) {
+        double all = 0;
+        for (int column = 0; column + 2 < numbers.zones()->columnCount(); column += 2) {
+            all += numbers.zones()->item(row, column)->text().replace(QChar(0x2212), '-').toDouble();
+        }
+        return all;
+    };
+    EXPECT_NEAR(sum(0), first, 2e-3);
+    EXPECT_TRUE(numbers.along()->has_figure());
+    EXPECT_NEAR(cases[0].loads->stations.back().behind.lift_force, first, 1e-9);
+    const core::Table table = numbers.table();
+    EXPECT_EQ(table.rows(), 2U);
+    EXPECT_DOUBLE_EQ(table.numbers("lift_force_sigma")[0], 0.01 * std::abs(table.numbers("lift_force")[0]));
+}
+
+TEST_F(Window, ASheetIsWrittenWithItsCasesRangeAndUnits) {
+    Sheet sheet;
+    sheet.title = "pressure (Pa), -120 to 110";
+    sheet.about = "a study & its camera <below>";
+    for (int i = 0; i < 3; ++i) {
+        QImage image(300, 200, QImage::Format_RGB32);
+        image.fill(Qt::blue);
+        sheet.cells.emplace_back(QString("case %1").arg(i), image);
+    }
+    sheet.rows = {{"", "lift (N)"}, {"case 0", "0.123"}};
+    for (const char* ending : {".png", ".pdf", ".svg"}) {
+        write_sheet(sheet, folder_.path() / ("sheet" + std::string(ending)));
+    }
+    const QImage png(QString::fromStdString((folder_.path() / "sheet.png").string()));
+    EXPECT_EQ(png.text("Title"), sheet.title);
+    EXPECT_EQ(core::read_file(folder_.path() / "sheet.pdf").substr(0, 5), "%PDF-");
+    QXmlStreamReader svg(QByteArray::fromStdString(core::read_file(folder_.path() / "sheet.svg")));
+    int images = 0;
+    QString words;
+    while (!svg.atEnd()) {
+        svg.readNext();
+        images += svg.isStartElement() && svg.name() == "image" ? 1 : 0;
+        words += svg.isCharacters() ? svg.text().toString() + "|" : QString();
+    }
+    EXPECT_FALSE(svg.hasError()) << svg.errorString().toStdString();
+    EXPECT_EQ(images, 3);
+    for (const char* word : {"pressure (Pa), -120 to 110", "a study & its camera <below>", "case 2", "0.123"}) {
+        EXPECT_TRUE(words.contains(word)) << word << " in " << words.toStdString();
+    }
+    EXPECT_THROW(write_sheet(sheet, folder_.path() / "sheet.gif"), core::UsageError);
+}
+
+// The chance of a safe end, and shares over what is swept: the numbers of the library.
+TEST_F(Window, MapsOfChanceAndOfASweepAreThoseOfTheLibrary) {
+    open(computed_study());
+    act("workspace stability");
+    act("region glide cells=20 show=probability draws=4");
+    settle(*window_);
+    auto& stability = panel<RegionPanel>();
+    ASSERT_TRUE(stability.probability()) << window_->last_error().toStdString();
+    EXPECT_FALSE(stability.region()) << "another map";
+    act("region glide show=sweep sweep=speed=0.4:0.6 steps=2");
+    settle(*window_);
+    ASSERT_TRUE(stability.sweep()) << window_->last_error().toStdString();
+    EXPECT_EQ(stability.sweep()->value.size(), 2U);
+    window_->desk().undo();
+    act("region glide show=ends");
+    settle(*window_);
+    EXPECT_TRUE(stability.region());
+    EXPECT_FALSE(act("region glide show=nothing"));
+    EXPECT_FALSE(act("region glide axes=gap=1mm:2mm"));
+}
+
+// What the button does is what the command does, and only after a question that names the cost.
+TEST_F(Window, CfdOfAShapeIsAskedForWithItsCost) {
+    const fs::path folder = copy_of_study();
+    open(folder);
+    act("set body.base_cut=0.7");
+    EXPECT_FALSE(window_->add_to_sweep("cut"));
+    EXPECT_EQ(asked_, 1);
+    EXPECT_FALSE(fs::exists(folder / "shapes" / "cut.toml"));
+    answer_ = true;
+    ASSERT_TRUE(window_->add_to_sweep("cut"));
+    settle(*window_);
+    EXPECT_DOUBLE_EQ(geometry::read_shape(folder / "shapes" / "cut.toml").base_cut, 0.7);
+    const auto& study = window_->desk().session().study;
+    ASSERT_TRUE(study.sweep);
+    ASSERT_EQ(study.sweep->bodies.size(), 1U);
+    EXPECT_EQ(study.sweep->bodies[0].name, "cut");
+    EXPECT_THROW(window_->add_to_sweep("cut"), core::InputError);
+    // By the command, one more, into the list that is there now.
+    const auto run = test::run_underbody(
+        {"sweep", folder.string(), "--add", (folder / "shapes" / "cut.toml").string(), "--as", "cut-2", "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_EQ(nlohmann::json::parse(run.output)["cases"], 1);
+    EXPECT_EQ(cases::Study::open(folder).sweep->bodies.size(), 2U);
+}
+
+// Over decades of gap the scale is logarithmic, as in Tables; a click is read on the scale that is drawn.
+TEST_F(Window, AMapOverDecadesOfGapIsLogarithmic) {
+    open(computed_study());
+    act("workspace stability");
+    act("region glide cells=20");
+    settle(*window_);
+    auto& stability = panel<RegionPanel>();
+    QCheckBox* box = nullptr;
+    for (auto* one : stability.findChildren<QCheckBox*>()) {
+        box = one->text().contains("garithmic") ? one : box;
+    }
+    ASSERT_NE(box, nullptr);
+    EXPECT_TRUE(box->isEnabled());
+    EXPECT_FALSE(box->isChecked()) << "2 to 20 mm";
+    act("region glide axes=gap=1mm:100mm,heave_velocity=-0.06:0.06");
+    settle(*window_);
+    EXPECT_TRUE(box->isChecked()) << "1 to 100 mm";
+    box->click();
+    EXPECT_EQ(window_->desk().state().regions.at("glide").logarithmic, false);
+    settle(*window_);
+    EXPECT_FALSE(box->isChecked());
+}
+
+// What was exported is remembered; it is stale once its table has changed, and made again as it was made before.
+TEST_F(Window, AStaleExportIsSaidAndMadeAgain) {
+    const fs::path study = copy_of_study();
+    open(study);
+    act("workspace tables");
+    settle(*window_);
+    const std::string file = (folder_.path() / "lift.h").string();
+    ExportRecord record;
+    record.table = "lift";
+    record.made_of = table_digest(window_->desk().session(), "lift");
+    record.name = "lift";
+    core::write_file(file, "the old one");
+    window_->desk().act(words_of_export(file, record));
+    EXPECT_EQ(window_->desk().state().exports.at(file), record);
+    EXPECT_TRUE(stale_exports(window_->desk().state(), window_->desk().session()).empty());
+    window_->export_stale();
+    settle(*window_);
+    EXPECT_EQ(core::read_file(file), "the old one") << "nothing is stale";
+    fs::remove(study / "fields" / "ellipse-h20-p0.csv");
+    window_->desk().reload();
+    settle(*window_);
+    EXPECT_EQ(stale_exports(window_->desk().state(), window_->desk().session()), std::vector<std::string>{file});
+    bool said = false;
+    const auto* problems = window_->findChild<ProblemList*>();
+    for (int i = 0; i < problems->topLevelItemCount(); ++i) {
+        said = said || problems->topLevelItem(i)->text(1).contains("stale");
+    }
+    EXPECT_TRUE(said);
+    window_->export_stale();
+    settle(*window_);
+    EXPECT_NE(core::read_file(file).find("#ifndef"), std::string::npos);
+    EXPECT_TRUE(stale_exports(window_->desk().state(), window_->desk().session()).empty());
+}
+
+// In a small window plots keep room to be read.
+TEST_F(Window, PlotsKeepTheirRoomInASmallWindow) {
+    open(computed_study());
+    window_->resize(900, 600);
+    for (const auto& name : workspace_names()) {
+        act("workspace " + name);
+        settle(*window_);
+        for (const auto* plot : window_->findChildren<PlotView*>()) {
+            if (plot->isVisible()) {
+                EXPECT_GE(plot->height(), name == "compare" ? 70 : 150) << name;
+                EXPECT_GE(plot->width(), 240) << name;
+            }
+        }
+    }
+    EXPECT_LE(window_->height(), 760) << "and the window does not grow far beyond what was asked";
+}
+
+// Two files of the same bytes are two cases with their loads.
+TEST_F(Window, TwoCasesOfEqualBytesAreBothDone) {
+    const fs::path folder = folder_.path() / "equal";
+    test::make_few_gaps(folder);
+    fs::copy_file(folder / "fields" / "ellipse-h5-p0.csv", folder / "fields" / "ellipse-h4-p0.csv");
+    const auto run = test::run_underbody({"study", "run", folder.string(), "--no-pictures"});
+    open(folder);
+    EXPECT_EQ(window_->desk().session().results.loads.rows(), 6U) << run.errors;
+    EXPECT_EQ(status_of("ellipse-h4-p0"), status_of("ellipse-h3-p0"));
+    EXPECT_EQ(status_of("ellipse-h5-p0"), status_of("ellipse-h3-p0"));
+}
+
+// Pictures are called by what they show and of whom, not by their keys.
+TEST_F(Window, PicturesHaveTitles) {
+    cases::StudyResults results;
+    results.documents.emplace_back("picture/level/ellipse-h5-p0/pressure-underbody",
+                                   R"({"title": "pressure on the underbody", "caption": "level: seen from below"})");
+    results.documents.emplace_back("residual/heave test/0", R"({"title": "residual of heave test", "caption": ""})");
+    EXPECT_EQ(picture_title(results, "picture/level/ellipse-h5-p0/pressure-underbody"),
+              "pressure on the underbody: ellipse-h5-p0");
+    EXPECT_EQ(picture_title(results, "residual/heave test/0"), "residual of heave test");
+    EXPECT_EQ(picture_title(results, "figure/a/b"), "a, b");
+}
+
+// Colours follow the theme, in plots that were drawn before too.
+TEST_F(Window, ADarkThemeReachesEveryPlot) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    const auto corner = [&] {
+        const QImage image = panel<ForcePanel>().findChild<PlotView*>()->grab().toImage();
+        return QColor(image.pixel(3, 3)).lightness();
+    };
+    EXPECT_GT(corner(), 200);
+    set_theme("dark");
+    settle(*window_);
+    EXPECT_LT(corner(), 90);
+    set_theme("system");
+    settle(*window_);
+    EXPECT_GT(corner(), 200);
+}
+
+}  // namespace
+}  // namespace underbody::studio
