@@ -113,6 +113,9 @@ AskedCfd ask_for_cfd(const Study& study, const geometry::BodyShape& shape, const
     } else {
         text += "\n[sweep]\nbodies = [" + core::toml_string(name) + "]\ngap = [\"" +
                 core::format_number(1000 * gap, 6) + " mm\"]\n";
+        for (const auto& one : study.cases) {  // else that of the first case that has one
+            speed = speed ? speed : one.conditions.number("speed");
+        }
         text +=
             speed && !study.reference.number("speed") ? "speed = \"" + core::format_number(*speed, 6) + " m/s\"\n" : "";
     }

@@ -26,8 +26,9 @@ struct AskedCfd {
 };
 
 /// What asking for CFD of a shape would change; nothing is written. The shape goes to shapes/NAME.toml of the study. A
-/// study without [sweep] gets one at this gap (m) and speed (m/s; none: the study's own). Throws core::InputError:
-/// there is such a body or file already, a shape that cannot be, a study.toml whose [sweep] cannot be added to.
+/// study without [sweep] gets one at this gap (m) and speed (m/s; none: that of the first case). Throws
+/// core::InputError: there is such a body or file already, a shape that cannot be, a study.toml whose [sweep] cannot be
+/// added to.
 AskedCfd ask_for_cfd(const Study& study, const geometry::BodyShape& shape, const std::string& name, double gap,
                      std::optional<double> speed = {});
 
