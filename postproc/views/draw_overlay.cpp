@@ -151,7 +151,7 @@ void Overlay::add_bar(std::pair<double, double> range, std::pair<double, double>
     shapes(points, polygons, {}, colours, 1);
     std::vector<Vector> greys(lines.size(), {0.3, 0.3, 0.3});
     // As many as have room for their numbers.
-    const int ticks = std::clamp(static_cast<int>((top - bottom) / (1.6 * number_size * unit)), 1, 6);
+    const int ticks = std::clamp(static_cast<int>((top - bottom) / (1.5 * number_size * unit)), 2, 6);
     for (const double tick : round_ticks(range.first, range.second, ticks)) {
         const double y = bottom + (top - bottom) * (tick - range.first) / (range.second - range.first);
         const auto first = static_cast<long long>(frame.size());

@@ -454,7 +454,7 @@ void FieldsPanel::draw_differences(const std::vector<std::size_t>& cells, const 
     const QSize room = cells_.front()->scene->widget()->size() * devicePixelRatioF();
     options.width = std::max(480, room.width());
     options.height = std::max(320, room.height());
-    options.text_size = std::clamp(700.0 / options.height, 1.0, 1.9);
+    options.text_size = std::clamp(560.0 / options.height, 1.0, 1.5);
     options.camera = state().fields.camera;
     if (const auto& range = state().fields.range) {
         options.ranges = {{"difference", {(*range)[0], (*range)[1]}}};

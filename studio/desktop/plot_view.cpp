@@ -3,6 +3,7 @@
 #include <qcustomplot.h>
 
 #include <QBoxLayout>
+#include <algorithm>
 
 #include "studio/figures/render.h"
 
@@ -10,16 +11,36 @@ namespace underbody::studio {
 
 namespace {
 
+bool is_dark(const QPalette& palette) { return palette.color(QPalette::Base).lightness() < 128; }
+
+/// The figure as it is drawn on dark ground: what is black on white is pale there. On a map it lies on pale colours.
+core::Figure on_dark(core::Figure figure) {
+    const auto pale = [&](core::Colour& colour) {
+        if (std::max({colour.red, colour.green, colour.blue}) < 80 && figure.classes.empty() && figure.maps.empty()) {
+            colour = {225, 225, 225, colour.alpha};
+        }
+    };
+    for (auto& curve : figure.curves) {
+        pale(curve.colour);
+    }
+    for (auto& points : figure.points) {
+        pale(points.colour);
+    }
+    for (auto& line : figure.lines) {
+        pale(line.colour);
+    }
+    return figure;
+}
+
 /// The window's own colours around a figure; exported pictures stay on white.
 void dress(QCustomPlot& plot, const QPalette& palette) {
-    const QColor text = palette.color(QPalette::Text);
-    const QColor base = palette.color(QPalette::Base);
-    if (base.lightness() >= 128) {
+    if (!is_dark(palette)) {
         return;
     }
+    const QColor text = palette.color(QPalette::Text);
     QColor pale = text;
     pale.setAlpha(60);
-    plot.setBackground(base);
+    plot.setBackground(palette.color(QPalette::Base));
     for (auto* rect : plot.axisRects()) {
         for (auto* axis : rect->axes()) {
             for (const auto& set : {&QCPAxis::setBasePen, &QCPAxis::setTickPen, &QCPAxis::setSubTickPen}) {
@@ -30,23 +51,14 @@ void dress(QCustomPlot& plot, const QPalette& palette) {
             axis->grid()->setPen(QPen(pale, 0, Qt::DotLine));
         }
     }
-    if (plot.legend != nullptr) {
-        QColor ground = base;
-        ground.setAlpha(200);
-        plot.legend->setBrush(ground);
-        plot.legend->setTextColor(text);
-    }
-    for (int i = 0; i < plot.itemCount(); ++i) {
-        if (auto* item = qobject_cast<QCPItemText*>(plot.item(i)); item != nullptr && item->color().lightness() < 128) {
-            item->setColor(text);
-            item->setBrush(Qt::NoBrush);
-        }
-    }
-    for (int i = 0; i < plot.plotLayout()->elementCount(); ++i) {
-        if (auto* title = qobject_cast<QCPTextElement*>(plot.plotLayout()->elementAt(i))) {
-            title->setTextColor(text);
-        }
-    }
+}
+
+/// Draws a figure in the colours of the window.
+void draw_dressed(const core::Figure& figure, QCustomPlot& plot, const QPalette& palette) {
+    const bool dark = is_dark(palette);
+    plot.setProperty("ink", dark ? QVariant(palette.color(QPalette::Text)) : QVariant());
+    draw(dark ? on_dark(figure) : figure, plot);
+    dress(plot, palette);
 }
 
 }  // namespace
@@ -90,8 +102,7 @@ void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
     const QCPRange y = keep ? plot_->yAxis->range() : QCPRange();
     figure_ = figure;
     shown_ = true;
-    draw(figure_, *plot_);
-    dress(*plot_, palette());
+    draw_dressed(figure_, *plot_, palette());
     zoomed_ = keep;
     if (keep) {
         plot_->xAxis->setRange(x);
@@ -137,8 +148,7 @@ void PlotView::changeEvent(QEvent* event) {
 
 void PlotView::show_sentence() {
     core::Figure empty;
-    draw(empty, *plot_);
-    dress(*plot_, palette());
+    draw_dressed(empty, *plot_, palette());
     shown_ = false;
     for (auto* axis : plot_->axisRect()->axes()) {
         axis->setVisible(false);
@@ -160,8 +170,7 @@ void PlotView::write(const std::filesystem::path& path) const { write_picture(fi
 void PlotView::show_all() {
     if (shown_) {
         zoomed_ = false;
-        draw(figure_, *plot_);
-        dress(*plot_, palette());
+        draw_dressed(figure_, *plot_, palette());
         plot_->replot(QCustomPlot::rpQueuedReplot);
     }
 }

@@ -261,7 +261,7 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
     header()->setSectionResizeMode(StudyModel::name, QHeaderView::Stretch);
     const QFontMetrics metrics(font());
     for (int column = StudyModel::gap; column < StudyModel::column_count; ++column) {
-        const QString widest = column == StudyModel::status  ? "not run."
+        const QString widest = column == StudyModel::status  ? "changed."
                                : column == StudyModel::speed ? "speed"
                                : column < StudyModel::lift   ? "-100"
                                                              : "-0.01234";

@@ -22,6 +22,11 @@ QFont figure_font(int pixel_size, bool bold) {
     return font;
 }
 
+QColor ink_of(const QCustomPlot& plot, const QColor& usual) {
+    const auto ink = plot.property("ink").value<QColor>();
+    return ink.isValid() ? ink : usual;
+}
+
 Header::Header(QCustomPlot& plot, QString title, std::vector<KeyEntry> entries)
     : QCPLayoutElement(&plot), title_(std::move(title)), entries_(std::move(entries)) {
     setAutoMargins(QCP::msNone);
@@ -54,7 +59,7 @@ int Header::flow(int width, QCPPainter* painter, QPoint origin) const {
         const QRect box = QFontMetrics(font).boundingRect(QRect(0, 0, width, 10000), Qt::TextWordWrap, title_);
         if (painter != nullptr) {
             painter->setFont(font);
-            painter->setPen(QColor(25, 25, 25));
+            painter->setPen(ink_of(*parentPlot(), QColor(25, 25, 25)));
             painter->drawText(QRect(origin.x(), origin.y() + y, width, box.height()), Qt::TextWordWrap, title_);
         }
         y += box.height() + 6;
@@ -76,7 +81,7 @@ int Header::flow(int width, QCPPainter* painter, QPoint origin) const {
             entry.sample(*painter);
             painter->restore();
             painter->setFont(font);
-            painter->setPen(QColor(40, 40, 40));
+            painter->setPen(ink_of(*parentPlot(), QColor(40, 40, 40)));
             painter->drawText(QRect(origin.x() + x + room, origin.y() + y, used - room + 4, key_line),
                               Qt::AlignVCenter | Qt::AlignLeft, text);
         }

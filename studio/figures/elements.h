@@ -24,6 +24,9 @@ struct KeyEntry {
 };
 
 /// Title and key, above the plot and left-aligned with it; the key flows into as many lines as it needs.
+/// The colour of words in a plot: `usual`, unless the plot has the property "ink" (a window in dark colours).
+QColor ink_of(const QCustomPlot& plot, const QColor& usual);
+
 class Header : public QCPLayoutElement {
 public:
     Header(QCustomPlot& plot, QString title, std::vector<KeyEntry> entries);

@@ -99,6 +99,7 @@ QRectF place(const std::vector<QRectF>& candidates, const QRectF& box, Obstacles
 
 /// Text with a white rim, readable on every ground.
 void write(QCPPainter& painter, const QRectF& box, const QString& text, const QColor& colour) {
+    const bool light = colour.lightness() > 128;
     const QFontMetricsF metrics(painter.font());
     const QStringList lines = text.split('\n');
     double baseline = box.top() + 1 + metrics.ascent();
@@ -106,7 +107,8 @@ void write(QCPPainter& painter, const QRectF& box, const QString& text, const QC
         const QPointF at(box.left() + 4, baseline);
         QPainterPath outline;
         outline.addText(at, painter.font(), line);
-        painter.strokePath(outline, QPen(QColor(255, 255, 255, 225), 4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+        painter.strokePath(outline, QPen(light ? QColor(20, 20, 20, 225) : QColor(255, 255, 255, 225), 4, Qt::SolidLine,
+                                         Qt::RoundCap, Qt::RoundJoin));
         painter.setPen(colour);
         painter.drawText(at, line);
         baseline += metrics.lineSpacing();
@@ -164,7 +166,8 @@ void paint_labels(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const core::Figur
             continue;
         }
         const QString text = QString::fromStdString(note.text);
-        write(painter, place(around(at, size_of(text)), box, obstacles), text, QColor(20, 20, 20));
+        write(painter, place(around(at, size_of(text)), box, obstacles), text,
+              ink_of(*x.parentPlot(), QColor(20, 20, 20)));
     }
     for (const auto& line : figure.lines) {
         const double at = line.vertical ? x.coordToPixel(line.at) : y.coordToPixel(line.at);
@@ -174,7 +177,7 @@ void paint_labels(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const core::Figur
         }
         const QString text = QString::fromStdString(line.label);
         write(painter, place(along_line(line, box, at, size_of(text)), box, obstacles), text,
-              to_qt(line.colour).darker(150));
+              ink_of(*x.parentPlot(), to_qt(line.colour).darker(150)));
     }
 }
 

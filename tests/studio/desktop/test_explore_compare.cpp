@@ -327,6 +327,15 @@ TEST_F(Window, ADarkThemeReachesEveryPlot) {
     set_theme("dark");
     settle(*window_);
     EXPECT_LT(corner(), 90);
+    // The title and the key are read on it: there are pale pixels above the axes.
+    const QImage image = panel<ForcePanel>().findChild<PlotView*>()->grab().toImage();
+    int pale = 0;
+    for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            pale += QColor(image.pixel(x, y)).lightness() > 170 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(pale, 20);
     set_theme("system");
     settle(*window_);
     EXPECT_GT(corner(), 200);
