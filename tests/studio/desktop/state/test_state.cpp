@@ -211,9 +211,8 @@ TEST(StudioActions, WhatIsVariedIsSavedAndHasACommand) {
     EXPECT_EQ(state_from_json(nlohmann::json(state)), state);
     const std::string command = command_of(state, words_of("brush volume=2000cm^3:2300cm^3"), *evie_session());
     EXPECT_NE(command.find("underbody body sweep "), std::string::npos) << command;
-    EXPECT_NE(
-        command.find("--set body.base_cut=0.7 --vary 'protrusion.height=1 mm,2 mm,3 mm' --where volume=0.002"),
-        std::string::npos)
+    EXPECT_NE(command.find("--set body.base_cut=0.7 --vary 'protrusion.height=1 mm,2 mm,3 mm' --where volume=0.002"),
+              std::string::npos)
         << command;
     state = applied(state, words_of("rows cases"), *evie_session());
     EXPECT_TRUE(command_of(state, words_of("brush gap=2mm:5mm"), *evie_session()).empty());
