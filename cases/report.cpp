@@ -104,7 +104,7 @@ private:
             std::string gaps;
             for (const auto& point : table->equilibria) {
                 if (point.stable) {
-                    gaps += (gaps.empty() ? "" : ", ") + shown(point.gap, "m", "mm", 2) + " mm";
+                    gaps += (gaps.empty() ? "" : ", ") + shown(point.gap, "m", "mm", 2) + "\u00a0mm";
                 }
             }
             facts.push_back({gaps.empty() ? "none" : gaps, "stable gaps by '" + spec.name + "' at a net weight of " +

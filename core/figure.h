@@ -90,6 +90,8 @@ struct FigureMap {
     std::string unit;
     bool diverging = false;       ///< centred on zero
     double lower = 0, upper = 0;  ///< colour range; equal: from the data
+    bool x_by_ratio = false;      ///< cells along x are of equal ratio, not of equal width; x_lower > 0
+    bool y_by_ratio = false;
 };
 
 /// Arrows of a flow (dx/dt, dy/dt): drawn with one length, direction in axis coordinates.

@@ -131,7 +131,7 @@ void paint_band(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const core::FigureB
 }
 
 GridImage class_image(const core::FigureClasses& classes) {
-    GridImage grid{{}, classes.x_lower, classes.x_upper, classes.y_lower, classes.y_upper};
+    GridImage grid{{}, classes.x_lower, classes.x_upper, classes.y_lower, classes.y_upper, false, false};
     if (classes.columns == 0 || classes.rows == 0 || classes.index.size() < classes.columns * classes.rows) {
         return grid;
     }
@@ -152,7 +152,7 @@ GridImage class_image(const core::FigureClasses& classes) {
 }
 
 GridImage map_image(const core::FigureMap& map, double lower, double upper) {
-    GridImage grid{{}, map.x_lower, map.x_upper, map.y_lower, map.y_upper};
+    GridImage grid{{}, map.x_lower, map.x_upper, map.y_lower, map.y_upper, map.x_by_ratio, map.y_by_ratio};
     if (map.columns == 0 || map.rows == 0 || map.values.size() < map.columns * map.rows) {
         return grid;
     }
@@ -171,12 +171,14 @@ GridImage map_image(const core::FigureMap& map, double lower, double upper) {
 
 namespace {
 
-/// Cell of the grid for each pixel along one axis: for logarithmic axes, where cells have no one width.
-std::vector<int> cells_of_pixels(QCPAxis& axis, int first_pixel, int count, double lower, double upper, int cells,
-                                 double step) {
+/// Cell of the grid for each pixel along one axis: for logarithmic axes, where cells of one width are not of one width
+/// on the picture, and for cells of one ratio.
+std::vector<int> cells_of_pixels(QCPAxis& axis, int first_pixel, int count, double lower, double upper, bool by_ratio,
+                                 int cells, double step) {
     std::vector<int> result(static_cast<std::size_t>(count), -1);
     for (int p = 0; p < count; ++p) {
-        const double at = (axis.pixelToCoord(first_pixel + (p + 0.5) * step) - lower) / (upper - lower);
+        const double x = axis.pixelToCoord(first_pixel + (p + 0.5) * step);
+        const double at = by_ratio ? std::log(x / lower) / std::log(upper / lower) : (x - lower) / (upper - lower);
         if (at >= 0 && at < 1) {
             result[static_cast<std::size_t>(p)] = std::min(cells - 1, static_cast<int>(at * cells));
         }
@@ -189,9 +191,10 @@ void paint_warped(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const GridImage& 
     const int fine = 2;
     const int columns = box.width() * fine;
     const int rows = box.height() * fine;
-    const auto across =
-        cells_of_pixels(x, box.left(), columns, grid.x_lower, grid.x_upper, grid.image.width(), 1.0 / fine);
-    const auto down = cells_of_pixels(y, box.top(), rows, grid.y_lower, grid.y_upper, grid.image.height(), 1.0 / fine);
+    const auto across = cells_of_pixels(x, box.left(), columns, grid.x_lower, grid.x_upper, grid.x_by_ratio,
+                                        grid.image.width(), 1.0 / fine);
+    const auto down = cells_of_pixels(y, box.top(), rows, grid.y_lower, grid.y_upper, grid.y_by_ratio,
+                                      grid.image.height(), 1.0 / fine);
     QImage warped(columns, rows, QImage::Format_ARGB32);
     warped.fill(Qt::transparent);
     for (int j = 0; j < rows; ++j) {
@@ -218,7 +221,8 @@ void paint_grid(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const GridImage& gr
     painter.setRenderHint(QPainter::SmoothPixmapTransform, false);
     painter.setRenderHint(QPainter::LosslessImageRendering, true);
     painter.setAntialiasing(false);
-    if (x.scaleType() == QCPAxis::stLogarithmic || y.scaleType() == QCPAxis::stLogarithmic) {
+    if (x.scaleType() == QCPAxis::stLogarithmic || y.scaleType() == QCPAxis::stLogarithmic || grid.x_by_ratio ||
+        grid.y_by_ratio) {
         paint_warped(painter, x, y, grid);
         return;
     }

@@ -64,6 +64,7 @@ void paint_band(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const core::FigureB
 struct GridImage {
     QImage image;
     double x_lower = 0, x_upper = 0, y_lower = 0, y_upper = 0;
+    bool x_by_ratio = false, y_by_ratio = false;
 };
 GridImage class_image(const core::FigureClasses& classes);
 /// `lower`, `upper`: the colour range in use.

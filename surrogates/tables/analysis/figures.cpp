@@ -268,11 +268,15 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
     figure.caption = caption_of(table) + (held.empty() ? "" : " At " + held + ".");
     core::FigureMap map;
     map.columns = map.rows = static_cast<std::size_t>(std::clamp(options.samples / 2, 20, 400));
-    // Cells are of one width: a logarithmic axis needs narrow ones for its small end.
-    figure.x.logarithmic = is_logarithmic(table, kx, options);
-    figure.y.logarithmic = is_logarithmic(table, ky, options);
-    map.columns *= figure.x.logarithmic ? 6 : 1;
-    map.rows *= figure.y.logarithmic ? 6 : 1;
+    // Along a logarithmic axis cells of one ratio look alike on the picture.
+    figure.x.logarithmic = map.x_by_ratio = is_logarithmic(table, kx, options);
+    figure.y.logarithmic = map.y_by_ratio = is_logarithmic(table, ky, options);
+    map.columns *= map.x_by_ratio ? 2 : 1;
+    map.rows *= map.y_by_ratio ? 2 : 1;
+    const auto middle_of = [](std::size_t cell, std::size_t cells, double lower, double upper, bool by_ratio) {
+        const double part = (static_cast<double>(cell) + 0.5) / static_cast<double>(cells);
+        return by_ratio ? lower * std::pow(upper / lower, part) : lower + (upper - lower) * part;
+    };
     map.x_lower = x_shown(ax.lower);
     map.x_upper = x_shown(ax.upper);
     map.y_lower = y_shown(ay.lower);
@@ -283,10 +287,9 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
     double high = -INFINITY;
     bool blank = false;
     for (std::size_t j = 0; j < map.rows; ++j) {
-        at[ky] = ay.lower + (ay.upper - ay.lower) * (static_cast<double>(j) + 0.5) / static_cast<double>(map.rows);
+        at[ky] = middle_of(j, map.rows, ay.lower, ay.upper, map.y_by_ratio);
         for (std::size_t i = 0; i < map.columns; ++i) {
-            at[kx] =
-                ax.lower + (ax.upper - ax.lower) * (static_cast<double>(i) + 0.5) / static_cast<double>(map.columns);
+            at[kx] = middle_of(i, map.columns, ax.lower, ax.upper, map.x_by_ratio);
             if (beyond_points(table, at.data()) > 0.02) {
                 map.values.push_back(std::nan(""));
                 blank = true;

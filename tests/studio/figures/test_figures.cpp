@@ -308,6 +308,22 @@ TEST(Figures, LongTitlesAndManyNamesWrapInsteadOfLeaving) {
     }
 }
 
+TEST(Figures, CellsOfOneRatioAreDrawnWhereCellsOfOneWidthWouldLie) {
+    Figure by_ratio;
+    by_ratio.x = {"gap", "mm"};
+    by_ratio.x.logarithmic = true;
+    by_ratio.maps.push_back({2, 1, 1, 100, 0, 1, {1, 2}, "lift", "N"});
+    Figure by_width = by_ratio;
+    by_ratio.maps[0].x_by_ratio = true;
+    // From 1 to 100 in cells of 0.1; the two cells of one ratio meet at 10.
+    by_width.maps[0].columns = 990;
+    by_width.maps[0].values.assign(990, 2);
+    std::fill_n(by_width.maps[0].values.begin(), 90, 1.0);
+    EXPECT_EQ(render_png(by_ratio), render_png(by_width));
+    by_ratio.maps[0].x_by_ratio = false;
+    EXPECT_NE(render_png(by_ratio), render_png(by_width)) << "two cells of one width meet at 50.5";
+}
+
 TEST(Figures, NothingToDrawAndNonsenseAreDrawnWithoutComplaint) {
     const double nan = std::nan("");
     Figure figure;

@@ -309,6 +309,33 @@ TEST(GaussianProcessTable, KnowsTheHullOfItsPoints) {
     EXPECT_THAT(figure.caption, HasSubstr("outside the points"));
 }
 
+TEST(GaussianProcessTable, MapsOverTheGapHaveCellsOfOneRatio) {
+    std::vector<double> gap, pitch, lift;
+    for (const double h : {0.001, 0.002, 0.005, 0.02, 0.1}) {
+        for (const double p : {-0.05, 0.0, 0.05}) {
+            gap.push_back(h);
+            pitch.push_back(p);
+            lift.push_back(std::log(h) + p);
+        }
+    }
+    core::Table data;
+    data.add_numbers("gap", "m", gap);
+    data.add_numbers("pitch", "rad", pitch);
+    data.add_numbers("lift_force", "N", lift);
+    const ForceTable table = ForceTable::fit(data, "lift_force");
+    const auto figure = tables::map_figure(table, "gap", "pitch");
+    const core::FigureMap& map = figure.maps.at(0);
+    ASSERT_TRUE(figure.x.logarithmic && map.x_by_ratio);
+    EXPECT_FALSE(figure.y.logarithmic || map.y_by_ratio);
+    for (const std::size_t i : {std::size_t{0}, map.columns / 3, map.columns - 1}) {
+        const double h = 0.001 * std::pow(100.0, (static_cast<double>(i) + 0.5) / static_cast<double>(map.columns));
+        for (const std::size_t j : {std::size_t{0}, map.rows - 1}) {
+            const double p = -0.05 + 0.1 * (static_cast<double>(j) + 0.5) / static_cast<double>(map.rows);
+            EXPECT_NEAR(map.values[j * map.columns + i], table.at(std::array{h, p}).value, 1e-12);
+        }
+    }
+}
+
 TEST(GaussianProcessTable, FindsTheFreeStreamValueThatTheForceDecaysTo) {
     core::Random random(3);
     std::vector<double> h, p, f, s;
