@@ -22,7 +22,7 @@ struct Calibration {
     double most_over_twins = 1.3;  ///< held-out error over that of twins in which nothing is missing: above, no noise
     double most_left = 0.08;       ///< share of what the declared model misses beyond its twins that a name may leave
     double neutral_sigmas = 2;     ///< a number nearer to where its effect does nothing is no finding
-    double rest_chance = 1e-3;     ///< chance, from noise, of a rest above most_over_twins: less is no noise
+    double rest_chance = 1e-3;     ///< chance, from noise, of a static rest above most_over_twins: less is no noise
     double correction_reach = 0.998;  ///< quantile of a correction's force over the states seen that it may not exceed
 };
 

@@ -131,19 +131,6 @@ PairedFall paired_fall(const BlockErrors& before, const BlockErrors& after, doub
     return result;
 }
 
-double largest_of_twins(const std::vector<double>& errors, double chance) {
-    const double n = static_cast<double>(errors.size());
-    double sum = 0, square = 0;
-    for (const double error : errors) {
-        sum += std::log(error);
-    }
-    for (const double error : errors) {
-        square += std::pow(std::log(error) - sum / n, 2);
-    }
-    const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1), chance));
-    return std::exp(sum / n + t * std::sqrt(square / (n - 1) * (1 + 1 / n)));
-}
-
 namespace {
 
 /// Each number of an effect of static sets acts without the others. Where they can stand in for each other (dead zone

@@ -48,10 +48,6 @@ struct BlockErrors {
 /// the blocks are. Their interval is Student's t; of fewer than three blocks the readings' errors count as independent.
 PairedFall paired_fall(const BlockErrors& before, const BlockErrors& after, double tail);
 
-/// The error that one more twin exceeds with that chance: logarithms of errors are taken for normal, with the mean and
-/// the scatter of those given (Student's t). At least two.
-double largest_of_twins(const std::vector<double>& errors, double chance);
-
 /// As many of its own errors as the largest amplitude of noise at the frequencies of a scan exceeds as seldom as one
 /// number of no scan exceeds `sigmas`: an amplitude of noise at one frequency is beyond z with the chance exp(-z^2/2)
 /// (Rayleigh 1880).

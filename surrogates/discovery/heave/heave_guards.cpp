@@ -13,8 +13,6 @@ namespace underbody::discovery {
 namespace {
 
 constexpr std::size_t blocks_wanted = 12;  ///< of held-out runs: enough for Student's t, each of several windows
-constexpr std::size_t few_twins = 4, more_twins = 16;
-constexpr double far_over_twins = 4;  ///< no spread of twins makes noise of that
 
 }  // namespace
 
@@ -67,20 +65,11 @@ bool HeaveLoop::falls(const Answer& before, const Answer& after) const {
 }
 
 bool HeaveLoop::rest_is_noise(const Answer& answer) {
-    std::vector<double> twins = twins_errors(held_out_runs(), answer.uses, answer.noise, 0, few_twins);
+    const double twins = twins_error(held_out_runs(), answer.uses, answer.noise);
     const double error = held_out_error(answer);
-    double limit = calibration_.most_over_twins * root_mean_square(twins);
-    if (error > limit && error < far_over_twins * root_mean_square(twins)) {
-        // where a small error of the state grows over a window, twins differ among each other by as much
-        const std::vector<double> more =
-            twins_errors(held_out_runs(), answer.uses, answer.noise, few_twins, more_twins);
-        twins.insert(twins.end(), more.begin(), more.end());
-        limit = std::max(calibration_.most_over_twins * root_mean_square(twins),
-                         largest_of_twins(twins, calibration_.rest_chance));
-    }
-    result_.rest.twins = root_mean_square(twins);
-    result_.rest.unexplained = std::sqrt(std::max(0.0, error * error - result_.rest.twins * result_.rest.twins));
-    return error <= limit;
+    result_.rest.twins = twins;
+    result_.rest.unexplained = std::sqrt(std::max(0.0, error * error - twins * twins));
+    return error <= calibration_.most_over_twins * twins;
 }
 
 double HeaveLoop::share_left(const Answer& declared, const Answer& answer) const {

@@ -121,10 +121,9 @@ private:
     /// Twins of an experiment's runs: the model with `uses` moves, `noise` is the filter's, `drawn` what is drawn.
     [[nodiscard]] HeaveRecords twins_of(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                                         const HeaveNoise& noise, const HeaveNoise& drawn, std::uint64_t stream) const;
-    /// m: errors over the first horizon of `count` twins of the held-out runs, from the `first` on.
-    [[nodiscard]] std::vector<double> twins_errors(const HeaveExperiment& test,
-                                                   const std::vector<dynamics::EffectUse>& uses,
-                                                   const HeaveNoise& noise, std::size_t first, std::size_t count) const;
+    /// m: error of the held-out runs' twins over the first horizon.
+    [[nodiscard]] double twins_error(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses,
+                                     const HeaveNoise& noise) const;
     void run_placebo();
 
     // heave_describe.cpp

@@ -119,21 +119,22 @@ HeaveRecords HeaveLoop::twins_of(const HeaveExperiment& experiment, const std::v
     return twins;
 }
 
-std::vector<double> HeaveLoop::twins_errors(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses,
-                                            const HeaveNoise& noise, std::size_t first, std::size_t count) const {
+double HeaveLoop::twins_error(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses,
+                              const HeaveNoise& noise) const {
+    constexpr std::size_t twins = 4;
     HeaveNoise drawn = noise;
     drawn.process = 0;  // a random force on the body is no noise of a sensor: it is said
     std::vector<std::size_t> all(test.chosen().size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    std::vector<double> errors;
-    for (std::size_t t = first; t < first + count; ++t) {
+    double square = 0;
+    for (std::size_t t = 0; t < twins; ++t) {
         const HeaveRecords records = twins_of(test, uses, noise, drawn, 1000 + t);
         HeaveExperiment clean(model_, records, all, test.noise().gap, {});
         clean.set_noise(test.noise());
         const std::vector<dynamics::EffectUse> felt = without_actuator(uses, model_);
-        errors.push_back(window_errors(clean, felt, noise, options_.horizon).by_record(all.size()).rmse());
+        square += std::pow(window_errors(clean, felt, noise, options_.horizon).by_record(all.size()).rmse(), 2);
     }
-    return errors;
+    return std::sqrt(square / twins);
 }
 
 void HeaveLoop::run_placebo() {

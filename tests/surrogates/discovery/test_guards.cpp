@@ -221,21 +221,6 @@ TEST(Guards, AWaveFoundAmongManyFrequenciesHasToStandOutAmongAllOfThem) {
     EXPECT_NEAR(found.none_probability, 1, 1e-3);
 }
 
-TEST(Guards, OneMoreTwinIsBelowItsLimitAsOftenAsIsSaid) {
-    std::size_t beyond = 0;
-    constexpr std::size_t draws = 20000;
-    core::Random random(12);
-    for (std::size_t d = 0; d < draws; ++d) {
-        std::vector<double> twins;
-        for (int i = 0; i < 20; ++i) {
-            twins.push_back(std::exp(0.3 * random.normal()));
-        }
-        beyond += std::exp(0.3 * random.normal()) > largest_of_twins(twins, 0.01) ? 1 : 0;
-    }
-    EXPECT_NEAR(static_cast<double>(beyond) / draws, 0.01, 0.0025);
-    EXPECT_NEAR(largest_of_twins({2, 2, 2, 2}, 1e-3), 2, 1e-12);
-}
-
 TEST(Guards, AnErrorThatRisesElsewhereIsSaidBesideTheOneThatFalls) {
     Discovery found;
     found.verdict = "effect";
