@@ -109,7 +109,8 @@ TEST(MeasuredStudies, HeavyBallsFallByTheirWeightAloneAndLightOnesDoNot) {
                 << study.found.sentence;
         } else if (!is("Baseball")) {
             EXPECT_NE(study.found.verdict, "none") << study.name;
-            EXPECT_LT(study.found.error.front().after.rmse, 0.5 * study.found.error.front().before.rmse) << study.name;
+            EXPECT_LT(study.found.error.front().after.rmse, 0.5 * study.found.error.front().before.rmse)
+                << study.name << ": " << study.found.sentence;
         }
         // a fall of three seconds shows no wave, and a later look at a fall is a fall
         EXPECT_DOUBLE_EQ(probability_of(study.found, "gap_sensor_delay"), 0) << study.name;

@@ -175,13 +175,9 @@ double HeaveExperiment::fit_process(const std::vector<dynamics::EffectUse>& uses
 
 bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise) const {
     std::vector<double> innovations;
-    // in scatters of the readings: the white part of a noise that was fitted before may be next to nothing
-    const double scatter = noise_.gap;
     HeaveNoise best_noise = noise;
     best_noise.slow = 0;
-    best_noise.gap = scatter;
-    const double white_only =
-        noise.slow > 0 ? fit_process(uses, best_noise) : evaluate(uses, nullptr, best_noise, innovations);
+    const double white_only = evaluate(uses, nullptr, best_noise, innovations);
     double best = white_only;
     const auto attempt = [&](const HeaveNoise& trial) {
         const double cost = evaluate(uses, nullptr, trial, innovations);
@@ -192,6 +188,8 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
         }
         return false;
     };
+    // A noise that was fitted before stands for choice too: its white part may be next to nothing, and the sizes below
+    // are shares of that.
     if (noise.slow > 0) {
         attempt(noise);
     }
@@ -200,9 +198,9 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
         for (const double size : {0.4, 1.0, 2.0, 4.0}) {
             for (const double white : {1.0, 0.3}) {
                 HeaveNoise trial = noise;
-                trial.slow = size * scatter;
+                trial.slow = size * noise.gap;
                 trial.slow_time = time;
-                trial.gap = white * scatter;
+                trial.gap = white * noise.gap;
                 for (const double share : {1.0, 1e-2, 1e-4, 1e-7}) {
                     trial.process = std::max(process_floor, noise.process * share);
                     attempt(trial);
