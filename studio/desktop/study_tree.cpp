@@ -258,7 +258,6 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
     header()->setMinimumSectionSize(30);
     setTextElideMode(Qt::ElideMiddle);  // names of cases differ at their end
     header()->setStretchLastSection(false);
-    header()->setSectionResizeMode(StudyModel::name, QHeaderView::Stretch);
     const QFontMetrics metrics(font());
     for (int column = StudyModel::gap; column < StudyModel::column_count; ++column) {
         const QString widest = column == StudyModel::status  ? "changed."
@@ -276,6 +275,31 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
             show_selection();
         }
     });
+}
+
+/// The names of cases are read first: they get their width, and the last columns are scrolled to where there is no
+/// room.
+void StudyTree::give_names_room() {
+    constexpr int most = 220;
+    const QFontMetrics metrics(font());
+    int widest = metrics.horizontalAdvance("Study");
+    for (const auto& one : desk_.session().study.cases) {
+        widest = std::max(widest, metrics.horizontalAdvance(qt(one.name)));
+        if (widest >= most) {
+            break;
+        }
+    }
+    int others = 0;
+    for (int column = StudyModel::gap; column < StudyModel::column_count; ++column) {
+        others += header()->sectionSize(column);
+    }
+    const int wanted = std::min(widest, most) + 2 * indentation() + 12;
+    header()->resizeSection(StudyModel::name, std::max(wanted, viewport()->width() - others));
+}
+
+void StudyTree::resizeEvent(QResizeEvent* event) {
+    QTreeView::resizeEvent(event);
+    give_names_room();
 }
 
 StudyTree::Look StudyTree::look() const {
@@ -315,6 +339,7 @@ void StudyTree::read_again() {
         setExpanded(proxy_->index(row, 0), other ? title != "Pictures" : closed.count(title) == 0);
     }
     shown_ = desk_.session_pointer();
+    give_names_room();
     show_selection();
     if (!other) {
         verticalScrollBar()->setValue(scrolled);

@@ -70,6 +70,9 @@ public:
 Q_SIGNALS:
     void counted(const QString& text);
 
+protected:
+    void resizeEvent(QResizeEvent* event) override;
+
 private:
     /// What of the state the rows show.
     struct Look {
@@ -80,6 +83,7 @@ private:
     };
     [[nodiscard]] Look look() const;
     void read_again();
+    void give_names_room();
     void show_selection();
     void take_selection();
 
