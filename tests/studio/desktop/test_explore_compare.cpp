@@ -5,6 +5,7 @@
 // clang-format on
 
 #include <QCheckBox>
+#include <QHeaderView>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QTableWidget>
@@ -25,6 +26,7 @@
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/region_panel.h"
 #include "studio/desktop/state/exports.h"
+#include "studio/desktop/study_tree.h"
 #include "studio/desktop/theme.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -303,6 +305,20 @@ TEST_F(Window, TwoCasesOfEqualBytesAreBothDone) {
 }
 
 // Pictures are called by what they show and of whom, not by their keys.
+TEST_F(Window, NamesOfCasesHaveTheirRoomInTheTree) {
+    open(computed_study());
+    window_->resize(1280, 800);
+    settle(*window_);
+    const auto* tree = window_->findChild<StudyTree*>();
+    ASSERT_NE(tree, nullptr);
+    int widest = 0;
+    for (const auto& one : window_->desk().session().study.cases) {
+        widest = std::max(widest, QFontMetrics(tree->font()).horizontalAdvance(QString::fromStdString(one.name)));
+    }
+    EXPECT_GT(widest, 0);
+    EXPECT_GE(tree->header()->sectionSize(0), std::min(widest, 220) + 2 * tree->indentation());
+}
+
 TEST_F(Window, PicturesHaveTitles) {
     cases::StudyResults results;
     results.documents.emplace_back("picture/level/ellipse-h5-p0/pressure-underbody",
