@@ -519,7 +519,7 @@ IterationScatter iteration_scatter(std::span<const double> history) {
                   std::to_string(result.count) + " values: mean " + core::format_number(m.mean, 5) + ", scatter " +
                   core::format_number(m.deviation, 3) +
                   (result.settled ? "" : ", drift " + core::format_number(result.drift, 3)) +
-                  (result.period > 0 ? ", cycle of " + core::format_number(result.period, 4) + " iterations" : "");
+                  (result.period > 0 ? ", cycle of " + core::format_number(result.period, 4) + " values" : "");
     return result;
 }
 
