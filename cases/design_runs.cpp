@@ -43,6 +43,10 @@ void take_loads(const Study& study, const SweepCase& one, DesignRun& run, core::
     options.symmetry = study.symmetry;
     options.reference = study.moments_about;
     options.references.density = study.reference.number("density");
+    options.references.length = study.reference.number("length");
+    options.references.width = study.reference.number("width");
+    options.references.height = study.reference.number("height");
+    options.references.speed = one.conditions.number("speed");  // the case's own, as its settings have it
     const postproc::LoadsResult result = postproc::loads(field, options, progress);
     core::Problems notes;
     const postproc::Settled settled = postproc::settled_by(result, postproc::stated_beside(file, result), file, notes);

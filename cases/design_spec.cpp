@@ -308,6 +308,9 @@ geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& 
     for (const geometry::Tie& tie : spec.ties) {
         geometry::apply(tie, shape);
     }
+    if (shape.protrusion && shape.protrusion->height == 0) {
+        shape.protrusion.reset();  // none at the end of its range
+    }
     geometry::check(shape);
     return shape;
 }

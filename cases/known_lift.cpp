@@ -13,19 +13,15 @@ namespace underbody::cases {
 
 namespace {
 
-bool has_part(const geometry::BodyShape& shape, const std::string& parameter) {
-    return !(parameter.starts_with("protrusion") && !shape.protrusion) &&
-           !(parameter.starts_with("nozzle") && !shape.nozzle);
-}
-
 /// How far two shapes are from each other: the sum of the differences of their parameters, each over the larger of the
 /// two; parts and words that only one has count as one.
 double distance(const geometry::BodyShape& a, const geometry::BodyShape& b) {
     double sum = (a.base == b.base ? 0 : 1) + (a.protrusion.has_value() == b.protrusion.has_value() ? 0 : 1) +
-                 (a.nozzle.has_value() == b.nozzle.has_value() ? 0 : 1);
+                 (a.nozzle.has_value() == b.nozzle.has_value() ? 0 : 1) +
+                 (a.tail_plate.has_value() == b.tail_plate.has_value() ? 0 : 1);
     sum += a.protrusion && b.protrusion && a.protrusion->profile != b.protrusion->profile ? 1 : 0;
     for (const auto& name : geometry::parameter_names()) {
-        if (name.unit.empty() || !has_part(a, name.name) || !has_part(b, name.name)) {
+        if (name.unit.empty() || !geometry::has_part_of(a, name.name) || !geometry::has_part_of(b, name.name)) {
             continue;
         }
         const double x = geometry::parameter(a, name.name);
@@ -40,7 +36,7 @@ double distance(const geometry::BodyShape& a, const geometry::BodyShape& b) {
 std::vector<double> design_of(const LiftSurrogate& known, const geometry::BodyShape& shape) {
     std::vector<double> at;
     for (const auto& variable : known.spec.variables) {
-        if (!has_part(shape, variable.name)) {
+        if (!geometry::has_part_of(shape, variable.name)) {
             return {};
         }
         at.push_back(geometry::parameter(shape, variable.name));

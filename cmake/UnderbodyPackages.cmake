@@ -56,9 +56,10 @@ install(FILES ${completions}/underbody DESTINATION ${CMAKE_INSTALL_DATADIR}/bash
 install(FILES ${completions}/_underbody DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
 install(FILES ${completions}/underbody.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
         COMPONENT program)
-# The shipped study, to try the program with.
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/cases/evie DESTINATION ${CMAKE_INSTALL_DATADIR}/underbody/cases COMPONENT program
-        PATTERN ".underbody" EXCLUDE)
+# The shipped studies, to try the program with.
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/cases/evie ${CMAKE_SOURCE_DIR}/cases/evie-pitch
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/underbody/cases COMPONENT program
+        PATTERN ".underbody" EXCLUDE PATTERN "runs" EXCLUDE)
 
 install(FILES ${CMAKE_SOURCE_DIR}/cmake/packages/org.underbody.studio.metainfo.xml
         DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT studio)

@@ -296,22 +296,43 @@ Table read_csv(std::string_view bytes, const std::string& source) {
     return table;
 }
 
+namespace {
+
+/// The shortest digits in the written unit that read back to the same SI number: 3 degrees are 3, though 3 degrees in
+/// radians are 3.0000000000000004 degrees by a multiplication.
+std::string converted_text(double si, const Conversion& conversion, const Conversion& back) {
+    const double value = conversion(si);
+    if (!conversion.is_identity() && std::isfinite(value)) {
+        for (const int digits : {14, 15, 16}) {
+            const std::string text = format_number(value, digits);
+            if (const auto read = parse_number(text); read && back(*read) == si) {
+                return format_number(*read);
+            }
+        }
+    }
+    return format_number(value);
+}
+
+}  // namespace
+
 std::string write_csv(const Table& table) {
     std::string text;
     for (const auto& comment : table.comments) {
         text += "# " + comment + "\n";
     }
-    std::vector<Conversion> conversions;
+    std::vector<Conversion> conversions, back;
     bool first = true;
     for (const auto& column : table.columns()) {
         text += (first ? "" : ", ") + column.name;
         first = false;
         conversions.emplace_back();
+        back.emplace_back();
         if (!column.is_text()) {
             text += " [" + column.written_unit + "]";
             conversions.back() = conversion(column.unit, column.written_unit);
+            back.back() = conversion(column.written_unit, column.unit);
             if (column.name.ends_with("_sigma")) {
-                conversions.back().offset = 0;
+                conversions.back().offset = back.back().offset = 0;
             }
         }
     }
@@ -323,7 +344,7 @@ std::string write_csv(const Table& table) {
             if (column.is_text()) {
                 text += column.text[row];
             } else if (std::isfinite(column.numbers[row])) {
-                text += format_number(conversions[i](column.numbers[row]));
+                text += converted_text(column.numbers[row], conversions[i], back[i]);
             }
         }
         text += "\n";

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/error.h"
+
 namespace underbody::geometry {
 
 namespace {
@@ -12,6 +14,11 @@ using std::numbers::pi;
 constexpr double degree = pi / 180;
 
 double square(double v) { return v * v; }
+
+double smooth_share(double s) {
+    s = std::clamp(s, 0.0, 1.0);
+    return s * s * (3 - 2 * s);
+}
 
 }  // namespace
 
@@ -26,12 +33,19 @@ BlockLayout::BlockLayout(const BodySection& section, BlockCounts counts, double 
       largest_(section.largest()),
       centre_height_(gap + section.body().depth()),
       semi_z_(section.body().semi_z()),
-      top_angle_(140 * degree) {
+      top_angle_(140 * degree),
+      plate_(tail_plate(section.body().shape())) {
     const ExactBody& body = section.body();
     const double rim_angle = std::acos(body.depth() / semi_z_);
     // Sides that are cut meet the ellipsoid at its midplane. A shallow flank needs some length.
-    const double lowest = body.shape().base == BaseKind::ellipse ? 82 * degree : 90 * degree;
+    const double lowest = plate_ != nullptr                        ? 66 * degree
+                          : body.shape().base == BaseKind::ellipse ? 82 * degree
+                                                                   : 90 * degree;
     equator_angle_ = std::min(std::max(lowest, rim_angle + 12 * degree), 115 * degree);
+    if (plate_ != nullptr && (equator_angle_ > 78 * degree || body.shape().base != BaseKind::ellipse)) {
+        throw core::InputError("mesh", "a tail plate needs lines of the mesh below it, for which this body has no room",
+                               {}, "base = \"ellipse\" with a base_cut of at least 0.41, or no [tail_plate]");
+    }
     const FlankLine flank(section, 0, ellipsoid(equator_angle_).y - gap);
     const double usual = (82 - 41.41) * degree;
     counts_.flank = std::max(counts_.flank / 2,
@@ -45,6 +59,21 @@ BlockLayout::BlockLayout(const BodySection& section, BlockCounts counts, double 
         sum += geometry::length(equator_[i] - equator_[i - 1]);
         layers_.push_back(sum);
     }
+    if (plate_ != nullptr) {
+        make_room_for_plate();
+    }
+}
+
+void BlockLayout::make_room_for_plate() {
+    plate_radius_ = largest_ * (1 + plate_->chord / section_.body().semi_x());
+    beside_plate_ = free_outward(pi / 2);
+    for (std::size_t j = 1; j < beside_plate_.size(); ++j) {
+        if (std::abs(beside_plate_[j].x - plate_radius_) <
+            std::abs(beside_plate_[static_cast<std::size_t>(plate_end_)].x - plate_radius_)) {
+            plate_end_ = static_cast<int>(j);
+        }
+    }
+    plate_end_ = std::max(plate_end_, 1);
 }
 
 double BlockLayout::far_volume() const { return pi * square(far_radius) * (far_height + 2.0 / 3 * dome_height); }
@@ -93,29 +122,90 @@ std::vector<Line2> BlockLayout::flank(double azimuth) const {
     return lines;
 }
 
-std::vector<double> BlockLayout::upper_angles() const {
-    // By arc length.
+double BlockLayout::arc_between(double from, double to) const {
+    constexpr int samples = 2000;
+    double arc = 0;
+    for (int i = 1; i <= samples; ++i) {
+        arc += geometry::length(ellipsoid(from + (to - from) * i / samples) -
+                                ellipsoid(from + (to - from) * (i - 1) / samples));
+    }
+    return arc;
+}
+
+std::vector<double> BlockLayout::angles_between(double from, double to, const std::vector<double>& arcs) const {
     constexpr int samples = 2000;
     std::vector<double> arc(samples + 1, 0.0);
-    const auto angle = [this](double i) { return equator_angle_ + (top_angle_ - equator_angle_) * i / samples; };
+    const auto angle = [&](double i) { return from + (to - from) * i / samples; };
     for (int i = 1; i <= samples; ++i) {
         arc[static_cast<std::size_t>(i)] =
             arc[static_cast<std::size_t>(i) - 1] + geometry::length(ellipsoid(angle(i)) - ellipsoid(angle(i - 1)));
     }
     std::vector<double> angles;
     std::size_t i = 1;
-    for (const double d : graded(arc.back(), counts_.upper, 2e-3 * scale_, 5.5e-3 * scale_)) {
+    for (const double d : arcs) {
         while (i < samples && arc[i] < d) {
             ++i;
         }
         angles.push_back(angle(static_cast<double>(i - 1) + (d - arc[i - 1]) / (arc[i] - arc[i - 1])));
     }
-    angles.front() = equator_angle_;
-    angles.back() = top_angle_;
+    angles.front() = from;
+    angles.back() = to;
     return angles;
 }
 
+std::vector<double> BlockLayout::upper_angles() const {
+    const double start = 2e-3 * scale_, end = 5.5e-3 * scale_;
+    const auto lines = [&](double from, double to, int cells, double first, double last) {
+        return angles_between(from, to, graded(arc_between(from, to), cells, first, last));
+    };
+    if (plate_ == nullptr) {
+        return lines(equator_angle_, top_angle_, counts_.upper, start, end);
+    }
+    const double at_plate = 9e-3 * scale_ / counts_.upper;
+    std::vector<double> angles = lines(equator_angle_, pi / 2, lines_below_plate(), start, at_plate);
+    const std::vector<double> above = lines(pi / 2, top_angle_, counts_.upper, at_plate, end);
+    angles.insert(angles.end(), above.begin() + 1, above.end());
+    return angles;
+}
+
+// Down to the plate's level, where it is `share` of the plate's own line; in front of its end a point lies on that.
+Line2 BlockLayout::beside_plate(Line2 line, const std::function<double(int)>& share) const {
+    const double miss = plate_radius_ - beside_plate_[static_cast<std::size_t>(plate_end_)].x;
+    const double from = plate_radius_ + 0.02 * scale_;
+    for (std::size_t j = 1; j + 1 < line.size(); ++j) {
+        const int at = static_cast<int>(j);
+        const double near = smooth_share((from + 0.5 * scale_ - beside_plate_[j].x) / (0.5 * scale_));
+        line[j].x += share(at) * smooth_share(1 - std::abs(at - plate_end_) / 4.0) * miss;
+        line[j].y += share(at) * near * (centre_height_ - beside_plate_[j].y);
+    }
+    return line;
+}
+
+// With a plate its own line is level as far as it reaches; those above follow it less and less, those below lie between
+// it and the lowest, which follows it by less than half.
 Line2 BlockLayout::outward(double angle) const {
+    Line2 line = free_outward(angle);
+    if (plate_ == nullptr || angle >= top_angle_) {
+        return line;
+    }
+    if (angle >= pi / 2) {
+        const double share = smooth_share((top_angle_ - angle) / (top_angle_ - pi / 2));
+        return beside_plate(std::move(line), [&](int) { return share; });
+    }
+    const auto beyond_layers = [&](int j) { return smooth_share((j - counts_.layers) / 5.0); };
+    const auto less = [&](int j) { return 0.4 * beyond_layers(j); };
+    const Line2 lower = beside_plate(free_outward(equator_angle_), less),
+                upper = beside_plate(beside_plate_, [](int) { return 1.0; });
+    const double u = (angle - equator_angle_) / (pi / 2 - equator_angle_), own = smooth_share(u);
+    line = beside_plate(std::move(line), [&](int j) { return own + (1 - own) * less(j); });
+    for (std::size_t j = 1; j < line.size(); ++j) {
+        const double between = beyond_layers(static_cast<int>(j));
+        line[j] = (1 - between) * line[j] + between * ((1 - u) * lower[j] + u * upper[j]);
+    }
+    return line;
+}
+
+Line2 BlockLayout::free_outward(double angle) const {
     const Point2 on_hull = ellipsoid(angle), n = normal(angle), at_equator = normal(equator_angle_),
                  equator = ellipsoid(equator_angle_);
     // Near the equator the layers bend as its own line does, which runs down to the ground.
@@ -124,7 +214,7 @@ Line2 BlockLayout::outward(double angle) const {
     for (std::size_t j = 0; j < layers_.size(); ++j) {
         line.push_back(on_hull + layers_[j] * n + near * (equator_[j] - equator - layers_[j] * at_equator));
     }
-    const double turn = 35 * degree * std::exp(-(angle - equator_angle_) / 0.25);
+    const double turn = (plate_ != nullptr ? 18 : 35) * degree * std::exp(-(angle - equator_angle_) / 0.25);
     Point2 leave{n.x * std::cos(turn) - n.y * std::sin(turn), n.x * std::sin(turn) + n.y * std::cos(turn)};
     const double far_angle = pi / 2 * (angle - equator_angle_) / (pi - equator_angle_);
     Point2 arrive{std::cos(far_angle), std::sin(far_angle)};
@@ -154,7 +244,12 @@ std::vector<Line2> BlockLayout::outer_block() const {
     Line2 top(whole.begin() + layers, whole.end());
     top.front() = left.front();
     Line2 right, bottom;
-    for (const double d : graded(far_height, ng, 25e-3 * scale_, 8e-3 * scale_)) {
+    std::vector<double> fall = graded(far_height, ng, 25e-3 * scale_, 8e-3 * scale_);
+    if (plate_ != nullptr) {  // the top is low over the ground: lines that run across it keep their shares
+        fall = shares(left);
+        std::for_each(fall.begin(), fall.end(), [&](double& d) { d *= far_height; });
+    }
+    for (const double d : fall) {
         right.push_back({far_radius, far_height - d});
     }
     const FlankLine nose(section_, 0, ellipsoid(equator_angle_).y - gap_);

@@ -1,6 +1,7 @@
 // Lines of the block mesh in planes through the axis: gap, flank, far field. Internal to the block mesher.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "geometry/blocks/base_grid.h"
@@ -26,6 +27,7 @@ struct BlockCounts {
 class BlockLayout {
 public:
     /// `gap` without pitch. `scale`: the body's size over that of EVIE, for which the sizes were found.
+    /// Throws core::InputError (kind "mesh") where a tail plate leaves no room for lines below it.
     BlockLayout(const BodySection& section, BlockCounts counts, double gap, double scale);
 
     [[nodiscard]] const BlockCounts& counts() const { return counts_; }
@@ -40,6 +42,10 @@ public:
     [[nodiscard]] Line2 outward(double angle) const;
     /// Between the outermost flank line, the lowest outward one, far field and ground: [outward][to_ground].
     [[nodiscard]] std::vector<Line2> outer_block() const;
+    /// The tail plate lies on the lines of this number of upper_angles(), from the hull to this point of them; -1:
+    /// none.
+    [[nodiscard]] int plate_line() const { return plate_ == nullptr ? -1 : lines_below_plate(); }
+    [[nodiscard]] int plate_end() const { return plate_end_; }
     [[nodiscard]] double top_angle() const { return top_angle_; }
 
     double far_radius, far_height, dome_height;  ///< m: cylinder, and half of an ellipsoid on it
@@ -48,6 +54,12 @@ public:
 private:
     [[nodiscard]] Point2 ellipsoid(double angle) const;
     [[nodiscard]] Point2 normal(double angle) const;
+    [[nodiscard]] int lines_below_plate() const { return (2 * counts_.upper + 2) / 3; }
+    [[nodiscard]] std::vector<double> angles_between(double from, double to, const std::vector<double>& arcs) const;
+    [[nodiscard]] double arc_between(double from, double to) const;
+    [[nodiscard]] Line2 free_outward(double angle) const;
+    [[nodiscard]] Line2 beside_plate(Line2 line, const std::function<double(int)>& share) const;
+    void make_room_for_plate();
     [[nodiscard]] Line2 flank_line(const Point2& from, double share, double rim, double flank_length) const;
 
     const BodySection& section_;
@@ -56,6 +68,10 @@ private:
     double equator_angle_, top_angle_, foot_radius_;
     Line2 equator_;               // line from the equator to the ground
     std::vector<double> layers_;  // distances along its normals
+    const TailPlate* plate_ = nullptr;
+    double plate_radius_ = 0;
+    int plate_end_ = 0;
+    Line2 beside_plate_;  // the line from the midplane as it would be without one
 };
 
 }  // namespace underbody::geometry

@@ -23,6 +23,7 @@ enum PatchIndex : Index {
     protrusion_boundary,
     nozzle_boundary,
     bore_boundary,
+    plate_boundary,
     ground_patch,
     symmetry_patch,
     far_patch
@@ -91,7 +92,9 @@ public:
           rim_(rim_azimuths(section_, layout_.counts().base)) {}
 
     BlockMesh make() {
-        hex_.patch_names = {"base", "hull", "protrusion", "nozzle", "nozzle_bore", "ground", "symmetry", "farfield"};
+        hex_.patch_names = {"base",       "hull",   "protrusion", "nozzle",  "nozzle_bore",
+                            "tail_plate", "ground", "symmetry",   "farfield"};
+        hex_.sheet = plate_boundary;
         add_gap();
         add_bore();
         progress_.check();
@@ -116,8 +119,11 @@ public:
                 made.walls.push_back(patch.name);
             }
         }
-        made.quality = measure(made.mesh, made.walls);
+        std::vector<std::string> resolved = made.walls;  // the plate has no fine layers
+        std::erase(resolved, "tail_plate");
+        made.quality = measure(made.mesh, resolved);
         made.cells_in_gap = layout_.counts().down();
+        made.tail_plate_area = plate_area_;
         made.far_volume = layout_.far_volume() / (options_.half ? 2 : 1);
         made.wall_units_mean =
             made.quality.wall_distance_mean * options_.speed * std::sqrt(friction / 2) / options_.kinematic_viscosity;
@@ -337,6 +343,28 @@ private:
                 name(id(m, t, nr - 1), id(m + 1, t, nr - 1), id(m + 1, t + 1, nr - 1), id(m, t + 1, nr - 1), far_patch);
             }
         }
+        if (layout_.plate_line() >= 0) {
+            add_plate(id);
+        }
+    }
+
+    /// The tail plate: faces of its line, from the azimuth that is nearest to its ray to the tail.
+    void add_plate(Ids& id) {
+        const double ray = std::atan2(section_.to_x() * std::sin(body_.shape().tail_plate->half_angle),
+                                      section_.to_y() * std::cos(body_.shape().tail_plate->half_angle));
+        const auto& azimuth = rim_.azimuth;
+        const auto nearest = std::min_element(azimuth.begin(), azimuth.end() - 1, [&](double a, double b) {
+            return std::abs(a - (pi - ray)) < std::abs(b - (pi - ray));
+        });
+        const int t = layout_.plate_line();
+        for (int m = static_cast<int>(nearest - azimuth.begin()); m < last_azimuth(); ++m) {
+            for (int r = 0; r < layout_.plate_end(); ++r) {
+                const Quad q{id(m, t, r), id(m + 1, t, r), id(m + 1, t, r + 1), id(m, t, r + 1)};
+                name(q[0], q[1], q[2], q[3], plate_boundary);
+                const auto at = [&](std::size_t c) { return hex_.points[static_cast<std::size_t>(q[c])]; };
+                plate_area_ += norm(cross(at(2) - at(0), at(3) - at(1)));  // of both halves
+            }
+        }
     }
 
     void add_outer() {
@@ -486,6 +514,12 @@ private:
                      limit = section_.radius(std::min(height + touch, depth), azimuth);
         const double share = radius > limit ? limit / radius : 1.0;
         const Vec3 from{share * p.x, share * p.y, height};
+        if (layout_.plate_line() >= 0) {  // a plate turns with the body: what lies outside turns too, and bends no more
+            Vec3 turned = p + (body_.bent(from) - from);
+            turned = {turned.x - body_.base_centre(), turned.y, height + body_.bent(from).z - from.z};
+            const Vec3 way = placed(turned, options_.placement) - Vec3{p.x - body_.base_centre(), p.y, height + gap};
+            return {way.x, way.y, std::min(1.0, p.z / cone) * way.z};
+        }
         const Vec3 way = moved(from.x, from.y, from.z) - Vec3{from.x - body_.base_centre(), from.y, from.z + gap};
         return {way.x, way.y, std::min(1.0, p.z / cone) * way.z};
     }
@@ -523,6 +557,7 @@ private:
     RimAzimuths rim_;
     HexMesh hex_;
     PlaneGrid base_;
+    double plate_area_ = 0;
     std::size_t under_base_ = 0;  // points up to here are of the columns under the base
     std::vector<Index> base_ids_, mirror_of_;
     std::vector<std::vector<Index>> rim_columns_, equator_ids_, first_outward_, last_outward_;
@@ -567,6 +602,9 @@ void to_json(nlohmann::json& json, const BlockMesh& mesh) {
     json["cells_in_gap"] = mesh.cells_in_gap;
     json["smallest_clearance"] = mesh.smallest_clearance;
     json["wall_units_mean"] = mesh.wall_units_mean;
+    if (mesh.tail_plate_area > 0) {
+        json["tail_plate_area"] = mesh.tail_plate_area;
+    }
     json["far_volume"] = mesh.far_volume;
 }
 

@@ -39,6 +39,7 @@ struct BlockMesh {
     int cells_in_gap = 0;           ///< from base to ground, everywhere under the base
     double smallest_clearance = 0;  ///< m
     double wall_units_mean = 0;  ///< estimate of y+ in the first cells of the body, by a friction coefficient of 0.005
+    double tail_plate_area = 0;  ///< m^2, of one side of the whole plate as it is in the mesh
     double far_volume = 0;       ///< m^3, inside far field and over the ground (and half), without the body
 };
 

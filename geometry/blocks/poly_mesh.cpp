@@ -104,7 +104,10 @@ PolyMesh faces_of(const HexMesh& mesh) {
         if (end - cell > 2) {
             throw std::logic_error("a face of three cells");
         }
-        if (end - cell == 2) {  // a name inside the domain says nothing
+        if (end - cell == 2 && cell > i && all[i].cell == -1 - mesh.sheet && mesh.sheet >= 0) {
+            outer.push_back({mesh.sheet, all[cell].cell, all[cell].which});
+            outer.push_back({mesh.sheet, all[cell + 1].cell, all[cell + 1].which});
+        } else if (end - cell == 2) {  // a name inside the domain says nothing
             inner.push_back({all[cell].cell, all[cell + 1].cell, all[cell].which});
         } else if (cell == i) {
             throw std::logic_error("a boundary face of no patch");

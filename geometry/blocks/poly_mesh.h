@@ -26,6 +26,7 @@ struct HexMesh {
     };
     std::vector<std::string> patch_names;
     std::vector<NamedFace> named;
+    std::int32_t sheet = -1;  ///< patch whose faces lie between two cells: a wall without thickness, with two sides
 };
 
 /// Faces in OpenFOAM's order: inner ones by owner, then neighbour (upper triangular), then patch by patch. A face's

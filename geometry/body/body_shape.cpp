@@ -76,6 +76,13 @@ BodyShape shape_from(const core::TomlTable& root, const std::string& name) {
         n.depth = table.quantity_or("depth", "m", 0);
         shape.nozzle = n;
     }
+    if (root.has("tail_plate")) {
+        const core::TomlTable table = root.table("tail_plate");
+        TailPlate plate;
+        plate.chord = table.quantity("chord", "m");
+        plate.half_angle = table.quantity_or("half_angle", "rad", plate.half_angle);
+        shape.tail_plate = plate;
+    }
     check(shape, &root);
     return shape;
 }
@@ -133,7 +140,22 @@ std::string write_shape(const BodyShape& shape) {
                "\nposition = " + number(shape.nozzle->position) + "\ndepth = " + length_text(shape.nozzle->depth) +
                "\n";
     }
+    if (shape.tail_plate) {
+        out += "\n[tail_plate]\nchord = " + length_text(shape.tail_plate->chord) + "\nhalf_angle = \"" +
+               number(shape.tail_plate->half_angle) + " rad\"\n";
+    }
     return out;
+}
+
+double tail_plate_area(const BodyShape& shape) {
+    const TailPlate* plate = tail_plate(shape);
+    if (plate == nullptr) {
+        return 0;
+    }
+    // Where the ellipsoid's outline is a circle areas are the same: between two circles, within the ray's angle there.
+    const double a = shape.length / 2, b = shape.width / 2, outer = 1 + plate->chord / a;
+    const double ray = std::atan2(a * std::sin(plate->half_angle), b * std::cos(plate->half_angle));
+    return ray * a * b * (outer * outer - 1);
 }
 
 std::string shape_hash(const BodyShape& shape) {
@@ -158,6 +180,10 @@ std::string shape_hash(const BodyShape& shape) {
     if (shape.nozzle) {
         hasher.add("nozzle");
         number(shape.nozzle->diameter), number(shape.nozzle->position), number(shape.nozzle->depth);
+    }
+    if (const TailPlate* plate = tail_plate(shape)) {
+        hasher.add("tail_plate");
+        number(plate->chord), number(plate->half_angle);
     }
     return hasher.digest();
 }

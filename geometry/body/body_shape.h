@@ -35,6 +35,15 @@ struct Nozzle {
     friend bool operator==(const Nozzle&, const Nozzle&) = default;
 };
 
+/// A level plate without thickness on the stern: it leaves the hull at the midplane of the ellipsoid and ends where an
+/// ellipse `chord` longer on each side (and wider in proportion) does, between two rays from the body's upright axis.
+/// Blocks alone have it: the body's surface, volume and added mass leave it out.
+struct TailPlate {
+    double chord = 0.05;                ///< m, at the tail; 0: no plate
+    double half_angle = 1.04719755119;  ///< rad, of the rays from the tail, seen from above
+    friend bool operator==(const TailPlate&, const TailPlate&) = default;
+};
+
 /// Metres and radians.
 ///
 /// The body is the ellipsoid with the axes `length`, `width`, `height`, cut by the plane `base_cut` semi-heights below
@@ -61,6 +70,7 @@ struct BodyShape {
     double base_offset = 0;  ///< m, forward positive: how far the base lies from where the cut leaves it
     std::optional<Protrusion> protrusion;
     std::optional<Nozzle> nozzle;
+    std::optional<TailPlate> tail_plate;
     friend bool operator==(const BodyShape&, const BodyShape&) = default;
 
     /// m, below the centre of the ellipsoid
@@ -81,9 +91,9 @@ const std::vector<std::string>& base_names();
 std::string name_of(BaseKind base);
 std::string name_of(ProtrusionProfile profile);
 
-/// Reads [body], [protrusion], [nozzle] of a SHAPE.toml. All lengths with units; every limit is checked (see `check`).
-/// The name of the body is the file's name unless [body] has `name`.
-/// Throws core::InputError that names key, line, value and the nearest allowed value.
+/// Reads [body], [protrusion], [nozzle], [tail_plate] of a SHAPE.toml. All lengths with units; every limit is checked
+/// (see `check`). The name of the body is the file's name unless [body] has `name`. Throws core::InputError that names
+/// key, line, value and the nearest allowed value.
 BodyShape read_shape(const std::filesystem::path& path);
 BodyShape parse_shape(std::string_view text, const std::string& source = "shape");
 /// The same from a table that holds [body] and the rest; the caller calls `finish()`.
@@ -96,6 +106,13 @@ void check(const BodyShape& shape, const core::TomlTable* table = nullptr);
 /// m, from the axis of the ellipsoid forward to the centre of the flat base (the origin of its meshes): `base_offset`,
 /// and for `ellipse_front` where its cut leaves the base. The shape must have passed `check`.
 double base_centre(const BodyShape& shape);
+
+/// m^2, of one side of the plate, both halves; 0 when there is none.
+double tail_plate_area(const BodyShape& shape);
+/// The plate where it is one (a chord above 0).
+inline const TailPlate* tail_plate(const BodyShape& shape) {
+    return shape.tail_plate && shape.tail_plate->chord > 0 ? &*shape.tail_plate : nullptr;
+}
 
 /// Tip to tip width of the protrusion: as written, or as wide as the flat base allows at its place (less 2 % of the
 /// base's half width at each end). 0 when there is none.

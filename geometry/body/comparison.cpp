@@ -19,8 +19,7 @@ std::string value_text(const BodyShape& shape, const ParameterName& name) {
     if (name.name == "protrusion.profile") {
         return shape.protrusion ? name_of(shape.protrusion->profile) : "-";
     }
-    if ((name.name.starts_with("protrusion.") && !shape.protrusion) ||
-        (name.name.starts_with("nozzle.") && !shape.nozzle)) {
+    if (!has_part_of(shape, name.name)) {
         return "-";
     }
     return core::format_number(parameter(shape, name.name), 12);

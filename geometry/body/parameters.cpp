@@ -17,6 +17,7 @@ struct Parameter {
 };
 
 Protrusion& protrusion(BodyShape& shape) { return shape.protrusion ? *shape.protrusion : shape.protrusion.emplace(); }
+TailPlate& plate(BodyShape& shape) { return shape.tail_plate ? *shape.tail_plate : shape.tail_plate.emplace(); }
 Nozzle& nozzle(BodyShape& shape) { return shape.nozzle ? *shape.nozzle : shape.nozzle.emplace(); }
 
 const std::vector<Parameter>& numbers() {
@@ -64,6 +65,12 @@ const std::vector<Parameter>& numbers() {
         {{"nozzle.depth", "m"},
          [](S& s, double v) { nozzle(s).depth = v; },
          [](const S& s) { return s.nozzle->depth; }},
+        {{"tail_plate.chord", "m"},
+         [](S& s, double v) { plate(s).chord = v; },
+         [](const S& s) { return s.tail_plate->chord; }},
+        {{"tail_plate.half_angle", "rad"},
+         [](S& s, double v) { plate(s).half_angle = v; },
+         [](const S& s) { return s.tail_plate->half_angle; }},
     };
     return list;
 }
@@ -87,6 +94,11 @@ const std::vector<ParameterName>& parameter_names() {
         return list;
     }();
     return names;
+}
+
+bool has_part_of(const BodyShape& shape, const std::string& name) {
+    return !(name.starts_with("protrusion.") && !shape.protrusion) && !(name.starts_with("nozzle.") && !shape.nozzle) &&
+           !(name.starts_with("tail_plate.") && !shape.tail_plate);
 }
 
 void set_parameter(BodyShape& shape, const std::string& name, const std::string& text) {
@@ -118,8 +130,7 @@ void set_parameter(BodyShape& shape, const std::string& name, const std::string&
 double parameter(const BodyShape& shape, const std::string& name) {
     for (const Parameter& p : numbers()) {
         if (p.name.name == name) {
-            if ((name.starts_with("protrusion.") && !shape.protrusion) ||
-                (name.starts_with("nozzle.") && !shape.nozzle)) {
+            if (!has_part_of(shape, name)) {
                 throw core::InputError("missing", "the shape has no " + name.substr(0, name.find('.')) + " whose " +
                                                       name + " could be taken");
             }

@@ -57,6 +57,15 @@ core::FileTable nozzle() {
              {"depth", "m", "\"10 mm\"", "0 (flush)", "depth of the bore above the base"}}};
 }
 
+core::FileTable tail_plate() {
+    return {
+        "tail_plate",
+        "a level plate without thickness on the stern, at the ellipsoid's midplane (meshes of blocks alone have it)",
+        {{"chord", "m", "\"50 mm\"", "", "its length aft of the tail; 0: none"},
+         {"half_angle", "rad", "\"60 deg\"", "60 deg",
+          "how far it reaches round the stern to each side, seen from above"}}};
+}
+
 std::vector<core::FileTable> loading() {
     return {{"mass",
              "what the body weighs: for trim and ballast",
@@ -91,7 +100,7 @@ std::vector<core::FileTable> variation() {
 const core::FileFormat& shape_format() {
     static const core::FileFormat format = [] {
         core::FileFormat made{"shape", "SHAPE.toml", "a body: an ellipsoid with a flat base", {}};
-        made.tables = {shape_keys::body(), shape_keys::protrusion(), shape_keys::nozzle()};
+        made.tables = {shape_keys::body(), shape_keys::protrusion(), shape_keys::nozzle(), shape_keys::tail_plate()};
         for (auto& table : shape_keys::loading()) {
             made.tables.push_back(std::move(table));
         }

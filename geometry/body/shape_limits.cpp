@@ -340,6 +340,12 @@ void check(const BodyShape& shape, const core::TomlTable* table) {
     if (shape.nozzle) {
         check_nozzle(shape, checker);
     }
+    if (shape.tail_plate) {
+        checker.length("tail_plate", "chord", shape.tail_plate->chord, 0, 0.45 * shape.length,
+                       "a plate that moves with the body in its mesh: up to 0.45 body lengths");
+        checker.angle("tail_plate", "half_angle", shape.tail_plate->half_angle, 10 * degrees, 90 * degrees,
+                      "from the tail as far as the widest place of the body");
+    }
 }
 
 }  // namespace underbody::geometry

@@ -21,11 +21,13 @@ class TomlTable;
 namespace underbody::geometry {
 
 /// Sets one parameter by its name in the file ("body.base_cut", "protrusion.height"; text with a unit, or a word).
-/// A parameter of [protrusion] or [nozzle] brings that part into being. Does not check the shape.
+/// A parameter of [protrusion], [nozzle] or [tail_plate] brings that part into being. Does not check the shape.
 /// Throws core::InputError: unknown name (with the nearest), a value that does not parse or has another dimension.
 void set_parameter(BodyShape& shape, const std::string& name, const std::string& text);
 /// SI value of a number parameter; throws for words.
 double parameter(const BodyShape& shape, const std::string& name);
+/// False for a parameter of a part that the shape has not ("protrusion.height" of a body without one).
+bool has_part_of(const BodyShape& shape, const std::string& name);
 /// Names of all parameters, with their SI units ("" for words).
 struct ParameterName {
     std::string name;

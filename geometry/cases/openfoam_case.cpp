@@ -271,6 +271,10 @@ std::vector<std::filesystem::path> write_openfoam_case(const SurfaceMesh& body, 
 
 std::vector<std::filesystem::path> write_openfoam_case(const BodyShape& shape, const FlowOptions& options,
                                                        const std::filesystem::path& folder, core::Progress& progress) {
+    if (tail_plate(shape) != nullptr && options.mesher != CaseMesher::blocks) {
+        throw core::InputError("mesh", "the body '" + shape.name + "' has a tail plate, which blocks alone can mesh",
+                               {}, "the mesher blocks, or a shape without [tail_plate]");
+    }
     return options.mesher == CaseMesher::blocks
                ? write_block_case(shape, options, folder, progress).files
                : write_openfoam_case(make_surface(shape, {}, progress), options, folder);

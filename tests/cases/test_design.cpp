@@ -427,6 +427,13 @@ TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {
     EXPECT_THAT(refused("name = \"medium\"", "name = \"coarse\""), testing::HasSubstr("two fidelities"));
 }
 
+TEST_F(DesignFiles, AProtrusionOfNoHeightIsNone) {
+    const Design design = open();
+    const geometry::BodyShape base = geometry::read_shape(design.spec().shape);
+    EXPECT_FALSE(shape_at(design.spec(), base, std::vector<double>{0, 0.75}).protrusion);
+    EXPECT_TRUE(shape_at(design.spec(), base, std::vector<double>{1e-3, 0.75}).protrusion);
+}
+
 TEST_F(DesignFiles, AShapeThatCannotBeIsKeptWithItsReason) {
     std::string text = design_toml;
     text.replace(text.find("to = 0.85"), 9, "to = 1.5");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/random.h"
 #include "core/table.h"
@@ -120,6 +121,22 @@ TEST(Table, RandomTablesComeBackAsTheyWere) {
             ASSERT_EQ(again.text("note")[i], notes[i]);
         }
     }
+}
+
+/// 3 degrees are 3.0000000000000004 degrees by way of radians and back; the file says 3, and reads back to the same.
+TEST(Table, NumbersInOtherUnitsAreWrittenAsTheyWereTyped) {
+    for (const auto& [unit, si] : {std::pair{"deg", "rad"}, {"mm", "m"}, {"km/h", "m/s"}, {"bar", "Pa"}}) {
+        for (int tenths = -200; tenths <= 200; ++tenths) {
+            const std::string typed = format_number(tenths / 10.0), name = "x [" + std::string(unit) + "]\n";
+            const Table table = read_csv(name + typed + "\n", "typed");
+            const std::string written = write_csv(table);
+            EXPECT_EQ(written, name + typed + "\n");
+            EXPECT_EQ(read_csv(written, "written").numbers("x")[0], table.numbers("x")[0]);
+        }
+    }
+    Table table;
+    table.add_numbers("pitch", "rad", {3 * std::numbers::pi / 180, 0.1, std::nan("")}, "deg");
+    EXPECT_EQ(write_csv(table), "pitch [deg]\n3\n" + format_number(0.1 * 180 / std::numbers::pi) + "\n\n");
 }
 
 TEST(Table, RandomBytesNeverCrashTheReader) {

@@ -245,6 +245,59 @@ TEST(BlockMesh, WholeIsTwiceTheHalf) {
     }
 }
 
+/// A plate of the tail, per test: two sides in the plane of the ellipsoid's middle, which turns with the body.
+TEST(BlockMesh, ATailPlateHasTwoSidesAndTurnsWithTheBody) {
+    for (const auto& [chord, angle] : {std::pair{20, 90}, {50, 60}, {80, 30}, {90, 90}}) {
+        for (const char* more : {"", "base_offset = \"-15 mm\"\nbase_pitch = \"-1 deg\"\n"}) {
+            const BodyShape shape = evie_with(more + std::string("[tail_plate]\nchord = \"") + std::to_string(chord) +
+                                              " mm\"\nhalf_angle = \"" + std::to_string(angle) + " deg\"\n");
+            for (const double pitch : {-2 * degree, 0.0, 2 * degree}) {
+                SCOPED_TRACE(std::to_string(chord) + " mm, " + std::to_string(angle) + " deg, " + more +
+                             std::to_string(pitch));
+                const BlockMesh made = make_block_mesh(shape, over(0.006, pitch, MeshDensity::draft));
+                EXPECT_EQ(fault_of(made.quality), "");
+                EXPECT_THAT(made.walls, testing::Contains("tail_plate"));
+                const auto& patch = made.mesh.patch("tail_plate");
+                const FaceSums sums = sums_over(made.mesh, patch);
+                EXPECT_NEAR(norm(sums.area), 0, 1e-12);
+                EXPECT_NEAR(sums.size, made.tail_plate_area, 1e-6 * sums.size);  // half of it, twice
+                EXPECT_NEAR(made.tail_plate_area / tail_plate_area(shape), 1, 0.12);
+                const double depth = shape.base_depth();
+                const auto place = [&](double x, double y) { return placed({x, y, depth}, {0.006, pitch, 0}); };
+                const Vec3 normal = unit(cross(place(1, 0) - place(0, 0), place(0, 1) - place(0, 0)));
+                double last = 0;
+                for (std::size_t at = patch.first; at < patch.first + patch.count; ++at) {
+                    for (const auto p : made.mesh.faces[at]) {
+                        const Vec3 q = made.mesh.points[static_cast<std::size_t>(p)] - place(-base_centre(shape), 0);
+                        EXPECT_NEAR(dot(q, normal), 0, 1e-6);
+                        last = std::max(last, norm(q));
+                    }
+                }
+                EXPECT_NEAR(last, 0.1016 + 1e-3 * chord, 1e-6);
+            }
+        }
+    }
+    // The water is the same as without it, and the body's surface too.
+    const auto with = make_block_mesh(evie_with("[tail_plate]\nchord = \"50 mm\"\n"), over(0.005));
+    const auto without = make_block_mesh(evie_with("[tail_plate]\nchord = \"0 mm\"\n"), over(0.005));
+    EXPECT_EQ(without.quality.cells, make_block_mesh(evie("ellipse"), over(0.005)).quality.cells);
+    EXPECT_NEAR(body_volume(with), body_volume(without), 2e-3 * body_volume(without));
+    EXPECT_GT(with.wall_units_mean, 0.3);
+    EXPECT_LT(with.wall_units_mean, 1.5);
+    // Another mesher has none, and says so; so does a body whose base lies near its middle.
+    const core::TemporaryFolder folder;
+    FlowOptions snappy;
+    snappy.placement.gap = 0.005;
+    snappy.mesher = CaseMesher::snappy;
+    EXPECT_THROW(write_openfoam_case(evie_with("[tail_plate]\nchord = \"50 mm\"\n"), snappy, folder.path() / "case"),
+                 core::InputError);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "case"));
+    EXPECT_THROW(make_block_mesh(parse_shape("[body]\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\nheight = \"145 "
+                                             "mm\"\nbase_cut = 0.2\n[tail_plate]\nchord = \"50 mm\"\n"),
+                                 over(0.005)),
+                 core::InputError);
+}
+
 TEST(BlockMesh, SaysWhyThereIsNone) {
     const auto kind_of = [](const BodyShape& shape, const BlockMeshOptions& options) -> std::string {
         try {
@@ -317,7 +370,9 @@ TEST(BlockMesh, OpenFoamFindsWhatWeFind) {
         return std::regex_search(text, found, std::regex(pattern)) ? core::parse_number(found[1].str()).value_or(-1)
                                                                    : -1;
     };
-    for (const auto& [name, shape] : family()) {
+    auto bodies = family();
+    bodies.emplace_back("tail plate", evie_with("[tail_plate]\nchord = \"50 mm\"\n"));
+    for (const auto& [name, shape] : bodies) {
         SCOPED_TRACE(name);
         const bool whole = name == "all of it";
         const core::TemporaryFolder folder;

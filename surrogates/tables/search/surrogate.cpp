@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -136,14 +137,57 @@ Surrogate Surrogate::fit(std::string quantity, std::string unit, std::vector<Sea
     return result;
 }
 
+namespace {
+
+struct LevelRun {
+    std::size_t level = 0, run = 0;
+};
+
+/// Of each shape its runs of the best fidelity that it has.
+std::map<std::size_t, std::vector<LevelRun>> best_runs(const std::vector<FidelityRuns>& levels) {
+    std::map<std::size_t, std::vector<LevelRun>> of_shape;
+    for (std::size_t level = levels.size(); level-- > 0;) {
+        for (std::size_t i = 0; i < levels[level].count(); ++i) {
+            auto& runs = of_shape[levels[level].group[i]];
+            if (runs.empty() || runs.front().level == level) {
+                runs.push_back({level, i});
+            }
+        }
+    }
+    return of_shape;
+}
+
+/// What the nearest run of another shape says: of the same fidelity, else of any; nothing where there is none.
+std::optional<double> nearest_value(const std::vector<FidelityRuns>& levels, const LevelRun& of, std::size_t axes) {
+    const std::size_t shape = levels[of.level].group[of.run];
+    const double* x = &levels[of.level].x[of.run * axes];
+    const auto among = [&](const FidelityRuns& runs, double& best, std::optional<double>& value) {
+        for (std::size_t j = 0; j < runs.count(); ++j) {
+            double distance = 0;
+            for (std::size_t a = 0; a < axes; ++a) {
+                distance += std::pow(runs.x[j * axes + a] - x[a], 2);
+            }
+            if (runs.group[j] != shape && distance < best) {
+                best = distance;
+                value = runs.y[j];
+            }
+        }
+    };
+    double best = std::numeric_limits<double>::infinity();
+    std::optional<double> value;
+    among(levels[of.level], best, value);
+    for (std::size_t level = 0; !value && level < levels.size(); ++level) {
+        among(levels[level], best, value);
+    }
+    return value;
+}
+
+}  // namespace
+
 void Surrogate::check_left_out(core::Progress& progress) {
     const std::size_t axes = variables_.size();
-    const FidelityRuns& top = process_.runs().back();
-    const double scatter = process_.parameters(process_.levels() - 1).scatter;
-    std::map<std::size_t, std::vector<std::size_t>> of_shape;
-    for (std::size_t i = 0; i < top.count(); ++i) {
-        of_shape[top.group[i]].push_back(i);
-    }
+    const std::vector<FidelityRuns>& levels = process_.runs();
+    const auto of_shape = best_runs(levels);
     std::vector<double> squares;  // of standardised errors, the mean of each shape
     double own = 0, nearest = 0;
     std::vector<double> error, sigma;
@@ -151,31 +195,22 @@ void Surrogate::check_left_out(core::Progress& progress) {
         progress.check();
         const MultiFidelity others = process_.without(shape);
         double square = 0;
-        for (const std::size_t i : points) {
-            const std::span<const double> x(&top.x[i * axes], axes);
-            const GpPrediction p = others.at(x, others.levels() - 1);
-            const double miss = top.y[i] - p.mean;
-            const double variance = p.variance + top.noise[i] + scatter * scatter;
+        check_.shapes_of_best += points.front().level + 1 == levels.size() ? 1 : 0;
+        for (const LevelRun& point : points) {
+            const FidelityRuns& runs = levels[point.level];
+            const std::size_t i = point.run;
+            const double scatter = process_.parameters(point.level).scatter;
+            const GpPrediction p = others.at({&runs.x[i * axes], axes}, std::min(point.level, others.levels() - 1));
+            const double miss = runs.y[i] - p.mean;
+            const double variance = p.variance + runs.noise[i] + scatter * scatter;
             error.push_back(miss);
             sigma.push_back(std::sqrt(variance));
             square += miss * miss / variance / static_cast<double>(points.size());
             own += miss * miss;
-            double best = std::numeric_limits<double>::infinity(), value = 0;
-            for (std::size_t j = 0; j < top.count(); ++j) {
-                if (top.group[j] == shape) {
-                    continue;
-                }
-                double distance = 0;
-                for (std::size_t a = 0; a < axes; ++a) {
-                    distance += std::pow(top.x[j * axes + a] - x[a], 2);
-                }
-                if (distance < best) {
-                    best = distance;
-                    value = top.y[j];
-                }
-            }
-            nearest += std::isfinite(best) ? std::pow(top.y[i] - value, 2) : best;  // no other shape: no such error
-            check_.measured.push_back(middle_ + spread_ * top.y[i]);
+            const auto other = nearest_value(levels, point, axes);
+            // no other shape: no such error
+            nearest += other ? std::pow(runs.y[i] - *other, 2) : std::numeric_limits<double>::infinity();
+            check_.measured.push_back(middle_ + spread_ * runs.y[i]);
             check_.predicted.push_back(middle_ + spread_ * p.mean);
         }
         squares.push_back(square);
@@ -276,6 +311,7 @@ void to_json(nlohmann::json& json, const Surrogate& surrogate) {
     const LeftOutCheck& check = surrogate.check();
     json["left_out"] = {
         {"shapes", check.shapes},
+        {"shapes_of_best", check.shapes_of_best},
         {"points", check.points},
         {"inside_95", check.inside_95},
         {"inside_95_interval", {check.inside_lower, check.inside_upper}},

@@ -45,12 +45,14 @@ struct SurrogatePrediction {
     std::vector<double> sigma_slope;  ///< d sigma / d variable
 };
 
-/// How it does on shapes that it did not see: every shape left out once with all its runs, parameters held.
+/// How it does on shapes that it did not see: every shape left out once with all its runs, parameters held. A shape's
+/// runs of the best fidelity that it has are compared with the prediction of that fidelity.
 struct LeftOutCheck {
     std::size_t shapes = 0;
-    std::size_t points = 0;   ///< of the highest fidelity
-    double inside_95 = 0;     ///< share within 1.96 sigma (as stated, after calibration)
-    double inside_lower = 0;  ///< its 95 % interval (Wilson 1927), counted by shape: runs of one err alike
+    std::size_t shapes_of_best = 0;  ///< of these, how many have runs of the highest fidelity
+    std::size_t points = 0;          ///< of each shape, those of the best fidelity that it has
+    double inside_95 = 0;            ///< share within 1.96 sigma (as stated, after calibration)
+    double inside_lower = 0;         ///< its 95 % interval (Wilson 1927), counted by shape: runs of one err alike
     double inside_upper = 1;
     double root_mean_square = 0;  ///< SI
     double nearest_shape = 0;     ///< the same error when each is taken from the nearest shape's nearest run instead
@@ -106,7 +108,7 @@ private:
 
 /// `quantity`, `unit`, `variables`, `fidelities` (numbers of those that have runs), `runs` and `factors` (rho) of each
 /// of these, `lengths` (of the highest fidelity's own process, in ranges), `error_factor`, `left_out` {`shapes`,
-/// `points`, `inside_95`, `inside_95_interval`, `root_mean_square`, `nearest_shape`}.
+/// `shapes_of_best`, `points`, `inside_95`, `inside_95_interval`, `root_mean_square`, `nearest_shape`}.
 void to_json(nlohmann::json& json, const Surrogate& surrogate);
 
 }  // namespace underbody::tables

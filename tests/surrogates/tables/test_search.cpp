@@ -187,6 +187,30 @@ TEST(Search, ErrorsHoldOnShapesThatWereLeftOut) {
     EXPECT_GE(static_cast<double>(inside) / static_cast<double>(points), 0.90);
 }
 
+TEST(Search, EveryShapeIsCheckedWhateverItsFidelity) {
+    const std::vector<SearchVariable> variables = {{"protrusion.height", "m", 0, 1, false, true},
+                                                   {"gap", "m", 0, 1, false, false}};
+    core::Random random(5);
+    std::vector<SearchRun> runs;
+    for (int shape = 0; shape < 20; ++shape) {
+        const double a = random.uniform();
+        for (const double gap : {0.0, 0.5, 1.0}) {
+            const auto value = [&](double x) { return std::sin(3 * x) + gap * x; };
+            runs.push_back({{a, gap}, 0, value(a) + 0.05, 1e-3});
+            if (shape == 7) {  // the one that was refined
+                runs.push_back({{a, gap}, 1, value(a), 1e-3});
+            }
+        }
+    }
+    const LeftOutCheck check = Surrogate::fit("lift_force", "N", variables, runs).check();
+    EXPECT_EQ(check.shapes, 20u);
+    EXPECT_EQ(check.shapes_of_best, 1u);
+    EXPECT_EQ(check.points, 60u);
+    EXPECT_LT(check.root_mean_square, 0.5 * check.nearest_shape);
+    EXPECT_TRUE(std::isfinite(check.nearest_shape));
+    EXPECT_GT(check.inside_lower, 0.7);
+}
+
 TEST(Search, RunsThatTeachNothingAreRefused) {
     const auto variables = four_variables();
     EXPECT_THROW(Surrogate::fit("lift_force", "N", variables, {}), core::InputError);
