@@ -348,16 +348,21 @@ private:
         }
     }
 
-    /// The tail plate: faces of its line, from the azimuth that is nearest to its ray to the tail.
-    void add_plate(Ids& id) {
-        const double ray = std::atan2(section_.to_x() * std::sin(body_.shape().tail_plate->half_angle),
-                                      section_.to_y() * std::cos(body_.shape().tail_plate->half_angle));
-        const auto& azimuth = rim_.azimuth;
-        const auto nearest = std::min_element(azimuth.begin(), azimuth.end() - 1, [&](double a, double b) {
-            return std::abs(a - (pi - ray)) < std::abs(b - (pi - ray));
+    /// The number of the azimuth that is nearest to a ray, an angle from the tail seen from above.
+    int azimuth_at(double from_tail) const {
+        const double ray =
+            pi - std::atan2(section_.to_x() * std::sin(from_tail), section_.to_y() * std::cos(from_tail));
+        const auto nearest = std::min_element(rim_.azimuth.begin(), rim_.azimuth.end(), [&](double a, double b) {
+            return std::abs(a - ray) < std::abs(b - ray);
         });
+        return static_cast<int>(nearest - rim_.azimuth.begin());
+    }
+
+    /// The tail plate: faces of its line, between the azimuths that are nearest to its rays.
+    void add_plate(Ids& id) {
+        const TailPlate& plate = *body_.shape().tail_plate;
         const int t = layout_.plate_line();
-        for (int m = static_cast<int>(nearest - azimuth.begin()); m < last_azimuth(); ++m) {
+        for (int m = azimuth_at(plate.half_angle); m < azimuth_at(plate.inner_angle); ++m) {
             for (int r = 0; r < layout_.plate_end(); ++r) {
                 const Quad q{id(m, t, r), id(m + 1, t, r), id(m + 1, t, r + 1), id(m, t, r + 1)};
                 name(q[0], q[1], q[2], q[3], plate_boundary);

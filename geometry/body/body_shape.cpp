@@ -81,6 +81,7 @@ BodyShape shape_from(const core::TomlTable& root, const std::string& name) {
         TailPlate plate;
         plate.chord = table.quantity("chord", "m");
         plate.half_angle = table.quantity_or("half_angle", "rad", plate.half_angle);
+        plate.inner_angle = table.quantity_or("inner_angle", "rad", plate.inner_angle);
         shape.tail_plate = plate;
     }
     check(shape, &root);
@@ -142,7 +143,8 @@ std::string write_shape(const BodyShape& shape) {
     }
     if (shape.tail_plate) {
         out += "\n[tail_plate]\nchord = " + length_text(shape.tail_plate->chord) + "\nhalf_angle = \"" +
-               number(shape.tail_plate->half_angle) + " rad\"\n";
+               number(shape.tail_plate->half_angle) + " rad\"\ninner_angle = \"" +
+               number(shape.tail_plate->inner_angle) + " rad\"\n";
     }
     return out;
 }
@@ -154,8 +156,8 @@ double tail_plate_area(const BodyShape& shape) {
     }
     // Where the ellipsoid's outline is a circle areas are the same: between two circles, within the ray's angle there.
     const double a = shape.length / 2, b = shape.width / 2, outer = 1 + plate->chord / a;
-    const double ray = std::atan2(a * std::sin(plate->half_angle), b * std::cos(plate->half_angle));
-    return ray * a * b * (outer * outer - 1);
+    const auto ray = [&](double angle) { return std::atan2(a * std::sin(angle), b * std::cos(angle)); };
+    return (ray(plate->half_angle) - ray(plate->inner_angle)) * a * b * (outer * outer - 1);
 }
 
 std::string shape_hash(const BodyShape& shape) {
@@ -183,7 +185,7 @@ std::string shape_hash(const BodyShape& shape) {
     }
     if (const TailPlate* plate = tail_plate(shape)) {
         hasher.add("tail_plate");
-        number(plate->chord), number(plate->half_angle);
+        number(plate->chord), number(plate->half_angle), number(plate->inner_angle);
     }
     return hasher.digest();
 }

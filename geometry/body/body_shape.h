@@ -41,6 +41,7 @@ struct Nozzle {
 struct TailPlate {
     double chord = 0.05;                ///< m, at the tail; 0: no plate
     double half_angle = 1.04719755119;  ///< rad, of the rays from the tail, seen from above
+    double inner_angle = 0;  ///< rad, where it begins: above 0 there are two fins with a clear tail between them
     friend bool operator==(const TailPlate&, const TailPlate&) = default;
 };
 

@@ -71,6 +71,9 @@ const std::vector<Parameter>& numbers() {
         {{"tail_plate.half_angle", "rad"},
          [](S& s, double v) { plate(s).half_angle = v; },
          [](const S& s) { return s.tail_plate->half_angle; }},
+        {{"tail_plate.inner_angle", "rad"},
+         [](S& s, double v) { plate(s).inner_angle = v; },
+         [](const S& s) { return s.tail_plate->inner_angle; }},
     };
     return list;
 }

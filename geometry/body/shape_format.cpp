@@ -63,7 +63,9 @@ core::FileTable tail_plate() {
         "a level plate without thickness on the stern, at the ellipsoid's midplane (meshes of blocks alone have it)",
         {{"chord", "m", "\"50 mm\"", "", "its length aft of the tail; 0: none"},
          {"half_angle", "rad", "\"60 deg\"", "60 deg",
-          "how far it reaches round the stern to each side, seen from above"}}};
+          "how far it reaches round the stern to each side, seen from above"},
+         {"inner_angle", "rad", "\"35 deg\"", "0",
+          "where it begins, seen from above: two fins with a clear tail between them"}}};
 }
 
 std::vector<core::FileTable> loading() {

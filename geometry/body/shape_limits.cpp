@@ -345,6 +345,8 @@ void check(const BodyShape& shape, const core::TomlTable* table) {
                        "a plate that moves with the body in its mesh: up to 0.45 body lengths");
         checker.angle("tail_plate", "half_angle", shape.tail_plate->half_angle, 10 * degrees, 90 * degrees,
                       "from the tail as far as the widest place of the body");
+        checker.angle("tail_plate", "inner_angle", shape.tail_plate->inner_angle, 0,
+                      shape.tail_plate->half_angle - 10 * degrees, "it begins nearer to the tail than it ends");
     }
 }
 

@@ -147,6 +147,11 @@ int write_domain(DomainCommand& o, Shell& shell) {
         throw core::UsageError("choice", "blocks are for bodies of the family, which a SHAPE.toml describes", {},
                                "--mesher snappy takes any surface");
     }
+    if (body.shape && geometry::tail_plate(*body.shape) != nullptr && !blocks) {
+        throw core::UsageError("mesh",
+                               "the body '" + body.shape->name + "' has a tail plate, which blocks alone can mesh", {},
+                               "--solver openfoam --mesher blocks, or a shape without [tail_plate]");
+    }
     o.flow.mesher = blocks ? geometry::CaseMesher::blocks : geometry::CaseMesher::snappy;
     o.flow.mesh_density = named<geometry::MeshDensity>(geometry::density_names(), o.density);
     std::optional<geometry::BlockCase> made;

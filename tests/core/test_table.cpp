@@ -125,7 +125,7 @@ TEST(Table, RandomTablesComeBackAsTheyWere) {
 
 /// 3 degrees are 3.0000000000000004 degrees by way of radians and back; the file says 3, and reads back to the same.
 TEST(Table, NumbersInOtherUnitsAreWrittenAsTheyWereTyped) {
-    for (const auto& [unit, si] : {std::pair{"deg", "rad"}, {"mm", "m"}, {"km/h", "m/s"}, {"bar", "Pa"}}) {
+    for (const char* unit : {"deg", "mm", "km/h", "bar"}) {
         for (int tenths = -200; tenths <= 200; ++tenths) {
             const std::string typed = format_number(tenths / 10.0), name = "x [" + std::string(unit) + "]\n";
             const Table table = read_csv(name + typed + "\n", "typed");
@@ -135,8 +135,9 @@ TEST(Table, NumbersInOtherUnitsAreWrittenAsTheyWereTyped) {
         }
     }
     Table table;
-    table.add_numbers("pitch", "rad", {3 * std::numbers::pi / 180, 0.1, std::nan("")}, "deg");
-    EXPECT_EQ(write_csv(table), "pitch [deg]\n3\n" + format_number(0.1 * 180 / std::numbers::pi) + "\n\n");
+    table.add_numbers("pitch", "rad", {3 * std::numbers::pi / 180, 0.1}, "deg");
+    EXPECT_TRUE(write_csv(table).starts_with("pitch [deg]\n3\n5.7295779513082")) << write_csv(table);
+    EXPECT_EQ(read_csv(write_csv(table), "again").numbers("pitch"), table.numbers("pitch"));
 }
 
 TEST(Table, RandomBytesNeverCrashTheReader) {
