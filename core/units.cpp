@@ -317,6 +317,7 @@ const std::vector<QuantityName>& quantity_names() {
         {"jet_voltage", "V", "voltage of the jet pump", "V"},
         {"jet_flow", "m^3/s", "volume flow of the jet", "q"},
         {"input_force", "N", "control force, positive up", "u"},
+        {"input_moment", "N m", "control moment, positive nose up", "control moment"},
         {"temperature", "K", "temperature of the water", "T"},
         {"depth", "m", "depth below the free surface, positive down", "depth"},
         {"approach_direction", "1", "+1 when the set point was approached upward, -1 downward", "direction"},

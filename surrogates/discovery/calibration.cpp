@@ -25,6 +25,14 @@ const std::vector<CalibratedNumber>& calibrated_numbers() {
         {"most_left", &C::most_left, "rigs of seed 15001; thruster by gap and backlash", "2026-11-22", unmeasured},
         {"neutral_sigmas", &C::neutral_sigmas, "definition: two standard deviations", "2026-11-22", unmeasured},
         {"rest_chance", &C::rest_chance, "definition: one in a thousand", "2026-11-22", unmeasured},
+        {"by_run_runs", &C::by_run_runs, "definition: two runs that differ do not say which is odd", "2026-11-22",
+         unmeasured},
+        {"by_run_sigmas", &C::by_run_sigmas, "chosen: one in 16,000 of a normal number, not set on simulations",
+         "2026-11-22", unmeasured},
+        {"by_run_gate_share", &C::by_run_gate_share,
+         "chosen: all effects are asked once more, by run; not set on simulations", "2026-11-22", unmeasured},
+        {"by_run_surprise", &C::by_run_surprise, "saves time: no chance above it passes the gate", "2026-11-22",
+         unmeasured},
         {"correction_reach", &C::correction_reach, "definition: all but two states in a thousand", "2026-11-22",
          unmeasured}};
     return list;

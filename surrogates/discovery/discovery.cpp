@@ -8,6 +8,7 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "surrogates/discovery/static/load_cell.h"
+#include "surrogates/dynamics/simulate/pitch_run.h"
 
 namespace underbody::discovery {
 
@@ -35,9 +36,9 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
                    core::Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
     const dynamics::Measurements data = reduced(measured);
-    Discovery result = data.kind == dynamics::MeasurementKind::steady
-                           ? discover_static(model, data, options, progress)
-                           : discover_time_series(model, data, options, progress);
+    Discovery result = data.kind == dynamics::MeasurementKind::steady ? discover_static(model, data, options, progress)
+                       : dynamics::moves_in_pitch(model, data) ? discover_heave_pitch(model, data, options, progress)
+                                                               : discover_heave(model, data, options, progress);
     if (result.verdict == "none") {
         result.depends_on.clear();  // noise depends on nothing
     }
@@ -167,6 +168,16 @@ nlohmann::json to_json(const Discovery& d) {
                         {"unexplained_in_noise", d.rest.is_noise ? 0.0 : d.rest.unexplained / unit},
                         {"twins_in_noise", d.rest.twins / unit},
                         {"depends_on", d.rest.depends_on}};
+    }
+    if (d.motion != "heave") {
+        json["motion"] = d.motion;
+    }
+    for (const AxisResidual& axis : d.axes) {
+        json["axes"].push_back({{"quantity", axis.quantity},
+                                {"unit", axis.unit},
+                                {"before", {{"mean", axis.mean_before}, {"rms", axis.rms_before}}},
+                                {"after", {{"mean", axis.mean_after}, {"rms", axis.rms_after}}},
+                                {"sigma", axis.sigma}});
     }
     if (!d.mended.empty()) {
         json["records_mended"] = d.mended;

@@ -110,9 +110,20 @@ struct DiffersByRun {
     std::vector<double> value, sigma;  ///< run by run, SI
 };
 
+/// Force or moment that must be added to a model for one axis of the measured motion, over the fitted runs.
+struct AxisResidual {
+    std::string quantity;  ///< lift_force, pitch_moment
+    std::string unit;
+    double mean_before = 0, rms_before = 0;  ///< of the model as declared
+    double mean_after = 0, rms_after = 0;    ///< of the model as found
+    double sigma = 0;                        ///< one standard deviation of the noise that gets through the smoother
+};
+
 struct Discovery {
-    std::string verdict;   ///< none, effect, unknown
-    std::string sentence;  ///< the verdict for people
+    std::string motion = "heave";    ///< of a time series: heave, heave_pitch
+    std::vector<AxisResidual> axes;  ///< heave with pitch: one an axis
+    std::string verdict;             ///< none, effect, unknown
+    std::string sentence;            ///< the verdict for people
     std::vector<FoundEffect> effects;
     std::vector<FoundEffect> alternatives;
     double none_probability = 0;
@@ -174,10 +185,12 @@ std::string report_html(const Discovery& discovery, const dynamics::Model& befor
 void write_discovery(const Discovery& discovery, const dynamics::Model& before, const dynamics::Measurements& data,
                      const std::filesystem::path& folder, const FigureRenderer& renderer);
 
-// The two pipelines behind discover().
+// The pipelines behind discover().
 Discovery discover_static(const dynamics::Model& model, const dynamics::Measurements& data,
                           const DiscoverOptions& options, core::Progress& progress);
-Discovery discover_time_series(const dynamics::Model& model, const dynamics::Measurements& data,
+Discovery discover_heave(const dynamics::Model& model, const dynamics::Measurements& data,
+                         const DiscoverOptions& options, core::Progress& progress);
+Discovery discover_heave_pitch(const dynamics::Model& model, const dynamics::Measurements& data,
                                const DiscoverOptions& options, core::Progress& progress);
 
 }  // namespace underbody::discovery

@@ -18,6 +18,7 @@ struct Look {
     const std::vector<Channel>& varying;
     const std::vector<std::string>& quantities;  ///< measured
     bool time_series = false;
+    bool pitches = false;  ///< heave with pitch
 };
 
 /// False where the effect can change nothing there.
@@ -25,8 +26,9 @@ bool add_use(Hypothesis& hypothesis, const dynamics::Effect& effect, const std::
     const dynamics::EffectInfo& info = effect.info();
     const std::vector<std::string> own{quantity};
     std::vector<dynamics::EffectParameter> parameters = info.parameters;
-    if (!effect.look({look.model, quantity.empty() ? look.quantities : own, look.varying, look.time_series}, parameters,
-                     hypothesis.prior)) {
+    if (!effect.look(
+            {look.model, quantity.empty() ? look.quantities : own, look.varying, look.time_series, look.pitches},
+            parameters, hypothesis.prior)) {
         return false;
     }
     dynamics::EffectUse use = dynamics::neutral_use(info.name);
@@ -128,7 +130,7 @@ bool can_be_seen(const dynamics::Effect& effect, const Look& look) {
     return std::all_of(search.needs.begin(), search.needs.end(), moves) &&
            (search.needs_one_of.empty() ||
             std::any_of(search.needs_one_of.begin(), search.needs_one_of.end(), moves)) &&
-           effect.look({look.model, look.quantities, look.varying, look.time_series}, parameters, prior);
+           effect.look({look.model, look.quantities, look.varying, look.time_series, look.pitches}, parameters, prior);
 }
 
 /// The effect that puts another value in the place of a declared number.
@@ -296,9 +298,10 @@ void start_heave(Hypothesis& hypothesis, const dynamics::EffectSearch& search) {
 
 }  // namespace
 
-std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying) {
-    const std::vector<std::string> lift{"lift_force"};
-    const Look look{model, varying, lift, true};
+namespace {
+
+/// Every effect that time series can show, in the catalogue's order.
+std::vector<Hypothesis> series_hypotheses(const Look& look) {
     std::vector<Hypothesis> list;
     for (const dynamics::Effect* effect : dynamics::effects()) {
         const dynamics::EffectInfo& info = effect->info();
@@ -306,6 +309,9 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
             continue;
         }
         Hypothesis hypothesis = make(*effect, {""}, "", look);
+        if (hypothesis.uses.empty()) {
+            continue;
+        }
         start_heave(hypothesis, info.search);
         if (!info.search.beside.empty()) {
             // the law is not one law; with the other's numbers free its form bends to others
@@ -322,27 +328,54 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
         }
         list.push_back(std::move(hypothesis));
     }
+    return list;
+}
+
+/// The scale of the only force table of a quantity and its exponents are the declared numbers that have no name of
+/// their own in the catalogue.
+void add_declared_scale(const Look& look, const std::string& quantity, std::vector<Hypothesis>& list) {
     std::size_t sources = 0;
     std::size_t which = 0;
-    for (std::size_t k = 0; k < model.forces.size(); ++k) {
-        if (model.forces[k].quantity == "lift_force") {
+    for (std::size_t k = 0; k < look.model.forces.size(); ++k) {
+        if (look.model.forces[k].quantity == quantity) {
             ++sources;
             which = k;
         }
     }
-    if (sources == 1) {
-        // the scale of the force table and its exponents are the declared numbers that have no name of their own in the
-        // catalogue
-        const dynamics::ForceSource& source = model.forces[which];
-        const std::string prefix = "force." + std::to_string(which + 1) + ".";
-        list.push_back(of_declared(prefix + "factor", source.factor, 0.05 * source.factor, 20 * source.factor,
-                                   0.1 * source.factor, {"gap"}));
-        for (const dynamics::ForceScale& scale : source.scales) {
-            if (std::find(varying.begin(), varying.end(), scale.channel) != varying.end()) {
-                const std::string channel = dynamics::channel_name(scale.channel);
-                list.push_back(of_declared(prefix + "scale." + channel + ".exponent", scale.exponent, -6, 10, 0.2,
-                                           {"gap", channel}));
-            }
+    if (sources != 1) {
+        return;
+    }
+    const dynamics::ForceSource& source = look.model.forces[which];
+    const std::string prefix = "force." + std::to_string(which + 1) + ".";
+    list.push_back(of_declared(prefix + "factor", source.factor, 0.05 * source.factor, 20 * source.factor,
+                               0.1 * source.factor, {"gap"}));
+    for (const dynamics::ForceScale& scale : source.scales) {
+        if (std::find(look.varying.begin(), look.varying.end(), scale.channel) != look.varying.end()) {
+            const std::string channel = dynamics::channel_name(scale.channel);
+            list.push_back(
+                of_declared(prefix + "scale." + channel + ".exponent", scale.exponent, -6, 10, 0.2, {"gap", channel}));
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying) {
+    const std::vector<std::string> lift{"lift_force"};
+    const Look look{model, varying, lift, true};
+    std::vector<Hypothesis> list = series_hypotheses(look);
+    add_declared_scale(look, lift.front(), list);
+    return list;
+}
+
+std::vector<Hypothesis> heave_pitch_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying) {
+    const std::vector<std::string> quantities{"lift_force", "pitch_moment"};
+    const Look look{model, varying, quantities, true, true};
+    std::vector<Hypothesis> list = series_hypotheses(look);
+    for (const std::string& quantity : quantities) {
+        add_declared_scale(look, quantity, list);
+        if (!list.empty() && list.back().form.starts_with("force.") && quantity == "pitch_moment") {
+            list.back().depends_on.emplace_back("pitch");
         }
     }
     return list;

@@ -8,8 +8,10 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/heave/heave_filter.h"
+#include "surrogates/discovery/heave_pitch/pitch_experiment.h"
 #include "surrogates/discovery/static/static_experiment.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/pitch_predict.h"
 
 namespace underbody::discovery {
 
@@ -53,9 +55,10 @@ core::Figure picture(const Residual& residual, const ResidualCurve& curve) {
     core::Figure figure;
     const bool gap = curve.variable == "gap";
     const double factor = gap ? 1000 : 1;
-    figure.title = "Residual force against " + curve.variable;
+    const bool turns = residual.quantity.ends_with("moment");
+    figure.title = std::string(turns ? "Residual moment against " : "Residual force against ") + curve.variable;
     figure.x = {curve.variable, gap ? "mm" : curve.unit, 0, 0, false};
-    figure.y = {"residual force", "mN", 0, 0, false};
+    figure.y = {turns ? "residual moment" : "residual force", turns ? "mN m" : "mN", 0, 0, false};
     core::FigureBand band;
     band.name = "spread";
     core::FigureCurve mean_curve;
@@ -129,6 +132,51 @@ std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamic
     return {residual};
 }
 
+/// Force and moment, smoothed together.
+std::vector<Residual> heave_pitch_residual(const dynamics::Model& model, const dynamics::Measurements& data,
+                                           core::Progress& progress) {
+    std::vector<std::size_t> all(data.runs.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    std::vector<Residual> list(2);
+    list[0].quantity = "lift_force";
+    list[1].quantity = "pitch_moment";
+    core::Problems problems;
+    std::array<std::vector<double>, dynamics::pitch_states> states;
+    std::array<std::vector<double>, 2> loads, sigmas;
+    for (const PitchRecord& record : pitch_records(model, data, all, problems)) {
+        progress.check();
+        dynamics::PitchRun run(model, data.runs[record.run], model.records);
+        PitchNoise noise;
+        noise.white = dynamics::pitch_noise(data, data.runs[record.run]);
+        walk_of_loads(run.plant(), noise);
+        const SmoothedPitchRun smoothed = smooth_pitch(run, record, noise);
+        for (std::size_t k = 0; k < smoothed.time.size(); ++k) {
+            for (std::size_t i = 0; i < dynamics::pitch_states; ++i) {
+                states[i].push_back(smoothed.state[k][i]);
+            }
+            loads[0].push_back(smoothed.force[k]);
+            loads[1].push_back(smoothed.moment[k]);
+            sigmas[0].push_back(smoothed.force_sigma[k]);
+            sigmas[1].push_back(smoothed.moment_sigma[k]);
+        }
+    }
+    const std::vector<double>& time = data.runs.front().table.numbers("time");
+    const double rate = static_cast<double>(time.size()) / std::max(time.back() - time.front(), 1e-9);
+    for (const std::size_t axis : {0U, 1U}) {
+        Residual& residual = list[axis];
+        residual.problems = problems;
+        residual.mean = mean(loads[axis]);
+        residual.root_mean_square = root_mean_square(loads[axis]);
+        residual.sigma = root_mean_square(sigmas[axis]);
+        for (std::size_t i = 0; i < dynamics::pitch_states; ++i) {
+            residual.curves.push_back(
+                binned(dynamics::channel_name(dynamics::pitch_channels[i]), states[i], loads[axis], 24, 2 * rate));
+            residual.figures.push_back(picture(residual, residual.curves.back()));
+        }
+    }
+    return list;
+}
+
 std::vector<Residual> static_residual(const dynamics::Model& model, const dynamics::Measurements& data) {
     StaticExperiment experiment(model, data);
     experiment.estimate_noise();
@@ -166,6 +214,7 @@ std::vector<Residual> static_residual(const dynamics::Model& model, const dynami
 std::vector<Residual> measured_residual(const dynamics::Model& model, const dynamics::Measurements& data,
                                         core::Progress& progress) {
     return data.kind == dynamics::MeasurementKind::steady ? static_residual(model, data)
+           : dynamics::moves_in_pitch(model, data)        ? heave_pitch_residual(model, data, progress)
                                                           : heave_residual(model, data, progress);
 }
 

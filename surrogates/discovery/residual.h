@@ -35,9 +35,10 @@ struct Residual {
     core::Problems problems;
 };
 
-/// Heave runs: extended Kalman filter and Rauch-Tung-Striebel smoother (1965) of the declared equation with a residual
-/// force that walks at random; with the recorded input inside. Static sets: measured less model at each set point, one
-/// Residual a quantity. Throws core::InputError as prepare_heave_records or StaticExperiment do.
+/// Heave with pitch: the same with a force and a moment, one Residual each. Heave runs: extended Kalman filter and
+/// Rauch-Tung-Striebel smoother (1965) of the declared equation with a residual force that walks at random; with the
+/// recorded input inside. Static sets: measured less model at each set point, one Residual a quantity. Throws
+/// core::InputError as prepare_heave_records or StaticExperiment do.
 std::vector<Residual> measured_residual(const dynamics::Model& model, const dynamics::Measurements& data,
                                         core::Progress& progress = core::Progress::none());
 

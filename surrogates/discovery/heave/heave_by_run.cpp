@@ -9,14 +9,6 @@
 
 namespace underbody::discovery {
 
-namespace {
-
-constexpr std::size_t least_runs = 3;
-constexpr double clearly = 4;          ///< its own errors that at least one run lies from the middle of all
-constexpr double share_of_gate = 0.1;  ///< asked for beside the gate: it has to be that much surer
-
-}  // namespace
-
 /// Strength of one number, run by run, beside what it is in all runs together.
 HeaveLoop::RunByRun HeaveLoop::run_by_run(const Hypothesis& candidate, const std::vector<double>& innovations) const {
     RunByRun out;
@@ -58,7 +50,7 @@ HeaveLoop::RunByRun HeaveLoop::run_by_run(const Hypothesis& candidate, const std
 
 /// Asked where nothing was found that all runs have in common.
 void HeaveLoop::look_run_by_run() {
-    if (train_.size() < least_runs) {
+    if (static_cast<double>(train_.size()) < calibration_.by_run_runs) {
         return;
     }
     std::vector<std::size_t> asked;
@@ -74,13 +66,13 @@ void HeaveLoop::look_run_by_run() {
     const auto best = std::max_element(found.begin(), found.end(), [](const RunByRun& a, const RunByRun& b) {
         return a.probe.surprise < b.probe.surprise;
     });
-    if (best == found.end() || best->probe.surprise < 3) {
+    if (best == found.end() || best->probe.surprise < calibration_.by_run_surprise) {
         return;
     }
     const double middle = median(best->value);
     bool clear = false;
     for (std::size_t g = 0; g < best->value.size(); ++g) {
-        clear = clear || std::abs(best->value[g] - middle) > clearly * best->sigma[g];
+        clear = clear || std::abs(best->value[g] - middle) > calibration_.by_run_sigmas * best->sigma[g];
     }
     std::vector<Probe> list;
     for (const RunByRun& one : found) {
@@ -89,7 +81,7 @@ void HeaveLoop::look_run_by_run() {
     std::vector<double> left = innovations;
     take_out(best->probe.columns, left);
     const double chance = chance_in_noise(list, left, best->probe.surprise, 2);
-    if (!clear || chance >= share_of_gate * calibration_.gate) {
+    if (!clear || chance >= calibration_.by_run_gate_share * calibration_.gate) {
         return;
     }
     const Hypothesis& candidate = candidates_[asked[static_cast<std::size_t>(best - found.begin())]];

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_loop.h"
+#include "surrogates/discovery/run_split.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/simulate/predict.h"
 
@@ -54,53 +55,20 @@ Discovery HeaveLoop::run() {
 }
 
 void HeaveLoop::split() {
-    const std::filesystem::path beside = data_.folder / "held-out";
-    const bool named = std::any_of(data_.runs.begin(), data_.runs.end(),
-                                   [](const auto& run) { return run.use == dynamics::RunUse::test; });
-    const std::size_t count = records_.records.size();
-    if (named) {
-        for (std::size_t i = 0; i < count; ++i) {
-            (data_.runs[records_.records[i].run].use == dynamics::RunUse::test ? test_ : train_).push_back(i);
-        }
-        result_.held_out = "runs that dataset.toml marks for the test";
-    } else if (std::filesystem::exists(beside / "dataset.toml")) {
-        const dynamics::Measurements other = dynamics::read_measurements(beside);
-        if (other.kind == dynamics::MeasurementKind::time_series) {
-            test_records_ = prepare_heave_records(model_, other);
-            train_.resize(count);
-            std::iota(train_.begin(), train_.end(), std::size_t{0});
-            test_.resize(test_records_->records.size());
-            std::iota(test_.begin(), test_.end(), std::size_t{0});
-            result_.held_out =
-                "the runs in the folder held-out beside the data (another excitation or controller), which nothing was "
-                "fitted to";
-        }
+    std::vector<std::size_t> run_of;
+    for (const HeaveRecord& record : records_.records) {
+        run_of.push_back(record.run);
     }
-    if (train_.empty()) {
-        const std::size_t held = count >= 3 ? std::max<std::size_t>(1, count / 4) : 0;
-        std::vector<bool> out(count, false);
-        core::Random random(options_.seed);
-        for (std::size_t left = held; left > 0;) {
-            const std::size_t i = random.below(count);
-            left -= out[i] ? 0 : 1;
-            out[i] = true;
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            (out[i] ? test_ : train_).push_back(i);
-        }
-        result_.held_out = std::to_string(held) + " of " + std::to_string(count) +
-                           " runs, drawn before anything was fitted (same controller)";
-        if (held == 0) {
-            test_ = train_;
-            result_.held_out =
-                "the same runs that were fitted: there are too few to hold any out, so the error after is too good";
-            result_.problems.push_back({core::Problem::Severity::warning,
-                                        "with " + std::to_string(count) +
-                                            " run(s) nothing can be held out: the error is that of the fit, and what "
-                                            "runs have in common cannot be told from chance",
-                                        core::Place{data_.folder.string(), {}, {}, {}}});
-        }
+    RunSplit split = split_runs(data_, run_of, options_.seed);
+    train_ = std::move(split.train);
+    test_ = std::move(split.test);
+    if (split.beside) {
+        test_records_ = prepare_heave_records(model_, *split.beside);
+        test_.resize(test_records_->records.size());
+        std::iota(test_.begin(), test_.end(), std::size_t{0});
     }
+    result_.held_out = std::move(split.held_out);
+    result_.problems.insert(result_.problems.end(), split.problems.begin(), split.problems.end());
 }
 
 void HeaveLoop::fit_null() {
@@ -499,8 +467,8 @@ void HeaveLoop::check_input() {
     open_gate();
 }
 
-Discovery discover_time_series(const dynamics::Model& model, const dynamics::Measurements& data,
-                               const DiscoverOptions& options, core::Progress& progress) {
+Discovery discover_heave(const dynamics::Model& model, const dynamics::Measurements& data,
+                         const DiscoverOptions& options, core::Progress& progress) {
     return HeaveLoop(model, data, options, progress).run();
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "surrogates/discovery/heave/heave_loop.h"
+#include "surrogates/discovery/noise_chance.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
@@ -13,8 +14,6 @@ namespace underbody::discovery {
 namespace {
 
 using Variable = FlexibleForce::Variable;
-
-constexpr std::size_t draws = 199;
 
 /// Laws of the gap may bend often, beside another variable too; those of velocity, input and time bend less.
 const std::vector<HeaveExperiment::SmoothSet>& smooth_sets() {
@@ -130,38 +129,12 @@ std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experimen
 
 double HeaveLoop::chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
                                   double observed, std::uint64_t stream) const {
-    const double size = root_mean_square(noise_like);
-    const std::size_t n = noise_like.size();
-    const std::size_t block =
-        std::max<std::size_t>(8, static_cast<std::size_t>(1.0 / record_step) * (records_.velocity_measured ? 2 : 1));
-    std::vector<double> largest(draws, 0);
-    core::parallel_for(
-        draws,
-        [&](std::size_t d) {
-            core::Random random(options_.seed + stream, d + 1);
-            std::vector<double> drawn(n);
-            for (std::size_t begin = 0; begin < n; begin += block) {
-                const std::size_t from = random.below(n);
-                const double sign = random.uniform() < 0.5 ? -1 : 1;
-                for (std::size_t k = 0; k < block && begin + k < n; ++k) {
-                    drawn[begin + k] = sign * noise_like[(from + k) % n] / size;
-                }
-            }
-            for (const Probe& probe : list) {
-                if (probe.columns.columns > 0) {
-                    largest[d] = std::max(largest[d], surprise(explained_square(probe.columns, drawn),
-                                                               static_cast<double>(probe.columns.columns)));
-                }
-            }
-        },
-        progress_);
-    const std::size_t as_large = static_cast<std::size_t>(
-        std::count_if(largest.begin(), largest.end(), [&](double x) { return x >= observed; }));
-    const double top = *std::max_element(largest.begin(), largest.end());
-    // beyond every draw: the statistic is a negative decimal logarithm of a chance; its tail is given half its nominal
-    // steepness
-    const double beyond = as_large == 0 ? std::clamp(0.5 * (observed - top), 0.0, 12.0) : 0;
-    return static_cast<double>(as_large + 1) / (draws + 1) * std::pow(10.0, -beyond);
+    std::vector<const DesignMatrix*> columns;
+    for (const Probe& probe : list) {
+        columns.push_back(&probe.columns);
+    }
+    const std::size_t second = static_cast<std::size_t>(1.0 / record_step) * (records_.velocity_measured ? 2 : 1);
+    return chance_among(columns, noise_like, observed, second, options_.seed + stream, progress_);
 }
 
 void HeaveLoop::open_gate() {

@@ -24,6 +24,15 @@
     X(gap_sensor_drift)         \
     X(surface_roughness)        \
     X(history_force)            \
+    X(pitch_damping)            \
+    X(pitch_quadratic_damping)  \
+    X(pitch_stiffness)          \
+    X(moment_offset)            \
+    X(input_arm)                \
+    X(mass_centre_offset)       \
+    X(tether_with_arm)          \
+    X(added_pitch_inertia)      \
+    X(pitch_sensor_bias)        \
     X(gap_offset)               \
     X(force_bias)               \
     X(sensor_gain)              \

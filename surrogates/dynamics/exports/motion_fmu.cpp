@@ -10,6 +10,7 @@
 #include "surrogates/dynamics/model/force_sources.h"
 #include "surrogates/dynamics/model/source_shares.h"
 #include "surrogates/dynamics/plant/environment.h"
+#include "surrogates/dynamics/plant/pitch_effects.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/rigid_body.h"
 #include "surrogates/tables/exports/export.h"
@@ -290,6 +291,9 @@ MotionFmu export_motion_fmu(const Model& declared, const std::filesystem::path& 
     }
     const HeavePlant vertical =
         options.motion == FmuMotion::heave ? HeavePlant(model, held, varying) : vertical_channel(model, held, varying);
+    if (options.motion == FmuMotion::heave_pitch) {
+        refuse_pitch_effects(model, vertical.terms, "an FMU");
+    }
     MotionSource source{model, options.motion, held, own_channels(options.motion), varying, vertical, fmu};
     check(source, options.start);
     add_inputs(source);

@@ -103,6 +103,7 @@ struct SearchContext {
     const std::vector<std::string>& quantities;  ///< measured (static sets), or the one that a use names
     const std::vector<Channel>& varying;
     bool time_series = false;
+    bool pitches = false;  ///< the body's pitch moves with its heave, and was measured
 };
 
 /// Implementations are stateless and live for ever in the registry; they may be used from many threads.

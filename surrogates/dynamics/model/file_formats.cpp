@@ -267,7 +267,11 @@ const core::FileFormat& dataset_format() {
                                "What stands before the first table",
                                {{"kind", "time_series | static", "\"time_series\"", "",
                                  "runs in time, or set points with measured forces"},
-                                {"title", "text", "\"heave tests over a flat ground\"", "none", "for people"}},
+                                {"title", "text", "\"heave tests over a flat ground\"", "none", "for people"},
+                                {"motion", "heave | heave_pitch", "\"heave_pitch\"",
+                                 "heave_pitch where every run's pitch moves and the model declares pitch",
+                                 "which motion the runs are of: pitch moves freely with heave, or as something else "
+                                 "makes it"}},
                                true});
         made.tables.push_back(
             {"noise",

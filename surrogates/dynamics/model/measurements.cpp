@@ -318,6 +318,7 @@ Measurements read_measurements(const std::filesystem::path& folder) {
     data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady
                                                                            : MeasurementKind::time_series;
     data.title = root.string_or("title", {});
+    data.motion = root.choice("motion", {"heave", "heave_pitch"}, "");
     data.noise = read_noise(root.table_or_empty("noise"));
     const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
     const LogChannels channels = read_channels(root.table_or_empty("log"));

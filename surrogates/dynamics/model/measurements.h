@@ -34,6 +34,9 @@ enum class MeasurementKind { time_series, steady };
 struct Measurements {
     MeasurementKind kind = MeasurementKind::time_series;  ///< `steady` is `kind = "static"` in the file
     std::string title;
+    /// Which motion the runs are of: "heave", "heave_pitch"; empty: as dataset.toml does not say, what the runs and the
+    /// model can tell.
+    std::string motion;
     std::filesystem::path folder;
     std::map<std::string, double> noise;  ///< declared standard deviation of a channel, SI
     std::vector<MeasuredRun> runs;        ///< in the file's order

@@ -14,6 +14,8 @@ struct Surroundings {
     double input = std::numeric_limits<double>::quiet_NaN();  ///< N up at the centre of gravity; NaN: as held
     const double* channels = nullptr;                         ///< channel_count values; nullptr: as held
     const double* memory = nullptr;                           ///< history_states values of the history force
+    double force = 0;   ///< N up at the centre of gravity, beside everything else: heave with pitch alone
+    double moment = 0;  ///< N m nose up, beside everything else (a recorded input_moment): heave with pitch alone
 };
 
 /// The model's heave channel without its force tables: weight, drag in heave, effects. What coupled motions share with

@@ -36,6 +36,14 @@ HeavePitch::HeavePitch(const Model& declared, const Conditions& given, const std
     friction_ = model.contact.friction;
     restitution_ = model.contact.restitution;
     speed_ = held_.get(Channel::speed, 0.0);
+    const PitchTerms& effects = vertical_.terms.pitch;
+    inertia_ += effects.inertia;
+    if (!(inertia_ > 0)) {
+        throw core::InputError("range", "the inertia in pitch is not positive", {model.name, {}, {}, {}},
+                               "vehicle.pitch_inertia + vehicle.added_inertia_pitch + effects must be positive");
+    }
+    forward_ -= effects.mass_forward;
+    buoyancy_centre_[0] -= effects.mass_forward;
     input_ = vertical_.held_input();
     drag_pitch_ = model.drag_pitch;
     water_ = model.environment;
@@ -88,6 +96,10 @@ void HeavePitch::forces(const PitchState& y, const Surroundings& around, bool wa
         // Tables give moments about the centre of the base: their drag, which something else balances, turns the body.
         loads.moment -= (depth_ * ct - forward_ * st) * std::copysign(drag_(conditions), speed_);
     }
+    vertical_.terms.pitch.add_loads(y[0], y[2], y[3], moment.input * (1 - vertical_.terms.thrust_lost(y[0])), reach,
+                                    loads.force, loads.moment);
+    loads.force += around.force;
+    loads.moment += around.moment;
     if (waves) {
         loads.force += vertical_.wave_force(around.t);
     }

@@ -36,9 +36,9 @@ struct PitchFeedback {
 /// With w the velocity of the centre of gravity, up (dh/dt = w + a q):
 /// S_z(h) dw/dt = -W + F(h, theta) - D_w(w) + effects + N1 + N2 + input - S_z' (dh/dt w - w^2/2)
 /// S_q dq/dt = M(h, theta) + a F - (L cos(theta) - x sin(theta)) D(h, theta) - F_b (L_b sin(theta) - x_b cos(theta)) -
-/// D_q(q) + contact + drag moment + S_z' a w^2/2 dh/dt = w + a q, dtheta/dt = q, a = L sin(theta) + x cos(theta); L is
-/// the depth and x the distance forward of the base's centre from the centre of gravity. Effects act at the centre of
-/// gravity. Lagrange with S_z over the gap.
+/// D_q(q) + contact + drag moment + S_z' a w^2/2 + effects on the pitch (PitchTerms), dh/dt = w + a q, dtheta/dt = q, a
+/// = L sin(theta) + x cos(theta); L is the depth and x the distance forward of the base's centre from the centre of
+/// gravity. Effects act at the centre of gravity. Lagrange with S_z over the gap.
 class HeavePitch {
 public:
     /// `varying`: channels that recorded inputs supply. Throws core::InputError: pitch inertia, base depth or base
@@ -78,6 +78,8 @@ public:
     /// Virtual mass far from the ground, kg.
     [[nodiscard]] double mass() const { return virtual_mass(1e3); }
     [[nodiscard]] double inertia() const { return inertia_; }
+    /// The same at a gap.
+    [[nodiscard]] double mass(double gap) const { return virtual_mass(gap); }
     /// Weight, drag, effects: the heave channel without tables.
     [[nodiscard]] const HeavePlant& vertical() const { return vertical_; }
     /// True when the motion has memory: its integrators carry history_states more.

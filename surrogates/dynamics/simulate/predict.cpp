@@ -12,26 +12,20 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
+#include "surrogates/dynamics/simulate/pitch_predict.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
 namespace underbody::dynamics {
 
-namespace {
-
-/// Sum of squares of one channel over all runs.
-struct Score {
-    double sum = 0;
-    std::size_t count = 0;
-    std::vector<double> noises;
-    void take(double error) {
-        if (std::isfinite(error)) {
-            sum += error * error;
-            ++count;
-        }
+void ChannelScore::take(double error) {
+    if (std::isfinite(error)) {
+        sum += error * error;
+        ++count;
     }
-};
+}
 
-ChannelError error_of(const std::string& name, const std::string& unit, const Score& score, const Measurements& data) {
+ChannelError error_of(const std::string& name, const std::string& unit, const ChannelScore& score,
+                      const Measurements& data) {
     ChannelError error{name, unit};
     error.count = score.count;
     error.rmse = score.count ? std::sqrt(score.sum / static_cast<double>(score.count)) : 0.0;
@@ -46,6 +40,19 @@ ChannelError error_of(const std::string& name, const std::string& unit, const Sc
     error.in_noise = error.noise > 0 ? error.rmse / error.noise : 0.0;
     return error;
 }
+
+double channel_noise(const Measurements& data, const MeasuredRun& run, const std::string& channel, double fallback) {
+    if (const auto declared = data.declared_noise(channel)) {
+        return *declared;
+    }
+    if (!run.has(channel)) {
+        return fallback;
+    }
+    const double found = sensor_noise(run.table.numbers("time"), run.values(channel));
+    return found > 0 ? found : fallback;
+}
+
+namespace {
 
 Prediction predict_static(const Model& model, const Measurements& data) {
     Prediction out;
@@ -75,7 +82,7 @@ Prediction predict_static(const Model& model, const Measurements& data) {
         }
     }
     std::size_t outside_count = 0;
-    std::map<std::string, Score> scores;
+    std::map<std::string, ChannelScore> scores;
     std::vector<StaticModel> models;
     for (const std::string& quantity : quantities) {
         models.emplace_back(model, quantity);
@@ -245,17 +252,6 @@ private:
     double gap_noise_, velocity_noise_;
 };
 
-double channel_noise(const Measurements& data, const MeasuredRun& run, const std::string& channel, double fallback) {
-    if (const auto declared = data.declared_noise(channel)) {
-        return *declared;
-    }
-    if (!run.has(channel)) {
-        return fallback;
-    }
-    const double found = sensor_noise(run.table.numbers("time"), run.values(channel));
-    return found > 0 ? found : fallback;
-}
-
 using RunRows = std::vector<std::vector<RunPredictor::Row>>;
 
 /// All runs predicted with the input read in one way.
@@ -401,6 +397,9 @@ double longest_run(const Measurements& data) {
 
 Prediction predict_series(const Model& model, const Measurements& data, const PredictOptions& options,
                           core::Progress& progress) {
+    if (moves_in_pitch(model, data)) {
+        return predict_pitch_series(model, data, options, progress);
+    }
     Prediction out;
     out.time_series = true;
     InputReading reading;
@@ -411,7 +410,7 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
     check_bounds(all, model, data, out);
     std::vector<std::string> names;
     std::vector<double> window, time, gap, gap_predicted, velocity, velocity_predicted;
-    Score gap_score, velocity_score;
+    ChannelScore gap_score, velocity_score;
     bool has_velocity = false;
     for (std::size_t r = 0; r < data.runs.size(); ++r) {
         const RunPredictor& predictor = *all.predictors[r];
@@ -674,6 +673,7 @@ void to_json(nlohmann::json& json, const Prediction& prediction) {
     }
     json["kind"] = prediction.time_series ? "time_series" : "static";
     if (prediction.time_series) {
+        json["motion"] = prediction.motion;
         json["windows"] = prediction.windows;
         json["diverged_windows"] = prediction.diverged;
     }

@@ -32,11 +32,25 @@ struct ChannelError {
     std::size_t count = 0;
 };
 
+/// Sum of squares of one channel over all runs.
+struct ChannelScore {
+    double sum = 0;
+    std::size_t count = 0;
+    std::vector<double> noises;
+    void take(double error);  ///< what is not finite does not count
+};
+/// Root mean square in units of the declared noise, else of the median of `score.noises`.
+ChannelError error_of(const std::string& name, const std::string& unit, const ChannelScore& score,
+                      const Measurements& data);
+/// One standard deviation of a reading: declared, else from the scatter of the run, else the fallback.
+double channel_noise(const Measurements& data, const MeasuredRun& run, const std::string& channel, double fallback);
+
 struct Prediction {
     core::Table table;  ///< static: run, set points, measured and predicted; time series: run, window, time, gap,
                         ///< gap_predicted, ...
     std::vector<ChannelError> channels;
     bool time_series = false;
+    std::string motion = "heave";           ///< of a time series: heave, heave_pitch
     std::size_t windows = 0, diverged = 0;  ///< windows in all, and those that leave every bound (time series)
     std::string input_between;  ///< "held" or "linear": how the input was read between its samples; empty: none varies
     std::string input_between_from;  ///< "declared" or "data"

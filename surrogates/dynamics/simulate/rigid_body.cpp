@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
+#include "surrogates/dynamics/plant/pitch_effects.h"
 
 namespace underbody::dynamics {
 
@@ -29,6 +30,7 @@ RigidBody::RigidBody(const Model& declared, const Conditions& held, const std::v
     : model_(declared.resolved()),
       held_(held.over(declared.conditions)),
       vertical_(vertical_channel(model_, held_, varying)) {
+    refuse_pitch_effects(model_, vertical_.terms, "the motion of the whole body");
     const Vehicle& v = model_.vehicle;
     mass_x_ = v.mass + v.added_mass_surge;
     mass_y_ = v.mass + v.added_mass_sway;

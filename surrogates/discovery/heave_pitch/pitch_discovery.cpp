@@ -1,0 +1,234 @@
+// Closing the loop with runs of heave and pitch: the declared model inside the experiment.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "core/text.h"
+#include "surrogates/discovery/heave_pitch/pitch_loop.h"
+#include "surrogates/discovery/run_split.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+/// True for what a filter of these runs cannot follow: a force with memory, a wave whose frequency has to be scanned.
+bool out_of_reach(const Hypothesis& hypothesis, const dynamics::Model& model) {
+    dynamics::HeaveTerms terms;
+    for (dynamics::EffectUse use : hypothesis.uses) {
+        for (std::size_t j = 0; j < use.values.size(); ++j) {
+            use.values[j] += 0.1 * dynamics::effect(use.name).info().parameters[j].typical;
+        }
+        dynamics::effect(use.name).add_to(terms, use, model);
+    }
+    return terms.history != 0 || is_scanned(hypothesis);
+}
+
+}  // namespace
+
+PitchLoop::PitchLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+                     core::Progress& progress)
+    : model_(model),
+      data_(data),
+      options_(options),
+      progress_(progress),
+      calibration_(heave_calibration(options.constants)) {}
+
+Discovery PitchLoop::run() {
+    result_.motion = "heave_pitch";
+    split();
+    progress_.report(0.02, "noise");
+    fit_null();
+    try_between();
+    progress_.report(0.15, "fitting the effects of the catalogue");
+    list_candidates();
+    fit_singles();
+    progress_.report(0.6, "testing what is left");
+    open_gate();
+    if (gate_ < calibration_.gate) {
+        rest_ = rest_beside(fitted_[best_single_], noises_[best_single_]);
+        progress_.report(0.7, "several effects");
+        fit_further();
+    }
+    progress_.report(0.85, "error on held-out runs");
+    decide();
+    measure_error();
+    measure_axes();
+    describe();
+    return std::move(result_);
+}
+
+void PitchLoop::warn(const std::string& text) {
+    result_.problems.push_back(
+        {core::Problem::Severity::warning, text, core::Place{data_.folder.string(), {}, {}, {}}});
+}
+
+void PitchLoop::split() {
+    std::vector<std::size_t> all(data_.runs.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    std::vector<PitchRecord> records = pitch_records(model_, data_, all, result_.problems);
+    if (records.empty()) {
+        throw core::InputError("range", "no run of heave with pitch is long enough away from the ground",
+                               core::Place{data_.folder.string(), {}, {}, {}}, "50 rows at least before contact");
+    }
+    std::vector<std::size_t> run_of;
+    for (const PitchRecord& record : records) {
+        run_of.push_back(record.run);
+    }
+    const RunSplit split = split_runs(data_, run_of, options_.seed);
+    result_.held_out = split.held_out;
+    result_.problems.insert(result_.problems.end(), split.problems.begin(), split.problems.end());
+    test_data_ = split.beside ? *split.beside : data_;
+    test_data_.motion = "heave_pitch";
+    if (!split.beside) {
+        test_data_.runs.clear();
+        for (const std::size_t i : split.test) {
+            test_data_.runs.push_back(data_.runs[records[i].run]);
+        }
+    }
+    std::vector<PitchRecord> train;
+    for (const std::size_t i : split.train) {
+        train.push_back(std::move(records[i]));
+    }
+    experiment_.emplace(model_, data_, std::move(train));
+    channels_ = experiment_->channels();
+    input_recorded_ = std::any_of(data_.runs.begin(), data_.runs.end(), [](const dynamics::MeasuredRun& run) {
+        const core::Column* column = run.table.find("input_force");
+        return column != nullptr && !column->is_text() && !column->numbers.empty() &&
+               *std::max_element(column->numbers.begin(), column->numbers.end()) >
+                   *std::min_element(column->numbers.begin(), column->numbers.end());
+    });
+}
+
+void PitchLoop::fit_null() {
+    PitchNoise noise;
+    for (const std::size_t i : channels_) {
+        std::vector<double> own;
+        for (const PitchRecord& record : experiment_->records()) {
+            own.push_back(std::max(dynamics::pitch_noise(data_, data_.runs[record.run])[i], 1e-7));
+        }
+        noise.white[i] = median(own);
+    }
+    const dynamics::PitchRun first(model_, data_.runs[experiment_->records().front().run], model_.records);
+    noise.force = 0.002 * first.plant().mass();
+    noise.moment = 0.02 * first.plant().inertia();
+    experiment_->fit_noise({}, noise);
+    set_null(noise);
+}
+
+void PitchLoop::set_null(const PitchNoise& noise) {
+    null_noise_ = noise;
+    null_by_record_.clear();
+    null_cost_ = experiment_->evaluate({}, null_noise_, null_innovations_, &null_by_record_);
+}
+
+/// Is the recorded input held from sample to sample, or linear between? Asked of the data only where the model does not
+/// say.
+void PitchLoop::try_between() {
+    using Between = dynamics::RecordReading::Between;
+    if (model_.records.input_between != Between::unsaid || !input_recorded_) {
+        return;
+    }
+    const PitchNoise noise = null_noise_;
+    const double held = null_cost_;
+    experiment_->read_input(Between::linear);
+    PitchNoise other = null_noise_;
+    const double linear = experiment_->fit_process({}, other);
+    const Between found = dynamics::between_samples(Between::unsaid, held, linear);
+    experiment_->read_input(found);
+    set_null(found == Between::linear ? other : noise);
+}
+
+void PitchLoop::list_candidates() {
+    std::vector<dynamics::Channel> varying;
+    if (input_recorded_) {
+        varying.push_back(dynamics::Channel::input_force);
+    }
+    for (std::size_t c = 0; c < dynamics::channel_count; ++c) {
+        const auto channel = static_cast<dynamics::Channel>(c);
+        std::vector<double> held;
+        for (const dynamics::MeasuredRun& run : data_.runs) {
+            const auto found = run.conditions.find(dynamics::channel_name(channel));
+            if (found != run.conditions.end()) {
+                held.push_back(found->second);
+            }
+        }
+        if (!held.empty() &&
+            *std::max_element(held.begin(), held.end()) > *std::min_element(held.begin(), held.end())) {
+            varying.push_back(channel);
+        }
+    }
+    candidates_ = heave_pitch_hypotheses(model_, varying);
+    std::erase_if(candidates_, [&](const Hypothesis& one) {
+        return out_of_reach(one, model_) || (!input_recorded_ && touch_of(one, model_).input);
+    });
+    keep_only(candidates_, options_.candidates);
+}
+
+PitchExperiment::Result PitchLoop::fitted(const Hypothesis& hypothesis, const std::vector<std::vector<double>>& starts,
+                                          const PitchNoise& begin) const {
+    PitchExperiment::Result result = experiment_->fit(hypothesis, starts, begin);
+    FittedHypothesis& one = result.fitted;
+    one.explained = null_cost_ - one.cost;
+    const FitParameter& chief = hypothesis.parameters.front();
+    if (one.fit.parameters.front() >= chief.upper - 1e-9 * std::abs(chief.upper)) {
+        one.hypothesis.prior *= 1e-4;  // driven against the bound of what physics allows: it stands for something else
+    }
+    one.explained_by_group = null_by_record_;
+    for (std::size_t r = 0; r < null_by_record_.size(); ++r) {
+        one.explained_by_group[r] -= one.cost_of_group[r];
+    }
+    return result;
+}
+
+/// The effects that promise most to first order are fitted; then whatever promises more than the best of these gives.
+void PitchLoop::fit_singles() {
+    constexpr std::size_t at_first = 8;
+    constexpr double within = 12;  // -2 log likelihood
+    probes_ = probes({}, null_noise_, {});
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < probes_.size(); ++k) {
+        if (probes_[k].smooth == nullptr) {
+            order.push_back(k);
+        }
+    }
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return probes_[a].gain > probes_[b].gain; });
+    std::size_t done = 0;
+    const auto fit_to = [&](std::size_t end) {
+        const std::size_t first = done;
+        fitted_.resize(end);
+        noises_.resize(end);
+        core::parallel_for(
+            end - first,
+            [&](std::size_t k) {
+                const Probe& probe = probes_[order[first + k]];
+                std::vector<std::vector<double>> starts = candidates_[probe.candidate].starts;
+                if (!probe.numbers.empty()) {
+                    starts.push_back(probe.numbers);
+                }
+                PitchExperiment::Result result = fitted(candidates_[probe.candidate], starts, null_noise_);
+                fitted_[first + k] = std::move(result.fitted);
+                noises_[first + k] = result.noise;
+            },
+            progress_);
+        for (std::size_t k = first; k < end; ++k) {
+            candidate_of_.push_back(probes_[order[k]].candidate);
+        }
+        done = end;
+        best_single_ = best_hypothesis(fitted_, 1);
+    };
+    fit_to(std::min(at_first, order.size()));
+    while (done < order.size() && probes_[order[done]].gain > fitted_[best_single_].explained - within &&
+           probes_[order[done]].gain > within) {
+        fit_to(std::min(done + 2, order.size()));
+    }
+}
+
+Discovery discover_heave_pitch(const dynamics::Model& model, const dynamics::Measurements& data,
+                               const DiscoverOptions& options, core::Progress& progress) {
+    return PitchLoop(model, data, options, progress).run();
+}
+
+}  // namespace underbody::discovery

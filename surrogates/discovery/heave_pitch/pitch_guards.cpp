@@ -1,0 +1,228 @@
+// What a verdict may say: judged by runs that nothing was fitted to, beside twins in which nothing is missing.
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "surrogates/discovery/heave_pitch/pitch_loop.h"
+#include "surrogates/discovery/report_findings.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+using dynamics::pitch_states;
+
+namespace {
+
+constexpr std::size_t blocks_wanted = 12;  ///< of held-out runs: enough for Student's t, each of several windows
+constexpr std::size_t twins_each = 2;      ///< draws of noise for each window
+
+void add(WindowSquares& windows, std::size_t run, const std::vector<double>& errors) {
+    windows.record.push_back(run);
+    windows.square.push_back(sum_of_squares(errors));
+    windows.count.push_back(static_cast<double>(errors.size()));
+    windows.errors.insert(windows.errors.end(), errors.begin(), errors.end());
+}
+
+/// Noise of a sensor over samples at these times: white, and coloured where there is any.
+std::vector<double> drawn_noise(const std::vector<double>& time, std::size_t from, std::size_t end,
+                                const PitchNoise& noise, std::size_t state, core::Random& random) {
+    const double slow = state == 0 ? noise.gap_slow : state == 2 ? noise.pitch_slow : 0;
+    double coloured = slow * random.normal();
+    std::vector<double> out;
+    for (std::size_t k = from; k <= end; ++k) {
+        out.push_back(coloured + noise.white[state] * random.normal());
+        if (k < end && slow > 0) {
+            const double decay = std::exp(-(time[k + 1] - time[k]) / noise.slow_time);
+            coloured = decay * coloured + std::sqrt(1 - decay * decay) * slow * random.normal();
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+dynamics::Model PitchLoop::model_with(const std::vector<dynamics::EffectUse>& uses) const {
+    dynamics::Model model = model_;
+    model.records = experiment_->reading();
+    for (const dynamics::EffectUse& use : uses) {
+        model = model.with_effect(use);
+    }
+    return model;
+}
+
+PitchLoop::Answer PitchLoop::answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon) const {
+    Answer answer;
+    answer.uses = uses;
+    dynamics::PredictOptions options;
+    options.horizon = horizon;
+    answer.runs = dynamics::predict_pitch_runs(model_with(uses), test_data_, options, progress_);
+    answer.windows.resize(channels_.size());
+    for (std::size_t r = 0; r < answer.runs.size(); ++r) {
+        dynamics::PitchRun& run = *answer.runs[r].run;
+        for (const dynamics::PitchWindow& window : answer.runs[r].windows) {
+            std::vector<double> together;
+            for (std::size_t c = 0; c < channels_.size(); ++c) {
+                const std::vector<double>& read = run.readings().value[channels_[c]];
+                std::vector<double> errors;
+                for (std::size_t k = window.start; !read.empty() && k <= window.end; ++k) {
+                    if (std::isfinite(read[k])) {
+                        errors.push_back(run.reading(k, channels_[c], window.at(k)) - read[k]);
+                        together.push_back(errors.back() / null_noise_.total(channels_[c]));
+                    }
+                }
+                add(answer.windows[c], r, errors);
+            }
+            add(answer.all, r, together);
+        }
+    }
+    return answer;
+}
+
+bool PitchLoop::falls(const Answer& before, const Answer& after) const {
+    const std::size_t runs = test_data_.runs.size();
+    return paired_fall(before.all.blocks(runs, blocks_wanted), after.all.blocks(runs, blocks_wanted),
+                       calibration_.fall_tail)
+        .falls();
+}
+
+std::vector<double> PitchLoop::twins_error(const Answer& answer) const {
+    std::vector<std::vector<double>> squares(answer.runs.size(), std::vector<double>(channels_.size(), 0)),
+        counts = squares;
+    core::parallel_for(
+        answer.runs.size(),
+        [&](std::size_t r) {
+            dynamics::PitchRun& run = *answer.runs[r].run;
+            core::Random random(options_.seed + 77, r);
+            for (const dynamics::PitchWindow& window : answer.runs[r].windows) {
+                for (std::size_t draw = 0; draw < twins_each; ++draw) {
+                    dynamics::PitchReadings twin = run.readings();
+                    for (const std::size_t i : channels_) {
+                        const std::vector<double> noise =
+                            drawn_noise(run.time(), window.from, window.end, null_noise_, i, random);
+                        for (std::size_t k = window.from; !twin.value[i].empty() && k <= window.end; ++k) {
+                            double& reading = twin.value[i][k];
+                            reading = std::isfinite(reading) ? run.reading(k, i, window.at(k)) + noise[k - window.from]
+                                                             : reading;
+                        }
+                    }
+                    const auto state = dynamics::fitted_state(run, twin, window.from, window.start);
+                    if (!state) {
+                        continue;
+                    }
+                    const std::vector<dynamics::PitchState> motion =
+                        dynamics::motion_from(run, *state, window.from, window.end);
+                    for (std::size_t c = 0; c < channels_.size(); ++c) {
+                        const std::vector<double>& read = twin.value[channels_[c]];
+                        for (std::size_t k = window.start; !read.empty() && k <= window.end; ++k) {
+                            const double error = run.reading(k, channels_[c], motion[k - window.from]) - read[k];
+                            if (std::isfinite(error)) {
+                                squares[r][c] += error * error;
+                                counts[r][c] += 1;
+                            }
+                        }
+                    }
+                }
+            }
+        },
+        progress_);
+    std::vector<double> errors;
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        double square = 0, count = 0;
+        for (std::size_t r = 0; r < squares.size(); ++r) {
+            square += squares[r][c];
+            count += counts[r][c];
+        }
+        errors.push_back(count > 0 ? std::sqrt(square / count) : 0);
+    }
+    return errors;
+}
+
+/// Judged channel by channel: a moment that is missing may leave the gap's error as small as noise.
+bool PitchLoop::rest_is_noise(const Answer& answer) {
+    const std::vector<double> twins = twins_error(answer);
+    const std::size_t runs = test_data_.runs.size();
+    double worst = -1;
+    bool noise = true;
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        const double error = answer.error(c, runs), unit = null_noise_.total(channels_[c]);
+        noise = noise && error <= calibration_.most_over_twins * twins[c];
+        const double ratio = twins[c] > 0 ? error / twins[c] : 0;
+        if (ratio > worst) {  // in noises of that channel; report_error gives them the unit of the first error
+            worst = ratio;
+            result_.rest.twins = twins[c] / unit;
+            result_.rest.unexplained = std::sqrt(std::max(0.0, error * error - twins[c] * twins[c])) / unit;
+        }
+    }
+    result_.rest.is_noise = noise;
+    return noise;
+}
+
+double PitchLoop::share_left(const Answer& declared, const Answer& answer) const {
+    const std::vector<double> twins = twins_error(answer);
+    const std::size_t runs = test_data_.runs.size();
+    double missed = 0, left = 0;
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        const double unit = null_noise_.total(channels_[c]);
+        missed += (std::pow(declared.error(c, runs), 2) - twins[c] * twins[c]) / (unit * unit);
+        left += (std::pow(answer.error(c, runs), 2) - twins[c] * twins[c]) / (unit * unit);
+    }
+    return missed > 0 ? std::max(left, 0.0) / missed : 0;
+}
+
+void PitchLoop::decide() {
+    attribution_ = attribute(fitted_, gate_, rest_.fit, calibration_);
+    result_.verdict = attribution_.verdict;
+    result_.gate = gate_;
+    guard();
+    result_.none_probability = attribution_.none_probability;
+    result_.model = model_with(uses_);
+    if (result_.verdict != "none") {
+        result_.depends_on = whole_.variables;
+    }
+}
+
+/// Guards the verdict of the likelihoods: a name needs a held-out error that falls, and a name and "none" a rest that
+/// is noise.
+void PitchLoop::guard() {
+    const Answer declared = answer_of({}, options_.horizon);
+    bool quiet = true;
+    if (result_.verdict == "effect") {
+        const FittedHypothesis& chosen = fitted_[attribution_.chosen];
+        const Answer named = answer_of(found_effect(chosen, 1).uses, options_.horizon);
+        if (!falls(declared, named)) {
+            warn(chosen.hypothesis.label() +
+                 " would explain the fitted runs better, but the held-out error does not fall with it beyond its "
+                 "interval: it is not named");
+            cap_probabilities(attribution_, 0.5);
+            result_.verdict = "none";
+        } else {
+            quiet = rest_is_noise(named);
+            if (!quiet && share_left(declared, named) > calibration_.most_left) {
+                result_.verdict = "unknown";
+                give_to_unknown(attribution_, 0.8);
+            } else {
+                uses_ = named.uses;
+            }
+        }
+    }
+    if (uses_.empty()) {
+        quiet = rest_is_noise(declared);
+        if (result_.verdict == "unknown") {
+            cap_probabilities(attribution_, 0.5);  // no correction is drawn: the held-out error does not fall
+        }
+    }
+    if (result_.verdict == "none" && !quiet) {
+        result_.verdict = "unknown";
+        if (whole_.variables.empty() || gate_ >= calibration_.gate) {
+            whole_.variables = {"time"};  // as a random force would: no variable explains it
+        }
+        rule_out_none(attribution_, 0.5);
+    }
+    result_.rest.is_noise = quiet;
+    if (!quiet) {
+        result_.rest.depends_on = result_.verdict == "effect" ? rest_.fit.variables : whole_.variables;
+    }
+}
+
+}  // namespace underbody::discovery

@@ -1,0 +1,117 @@
+// The loop for runs of heave with pitch: from the runs to a verdict, the error before and after of each axis.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surrogates/discovery/attribution.h"
+#include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/guards.h"
+#include "surrogates/discovery/heave/heave_error.h"
+#include "surrogates/discovery/heave_pitch/pitch_experiment.h"
+#include "surrogates/dynamics/simulate/pitch_predict.h"
+
+namespace underbody::discovery {
+
+/// Runs once. Steps in the order of run(); each leaves its answer in the members that the next ones read.
+class PitchLoop {
+public:
+    PitchLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
+              core::Progress& progress);
+    Discovery run();
+
+private:
+    // pitch_discovery.cpp: the null model and every effect alone
+    void split();
+    void fit_null();
+    void set_null(const PitchNoise& noise);
+    void try_between();
+    void list_candidates();
+    [[nodiscard]] PitchExperiment::Result fitted(const Hypothesis& hypothesis,
+                                                 const std::vector<std::vector<double>>& starts,
+                                                 const PitchNoise& begin) const;
+    void fit_singles();
+    void warn(const std::string& text);
+
+    // pitch_significance.cpp: is anything there, and is anything left?
+    /// Linearised answers of one thing that may be missing.
+    struct Probe {
+        std::size_t candidate = 0;  ///< index into candidates_, or:
+        const PitchSmooth* smooth = nullptr;
+        DesignMatrix columns;         ///< orthonormal, beside what the base can already do
+        double gain = 0;              ///< of the base's innovations
+        double surprise = 0;          ///< -log10 of the chance of such a gain from white noise
+        std::vector<double> numbers;  ///< a candidate's best, to first order
+    };
+    [[nodiscard]] std::vector<Probe> probes(const std::vector<dynamics::EffectUse>& uses, const PitchNoise& noise,
+                                            const DesignMatrix& own) const;
+    [[nodiscard]] double chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
+                                         double observed, std::uint64_t stream) const;
+    void open_gate();
+    struct Rest {
+        SmoothFit fit;                    ///< the best smooth load on top; p from simulation
+        double share = 0;                 ///< of all structure, that is left
+        std::vector<std::size_t> second;  ///< candidates that would explain most beside it, best first
+    };
+    [[nodiscard]] Rest rest_beside(const FittedHypothesis& base, const PitchNoise& noise) const;
+    void fit_further();
+
+    // pitch_guards.cpp: what the verdict may say
+    /// What a model predicts of the held-out runs.
+    struct Answer {
+        std::vector<dynamics::EffectUse> uses;
+        std::vector<dynamics::PitchRunPrediction> runs;
+        std::vector<WindowSquares> windows;  ///< by channel of channels_, SI
+        WindowSquares all;                   ///< of all channels together, in units of their noise
+        [[nodiscard]] double error(std::size_t channel, std::size_t count) const {
+            return windows[channel].by_record(count).rmse();
+        }
+    };
+    [[nodiscard]] dynamics::Model model_with(const std::vector<dynamics::EffectUse>& uses) const;
+    [[nodiscard]] Answer answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon) const;
+    [[nodiscard]] bool falls(const Answer& before, const Answer& after) const;
+    /// Error of twins of the held-out windows by channel, in SI: the model with these effects and the noise of the
+    /// sensors alone.
+    [[nodiscard]] std::vector<double> twins_error(const Answer& answer) const;
+    /// Compares with the twins, and keeps what is unexplained.
+    bool rest_is_noise(const Answer& answer);
+    [[nodiscard]] double share_left(const Answer& declared, const Answer& answer) const;
+    void decide();
+    void guard();
+
+    // pitch_describe.cpp
+    void measure_error();
+    void measure_axes();
+    void describe();
+    [[nodiscard]] static std::string evidence(const FittedHypothesis& one);
+    [[nodiscard]] Consequence consequence() const;
+    [[nodiscard]] double stability() const;
+
+    const dynamics::Model& model_;
+    const dynamics::Measurements& data_;
+    const DiscoverOptions& options_;
+    core::Progress& progress_;
+    Calibration calibration_;
+    std::optional<PitchExperiment> experiment_;
+    dynamics::Measurements test_data_;  ///< the held-out runs
+    std::vector<std::size_t> channels_;
+    PitchNoise null_noise_;
+    double null_cost_ = 0;
+    std::vector<double> null_innovations_, null_by_record_;
+    bool input_recorded_ = false;
+    std::vector<Hypothesis> candidates_;
+    std::vector<Probe> probes_;  ///< beside the model as declared
+    std::vector<FittedHypothesis> fitted_;
+    std::vector<PitchNoise> noises_;         ///< of fitted_
+    std::vector<std::size_t> candidate_of_;  ///< of the single ones among fitted_
+    std::size_t best_single_ = 0;
+    SmoothFit whole_;
+    Rest rest_;
+    double gate_ = 1;
+    Attribution attribution_;
+    std::vector<dynamics::EffectUse> uses_;
+    Discovery result_;
+};
+
+}  // namespace underbody::discovery

@@ -1,0 +1,246 @@
+// Is anything there, and is anything left? Linearised answers of named effects and of smooth loads, judged against
+// reordered innovations.
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "surrogates/discovery/heave_pitch/pitch_loop.h"
+#include "surrogates/discovery/noise_chance.h"
+#include "surrogates/discovery/report_findings.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+/// Force (axis 0) and moment (axis 1) over every state, over time, and over gap and pitch together.
+const std::vector<PitchSmooth>& smooth_loads() {
+    static const std::vector<PitchSmooth> loads = [] {
+        std::vector<PitchSmooth> list;
+        for (const std::size_t axis : {0U, 1U}) {
+            list.push_back({axis, {}, {}});
+            for (const char* variable : {"gap", "heave_velocity", "pitch", "pitch_rate", "time"}) {
+                list.push_back({axis, {variable}, {6}});
+            }
+            list.push_back({axis, {"gap", "pitch"}, {4, 3}});
+        }
+        return list;
+    }();
+    return loads;
+}
+
+/// Where a candidate is looked at when it is small: one set of numbers for each column.
+std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
+    const std::vector<double> start = h.start();
+    std::vector<std::vector<double>> steps;
+    const auto step = [&](std::size_t j, double from) {
+        const FitParameter& p = h.parameters[j];
+        const double size = 0.05 * p.typical;
+        return from + size > p.upper ? from - size : from + size;
+    };
+    for (std::size_t j = 0; j < start.size(); ++j) {
+        std::vector<double> p = start;
+        if (j > 0) {
+            p.front() = step(0, p.front());  // a shape shows only beside a strength
+        }
+        p[j] = step(j, p[j]);
+        steps.push_back(std::move(p));
+    }
+    return steps;
+}
+
+}  // namespace
+
+std::vector<PitchLoop::Probe> PitchLoop::probes(const std::vector<dynamics::EffectUse>& uses, const PitchNoise& noise,
+                                                const DesignMatrix& own) const {
+    std::vector<double> innovations;
+    std::vector<PitchTrace> traces;
+    experiment_->evaluate(uses, noise, innovations, nullptr, &traces);
+    const DesignMatrix taken = orthonormal(own);
+    std::vector<Probe> list;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+        const bool inside = std::any_of(uses.begin(), uses.end(), [&](const auto& use) {
+            return use.name == candidates_[i].names.front() && use.parameter == candidates_[i].uses.front().parameter;
+        });
+        if (!inside) {
+            list.emplace_back();
+            list.back().candidate = i;
+        }
+    }
+    for (const PitchSmooth& load : smooth_loads()) {
+        list.emplace_back();
+        list.back().smooth = &load;
+    }
+    core::parallel_for(
+        list.size(),
+        [&](std::size_t k) {
+            Probe& probe = list[k];
+            DesignMatrix matrix;
+            const std::vector<std::vector<double>> steps = probe.smooth == nullptr
+                                                               ? small_steps(candidates_[probe.candidate])
+                                                               : std::vector<std::vector<double>>{};
+            matrix = probe.smooth != nullptr
+                         ? experiment_->answers(*probe.smooth, traces)
+                         : experiment_->answers(candidates_[probe.candidate], steps, uses, noise, innovations);
+            if (!std::all_of(matrix.values.begin(), matrix.values.end(), [](double x) { return std::isfinite(x); })) {
+                return;
+            }
+            probe.columns = orthonormal_beside(taken, matrix);
+            probe.gain = explained_square(probe.columns, innovations);
+            probe.surprise = surprise(probe.gain, static_cast<double>(probe.columns.columns));
+            if (probe.smooth == nullptr && steps.size() == 1) {
+                const FitParameter& p = candidates_[probe.candidate].parameters.front();
+                double jj = 0, jr = 0;
+                for (std::size_t i = 0; i < innovations.size(); ++i) {
+                    jj += matrix.values[i] * matrix.values[i];
+                    jr += matrix.values[i] * innovations[i];
+                }
+                probe.numbers = {jj > 0 ? p.start - (steps.front().front() - p.start) * jr / jj : p.start};
+            }
+        },
+        progress_);
+    return list;
+}
+
+double PitchLoop::chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
+                                  double observed, std::uint64_t stream) const {
+    std::vector<const DesignMatrix*> columns;
+    for (const Probe& probe : list) {
+        columns.push_back(&probe.columns);
+    }
+    double seconds = 0;
+    for (const PitchRecord& record : experiment_->records()) {
+        const std::vector<double>& time = data_.runs[record.run].table.numbers("time");
+        seconds += time[record.last] - time[record.first];
+    }
+    const auto second = static_cast<std::size_t>(static_cast<double>(noise_like.size()) / std::max(seconds, 1e-9));
+    return chance_among(columns, noise_like, observed, second, options_.seed + stream, progress_);
+}
+
+void PitchLoop::open_gate() {
+    double observed = 0;
+    for (const FittedHypothesis& one : fitted_) {
+        observed = std::max(observed, surprise(one.explained, static_cast<double>(one.hypothesis.parameters.size())));
+    }
+    if (!fitted_.empty()) {
+        gate_ = chance_in_noise(probes_, fitted_[best_single_].fit.residuals, observed, 0);
+    }
+    const Probe* most = nullptr;
+    for (const Probe& probe : probes_) {
+        const double price = 9.0 * static_cast<double>(probe.columns.columns);
+        if (probe.smooth != nullptr &&
+            (most == nullptr || probe.gain - price > most->gain - 9.0 * static_cast<double>(most->columns.columns))) {
+            most = &probe;
+        }
+    }
+    if (most == nullptr) {
+        return;
+    }
+    whole_.variables = most->smooth->variables;
+    whole_.gain = most->gain;
+    whole_.degrees = static_cast<double>(most->columns.columns);
+    if (gate_ >= calibration_.gate && most->surprise > 2) {  // a law that no named effect resembles
+        std::vector<double> left = null_innovations_;
+        take_out(most->columns, left);
+        gate_ = std::min(gate_, chance_in_noise(probes_, left, most->surprise, 0));
+    }
+    whole_.p = gate_;
+}
+
+PitchLoop::Rest PitchLoop::rest_beside(const FittedHypothesis& base, const PitchNoise& noise) const {
+    const std::vector<dynamics::EffectUse> uses = base.hypothesis.with(base.fit.parameters);
+    DesignMatrix own;
+    own.rows = base.fit.residuals.size();
+    for (std::size_t j = 0; j < base.fit.parameters.size(); ++j) {
+        std::vector<double> moved = base.fit.parameters;
+        const FitParameter& p = base.hypothesis.parameters[j];
+        moved[j] += (moved[j] + 0.02 * p.typical > p.upper ? -0.02 : 0.02) * p.typical;
+        const DesignMatrix column = experiment_->answers(base.hypothesis, {moved}, {}, noise, base.fit.residuals);
+        own.values.insert(own.values.end(), column.values.begin(), column.values.end());
+        ++own.columns;
+    }
+    const std::vector<Probe> list = probes(uses, noise, own);
+    Rest rest;
+    rest.fit.p = 1;
+    std::vector<const Probe*> second;
+    const Probe* most = nullptr;
+    for (const Probe& probe : list) {
+        if (probe.smooth == nullptr) {
+            second.push_back(&probe);
+        } else if (most == nullptr || probe.surprise > most->surprise) {
+            most = &probe;
+        }
+    }
+    std::sort(second.begin(), second.end(), [](const Probe* a, const Probe* b) { return a->surprise > b->surprise; });
+    for (const Probe* probe : second) {
+        if (probe->surprise > 3) {
+            rest.second.push_back(probe->candidate);
+        }
+    }
+    if (most != nullptr && most->surprise > 3) {
+        rest.fit.variables = most->smooth->variables;
+        rest.fit.gain = most->gain;
+        rest.fit.degrees = static_cast<double>(most->columns.columns);
+        std::vector<double> left = base.fit.residuals;
+        take_out(most->columns, left);
+        rest.fit.p = chance_in_noise(list, left, most->surprise, 1);
+        rest.share = structure_left(rest.fit, base.explained);
+    }
+    return rest;
+}
+
+/// A second to a fourth effect, one at a time, where the best set so far leaves structure that noise does not make.
+void PitchLoop::fit_further() {
+    constexpr std::size_t tried = 4;
+    for (std::size_t count = 2; count <= static_cast<std::size_t>(calibration_.most_effects); ++count) {
+        const std::size_t base = best_hypothesis(fitted_, count - 1);
+        if (base >= fitted_.size() || fitted_[base].hypothesis.names.size() + 1 != count || rest_.second.empty()) {
+            return;
+        }
+        std::vector<FittedHypothesis> found(std::min(tried, rest_.second.size()));
+        std::vector<PitchNoise> noises(found.size());
+        core::parallel_for(
+            found.size(),
+            [&](std::size_t k) {
+                const Hypothesis& next = candidates_[rest_.second[k]];
+                const std::vector<std::vector<double>> seconds =
+                    next.starts.empty() ? std::vector<std::vector<double>>{next.start()} : next.starts;
+                std::vector<std::vector<double>> starts;
+                for (const std::vector<double>& begin : seconds) {
+                    starts.push_back(fitted_[base].fit.parameters);
+                    starts.back().insert(starts.back().end(), begin.begin(), begin.end());
+                }
+                const Hypothesis both =
+                    joined(fitted_[base].hypothesis, fitted_[base].hypothesis.start(), next, next.start());
+                PitchExperiment::Result result = fitted(both, starts, noises_[base]);
+                found[k] = std::move(result.fitted);
+                noises[k] = result.noise;
+            },
+            progress_);
+        std::size_t best = found.size();
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (differs_from_neutral(found[k], calibration_.neutral_sigmas) &&
+                found[k].hypothesis.names.size() == count &&
+                (best == found.size() || found[k].score() < found[best].score())) {
+                best = k;
+            }
+        }
+        if (best == found.size()) {
+            return;
+        }
+        const double kin = one_kin(found[best].hypothesis.names) ? 3 : 1;
+        const double gain = fitted_[base].score() - found[best].score();
+        if (gain < calibration_.pair_gain || gain < kin * calibration_.pair_share * found[best].explained) {
+            return;
+        }
+        rest_ = rest_beside(found[best], noises[best]);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (found[k].hypothesis.names.size() == count) {
+                fitted_.push_back(std::move(found[k]));
+                noises_.push_back(noises[k]);
+            }
+        }
+    }
+}
+
+}  // namespace underbody::discovery

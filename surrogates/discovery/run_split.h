@@ -1,0 +1,25 @@
+// Which runs a time series is fitted to and which are held out of every fit and choice.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "surrogates/dynamics/model/measurements.h"
+
+namespace underbody::discovery {
+
+struct RunSplit {
+    std::vector<std::size_t> train, test;          ///< of the records; of `beside` where that is there
+    std::optional<dynamics::Measurements> beside;  ///< the data set in the folder held-out beside the data
+    std::string held_out;                          ///< for people
+    core::Problems problems;
+};
+
+/// As dataset.toml marks them; else the folder held-out beside the data; else a quarter of the runs, one at least,
+/// drawn by `seed`; with fewer than three the same runs, which is a warning. `run_of` is the run of each record.
+RunSplit split_runs(const dynamics::Measurements& data, const std::vector<std::size_t>& run_of, std::uint64_t seed);
+
+}  // namespace underbody::discovery

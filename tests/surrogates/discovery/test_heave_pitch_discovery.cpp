@@ -1,0 +1,212 @@
+// Runs of heave with pitch: residual force and moment, effects in either, clean sets, and predictions as reported.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pitch_rig.h"
+#include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/heave_pitch/pitch_experiment.h"
+#include "surrogates/discovery/residual.h"
+#include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/pitch_predict.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+using test::PitchMoment;
+using test::PitchRig;
+
+DiscoverOptions quick() {
+    DiscoverOptions options;
+    options.horizon = 1;
+    options.consequence = false;
+    options.figures = false;
+    return options;
+}
+
+PitchRig short_rig() {
+    PitchRig rig;
+    rig.seconds = 20;
+    return rig;
+}
+
+const ErrorChange& error_of(const Discovery& found, const std::string& channel) {
+    for (const ErrorChange& change : found.error) {
+        if (change.channel == channel) {
+            return change;
+        }
+    }
+    throw std::runtime_error("no error of " + channel);
+}
+
+class HeavePitchDiscovery : public testing::Test {
+protected:
+    core::TemporaryFolder folder_{"heave-pitch"};
+    dynamics::Model model_ = test::pitch_rig_model(folder_.path());
+};
+
+TEST_F(HeavePitchDiscovery, ResidualHasAForceAndAMoment) {
+    PitchRig rig = short_rig();
+    rig.moment = [](const PitchMoment&) { return 0.002; };
+    const std::vector<Residual> both = measured_residual(model_, test::pitch_rig_runs(rig, 3, 41));
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_EQ(both[0].quantity, "lift_force");
+    EXPECT_EQ(both[1].quantity, "pitch_moment");
+    EXPECT_NEAR(both[1].mean, 0.002, 1e-4);
+    EXPECT_LT(std::abs(both[0].mean), 2e-3);
+    EXPECT_LT(both[0].root_mean_square, 3 * both[0].sigma);
+    rig.moment = {};
+    rig.force = [](const PitchMoment&) { return 0.02; };
+    const std::vector<Residual> other = measured_residual(model_, test::pitch_rig_runs(rig, 3, 42));
+    EXPECT_NEAR(other[0].mean, 0.02, 2e-3);
+    EXPECT_LT(std::abs(other[1].mean), 1e-4);
+}
+
+TEST_F(HeavePitchDiscovery, NamesAnEffectInTheMomentAndPredictsAsReported) {
+    PitchRig rig = short_rig();
+    rig.moment = [](const PitchMoment& now) { return 0.015 * std::cos(now.pitch) * now.input; };
+    const dynamics::Measurements data = test::pitch_rig_runs(rig, 5, 43);
+    const Discovery found = discover(model_, data, quick());
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    ASSERT_EQ(found.effects.size(), 1U) << found.sentence;
+    EXPECT_EQ(found.effects[0].name, "input_arm") << found.sentence;
+    const FoundParameter& arm = found.effects[0].parameters[0];
+    EXPECT_NEAR(arm.value, 0.015, std::max(4 * arm.sigma, 1e-4)) << found.sentence;
+    const ErrorChange& pitch = error_of(found, "pitch");
+    EXPECT_EQ(found.error.front().channel, "pitch");
+    EXPECT_GT(pitch.before.rmse, 2 * pitch.after.rmse);
+    EXPECT_LT(pitch.after.rmse, 1.5 * pitch.noise);
+    const nlohmann::json json = to_json(found);
+    EXPECT_EQ(json.at("motion"), "heave_pitch");
+    ASSERT_EQ(json.at("axes").size(), 2U);
+    EXPECT_EQ(json.at("axes")[1].at("quantity"), "pitch_moment");
+    EXPECT_LT(json.at("axes")[1].at("after").at("rms").get<double>(),
+              0.5 * json.at("axes")[1].at("before").at("rms").get<double>());
+    // the model as written predicts runs that nothing saw as it was said of those held out
+    dynamics::write_model(found.model, folder_.path() / "found" / "model.toml");
+    const dynamics::Model written = dynamics::read_model(folder_.path() / "found" / "model.toml");
+    dynamics::PredictOptions options;
+    options.horizon = 1;
+    rig.gain = 1.4;
+    const dynamics::Measurements fresh = test::pitch_rig_runs(rig, 3, 1043);
+    const dynamics::Prediction before = dynamics::predict(model_, fresh, options);
+    const dynamics::Prediction after = dynamics::predict(written, fresh, options);
+    ASSERT_EQ(after.channels.size(), 2U);
+    EXPECT_EQ(after.channels[1].name, "pitch");
+    EXPECT_NEAR(after.channels[1].rmse, pitch.after.rmse, 0.15 * pitch.after.rmse);
+    EXPECT_GT(before.channels[1].rmse, 2 * after.channels[1].rmse);
+}
+
+TEST_F(HeavePitchDiscovery, ReportsTheErrorThatPredictFindsOnTheHeldOutRuns) {
+    PitchRig rig = short_rig();
+    rig.moment = [](const PitchMoment&) { return 0.001; };
+    dynamics::Measurements data = test::pitch_rig_runs(rig, 4, 44);
+    data.runs.back().use = dynamics::RunUse::test;
+    const Discovery found = discover(model_, data, quick());
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    dynamics::Measurements test = data;
+    test.runs = {data.runs.back()};
+    dynamics::PredictOptions options;
+    options.horizon = 1;
+    dynamics::Model declared = model_;
+    declared.records = found.model.records;
+    const dynamics::Prediction before = dynamics::predict(declared, test, options);
+    const dynamics::Prediction after = dynamics::predict(found.model, test, options);
+    for (const dynamics::ChannelError& channel : after.channels) {
+        EXPECT_NEAR(channel.rmse, error_of(found, channel.name).after.rmse, 1e-9 * channel.rmse);
+    }
+    for (const dynamics::ChannelError& channel : before.channels) {
+        EXPECT_NEAR(channel.rmse, error_of(found, channel.name).before.rmse, 1e-9 * channel.rmse);
+    }
+}
+
+TEST_F(HeavePitchDiscovery, NamesAnEffectInTheForce) {
+    PitchRig rig = short_rig();
+    rig.force = [](const PitchMoment& now) { return -0.5 * now.rise; };
+    const Discovery found = discover(model_, test::pitch_rig_runs(rig, 5, 45), quick());
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects[0].name, "linear_damping") << found.sentence;
+    const FoundParameter& value = found.effects[0].parameters[0];
+    EXPECT_NEAR(value.value, 0.5, std::max(4 * value.sigma, 0.01)) << found.sentence;
+    EXPECT_EQ(found.error.front().channel, "gap");
+    EXPECT_LT(found.axes[0].rms_after, 0.5 * found.axes[0].rms_before);
+}
+
+TEST_F(HeavePitchDiscovery, IsSilentOnACleanRigWithWhiteOrColouredNoiseFedBack) {
+    for (const double colour : {0.0, 0.9}) {
+        PitchRig rig = short_rig();
+        rig.colour = colour;
+        const Discovery found = discover(model_, test::pitch_rig_runs(rig, 5, 46), quick());
+        EXPECT_EQ(found.verdict, "none") << colour << ": " << found.sentence;
+        EXPECT_TRUE(found.effects.empty());
+    }
+}
+
+TEST_F(HeavePitchDiscovery, TakesPitchAsItMovesAndNotAtItsMean) {
+    const PitchRig rig = short_rig();
+    dynamics::Measurements data = test::pitch_rig_runs(rig, 1, 47);
+    data.motion.clear();
+    EXPECT_TRUE(dynamics::moves_in_pitch(model_, data));
+    dynamics::PredictOptions options;
+    options.horizon = 4;  // long enough for a lift that is off to show
+    const dynamics::Prediction moving = dynamics::predict(model_, data, options);
+    EXPECT_EQ(moving.motion, "heave_pitch");
+    ASSERT_EQ(moving.channels.size(), 2U);
+    EXPECT_LT(moving.channels[0].in_noise, 1.4);
+    EXPECT_LT(moving.channels[1].in_noise, 1.4);
+    // with the pitch held at its mean the gap is not predicted as well
+    dynamics::Measurements held = data;
+    held.motion = "heave";
+    std::vector<double> pitch = data.runs[0].table.numbers("pitch");
+    const double middle = mean(pitch);
+    core::Table table;
+    for (const core::Column& column : data.runs[0].table.columns()) {
+        table.add_numbers(column.name, column.unit,
+                          column.name == "pitch" ? std::vector<double>(pitch.size(), middle) : column.numbers);
+    }
+    held.runs[0].table = table;
+    const dynamics::Prediction flat = dynamics::predict(model_, held, options);
+    EXPECT_GT(flat.channels[0].rmse, 1.3 * moving.channels[0].rmse);
+    // a guide that holds the pitch: noise alone is no motion
+    dynamics::Measurements guided = data;
+    core::Random random(5);
+    core::Table still;
+    for (const core::Column& column : data.runs[0].table.columns()) {
+        std::vector<double> values = column.numbers;
+        for (double& value : values) {
+            value = column.name == "pitch" ? 1e-3 * random.normal() : value;
+        }
+        still.add_numbers(column.name, column.unit, values);
+    }
+    guided.runs[0].table = still;
+    EXPECT_FALSE(dynamics::moves_in_pitch(model_, guided));
+}
+
+TEST_F(HeavePitchDiscovery, LinearAnswersAreThoseOfTheFilter) {
+    const dynamics::Measurements data = test::pitch_rig_runs(short_rig(), 1, 48);
+    core::Problems problems;
+    const PitchExperiment experiment(model_, data, pitch_records(model_, data, {0}, problems));
+    PitchNoise noise;
+    noise.white = {2e-4, 1e-3, 5e-4, 1e-2};
+    noise.force = 1e-3;
+    noise.moment = 1e-5;
+    std::vector<double> base, there;
+    std::vector<PitchTrace> traces;
+    experiment.evaluate({}, noise, base, nullptr, &traces);
+    const DesignMatrix linear = experiment.answers(PitchSmooth{1, {}, {}}, traces);
+    ASSERT_EQ(linear.columns, 1U);
+    const double small = 1e-5;
+    experiment.evaluate({dynamics::make_use("moment_offset", {{"moment", small}})}, noise, there);
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < base.size(); ++i) {
+        error += std::pow((there[i] - base[i]) / small - linear.values[i], 2);
+        size += std::pow(linear.values[i], 2);
+    }
+    EXPECT_LT(std::sqrt(error / size), 0.03);
+}
+
+}  // namespace
+
+}  // namespace underbody::discovery
