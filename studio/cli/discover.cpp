@@ -84,6 +84,12 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
                 (missing ? " -> " + core::format_number(change.after.rmse, 3) : "") + " " + change.unit + " (noise " +
                 core::format_number(change.noise, 3) + ")";
     }
+    for (const discovery::AxisResidual& axis : found.axes) {
+        text += "\nThe model lacks of " + axis.quantity + ": " + core::format_number(axis.rms_before, 3) + " " +
+                axis.unit + " (rms, mean " + core::format_number(axis.mean_before, 3) + "), with what was found " +
+                core::format_number(axis.rms_after, 3) + " " + axis.unit + "; noise in it " +
+                core::format_number(axis.sigma, 2) + " " + axis.unit;
+    }
     text += "\n\nNext experiment: " + found.next_experiment + "\n";
     text += missing
                 ? "New model: " + (folder / "model.toml").string() + " (simulate, predict, region and export take it)\n"

@@ -105,6 +105,17 @@ void add_error(core::HtmlPage& page, const Discovery& d) {
     }
     page.table({"channel", "horizon", "before (95 %)", "after (95 %)", "before, in noise", "after, in noise"}, rows,
                "Root mean square of measured less predicted; intervals from resampling whole runs or set points.");
+    std::vector<std::vector<std::string>> axes;
+    for (const AxisResidual& axis : d.axes) {
+        axes.push_back({axis.quantity + " [" + axis.unit + "]", core::format_number(axis.mean_before, 3),
+                        core::format_number(axis.rms_before, 3), core::format_number(axis.mean_after, 3),
+                        core::format_number(axis.rms_after, 3), core::format_number(axis.sigma, 2)});
+    }
+    if (!axes.empty()) {
+        page.table({"lacking", "mean before", "rms before", "mean after", "rms after", "noise in it"}, axes,
+                   "Force and moment that must be added for the motion that was measured, over the fitted runs, "
+                   "smoothed with the model inside.");
+    }
     if (d.placebo.twins > 0) {
         page.paragraph("Placebo: the whole procedure on " + std::to_string(d.placebo.twins) +
                        " simulated twins of these data in which nothing is missing. Something was found in " +
