@@ -10,6 +10,7 @@
 #include "surrogates/discovery/residual.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/simulate/pitch_predict.h"
+#include "tests/support/support.h"
 
 namespace underbody::discovery {
 
@@ -182,6 +183,19 @@ TEST_F(HeavePitchDiscovery, TakesPitchAsItMovesAndNotAtItsMean) {
     }
     guided.runs[0].table = still;
     EXPECT_FALSE(dynamics::moves_in_pitch(model_, guided));
+}
+
+/// Files as a user has them; their truth stands in tests/data/heave-pitch/README.md.
+TEST(HeavePitchExample, GetsItsTruth) {
+    const std::filesystem::path folder = test::data_folder() / "heave-pitch";
+    const dynamics::Model model = dynamics::read_model(folder / "model.toml");
+    DiscoverOptions options = quick();
+    options.horizon = 2;
+    const Discovery found = discover(model, dynamics::read_measurements(folder / "runs"), options);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects[0].name, "input_arm") << found.sentence;
+    const FoundParameter& arm = found.effects[0].parameters[0];
+    EXPECT_NEAR(arm.value, 0.008, std::max(4 * arm.sigma, 1e-4)) << found.sentence;
 }
 
 TEST_F(HeavePitchDiscovery, LinearAnswersAreThoseOfTheFilter) {
