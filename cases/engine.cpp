@@ -54,6 +54,9 @@ Key& Key::through(const std::string& kind, const std::string& name) {
 }
 
 std::string Key::digest() const {
+    if (!digest_.empty()) {
+        return digest_;
+    }
     core::Hasher hasher;
     for (const auto* parts : {&code_, &options_}) {
         for (const auto& [label, value] : *parts) {
@@ -401,6 +404,13 @@ StudyResults stored_results(const Study& study, const RunOptions& options) {
 StudyResults stored_loads(const Study& study, const RunOptions& options) {
     Engine engine(study, options, Engine::Mode::look, core::Progress::none());
     run_loads(engine);
+    engine.results.store = engine.store();
+    return std::move(engine.results);
+}
+
+StudyResults stored_case_loads(const Study& study, const RunOptions& options) {
+    Engine engine(study, options, Engine::Mode::look, core::Progress::none());
+    find_loads(engine);
     engine.results.store = engine.store();
     return std::move(engine.results);
 }

@@ -45,6 +45,8 @@ public:
     /// It is made out of that result, whose numbers stand among the options: where they are the same, the key is.
     Key& through(const std::string& kind, const std::string& name);
     [[nodiscard]] std::string digest() const;
+    /// Finds the digest once, for a key that many results share. Nothing is added to it any more.
+    void close() { digest_ = digest(); }
     /// The same for people, as JSON: `code`, `options`, `from` (kind, name and the id that `id_of` knows).
     using IdOf = std::function<std::string(const std::string& kind, const std::string& name)>;
     [[nodiscard]] std::string about(const IdOf& id_of) const;
@@ -53,6 +55,7 @@ private:
     std::vector<std::pair<std::string, std::string>> code_;
     std::vector<std::pair<std::string, std::string>> options_;
     std::vector<std::pair<std::string, std::string>> from_;
+    std::string digest_;  ///< of a closed key
 };
 
 /// What a piece of work gives.
@@ -189,7 +192,8 @@ void look_at_all(Engine& engine);
 
 // The steps, in order. Each fills `engine.results`.
 void run_bodies(Engine& engine);         // step_bodies.cpp
-void run_loads(Engine& engine);          // step_loads.cpp
+void find_loads(Engine& engine);         // step_loads.cpp: of each case
+void run_loads(Engine& engine);          // step_loads.cpp: and the table of them
 void run_pictures(Engine& engine);       // step_pictures.cpp
 void run_meshes(Engine& engine);         // step_meshes.cpp
 void run_verifications(Engine& engine);  // step_verify.cpp

@@ -64,22 +64,23 @@ fs::path FileStates::path_of(const std::string& stored) const { return folder_ /
 std::string FileStates::state_of(const core::Input& input) {
     switch (input.kind) {
         case core::Input::Kind::content:
-            return content_of(input.path, stored_path(input.path));
-        case core::Input::Kind::presence: {
-            const auto kind = core::stamp_of(input.path).kind;
-            return kind == core::FileStamp::Kind::absent   ? "absent"
-                   : kind == core::FileStamp::Kind::folder ? "folder"
-                                                           : "file";
-        }
+            return content_of(input.path.native(), stored_path(input.path));
+        case core::Input::Kind::presence:
+            return presence_of(input.path.native());
         case core::Input::Kind::names:
             break;
     }
-    return names_state_of(input.path, input.pattern);
+    return names_state_of(input.path.native(), input.pattern);
 }
 
-std::string FileStates::names_state_of(const fs::path& folder, const std::string& pattern) {
+std::string FileStates::presence_of(const std::string& path) {
+    const auto kind = core::stamp_of(path.c_str()).kind;
+    return kind == core::FileStamp::Kind::absent ? "absent" : kind == core::FileStamp::Kind::folder ? "folder" : "file";
+}
+
+std::string FileStates::names_state_of(const std::string& folder, const std::string& pattern) {
     const std::int64_t now = core::now_in_nanoseconds();
-    const core::FileStamp stamp = core::stamp_of(folder);
+    const core::FileStamp stamp = core::stamp_of(folder.c_str());
     const bool kept = now - std::max(stamp.modified, stamp.changed) > settled;
     const std::lock_guard lock(mutex_);
     Listing& listing = listings_[folder];
@@ -98,16 +99,22 @@ std::string FileStates::names_state_of(const fs::path& folder, const std::string
 }
 
 bool FileStates::still(const StoredInput& input) {
-    const fs::path path = path_of(input.path);
-    if (input.kind == core::Input::Kind::content) {
-        return content_of(path, input.path) == input.state;
+    const bool whole = input.path.starts_with('/') || folder_.empty();
+    const std::string path = whole ? input.path : folder_.native() + "/" + input.path;
+    switch (input.kind) {
+        case core::Input::Kind::content:
+            return content_of(path, input.path) == input.state;
+        case core::Input::Kind::presence:
+            return presence_of(path) == input.state;
+        case core::Input::Kind::names:
+            break;
     }
-    return state_of({input.kind, path, input.pattern}) == input.state;
+    return names_state_of(path, input.pattern) == input.state;
 }
 
-std::string FileStates::content_of(const fs::path& path, const std::string& stored) {
+std::string FileStates::content_of(const std::string& path, const std::string& stored) {
     const std::int64_t now = core::now_in_nanoseconds();
-    const core::FileStamp stamp = core::stamp_of(path);
+    const core::FileStamp stamp = core::stamp_of(path.c_str());
     if (stamp.kind == core::FileStamp::Kind::absent) {
         return "absent";
     }
@@ -129,7 +136,7 @@ std::string FileStates::content_of(const fs::path& path, const std::string& stor
         return "unreadable";
     }
     const std::lock_guard lock(mutex_);
-    if (now - std::max(stamp.modified, stamp.changed) > settled && core::stamp_of(path) == stamp) {
+    if (now - std::max(stamp.modified, stamp.changed) > settled && core::stamp_of(path.c_str()) == stamp) {
         learned_[stored] = {stamp, hash};
         known_[stored] = {stamp, hash};
     }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <mutex>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "cases/store.h"
@@ -36,18 +36,20 @@ private:
     struct Listing {
         core::FileStamp stamp;
         std::vector<std::string> names;
-        std::map<std::string, std::string> states;  ///< by pattern
+        std::unordered_map<std::string, std::string> states;  ///< by pattern
     };
 
-    std::string content_of(const std::filesystem::path& path, const std::string& stored);
-    std::string names_state_of(const std::filesystem::path& folder, const std::string& pattern);
+    // Paths as text: to take one apart costs more than to ask for its stamp.
+    std::string content_of(const std::string& path, const std::string& stored);
+    std::string names_state_of(const std::string& folder, const std::string& pattern);
+    static std::string presence_of(const std::string& path);
 
     std::filesystem::path folder_;
     std::filesystem::path whole_folder_;
     mutable std::mutex mutex_;
     Store::FileHashes known_;
     Store::FileHashes learned_;
-    std::map<std::filesystem::path, Listing> listings_;
+    std::unordered_map<std::string, Listing> listings_;
 };
 
 }  // namespace underbody::cases

@@ -1,7 +1,10 @@
 // Loads of every case, in parallel, and the table of them.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <tuple>
 
 #include "cases/case_loads.h"
 #include "cases/engine.h"
@@ -36,8 +39,30 @@ Key loads_key(const Study& study, const Case& entry) {
     for (const auto& zone : entry.zones) {
         key.add("zone", zone);
     }
+    key.close();
     return key;
 }
+
+/// The keys of all cases. Where the conditions that a key is made of are the same, it is made once.
+class LoadsKeys {
+public:
+    explicit LoadsKeys(const Study& study) {
+        std::map<std::tuple<std::optional<double>, std::optional<double>, std::vector<std::string>>, std::size_t> known;
+        for (const auto& entry : study.cases) {
+            const auto [at, fresh] = known.try_emplace(
+                {study.speed_of(entry), entry.conditions.number("density"), entry.zones}, keys_.size());
+            if (fresh) {
+                keys_.push_back(loads_key(study, entry));
+            }
+            of_case_.push_back(at->second);
+        }
+    }
+    const Key& operator[](std::size_t i) const { return keys_[of_case_[i]]; }
+
+private:
+    std::vector<Key> keys_;
+    std::vector<std::size_t> of_case_;
+};
 
 /// Findings of what was read, with the path that they have in the study.
 core::Problems findings(const Engine& engine, const postproc::Field& field, const postproc::LoadsResult& result) {
@@ -77,6 +102,7 @@ void take_brief(std::string_view text, CaseLoads& loads) {
         text.remove_prefix(std::min(at + 1, text.size()));
         return result;
     };
+    loads.values.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
     while (!text.empty()) {
         const std::string_view name = word('\t');
         const std::string_view unit = word('\t');
@@ -224,11 +250,12 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
     return table;
 }
 
-void run_loads(Engine& engine) {
+void find_loads(Engine& engine) {
     const auto& cases = engine.study.cases;
     const std::size_t first = engine.results.steps.size();
     auto& all = engine.results.case_loads;
     all.resize(cases.size());
+    const LoadsKeys keys(engine.study);
     core::parallel_for(
         cases.size(),
         [&](std::size_t i) {
@@ -238,8 +265,7 @@ void run_loads(Engine& engine) {
             one.file = engine.path_in_study(cases[i].file);
             StepResult step;
             const auto made = engine.make(
-                "loads", one.file, loads_key(engine.study, cases[i]), [&] { return compute_loads(engine, cases[i]); },
-                one.name, &step);
+                "loads", one.file, keys[i], [&] { return compute_loads(engine, cases[i]); }, one.name, &step);
             one.state = step.state;
             one.error = step.error;
             if (made) {
@@ -253,8 +279,15 @@ void run_loads(Engine& engine) {
     auto& steps = engine.results.steps;
     std::stable_sort(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(),
                      [](const StepResult& a, const StepResult& b) { return a.name < b.name; });
+}
+
+void run_loads(Engine& engine) {
+    find_loads(engine);
+    const auto& cases = engine.study.cases;
+    auto& all = engine.results.case_loads;
     const bool in_time = std::any_of(cases.begin(), cases.end(), [](const Case& entry) { return entry.mean; });
-    engine.results.loads = loads_table(engine.study, in_time ? with_means_in_time(engine.study, all) : all);
+    engine.results.loads =
+        in_time ? loads_table(engine.study, with_means_in_time(engine.study, all)) : loads_table(engine.study, all);
 }
 
 }  // namespace underbody::cases

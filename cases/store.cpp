@@ -63,10 +63,17 @@ std::string text_of(const SQLite::Column& column) {
 /// One line an input: kind, state, path, and the pattern of names. Paths with line ends are quoted by their lengths.
 std::string packed(const std::vector<StoredInput>& inputs) {
     std::string text;
+    std::size_t size = 0;
+    for (const auto& input : inputs) {
+        size += input.state.size() + input.path.size() + input.pattern.size() + 16;
+    }
+    text.reserve(size);
     for (const auto& input : inputs) {
         text += "cpn"[static_cast<int>(input.kind)];
-        text += input.state + ' ' + std::to_string(input.path.size()) + ' ' + input.path;
-        text += std::to_string(input.pattern.size()) + ' ' + input.pattern + '\n';
+        ((text += input.state) += ' ') += std::to_string(input.path.size());
+        (text += ' ') += input.path;
+        text += std::to_string(input.pattern.size());
+        ((text += ' ') += input.pattern) += '\n';
     }
     return text;
 }
@@ -364,8 +371,7 @@ Store::FileHashes Store::file_hashes() {
         if (!database_->tableExists("file_hash")) {
             return hashes;
         }
-        SQLite::Statement query(
-            *database_, "SELECT path, device, inode, size, modified, changed, hash FROM file_hash ORDER BY path");
+        SQLite::Statement query(*database_, "SELECT path, device, inode, size, modified, changed, hash FROM file_hash");
         while (query.executeStep()) {
             core::FileStamp stamp{core::FileStamp::Kind::file,
                                   static_cast<std::uint64_t>(query.getColumn(1).getInt64()),
@@ -373,8 +379,7 @@ Store::FileHashes Store::file_hashes() {
                                   query.getColumn(3).getInt64(),
                                   query.getColumn(4).getInt64(),
                                   query.getColumn(5).getInt64()};
-            hashes.emplace_hint(hashes.end(), text_of(query.getColumn(0)),
-                                std::pair(stamp, text_of(query.getColumn(6))));
+            hashes.emplace(text_of(query.getColumn(0)), std::pair(stamp, text_of(query.getColumn(6))));
         }
     } catch (const SQLite::Exception& problem) {
         failed(file_, problem);

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -79,7 +79,7 @@ public:
     std::int64_t put(const StoredResult& result, const std::string& about, const std::string& value);
 
     /// Hashes of files by path: the stamp they had and the hash.
-    using FileHashes = std::map<std::string, std::pair<core::FileStamp, std::string>>;
+    using FileHashes = std::unordered_map<std::string, std::pair<core::FileStamp, std::string>>;
     [[nodiscard]] FileHashes file_hashes();
     /// In one transaction. Does nothing in a store that is only read.
     void remember(const FileHashes& hashes);

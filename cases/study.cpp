@@ -87,6 +87,12 @@ std::string stem_of(const fs::path& file) {
 
 /// The path below the study's folder, wherever that lies; else the whole path.
 fs::path below(const fs::path& file, const fs::path& folder) {
+    const std::string& whole = file.native();
+    const std::string& start = folder.native();
+    if (whole.size() > start.size() + 1 && whole.starts_with(start) && whole[start.size()] == '/' &&
+        start.find("..") == std::string::npos) {
+        return whole.substr(start.size() + 1);
+    }
     const fs::path rest = file.lexically_relative(folder);
     return rest.empty() || *rest.begin() == ".." ? file : rest;
 }
@@ -134,8 +140,7 @@ std::vector<core::NamePattern::Found> find_cases(const std::string& pattern, con
     }
     std::string folders;
     std::erase_if(found, [&](const auto& item) {
-        std::error_code error;
-        const bool other = fs::is_directory(item.path, error) && postproc::importer_for(item.path) == nullptr;
+        const bool other = item.folder && postproc::importer_for(item.path) == nullptr;
         folders += other && folders.size() < 200 ? (folders.empty() ? "" : ", ") + item.path.string() : "";
         return other;
     });
@@ -182,8 +187,7 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
     for (auto& item : found) {
         Case entry;
         entry.file = item.path;
-        std::error_code error;
-        entry.name = short_name(below(entry.file, study.folder()), fs::is_directory(entry.file, error));
+        entry.name = short_name(below(entry.file, study.folder()), item.folder);
         entry.conditions = held;
         entry.zones = zones;
         for (auto& number : item.match.numbers) {

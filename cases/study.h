@@ -312,6 +312,8 @@ StudyResults run_study(const Study& study, const RunOptions& options,
 StudyResults stored_results(const Study& study, const RunOptions& options);
 /// The same of the loads alone.
 StudyResults stored_loads(const Study& study, const RunOptions& options);
+/// `case_loads` of that, without the table: for lists of many cases.
+StudyResults stored_case_loads(const Study& study, const RunOptions& options);
 
 /// How a [[table]] is fitted, wherever it is.
 tables::FitOptions fit_options(const TableSpec& spec);

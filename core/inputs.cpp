@@ -22,9 +22,11 @@ std::int64_t nanoseconds(const timespec& time) {
 
 }  // namespace
 
-FileStamp stamp_of(const fs::path& path) {
+FileStamp stamp_of(const fs::path& path) { return stamp_of(path.c_str()); }
+
+FileStamp stamp_of(const char* path) {
     struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) {
+    if (::stat(path, &status) != 0) {
         return {};
     }
     FileStamp stamp;

@@ -28,6 +28,7 @@ struct FileStamp {
 };
 /// Links are followed. What cannot be looked at is absent.
 FileStamp stamp_of(const std::filesystem::path& path);
+FileStamp stamp_of(const char* path);
 /// ns since 1970.
 std::int64_t now_in_nanoseconds();
 

@@ -1,8 +1,8 @@
 #include "core/name_pattern.h"
 
 #include <algorithm>
+#include <compare>
 #include <set>
-#include <tuple>
 #include <unordered_set>
 
 #include "core/mistyped.h"
@@ -212,6 +212,8 @@ std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& p
     }
     const std::string before =
         start.native().ends_with('/') ? start.native() : start.native() + "/";  // of what the walk gives
+    std::string normal = (start / "x").lexically_normal().native();
+    normal.pop_back();
     const auto depth =
         std::count(pattern_.begin() + static_cast<std::ptrdiff_t>(slash == std::string::npos ? 0 : slash + 1),
                    pattern_.end(), '/');
@@ -228,12 +230,17 @@ std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& p
         const std::string below = entry->path().native().substr(before.size());
         const std::string name = fixed.empty() ? (absolute ? "/" + below : below) : fixed + "/" + below;
         if (auto match_found = match_all(parts, name)) {
-            found.push_back({entry->path().lexically_normal(), std::move(*match_found)});
+            found.push_back({normal + below, std::move(*match_found), folder});
         }
     }
-    const auto texts = [](const Found& one) { return std::tie(one.match.texts, one.match.numbers); };
-    std::sort(found.begin(), found.end(), [&](const Found& a, const Found& b) {
-        return texts(a) < texts(b) || (!(texts(b) < texts(a)) && a.path < b.path);
+    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+        if (const auto order = a.match.texts <=> b.match.texts; order != 0) {
+            return order < 0;
+        }
+        if (const auto order = a.match.numbers <=> b.match.numbers; order != 0) {
+            return order < 0;
+        }
+        return a.path < b.path;
     });
     return found;
 }

@@ -29,6 +29,7 @@ public:
     struct Found {
         std::filesystem::path path;
         Match match;
+        bool folder = false;
     };
     /// All files that fit, by their texts, then by their numbers, then by name; the pattern may have several folders.
     /// `root` is where a relative pattern starts.

@@ -61,6 +61,9 @@ public:
                ut_are_convertible(const_cast<ut_unit*>(a), const_cast<ut_unit*>(b)) != 0;
     }
 
+    /// Conversions found before, by their units: of ten thousand numbers most are in the same two.
+    std::map<std::pair<std::string, std::string>, Conversion>& conversions() { return conversions_; }
+
     std::mutex& mutex() { return mutex_; }
     [[nodiscard]] ut_system* raw() const { return system_; }
 
@@ -131,6 +134,7 @@ private:
 
     ut_system* system_ = nullptr;
     std::map<std::string, Owned> units_;
+    std::map<std::pair<std::string, std::string>, Conversion> conversions_;
     std::mutex mutex_;
 };
 
@@ -162,6 +166,10 @@ bool same_dimension(std::string_view unit_a, std::string_view unit_b) {
 Conversion conversion(std::string_view from, std::string_view to, const Place& place) {
     auto& system = UnitSystem::instance();
     const std::lock_guard lock(system.mutex());
+    std::pair<std::string, std::string> units(from, to);
+    if (const auto known = system.conversions().find(units); known != system.conversions().end()) {
+        return known->second;
+    }
     const ut_unit* a = system.find(from);
     const ut_unit* b = system.find(to);
     if (a == nullptr) {
@@ -203,7 +211,8 @@ Conversion conversion(std::string_view from, std::string_view to, const Place& p
     if (std::abs((at_two - at_one) - (at_one - at_zero)) > 1e-9 * (std::abs(at_two) + std::abs(at_one))) {
         throw InputError("unit", "'" + std::string(from) + "' is not proportional to '" + std::string(to) + "'", place);
     }
-    return at_zero == 0 ? Conversion{at_one, 0} : Conversion{at_one - at_zero, at_zero};
+    const Conversion found = at_zero == 0 ? Conversion{at_one, 0} : Conversion{at_one - at_zero, at_zero};
+    return system.conversions().emplace(std::move(units), found).first->second;
 }
 
 double convert(double value, std::string_view from, std::string_view to, const Place& place) {

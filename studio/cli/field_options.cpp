@@ -83,8 +83,8 @@ void add_pattern(const std::string& text, Batch& batch) {
                                   "left out, for their names do not fit the pattern '" + text + "': " + missed,
                                   {}});
     }
-    for (const auto& [path, match] : found) {
-        batch.files.push_back({path.string(), match.numbers, match.texts, {}});
+    for (const auto& one : found) {
+        batch.files.push_back({one.path.string(), one.match.numbers, one.match.texts, {}});
     }
     for (const auto& part : pattern.parts()) {
         if (part.kind == core::NamePattern::Part::Kind::number) {
