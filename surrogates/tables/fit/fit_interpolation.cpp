@@ -129,7 +129,7 @@ std::vector<double> cell_errors(SlopeRule rule, const std::vector<double>& x, co
             weight += 1;
         }
         // The misses of left-out points say what both rules miss alike, such as at kinks: docs/adr/0009.
-        error[cell] = std::sqrt(by_rule + 0.1 * square / weight);
+        error[cell] = std::sqrt(by_rule + 0.3 * square / weight);
     }
     return error;
 }
