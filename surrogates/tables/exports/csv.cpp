@@ -39,6 +39,8 @@ nlohmann::json facts_of(const ExportGrid& grid, const ExportQuantity& quantity) 
     for (const auto& [name, value] : grid.conditions) {
         facts["conditions"][name] = value;
     }
+    facts["warnings"] = quantity.warnings;
+    facts["told"] = quantity.told;
     if (!grid.hull.empty()) {
         facts["hull"] = grid.hull;
     }

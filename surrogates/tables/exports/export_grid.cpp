@@ -165,17 +165,28 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
         lines.push_back("Holds for " + name + " = " + core::format_number(value, 9) +
                         (known != nullptr ? " " + known->unit : ""));
     }
-    for (const auto& line : other_constants(tables.front())) {
-        lines.push_back(line);
-    }
-    for (const ForceTable& table : tables) {
-        std::vector<std::string> worth = settled_lines(table.points());
-        for (const auto& remark : table.remarks()) {
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        ExportQuantity& quantity = grid.quantities[i];
+        quantity.told = {"Which was made" + made_from(tables[i]).substr(4)};
+        std::vector<std::string> said = tables[i].impl().told;
+        for (auto&& line : other_constants(tables.front())) {
+            said.push_back(std::move(line));
+        }
+        for (auto&& line : settled_lines(tables[i].points())) {
+            said.push_back(std::move(line));
+        }
+        quantity.told.insert(quantity.told.end(), said.begin(), said.end());
+        if (quantity.difference > 0) {
+            quantity.told.push_back("It differed from what it was made from by at most " +
+                                    core::format_number(quantity.difference, 3) + " " + quantity.unit);
+        }
+        for (const auto& remark : tables[i].remarks()) {
             if (remark.severity != core::Problem::Severity::note) {
-                worth.push_back("WARNING: " + remark.message);
+                quantity.warnings.push_back(remark.message);
+                said.push_back("WARNING: " + remark.message);
             }
         }
-        for (auto& line : worth) {
+        for (auto& line : said) {
             if (std::find(lines.begin(), lines.end(), line) == lines.end()) {
                 lines.push_back(std::move(line));
             }
@@ -370,7 +381,7 @@ Turn turn_of(const ForceTable& table, Frame frame) {
 
 ExportQuantity quantity_of(const ForceTable& table, Chosen chosen, const ExportOptions& options, unsigned mirrored) {
     ExportQuantity quantity{
-        table.quantity(), table.unit(), "", {}, {}, chosen.surface.difference + table.sampling_error()};
+        table.quantity(), table.unit(), "", {}, {}, {}, {}, chosen.surface.difference + table.sampling_error()};
     if (const auto* known = core::find_quantity(table.quantity())) {
         quantity.meaning = known->meaning;
     }

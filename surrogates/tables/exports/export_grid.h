@@ -31,6 +31,8 @@ struct ExportQuantity {
     std::string meaning;  ///< one line with its sign
     CubicGrid surface;
     ErrorModel error;
+    std::vector<std::string> warnings;  ///< what changes what the numbers mean; read back with the table
+    std::vector<std::string> told;      ///< lines of the head that no column says; likewise
     double difference =
         0;  ///< in `unit`: largest from the table, between the points too, and from the model that a table stands for
 };

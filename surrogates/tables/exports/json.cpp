@@ -12,6 +12,8 @@ namespace {
 void write_quantity(nlohmann::ordered_json& json, const ExportGrid& grid, const ExportQuantity& quantity) {
     const std::size_t width = std::size_t{1} << grid.axes.size();
     json["max_error"] = quantity.difference;
+    json["warnings"] = quantity.warnings;
+    json["told"] = quantity.told;
     auto& nodes = json["hermite"] = nlohmann::ordered_json::array();
     for (std::size_t node = 0; node < quantity.surface.nodes(); ++node) {
         const double* data = &quantity.surface.hermite()[node * width];

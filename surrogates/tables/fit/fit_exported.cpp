@@ -143,6 +143,10 @@ std::shared_ptr<const ForceTable::Impl> table_of_export(const nlohmann::json& fa
     result->remarks.push_back({core::Problem::Severity::note,
                                "an exported table: taken with its slopes and error, not fitted again",
                                {table.source, {}, {}, {}}});
+    for (const auto& warning : facts.value("warnings", std::vector<std::string>{})) {
+        result->remarks.push_back({core::Problem::Severity::warning, warning, {table.source, {}, {}, {}}});
+    }
+    result->told = facts.value("told", std::vector<std::string>{});
     std::vector<std::vector<double>> grid;
     for (const auto& axis : points.axes) {
         grid.push_back(axis.points);

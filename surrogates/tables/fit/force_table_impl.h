@@ -23,6 +23,7 @@ struct ForceTable::Impl {
     std::string source;
     std::vector<TableAxis> axes;
     core::Problems remarks;
+    std::vector<std::string> told;  ///< of an exported table: lines of its head that no column says
     core::Table points;
     std::vector<std::pair<std::string, double>> constants;
     SlopeRule rule = SlopeRule::monotone;

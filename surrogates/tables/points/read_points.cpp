@@ -53,6 +53,11 @@ void add_quantity(core::Table& table, const nlohmann::json& file, const nlohmann
             facts[kept] = file[kept];
         }
     }
+    for (const char* kept : {"warnings", "told"}) {
+        if (own.contains(kept)) {
+            facts[kept] = own[kept];
+        }
+    }
     for (const auto& axis : axes) {
         facts["axes"].push_back(axis.at("name"));
         facts["range"].push_back(

@@ -123,6 +123,52 @@ TEST(ExportsOfText, KeepTheConditionsOfTheTableAndWhereItsPointsAre) {
     }
 }
 
+TEST(ExportsOfText, WarningsAndWordsOfTheHeadTravelThroughCsvAndJson) {
+    core::TemporaryFolder folder;
+    core::Table points;
+    points.source = "campaign.csv";
+    points.add_numbers("gap", "m", {0.005, 0.006, 0.007, 0.008, 0.009, 0.010, 0.012, 0.015});
+    points.add_numbers("lift_force", "N", {1, 0.9, 0.82, 0.77, 0.73, 0.70, 0.66, 0.62});
+    points.add_text("variant", std::vector<std::string>(8, "ellipse"));
+    std::vector<std::string> settled(8, "settled");
+    settled[1] = "not settled";
+    settled[2] = "unknown";
+    points.add_text("settled", settled);
+    const std::vector<std::string> words = {"1 of the 8 points are of solutions that have not settled: row 2",
+                                            "Whether 1 of the 8 solutions behind the points had settled is not known",
+                                            "Of variant ellipse", "ade from campaign.csv: 8 points, fitted as "};
+    const auto expect_words = [&](const std::filesystem::path& path) {
+        const std::string head = core::read_file(path);
+        for (const auto& sentence : words) {
+            EXPECT_THAT(head, HasSubstr(sentence)) << path;
+        }
+    };
+    std::filesystem::path last = folder.path() / "a.csv";
+    export_table(ForceTable::fit(points, "lift_force"), "csv", last, {});
+    expect_words(last);
+    int turn = 0;
+    for (const char* format : {"json", "csv", "csv", "json"}) {  // each out of the one before
+        const ForceTable again = ForceTable::read(last, "lift_force");
+        const auto warned = [](const core::Problem& one) { return one.severity == core::Problem::Severity::warning; };
+        ASSERT_EQ(std::count_if(again.remarks().begin(), again.remarks().end(), warned), 1) << last;
+        EXPECT_EQ(std::find_if(again.remarks().begin(), again.remarks().end(), warned)->message, words[0]);
+        for (const char* made : {"c", "modelica", "jsbsim", "simulink"}) {
+            const auto path = folder.path() / (std::string(made) + std::to_string(turn));
+            const auto files = export_table(again, made, path, {}).files;
+            std::string all;
+            for (const auto& file : files) {
+                all += core::read_file(file);
+            }
+            for (const auto& sentence : words) {
+                EXPECT_THAT(all, HasSubstr(sentence)) << made << " of " << last;
+            }
+        }
+        last = folder.path() / ("b" + std::to_string(++turn) + "." + format);
+        export_table(again, format, last, {});
+        expect_words(last);
+    }
+}
+
 TEST(ExportsOfText, ThatAreNoTablesSayWhatIsWrong) {
     core::TemporaryFolder folder;
     const auto message = [&](const std::string& text) {
