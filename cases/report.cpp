@@ -219,7 +219,7 @@ private:
             page_.paragraph("No equilibrium in the table at a net weight of " + shown(net_weight, "N", "N") + " N.");
             return;
         }
-        page_.table({"gap (mm)", "± (mm)", "", "stiffness (N/m)", "frequency (Hz)", "largest kick survived (mm/s)"},
+        page_.table({"gap (mm)", "± (mm)", "kind", "stiffness (N/m)", "frequency (Hz)", "largest kick survived (mm/s)"},
                     rows,
                     "Where lift balances a net weight of " + shown(net_weight, "N", "N") +
                         " N. The kick is the upward or downward velocity from which the body still comes back.");
@@ -348,15 +348,14 @@ private:
         if (const auto error = found.find("error"); error != found.end() && error->contains("before")) {
             const auto& before = error->at("before");
             const auto& after = error->at("after");
-            page_.table({"", "error", "95 % interval", "unit"},
-                        {{"before", core::format_number(number_in(before, "rmse"), 3),
-                          core::format_number(number_in(before, "low"), 3) + " to " +
-                              core::format_number(number_in(before, "high"), 3),
-                          text_in(*error, "unit")},
-                         {"after", core::format_number(number_in(after, "rmse"), 3),
-                          core::format_number(number_in(after, "low"), 3) + " to " +
-                              core::format_number(number_in(after, "high"), 3),
-                          text_in(*error, "unit")}},
+            const std::string unit = text_in(*error, "unit");
+            const std::string to = unit == "m" ? "mm" : unit == "m/s" ? "mm/s" : unit;
+            const auto row = [&](const char* when, const json& one) {
+                const auto number = [&](const char* key) { return shown(number_in(one, key), unit, to, 3); };
+                return std::vector<std::string>{when, number("rmse"), number("low") + " to " + number("high"), to};
+            };
+            page_.table({"model", "error", "95 % interval", "unit"},
+                        {row("as declared", before), row("as found", after)},
                         "Error of the prediction of the " + text_in(*error, "channel") +
                             " on runs that nothing was fitted to.");
         }

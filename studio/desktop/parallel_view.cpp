@@ -12,7 +12,7 @@
 namespace underbody::studio {
 
 namespace {
-constexpr int top = 60, bottom = 22, side = 60;
+constexpr int bottom = 22, side = 60;
 }
 
 ParallelView::ParallelView(QWidget* parent) : QWidget(parent) {
@@ -41,6 +41,7 @@ void ParallelView::show_axes(std::vector<Axis> axes) {
             axis.upper = axis.lower + 2;
         }
     }
+    give_titles_room();
     pale_ = {};
     update();
 }
@@ -59,11 +60,11 @@ double ParallelView::x_of(std::size_t axis) const {
 }
 
 double ParallelView::y_of(const Axis& axis, double value) const {
-    return height() - bottom - (height() - top - bottom) * (value - axis.lower) / (axis.upper - axis.lower);
+    return height() - bottom - (height() - head_ - bottom) * (value - axis.lower) / (axis.upper - axis.lower);
 }
 
 double ParallelView::value_at(const Axis& axis, double y) const {
-    const double share = (height() - bottom - y) / std::max(1, height() - top - bottom);
+    const double share = (height() - bottom - y) / std::max(1, height() - head_ - bottom);
     return axis.lower + std::min(1.0, std::max(0.0, share)) * (axis.upper - axis.lower);
 }
 
@@ -113,12 +114,12 @@ void ParallelView::paintEvent(QPaintEvent*) {
         const Axis& axis = axes_[i];
         const double x = x_of(i);
         painter.setPen(QPen(palette().text().color(), 1));
-        painter.drawLine(QPointF(x, top), QPointF(x, height() - bottom));
-        const double room = axes_.size() < 2 ? 140 : std::min(140.0, x_of(1) - x_of(0) - 4);
-        painter.drawText(QRectF(x - room / 2, 2, room, 34), Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap,
-                         QString(axis.title).replace('_', ' ').replace('.', ' '));
+        painter.drawLine(QPointF(x, head_), QPointF(x, height() - bottom));
+        const double room = title_room();
+        painter.drawText(QRectF(x - room / 2, 2, room, head_ - 26),
+                         Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap, title_of(axis));
         const auto text = [&](double value) { return qt(core::format_number(axis.factor * value, 4)); };
-        painter.drawText(QRectF(x - 60, 38, 120, 18), Qt::AlignCenter, text(axis.upper));
+        painter.drawText(QRectF(x - 60, head_ - 22, 120, 18), Qt::AlignCenter, text(axis.upper));
         painter.drawText(QRectF(x - 60, height() - bottom + 2, 120, 18), Qt::AlignCenter, text(axis.lower));
         std::array<double, 2> range{};
         if (pressed_ == static_cast<int>(i)) {
@@ -139,7 +140,25 @@ void ParallelView::paintEvent(QPaintEvent*) {
     }
 }
 
-void ParallelView::resizeEvent(QResizeEvent*) { pale_ = {}; }
+void ParallelView::resizeEvent(QResizeEvent*) {
+    pale_ = {};
+    give_titles_room();
+}
+
+QString ParallelView::title_of(const Axis& axis) { return QString(axis.title).replace('_', ' ').replace('.', ' '); }
+
+double ParallelView::title_room() const { return axes_.size() < 2 ? 140 : std::min(140.0, x_of(1) - x_of(0) - 4); }
+
+/// As many lines as the longest title takes between its neighbours.
+void ParallelView::give_titles_room() {
+    int lines = fontMetrics().height();
+    for (const auto& axis : axes_) {
+        const QRect room(0, 0, static_cast<int>(title_room()), 1000);
+        lines = std::max(
+            lines, fontMetrics().boundingRect(room, Qt::AlignHCenter | Qt::TextWordWrap, title_of(axis)).height());
+    }
+    head_ = std::min(lines + 28, std::max(60, height() / 2));
+}
 
 void ParallelView::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange) {

@@ -26,6 +26,8 @@ public:
     void show_brush(const std::map<std::string, std::array<double, 2>>& brush, const std::vector<std::size_t>& kept);
     /// What stands there while there is nothing to show.
     void say(const QString& text);
+    /// Room above the axes, px: of as many lines as the longest title takes.
+    [[nodiscard]] int head() const { return head_; }
     [[nodiscard]] QSize minimumSizeHint() const override { return {300, 150}; }
 
 Q_SIGNALS:
@@ -45,12 +47,16 @@ private:
     [[nodiscard]] double y_of(const Axis& axis, double value) const;
     [[nodiscard]] double value_at(const Axis& axis, double y) const;
     void draw_line(QPainter& painter, std::size_t row) const;
+    [[nodiscard]] static QString title_of(const Axis& axis);
+    [[nodiscard]] double title_room() const;
+    void give_titles_room();
 
     std::vector<Axis> axes_;
     std::map<std::string, std::array<double, 2>> brush_;
     std::vector<std::size_t> kept_;
     QPixmap pale_;  ///< all lines, drawn once
     QString empty_;
+    int head_ = 60;  ///< px above the axes: titles and largest values
     int pressed_ = -1;
     double from_ = 0, to_ = 0;
 };

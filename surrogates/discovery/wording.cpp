@@ -19,18 +19,38 @@ std::string list_of(const std::vector<std::string>& names) {
     return text;
 }
 
-std::string value_text(const FoundParameter& parameter) {
-    // thousandths and millionths of the units that people read them in
+namespace {
+
+/// A unit that people read a number of this size in, and what the number is multiplied by.
+struct ReadIn {
     double scale = 1;
-    std::string unit = parameter.unit == "1" ? "" : parameter.unit;
-    const double size = std::max(std::abs(parameter.value), 3 * parameter.sigma);
+    std::string unit;
+};
+
+/// Thousandths and millionths of SI units.
+ReadIn read_in(const std::string& unit, double size) {
     const bool prefixed = unit == "m" || unit == "N" || unit == "N m" || unit == "s" || unit == "N/m" ||
                           unit == "m/s" || unit == "N/s" || unit == "N m/s";
-    if (prefixed && size > 0 && size < 0.1) {
-        const bool micro = size < 1e-4;
-        scale = micro ? 1e6 : 1e3;
-        unit = (micro ? "u" : "m") + unit;
+    if (!prefixed || !(size > 0 && size < 0.1)) {
+        return {1, unit == "1" ? "" : unit};
     }
+    const bool micro = size < 1e-4;
+    return {micro ? 1e6 : 1e3, (micro ? "u" : "m") + unit};
+}
+
+/// "2.44 to 0.217 mm (noise 0.2 mm)"
+std::string error_text(const ErrorChange& error) {
+    const ReadIn shown = read_in(error.unit, std::max(error.before.rmse, error.after.rmse));
+    const auto number = [&](double value) { return core::format_number(shown.scale * value, 3); };
+    const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
+    return number(error.before.rmse) + " to " + number(error.after.rmse) + unit + " (noise " + number(error.noise) +
+           unit + ")";
+}
+
+}  // namespace
+
+std::string value_text(const FoundParameter& parameter) {
+    const auto [scale, unit] = read_in(parameter.unit, std::max(std::abs(parameter.value), 3 * parameter.sigma));
     // As many digits as the error lets stand: 1.0006 +- 0.0004, not 1 +- 0.0004.
     int digits = 3;
     if (parameter.sigma > 0 && std::isfinite(parameter.sigma) && std::abs(parameter.value) > parameter.sigma) {
@@ -179,10 +199,7 @@ std::string verdict_sentence(const Discovery& discovery) {
             : " On held-out data the error of " + discovery.error.front().channel +
                   (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from "
                                                                                                    : " falls from ") +
-                  core::format_number(discovery.error.front().before.rmse, 3) + " to " +
-                  core::format_number(discovery.error.front().after.rmse, 3) + " " + discovery.error.front().unit +
-                  " (noise " + core::format_number(discovery.error.front().noise, 3) + " " +
-                  discovery.error.front().unit + ")." + worse_elsewhere(discovery);
+                  error_text(discovery.error.front()) + "." + worse_elsewhere(discovery);
     if (discovery.verdict == "none") {
         return (discovery.mended.empty()
                     ? std::string("Nothing is missing")
