@@ -44,6 +44,7 @@ Discovery PitchLoop::run() {
     progress_.report(0.15, "fitting the effects of the catalogue");
     list_candidates();
     fit_singles();
+    colour_noise();
     progress_.report(0.6, "testing what is left");
     open_gate();
     if (gate_ < calibration_.gate) {
@@ -101,7 +102,8 @@ void PitchLoop::split() {
     });
 }
 
-void PitchLoop::fit_null() {
+/// Of the sensors as declared or as the readings scatter; of force and moment a little.
+PitchNoise PitchLoop::noise_at_first() const {
     PitchNoise noise;
     for (const std::size_t i : channels_) {
         std::vector<double> own;
@@ -113,6 +115,11 @@ void PitchLoop::fit_null() {
     const dynamics::PitchRun first(model_, data_.runs[experiment_->records().front().run], model_.records);
     noise.force = 0.002 * first.plant().mass();
     noise.moment = 0.02 * first.plant().inertia();
+    return noise;
+}
+
+void PitchLoop::fit_null() {
+    PitchNoise noise = noise_at_first();
     experiment_->fit_noise({}, noise);
     set_null(noise);
 }
@@ -187,6 +194,7 @@ void PitchLoop::fit_singles() {
     constexpr std::size_t at_first = 8;
     constexpr double within = 12;  // -2 log likelihood
     probes_ = probes({}, null_noise_, {});
+    candidate_of_.clear();
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < probes_.size(); ++k) {
         if (probes_[k].smooth == nullptr) {
@@ -223,6 +231,27 @@ void PitchLoop::fit_singles() {
     while (done < order.size() && probes_[order[done]].gain > fitted_[best_single_].explained - within &&
            probes_[order[done]].gain > within) {
         fit_to(std::min(done + 2, order.size()));
+    }
+}
+
+/// Coloured sensor noise would pass for an effect, and an effect for coloured noise: it was looked for beside the
+/// declared model, now beside the best explanation; if the answer is another one, everything is judged again.
+void PitchLoop::colour_noise() {
+    constexpr double other = 1.3;  // times as much noise of a reading, or as little
+    if (fitted_.empty() || (null_noise_.gap_slow == 0 && null_noise_.pitch_slow == 0)) {
+        return;
+    }
+    const FittedHypothesis& best = fitted_[best_single_];
+    PitchNoise noise = noise_at_first();
+    experiment_->fit_noise(best.hypothesis.with(best.fit.parameters), noise);
+    const bool changed = std::any_of(channels_.begin(), channels_.end(), [&](std::size_t i) {
+        const double ratio = noise.total(i) / null_noise_.total(i);
+        return ratio > other || ratio < 1 / other;
+    });
+    if (changed) {
+        experiment_->fit_process({}, noise);
+        set_null(noise);
+        fit_singles();
     }
 }
 

@@ -32,6 +32,8 @@ private:
                                                  const std::vector<std::vector<double>>& starts,
                                                  const PitchNoise& begin) const;
     void fit_singles();
+    void colour_noise();
+    [[nodiscard]] PitchNoise noise_at_first() const;
     void warn(const std::string& text);
 
     // pitch_significance.cpp: is anything there, and is anything left?
