@@ -143,24 +143,25 @@ double PitchExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, 
     std::vector<std::size_t> chosen(std::min(runs_for_noise, records_.size()));
     std::iota(chosen.begin(), chosen.end(), std::size_t{0});
     const std::vector<double PitchNoise::*> process{&PitchNoise::force, &PitchNoise::moment};
+    const PitchNoise first = noise;
     const double white = search(chosen, uses, process, channels(), noise, 3);
     constexpr double clearly = 12;  // -2 log likelihood that coloured noise has to win, for three numbers
     PitchNoise best = noise;
     double least = white - clearly;
     for (const double time : {0.05, 0.2, 1.0}) {
-        PitchNoise coloured = noise;
+        // from where the search began: white noise alone has made force and moment of the colour
+        PitchNoise coloured = first;
         coloured.slow_time = time;
-        coloured.gap_slow = 0.7 * noise.white[0];
-        coloured.pitch_slow = 0.7 * noise.white[2];
-        coloured.white[0] *= 0.7;
-        coloured.white[2] *= 0.7;
-        // what colour makes was taken for force and moment before
-        coloured.force *= 0.3;
-        coloured.moment *= 0.3;
+        coloured.gap_slow = first.white[0];
+        coloured.pitch_slow = first.white[2];
+        coloured.white[0] *= 0.4;
+        coloured.white[2] *= 0.4;
+        coloured.force *= 0.1;
+        coloured.moment *= 0.1;
         const double cost = search(chosen, uses,
                                    {&PitchNoise::gap_slow, &PitchNoise::pitch_slow, &PitchNoise::slow_time,
                                     &PitchNoise::force, &PitchNoise::moment},
-                                   channels(), coloured, 2);
+                                   channels(), coloured, 3);
         if (cost < least) {
             least = cost;
             best = coloured;
