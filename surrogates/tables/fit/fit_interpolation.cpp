@@ -23,24 +23,17 @@ std::vector<double> smooth_coordinate(std::vector<double> x) {
     return x;
 }
 
-/// How far the interpolation is from the one by the other rule, in the smooth coordinate, in each cell of a line of
-/// four points and more: both go through the points, and what they disagree by is about what either misses. Mean square
-/// over five places, each over the error's shape there, which is 1 in the middle: where the two cross, they agree by
-/// chance.
-std::vector<double> square_disagreement(SlopeRule rule, const CubicGrid& own, const std::vector<double>& x,
-                                        const std::vector<double>& y) {
+/// How far the interpolation is from the one by the other rule, in the smooth coordinate, in the middle of each cell of
+/// a line of four points and more: both go through the points, and what they disagree by is about what either misses.
+std::vector<double> disagreement(SlopeRule rule, const CubicGrid& own, const std::vector<double>& x,
+                                 const std::vector<double>& y) {
     const std::vector<double> t = smooth_coordinate(x);
     const CubicGrid other({t}, y, rule == SlopeRule::monotone ? SlopeRule::not_a_knot : SlopeRule::monotone);
     std::vector<double> apart;
     for (std::size_t cell = 0; cell + 1 < x.size(); ++cell) {
-        double square = 0;
-        for (const double part : {0.15, 0.3, 0.5, 0.7, 0.85}) {
-            const double at = x[cell] + part * (x[cell + 1] - x[cell]);
-            const double there = t.front() == x.front() ? at : std::log(at);
-            const double miss = (own.value(&at, nullptr) - other.value(&there, nullptr)) / (4 * part * (1 - part));
-            square += 0.2 * miss * miss;
-        }
-        apart.push_back(square);
+        const double middle = 0.5 * (x[cell] + x[cell + 1]);
+        const double there = t.front() == x.front() ? middle : std::log(middle);
+        apart.push_back(own.value(&middle, nullptr) - other.value(&there, nullptr));
     }
     return apart;
 }
@@ -107,17 +100,18 @@ std::vector<double> cell_errors(SlopeRule rule, const std::vector<double>& x, co
         return error;
     }
     const CubicGrid own({x}, y, rule);
-    const auto apart = square_disagreement(rule, own, x, y);
+    const auto apart = disagreement(rule, own, x, y);
     const auto t = smooth_coordinate(x);
     const auto misses = left_out_misses(rule, x, y);
     const double order = order_of(rule, x, y, misses);
     for (std::size_t cell = 0; cell + 1 < n; ++cell) {
-        // With a little of its neighbours, because one cell may agree by luck.
+        // With its neighbours, because one cell may agree by luck; those at the ends are seen from one side only.
         double square = 0, weight = 0;
         for (std::size_t i = cell == 0 ? 0 : cell - 1; i <= std::min(n - 2, cell + 1); ++i) {
-            const double w = i == cell ? 1 : 0.2;
+            const double w = i == cell ? 2 : 1;
             // Noise makes the two rules differ by a third of it, and a left-out point by a little more than itself.
-            square += w * std::max(0.0, apart[i] - 0.05 * (noise[i] * noise[i] + noise[i + 1] * noise[i + 1]));
+            square +=
+                w * std::max(0.0, apart[i] * apart[i] - 0.05 * (noise[i] * noise[i] + noise[i + 1] * noise[i + 1]));
             weight += w;
         }
         const double by_rule = square / weight;
@@ -128,8 +122,7 @@ std::vector<double> cell_errors(SlopeRule rule, const std::vector<double>& x, co
             square += share * share * std::max(0.0, misses[out] * misses[out] - 1.6 * noise[out] * noise[out]);
             weight += 1;
         }
-        // The misses of left-out points say what both rules miss alike, such as at kinks: docs/adr/0009.
-        error[cell] = std::sqrt(by_rule + 0.3 * square / weight);
+        error[cell] = std::sqrt(by_rule + square / weight);
     }
     return error;
 }
