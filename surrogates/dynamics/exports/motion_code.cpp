@@ -65,13 +65,13 @@ public:
             "/* " + of_.fmu.states.front().name + " and what follows: a motion written by Underbody. */\n";
         all += c_part("numbers.c") + head + c_part("tables.c") + c_part("vertical.c") + data + c_part("moment.c");
         if (of_.motion == FmuMotion::heave) {
-            return all + c_part("heave.c") + c_part("fmi2.c") + c_part("co_simulation.c");
+            return all + c_part("heave.c") + c_part("delay.c") + c_part("fmi2.c") + c_part("co_simulation.c");
         }
         return all +
                (of_.motion == FmuMotion::body
                     ? c_part("body.c") + c_part("body_rates.c") + c_part("contact.c") + c_part("body_outputs.c")
                     : c_part("heave_pitch.c") + c_part("contact.c") + c_part("heave_pitch_rates.c")) +
-               c_part("fmi2.c") + c_part("co_simulation.c");
+               c_part("delay.c") + c_part("fmi2.c") + c_part("co_simulation.c");
     }
 
 private:
@@ -100,6 +100,8 @@ private:
         define("MEMORY_AT", count(states - memories));
         define("LAG_AT", count(states - memories - (terms.actuator.lag > 0 ? 1 : 0)));
         define("JETS", count(jets()));
+        define("DELAY", number(terms.actuator.delay));
+        define("DELAYED", terms.actuator.delay > 0 ? "1" : "0");
         double longest = of_.motion == FmuMotion::body ? 0.1 : 0;
         for (const HeaveTerms::Wave& wave : terms.waves) {
             const double part = 0.1 / std::max(wave.frequency, 1e-9);

@@ -39,11 +39,13 @@ private:
             "\" generationTool=\"Underbody\" variableNamingConvention=\"structured\" "
             "numberOfEventIndicators=\"" +
             (of_.motion == FmuMotion::heave ? "1" : "2") + "\">\n";
+        const bool late = of_.vertical.terms.actuator.delay > 0;  // a simulator has to say which steps it took
         for (const char* kind : {"ModelExchange", "CoSimulation"}) {
             xml += std::string("  <") + kind + " modelIdentifier=\"" + name_ +
                    "\" providesDirectionalDerivative=\"true\" canGetAndSetFMUstate=\"true\" "
                    "canSerializeFMUstate=\"true\"" +
                    (kind[0] == 'C' ? " canHandleVariableCommunicationStepSize=\"true\" canInterpolateInputs=\"true\""
+                    : late         ? ""
                                    : " completedIntegratorStepNotNeeded=\"true\"") +
                    ">\n    <SourceFiles>\n      <File name=\"fmu.c\"/>\n    </SourceFiles>\n  </" + kind + ">\n";
         }

@@ -100,12 +100,9 @@ void add_inputs(MotionSource& of) {
     const Actuator& actuator = of.vertical.terms.actuator;
     inputs.push_back(
         {"input_force", "N", "force commanded, up, before the actuator", of.held.get(Channel::input_force, 0)});
-    if (actuator.delay != 0) {
-        const std::string late = core::format_number(actuator.delay, 6) + " s";
-        inputs.back().meaning += "; the model's delay of " + late + " is not inside: give it that much later";
-        warn(of.fmu, "the delay of the input force, " + late +
-                         ", is not in the FMU, whose motion has no memory of its inputs: put a delay of " + late +
-                         " in front of its input_force");
+    if (actuator.delay > 0) {
+        inputs.back().meaning += ", which it reaches " + core::format_number(actuator.delay, 6) +
+                                 " s later; before the start it is that of the start";
     }
     if (of.motion == FmuMotion::body) {
         for (const Jet& jet : of.model.jets) {

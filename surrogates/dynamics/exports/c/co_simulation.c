@@ -112,30 +112,50 @@ static int advance(Instance *c, double width, double *done, int *event) {
     return 1;
 }
 
-EXPORTED fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real step, fmi2Boolean no_set) {
-    Instance *c = (Instance *)component;
-    double left = step;
+/* Steps from the instance's time to `end`, `left` seconds later. */
+static fmi2Status go_on(Instance *c, double end, double left) {
     int i, pieces = 0;
-    UNUSED(no_set);
-    begin(c);
-    c->t = time;
     while (left > 0) {
-        double done;
+        double done, width = left, z[INDICATORS];
         int event;
-        if (!advance(c, left, &done, &event)) {
+        if (DELAYED) {
+            width = straight_until(&c->past, c->t, left, &c->command, &c->command_slope);
+        }
+        /* An input that jumped may lift a body that lies, or press one down. */
+        if (crossed(c, c->x, 0, NULL, z) && ground(c) < 0) {
+            return failed(c, "no contact forces fit this motion");
+        }
+        if (!advance(c, width, &done, &event)) {
             failed(c, "no step of the integrator succeeds");
             return fmi2Discard;
         }
-        c->t = done >= left ? time + step : c->t + done;
+        c->t = done >= left ? end : c->t + done;
         left = done >= left ? 0 : left - done;
         for (i = 0; i < INPUTS; ++i) {
             c->u[i] += done * c->slope[i];
         }
+        c->command += done * c->command_slope;
         if (event && (ground(c) < 0 || ++pieces > 5000)) {
             return failed(c, pieces > 5000 ? "the contact chatters" : "no contact forces fit this motion");
         }
     }
     return fmi2OK;
+}
+
+EXPORTED fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real step, fmi2Boolean no_set) {
+    Instance *c = (Instance *)component;
+    fmi2Status status;
+    UNUSED(no_set);
+    begin(c);
+    c->t = time;
+    if (!keep_command(c, 0) || !keep_command(c, step)) {
+        return failed(c, "there is no memory for the delayed input");
+    }
+    c->within = 1;
+    status = go_on(c, time + step, step);
+    c->within = 0;
+    c->reached = c->t;
+    return status;
 }
 EXPORTED fmi2Status fmi2SetRealInputDerivatives(fmi2Component component, const fmi2ValueReference vr[], size_t n,
                                                 const fmi2Integer order[], const fmi2Real value[]) {

@@ -41,6 +41,10 @@ typedef struct {
     double x[STATES], u[INPUTS], slope[INPUTS];
     double t, step, tolerance;
     int bearing, begun, initialised;
+    command_history past; /* of the input force, where it is delayed */
+    double reached;       /* jumps that arrive until then have arrived */
+    int within;           /* a step of co-simulation, on the line of the delayed command from the instance's time on: */
+    double command, command_slope;
     fmi2Logger logger;
     fmi2ComponentEnvironment environment;
     char name[64];
@@ -64,6 +68,14 @@ static void moment_of(const Instance *c, const double *x, double later, moment *
     for (i = 0; i < INPUTS; ++i) {
         m->u[i] = con(c->u[i] + later * c->slope[i]);
     }
+    m->commanded = !DELAYED    ? m->u[0]
+                   : c->within ? con(c->command + later * c->command_slope)
+                               : con(delayed_command(&c->past, m->t, m->u[0].v, c->reached >= m->t - same_time(m->t)));
+}
+
+/* Keeps the command of this moment; 0: no memory. */
+static int keep_command(Instance *c, double later) {
+    return !DELAYED || remember(&c->past, c->t + later, c->u[0] + later * c->slope[0]);
 }
 
 /* The ground at this moment; 1 when states changed, -1 when nothing fits. */
@@ -87,10 +99,13 @@ static void begin(Instance *c) {
         return;
     }
     memcpy(c->x, c->start, sizeof(c->x));
-    c->bearing = 0;
+    c->bearing = c->within = 0;
+    c->past.count = 0;
+    c->reached = c->t;
+    keep_command(c, 0);
     moment_of(c, c->x, 0, &m);
     if (terms.lag > 0) {
-        c->x[LAG_AT] = felt(m.u[0]).v;
+        c->x[LAG_AT] = felt(m.commanded).v;
     }
     for (i = 0; i < JETS; ++i) {
         if (jets[i].state >= 0) {
@@ -138,7 +153,12 @@ EXPORTED fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2Strin
     }
     return c;
 }
-EXPORTED void fmi2FreeInstance(fmi2Component c) { free(c); }
+EXPORTED void fmi2FreeInstance(fmi2Component c) {
+    if (c != NULL) {
+        free(((Instance *)c)->past.at);
+    }
+    free(c);
+}
 
 EXPORTED fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean with_tolerance, fmi2Real tolerance,
                                         fmi2Real start, fmi2Boolean with_stop, fmi2Real stop) {
@@ -219,6 +239,9 @@ EXPORTED fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const 
             return failed(c, "derivatives are those along inputs and states");
         }
     }
+    if (!DELAYED) {
+        m.commanded = m.u[0];
+    }
     evaluate(&m, all);
     for (i = 0; i < n_unknown; ++i) {
         if (unknown[i] >= VARIABLES) {
@@ -254,21 +277,37 @@ NOTHING(fmi2EnterEventMode, (fmi2Component c), UNUSED(c))
 NOTHING(fmi2EnterContinuousTimeMode, (fmi2Component c), UNUSED(c))
 NOTHING(fmi2CancelStep, (fmi2Component c), UNUSED(c))
 
-EXPORTED fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    if (*state == NULL) {
-        *state = malloc(sizeof(Instance));
-    }
-    if (*state == NULL) {
+/* A stored state is an instance and behind it the points of its history. */
+static size_t stored_size(const Instance *c) { return sizeof(Instance) + c->past.count * sizeof(command_point); }
+
+EXPORTED fmi2Status fmi2GetFMUstate(fmi2Component component, fmi2FMUstate *state) {
+    const Instance *c = (const Instance *)component;
+    void *room = realloc(*state, stored_size(c));
+    if (room == NULL) {
         return fmi2Error;
     }
-    memcpy(*state, c, sizeof(Instance));
+    *state = room;
+    memcpy(room, c, sizeof(Instance));
+    if (c->past.count > 0) {
+        memcpy((char *)room + sizeof(Instance), c->past.at, c->past.count * sizeof(command_point));
+    }
     return fmi2OK;
 }
 EXPORTED fmi2Status fmi2SetFMUstate(fmi2Component component, fmi2FMUstate state) {
-    Instance *c = (Instance *)component, own = *c;
+    Instance *c = (Instance *)component, own;
+    const size_t points = ((const Instance *)state)->past.count;
+    if (points > 0 && !make_room(&c->past, points)) {
+        return failed(c, "there is no memory for the state");
+    }
+    own = *c;
     memcpy(c, state, sizeof(Instance));
+    c->past.at = own.past.at;
+    c->past.room = own.past.room;
     c->logger = own.logger;
     c->environment = own.environment;
+    if (points > 0) {
+        memcpy(c->past.at, (const char *)state + sizeof(Instance), points * sizeof(command_point));
+    }
     return fmi2OK;
 }
 EXPORTED fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
@@ -279,23 +318,34 @@ EXPORTED fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
 }
 EXPORTED fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
     UNUSED(c);
-    UNUSED(state);
-    *size = sizeof(Instance);
+    *size = stored_size((const Instance *)state);
     return fmi2OK;
 }
 EXPORTED fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
+    const size_t needed = stored_size((const Instance *)state);
     UNUSED(c);
-    if (size < sizeof(Instance)) {
+    if (size < needed) {
         return fmi2Error;
     }
-    memcpy(bytes, state, sizeof(Instance));
+    memcpy(bytes, state, needed);
     return fmi2OK;
 }
-EXPORTED fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
-    if (size < sizeof(Instance) || fmi2GetFMUstate(c, state) != fmi2OK) {
+EXPORTED fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
+    Instance stored;
+    void *room;
+    if (size < sizeof(Instance)) {
+        return failed((const Instance *)component, "these bytes are no state of this FMU");
+    }
+    memcpy(&stored, bytes, sizeof(Instance));
+    if (stored.past.count > (size - sizeof(Instance)) / sizeof(command_point)) {
+        return failed((const Instance *)component, "these bytes are no whole state of this FMU");
+    }
+    room = realloc(*state, stored_size(&stored));
+    if (room == NULL) {
         return fmi2Error;
     }
-    memcpy(*state, bytes, sizeof(Instance));
+    memcpy(room, bytes, stored_size(&stored));
+    *state = room;
     return fmi2OK;
 }
 
@@ -306,18 +356,26 @@ EXPORTED fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
 }
 EXPORTED fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info) {
     Instance *c = (Instance *)component;
-    const int changed = ground(c);
+    int changed;
+    begin(c);
+    c->reached = c->t;
+    if (!keep_command(c, 0)) {
+        return failed(c, "there is no memory for the delayed input");
+    }
+    changed = ground(c);
     memset(info, 0, sizeof(*info));
     info->valuesOfContinuousStatesChanged = changed > 0;
+    if (DELAYED) {
+        info->nextEventTimeDefined = next_jump(&c->past, c->t, &info->nextEventTime);
+    }
     return changed < 0 ? failed(c, "no contact forces fit this motion") : fmi2OK;
 }
 EXPORTED fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_set, fmi2Boolean *event,
                                                 fmi2Boolean *terminate) {
-    UNUSED(c);
     UNUSED(no_set);
     *event = 0;
     *terminate = 0;
-    return fmi2OK;
+    return keep_command((Instance *)c, 0) ? fmi2OK : failed((Instance *)c, "there is no memory for the delayed input");
 }
 EXPORTED fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
     if (n != STATES) {

@@ -1,7 +1,8 @@
-/* A moment of the motion: what a simulator gives. bearing: which edges lie on the ground (1 nose, 2 tail; in heave 1: all). */
+/* A moment of the motion: what a simulator gives. bearing: which edges lie on the ground (1 nose, 2 tail; in heave 1: all).
+   commanded: the input force as it reaches the actuator, after its delay. */
 typedef struct {
     double t;
-    num x[STATES], u[INPUTS];
+    num x[STATES], u[INPUTS], commanded;
     int bearing;
 } moment;
 
@@ -20,11 +21,11 @@ static void channels_of(const moment *m, num *channel) {
 }
 
 /* The input force as it reaches the body. */
-static num acting_input(const moment *m) { return terms.lag > 0 ? m->x[LAG_AT] : felt(m->u[0]); }
+static num acting_input(const moment *m) { return terms.lag > 0 ? m->x[LAG_AT] : felt(m->commanded); }
 
 static void lag_rates(const moment *m, num *dx) {
     if (terms.lag > 0) {
-        dx[LAG_AT] = times(1 / terms.lag, sub(felt(m->u[0]), m->x[LAG_AT]));
+        dx[LAG_AT] = times(1 / terms.lag, sub(felt(m->commanded), m->x[LAG_AT]));
     }
 }
 
